@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Nanoseconds per spin and step of Heun's method on bcc with 8 and 14 neighbours, beside the
-// hand-written loop for that crystal in the same run. Cases are named PRECISION/METHOD/SIZE; a size
-// is the edge of a cube of cells, each of two spins.
+// Nanoseconds per spin and step of Heun's method on bcc with 8 and 14 neighbours, next to the
+// hand-written loop for that crystal in one run. Cases are named PRECISION/METHOD/SIZE; a size is
+// the edge of a cube of cells, each of two spins.
 //   bench_crystals --benchmark_filter=/64
 #include "hand_written.hpp"
 #include "main.hpp"

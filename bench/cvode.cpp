@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Scenes solved by CVODE of SUNDIALS and by methods here, side by side on one thread, with the same
-// kernel for the right side: milliseconds and evaluations to an error. `bench_cvode [SCENE..]`, all
-// without names: slab_fine, slab_fine_damped, film, heisenberg, film_256.
-// The error is the largest distance of any spin from tsit5 at a tolerance of 1e-12, at four times;
-// CVODE's spins are divided by their lengths there. The shortest of 3 to 100 runs.
+// Compares CVODE of SUNDIALS with cayspin's methods on one thread, with one kernel for the right
+// side: milliseconds and evaluations to an error. `bench_cvode [SCENE..]`, all without names:
+// slab_fine, slab_fine_damped, film, heisenberg, film_256. The error is the largest distance of any
+// spin from tsit5 at a tolerance of 1e-12, at four times; CVODE's spins are divided by their
+// lengths there. Times are the shortest of 3 to 100 runs.
 #include "cvode_run.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -109,7 +109,7 @@ class Comparison {
       }
     });
   }
-  /// Disordered spins of exchange alone.
+  /// Disordered spins with exchange only.
   void steps_with_sigma() {
     using Plain = Rkmk<Spins, tableau::DormandPrince8>;
     using WithSigma = Rkmk<Spins, tableau::DormandPrince8, isotropy::Constant>;
@@ -119,7 +119,7 @@ class Comparison {
   }
   void cvode(std::string const& name, by_sundials::CvodeOptions const& options) {
     by_sundials::Cvode<Generator> solver(problem_.lattice, problem_.generator, options);
-    // Where a loose tolerance makes it unstable it would go on for long.
+    // Stops runs that a loose tolerance makes unstable.
     double const rate = problem_.field_bound * std::hypot(1, problem_.damping);
     auto const most = static_cast<std::int64_t>(50000 + 20 * problem_.horizon * rate);
     add(name, false, [&](int rung) {

@@ -26,7 +26,7 @@ struct CvodeOptions {
   bool preconditioned = false;
 };
 
-/// (1 + b K)^-1 as StiffGauss has it, b = gamma (damping - i), across the spins.
+/// (1 + b K)^-1 as in StiffGauss, b = gamma (damping - i), normal to the spins.
 class SpinWavePreconditioner {
   using Solver = cayspin::detail::SpinWaveSolver<double, Kokkos::HostSpace>;
 
@@ -36,7 +36,7 @@ class SpinWavePreconditioner {
         right_("bench::preconditioner::right", lattice),
         solution_("bench::preconditioner::solution", lattice) {}
 
-  /// Evaluates the generator some times, and returns that number.
+  /// Evaluates the generator some times, and returns how often.
   template <class Generator>
   int measure(Generator const& generator) {
     int const evaluations =
@@ -68,7 +68,7 @@ class SpinWavePreconditioner {
       site.store(r - dot(m, r) * m, output);
     }
   };
-  /// v' + m x v'' across the spins, and the right side along them.
+  /// v' + m x v'' normal to the spins, and the right side along them.
   struct Turn {
     cayspin::SiteArray<double, 6> solution;
     SiteArray right, spins;
@@ -94,8 +94,8 @@ class SpinWavePreconditioner {
   std::string across_label_ = "cayspin::bench::across", turn_label_ = "cayspin::bench::turn";
 };
 
-/// A run from `start` to the horizon, looked at at equal times; without states where it fails or
-/// takes more than `most` evaluations.
+/// CVODE run from `start` to the horizon that stores states at equal intervals; returns no states
+/// if it fails or takes more than `most` evaluations.
 template <class Generator>
 class Cvode {
  public:

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Milliseconds of an evaluation of the demagnetising field in the default space, beside the six
-// transforms alone of a lattice padded with zeros: by the plans of FFTW that it measures to be the
-// fastest, or by cuFFT. Both on one thread with OMP_NUM_THREADS=1. Cases are named
-// PRECISION/WHAT/SHAPE.
+// Milliseconds of an evaluation of the demagnetising field in the default space, next to only the
+// six transforms of a lattice padded with zeros: by FFTW's measured plans, or by cuFFT. Both on one
+// thread with OMP_NUM_THREADS=1. Cases are named PRECISION/WHAT/SHAPE.
 //   bench_demagnetizing_field --benchmark_filter=f64 --benchmark_repetitions=5
 #include "main.hpp"
 #include "scene.hpp"
@@ -21,8 +20,8 @@ namespace {
 constexpr std::array<std::int64_t, 3> shapes[] = {
     {256, 256, 1}, {512, 512, 1}, {64, 64, 64}, {128, 128, 128}};
 
-/// Transforms there and back of a lattice padded to twice its length along each axis that is longer
-/// than a cell. Of zeros, which stay what they are.
+/// Forward and backward transforms of a lattice padded to twice its length along each axis longer
+/// than a cell. The data are zeros, which stay zero.
 template <class Real>
 class PaddedTransforms {
 #if defined(KOKKOS_ENABLE_CUDA)

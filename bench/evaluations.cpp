@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Nanoseconds per spin and evaluation of methods of high order and of adaptive steps, beside
+// Nanoseconds per spin and evaluation of methods of high order and of adaptive steps, next to
 // RKMK4. Cases are named evaluations/PRECISION/METHOD/SIZE.
 #include "main.hpp"
 #include "scene.hpp"
@@ -11,7 +11,7 @@ namespace {
 
 using namespace cayspin;
 
-/// Own steps of an adaptive method between two times that are asked for.
+/// Internal steps of an adaptive method between two requested times.
 constexpr int own_steps = 8;
 
 void report(benchmark::State& state, std::int64_t sites, double evaluations) {

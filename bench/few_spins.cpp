@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Steps per second of a chain of 100 spins through cayspin::integrate, with an observer every 100
-// steps, beside hand-written loops for the same scene: one over numbers, and the same as the
-// compiler vectorises it. Cases are named few spins/METHOD/EXECUTION SPACE, few spins/scalar METHOD
-// and few spins/vectorized METHOD.
+// steps, next to hand-written loops for that scene: one scalar, one vectorised by the compiler.
+// Cases are named few spins/METHOD/EXECUTION SPACE, few spins/scalar METHOD and few
+// spins/vectorized METHOD.
 #include "hand_written.hpp"
 #include "main.hpp"
 #include "scene.hpp"
@@ -69,7 +69,7 @@ using Vectorized = hand_written::Steps<Chain<Loops::vectorized>>;
 template <class Loop>
 using MethodOf = void (Loop::*)(hand_written::Vectors<double>&, double, std::int64_t);
 
-/// The library's method beside hand-written loops that take the steps of Renormalized.
+/// The library's method next to hand-written loops that take the steps of Renormalized.
 template <class Stepper, class Renormalized>
 void add(std::string const& name, MethodOf<Scalar> scalar, MethodOf<Vectorized> vectorized) {
   using Default = Kokkos::DefaultHostExecutionSpace;

@@ -17,7 +17,7 @@ import model_gpu
 
 
 def output_of(*command):
-    """What a command prints; None where it does not run."""
+    """Returns the output of a command; None if it does not run."""
     try:
         done = subprocess.run(command, text=True, stdout=subprocess.PIPE,
                               stderr=subprocess.DEVNULL)

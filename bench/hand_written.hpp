@@ -6,13 +6,13 @@
 #include <new>
 #include <vector>
 
-// What a good engineer writes in a day for exactly one scene, without a library: separate component
-// arrays, OpenMP over rows, a vectorised inner loop, one fused loop per stage, renormalised at the
-// end of the step. It is the yardstick of the benchmarks: it shares no code with cayspin, and is
-// compiled on its own with the flags that serve it best.
+// Code that a good engineer writes in a day for exactly one scene, without a library: separate
+// component arrays, OpenMP over rows, a vectorised inner loop, one fused loop per stage,
+// renormalised at the end of the step. The benchmarks compare with it. It shares no code with
+// cayspin, and is compiled separately with the flags that suit it best.
 namespace hand_written {
 
-/// Asks for 2 MiB pages; without them the loop waits for address translation beyond the caches.
+/// Requests 2 MiB pages; without them the loop waits for address translation beyond the caches.
 void advise_huge_pages(void* begin, std::size_t bytes);
 
 template <class Number>
@@ -33,10 +33,10 @@ struct Vectors {
   Array<Number> x, y, z;
 };
 
-/// From (sites, 3); each thread touches first what it works on.
+/// Copies from (sites, 3); each thread first touches the memory that it works on.
 template <class Number>
 void fill(Vectors<Number>& vectors, std::vector<double> const& from);
-/// To (sites, 3).
+/// Copies to (sites, 3).
 template <class Number>
 std::vector<double> numbers_of(Vectors<Number> const& vectors, std::size_t sites);
 
@@ -52,8 +52,8 @@ struct Cube {
 };
 
 /// bcc, n x n x n periodic cells of two sites, exchange with 8 neighbours or, with a second shell,
-/// 14, a field along z, damping. It is what one writes who knows the offsets of all neighbours when
-/// the program is compiled. Spins by plane z, and in it sites 0 of all cells before sites 1.
+/// 14, a field along z, damping. Written with the offsets of all neighbours known at compile time.
+/// Spins are ordered by plane z, and in it sites 0 of all cells before sites 1.
 template <class Number, bool SecondShell>
 struct Bcc {
   using Real = Number;
@@ -63,10 +63,10 @@ struct Bcc {
   std::size_t sites() const { return 2 * static_cast<std::size_t>(n) * n * n; }
 };
 
-/// One source, compiled twice: number by number, and with packs that the compiler makes of it.
+/// One source, compiled twice: scalar, and vectorised by the compiler.
 enum class Loops { scalar, vectorized };
 
-/// n sites along x with open ends, otherwise as Cube, in double, on one thread.
+/// n sites along x with open ends, otherwise like Cube, in double, on one thread.
 template <Loops>
 struct Chain {
   using Real = double;

@@ -8,13 +8,13 @@ HAND_WRITTEN_INLINE void add(Numbers<Real> const& v, std::size_t i, Vector<Real>
   sum.x += v.x[i], sum.y += v.y[i], sum.z += v.z[i];
 }
 
-/// The rows that a row has neighbours in: four of the other sites of cells, and, for the second
-/// shell, itself and four of its own.
+/// The neighbour rows of a row: four of the other sites of cells, and, for the second shell, the
+/// row itself and four of its own sites.
 struct RowsBeside {
   std::size_t other[4], own, along[4];
 };
 
-// The two ends of a row stand outside the loop.
+// The two ends of a row are handled outside the loop.
 template <bool SecondSite, class Real, bool SecondShell, class Body>
 HAND_WRITTEN_INLINE void for_row(Bcc<Real, SecondShell> const& bcc, Numbers<Real> const& v,
                                  RowsBeside const& rows, Body const& body) {
@@ -51,7 +51,7 @@ void for_each(Bcc<Real, SecondShell> const& bcc, Numbers<Real> const v, Body bod
   for (std::size_t plane = 0; plane < 2 * n; ++plane)
     for (std::size_t y = 0; y < n; ++y) {
       std::size_t const z = plane / 2, site = plane % 2;
-      // The four cells along y and z with the nearest other sites begin one back, or here.
+      // The four cells along y and z with the nearest other sites start one cell back, or here.
       std::size_t const back = site == 0 ? n - 1 : 0;
       RowsBeside const rows{
           {row_at(1 - site, y + back, z + back), row_at(1 - site, y + back + 1, z + back),
@@ -66,7 +66,7 @@ void for_each(Bcc<Real, SecondShell> const& bcc, Numbers<Real> const v, Body bod
     }
 }
 
-// Heun alone: that is what is compared.
+// Only Heun is compared.
 template void Steps<Bcc<float, false>>::heun(Vectors<float>&, float, std::int64_t);
 template void Steps<Bcc<float, true>>::heun(Vectors<float>&, float, std::int64_t);
 template void Steps<Bcc<double, false>>::heun(Vectors<double>&, double, std::int64_t);

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-// The steps of a scene whose file has for_each(scene, spins, body), which calls body(site, dm/dt)
-// for every site. All is inlined: nothing is shared between files with other options.
+// Steps of a scene whose file has for_each(scene, spins, body), which calls body(site, dm/dt) for
+// every site. Everything is inlined: nothing is shared between files with other options.
 namespace hand_written {
 
 #define HAND_WRITTEN_INLINE [[gnu::always_inline]] inline

@@ -14,15 +14,15 @@
 #include <utility>
 #include <vector>
 
-// Methods from coarse to fine steps, as `cayspin trade` has them: what they take to an error.
+// Methods from coarse to fine steps, as in `cayspin trade`, and their cost at an error.
 namespace ladder {
 
 using Spins = cayspin::SpinField<double, Kokkos::HostSpace>;
-using States = std::vector<std::vector<double>>;  // (sites, 3) at each look
+using States = std::vector<std::vector<double>>;  // (sites, 3) at each sample
 
 inline constexpr int looks = 4;
 
-/// Unit vectors along f(x, y, z, site), x = (index + 1/2) / extent.
+/// Returns unit vectors along f(x, y, z, site), x = (index + 1/2) / extent.
 template <class Function>
 std::vector<double> start_of(cayspin::Lattice const& lattice, Function const& f) {
   std::vector<double> spins;
@@ -41,14 +41,14 @@ std::vector<double> start_of(cayspin::Lattice const& lattice, Function const& f)
   return spins;
 }
 
-/// Seconds are those of one thread: says so where there are more.
+/// Returns true on one thread, to which times refer; otherwise prints a message.
 inline bool has_one_thread() {
   if (Kokkos::DefaultHostExecutionSpace().concurrency() == 1) return true;
   std::fprintf(stderr, "set OMP_NUM_THREADS=1: seconds are those of one thread\n");
   return false;
 }
 
-/// Seconds of the processor: what neighbours on the machine take does not count.
+/// Clock of processor time, which excludes other processes.
 class Clock {
  public:
   Clock() { reset(); }
@@ -64,26 +64,27 @@ class Clock {
   timespec begin_;
 };
 
-/// One run, by any method.
+/// One run of any method.
 struct Run {
   States states;
   double seconds = 0;            // of stepping
   std::int64_t evaluations = 0;  // of the right side
-  std::int64_t dear = 0;         // of a dear field
+  std::int64_t multirate = 0;    // of an expensive field
   std::int64_t steps = 0;
 };
 
 struct Rung {
-  double error, seconds, evaluations, dear, steps;
+  double error, seconds, evaluations, multirate, steps;
 };
 
 struct Ladder {
   std::string name;
-  bool is_own = true;  // of cayspin
+  bool is_own = true;  // a method of cayspin
   std::vector<Rung> rungs = {};
 };
 
-/// The largest distance of any spin at any look; those of `run` are divided by their lengths.
+/// Returns the largest distance of any spin at any sample; spins of `run` are divided by their
+/// lengths.
 inline double distance(States const& run, States const& reference) {
   double largest = 0;
   if (run.size() != reference.size()) return std::numeric_limits<double>::infinity();
@@ -100,8 +101,8 @@ inline double distance(States const& run, States const& reference) {
   return largest;
 }
 
-/// What a ladder takes to an error, between rungs by logarithms; infinite where it does not get
-/// there.
+/// Returns the cost of a ladder at an error, interpolated logarithmically between rungs; infinite
+/// if it does not reach the error.
 inline double amount_to(Ladder const& ladder, double error, double Rung::*amount) {
   double best = std::numeric_limits<double>::infinity();
   Rung const* before = nullptr;
@@ -123,7 +124,8 @@ struct Limits {
   int rungs = 24;
 };
 
-/// `run(rung)` from the coarsest, rung 0, on: the shortest of 3 to 100 runs, or of 2 long ones.
+/// Calls `run(rung)` from the coarsest, rung 0, on: the shortest of 3 to 100 runs, or of 2 long
+/// ones.
 template <class RunOnce>
 Ladder climb(std::string name, bool is_own, States const& reference, Limits const& limits,
              RunOnce const& run) {
@@ -142,7 +144,7 @@ Ladder climb(std::string name, bool is_own, States const& reference, Limits cons
         shortest = std::min(shortest, seconds);
       }
       ladder.rungs.push_back({error, shortest, static_cast<double>(one.evaluations),
-                              static_cast<double>(one.dear), static_cast<double>(one.steps)});
+                              static_cast<double>(one.multirate), static_cast<double>(one.steps)});
     }
     worse = error < 0.9 * best ? 0 : worse + 1;
     best = std::min(best, error);
@@ -152,7 +154,7 @@ Ladder climb(std::string name, bool is_own, States const& reference, Limits cons
   return ladder;
 }
 
-/// Steps of a cayspin stepper: `steps` in all, a multiple of the looks.
+/// Takes `steps` steps of a cayspin stepper, a multiple of the samples.
 template <class Stepper, class Generator>
 Run take_steps(Stepper& stepper, Generator const& generator, cayspin::Lattice const& lattice,
                std::vector<double> const& start, double horizon, std::int64_t steps) {
@@ -180,7 +182,7 @@ inline std::int64_t with_looks(double steps) {
   return looks * std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(steps / looks)));
 }
 
-/// `fewest` steps on rung 0, and on each next one half as many again.
+/// Returns `fewest` steps on rung 0, and 1.5 times as many on each next one.
 inline std::int64_t steps_of(int rung, double fewest) {
   return with_looks(fewest * std::pow(1.5, rung));
 }

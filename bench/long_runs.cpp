@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Energy, total spin and norm over long runs without damping, every method with and without
-// EnergyControl: spins on a periodic cube with exchange alone, from a random start. All methods get
-// as many evaluations of the field per unit time. Prints a row of a Markdown table per run, with
-// the largest error at a thousand looks.
+// EnergyControl: spins on a periodic cube with only exchange, from a random start. All methods get
+// equally many field evaluations per unit time. Prints a row of a Markdown table per run, with the
+// largest error at a thousand samples.
 //   bench_long_runs [--steps=1000000] [--edge=16] [--evaluations=80] [--period=1] [--only=METHOD]
 #include "random_spins.hpp"
 
@@ -32,7 +32,7 @@ struct Options {
   std::string only;
 };
 
-/// The largest errors so far; looks before the control does.
+/// Records the largest errors so far; runs before the control.
 class Watch {
  public:
   Watch(Generator const& generator, std::int64_t sites)
@@ -68,7 +68,7 @@ class Runs {
         "and step |\n|---|---|---|---|---|---|---|\n");
   }
 
-  /// `made_with`: what the stepper is made with beside the spins.
+  /// `made_with`: further constructor arguments of the stepper.
   template <class Stepper, class... Arguments>
   void run(std::string const& method, Arguments const&... made_with) const {
     if (!options_.only.empty() && method != options_.only) return;
@@ -135,8 +135,7 @@ int main(int argc, char** argv) {
   Runs const runs(options_of(argc, argv));
   runs.run<ProjectedRk4<Spins>>("RK4 + renormalise");
   runs.run<Rkmk4<Spins>>("RKMK4");
-  // H from the sum of the six neighbours, without the multiple of the spin itself that exchange
-  // has.
+  // Makes H the sum of the six neighbours, without the multiple of the spin itself in exchange.
   isotropy::Constant const neighbor_sum{6};
   runs.run<Rkmk4<Spins, isotropy::Constant>>("RKMK4, sigma = 6", neighbor_sum);
   runs.run<StereographicRungeKutta<Spins, tableau::Classical4>>("RK4 in the chart");

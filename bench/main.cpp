@@ -62,7 +62,7 @@ void add_environment() {
 int main(int argc, char** argv) {
   Kokkos::ScopeGuard const kokkos(argc, argv);
   register_benchmarks();
-  // Defaults in front, so that the command line wins.
+  // Defaults come first, so that the command line overrides them.
   std::vector<char*> arguments{argv[0]};
   std::string defaults[] = {"--benchmark_repetitions=5", "--benchmark_min_time=0.05",
                             "--benchmark_enable_random_interleaving=true",
@@ -77,6 +77,6 @@ int main(int argc, char** argv) {
   add_kokkos();
   add_environment();
   benchmark::RunSpecifiedBenchmarks();
-  benchmark::ClearRegisteredBenchmarks();  // and the memory that they hold, before Kokkos ends
+  benchmark::ClearRegisteredBenchmarks();  // frees the memory that they hold, before Kokkos ends
   return 0;
 }

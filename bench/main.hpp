@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-/// A program links main.cpp, whose main() runs what this registers. It takes all of Google
-/// Benchmark's options. Repetitions are interleaved at random, and what was measured where goes
-/// into the context: commit, processor and caches, Kokkos, threads.
+/// Registers the benchmarks that main() of main.cpp runs. The program accepts all of Google
+/// Benchmark's options. Repetitions are interleaved at random, and the context records the
+/// conditions: commit, processor and caches, Kokkos, threads.
 void register_benchmarks();

@@ -18,7 +18,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 COUNTS = ROOT / "tests" / "cuda" / "expected_sass.txt"
 
-# Assumed, of the SXM cards: both have the chip GH100 and differ in memory alone.
+# Assumed, for the SXM cards: both have the chip GH100 and differ only in memory.
 CARDS = {"H100": 3.35e12, "H200": 4.8e12}  # bytes a second of the memory, by their data sheets
 PROCESSORS = 132  # multiprocessors
 CLOCK = 1.755e9  # below the boost of 1.98 GHz: a busy card keeps less
@@ -65,11 +65,12 @@ def walk(edge):
 
 
 def seconds(kernel, bandwidth, edge):
-    """Of each resource, for one site."""
+    """Returns the seconds per site that each resource needs."""
     size, sites = SIZE[kernel.precision], walk(edge)
     once = (kernel.total - kernel.loop) / sites  # instructions of a thread, outside its loop
     clocks = 1 / (PROCESSORS * CLOCK)
-    # A tile of 32 x 4 x sites: two more rows along y and z, and a sector at each end of its own.
+    # A tile of 32 x 4 x sites: two more rows along y and z, and a sector at each end of its own
+    # rows.
     stencil = 3 * (size * (1 + 2 / 4 + 2 / sites) + 2 * SECTOR / 32)
     return {
         "memory": kernel.words * size / bandwidth,
@@ -77,7 +78,7 @@ def seconds(kernel, bandwidth, edge):
         "issue": (kernel.loop + once) / LANES / SCHEDULERS * clocks,
         "arithmetic": kernel.arithmetic / ARITHMETIC[kernel.precision] * clocks,
         "integers": (kernel.integer + once) / INTEGERS * clocks,
-        # The neighbours along x are not aligned: a line more for each of these loads.
+        # The neighbours along x are not aligned: one more line for each of these loads.
         "first cache": ((kernel.loads + kernel.stores) * size + 6 * FIRST_CACHE / 32) /
                        FIRST_CACHE * clocks,
         "latency": LATENCY / (kernel.warps * LANES * PROCESSORS),
@@ -105,7 +106,7 @@ def print_kernels(kernels, edge):
 
 
 def steps(kernels, bandwidth, edge):
-    """{(precision, method): [seconds a site, those of the memory alone, what bounds it]}."""
+    """{(precision, method): [seconds a site, those of only the memory, the bound]}."""
     found = {}
     for kernel in kernels:
         times = seconds(kernel, bandwidth, edge)

@@ -72,7 +72,7 @@ class Model:
         return passes * self.site * sites + self.stages / depth * self.exchange(n, depth)
 
     def efficiency(self, n, ranks):
-        """Of ranks with n x n x n sites each, against one. Few ranks have fewer neighbours."""
+        """Returns the efficiency with n^3 sites per rank. Few ranks have fewer neighbours."""
         inner = 1 - 1 / ranks**0.5  # ends inside the lattice, of all ends along an axis
         alone = self.site * n**3
         return alone / (alone + inner * (self.step(n) - alone))

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A film of permalloy with its demagnetising field, which is evaluated rarely: by Multirate, which
-// evaluates it once a step, and by the multirate methods of SUNDIALS' ARKODE (MIS-KW3,
-// MRI-GARK-ERK33a and ERK45a), which evaluate it three or five times a step. Inner methods are of
-// order 4, and their steps nearly equal. Prints each run: evaluations of the demagnetising field,
-// seconds, the largest distance of any spin from a reference at four times; then fitted orders
-// and what errors take.
+// A film of permalloy whose demagnetising field is evaluated rarely: by Multirate, once a step, and
+// by the multirate methods of SUNDIALS' ARKODE (MIS-KW3, MRI-GARK-ERK33a and ERK45a), three or five
+// times a step. Inner methods are of order 4, and their steps nearly equal. Prints for each run:
+// evaluations of the demagnetising field, seconds, the largest distance of any spin from a
+// reference at four times; then fitted orders, and the cost at given errors.
 #include "ladder.hpp"
 #include "sundials_spins.hpp"
 
 #include <cayspin/demagnetization/demagnetizing_field.hpp>
-#include <cayspin/field/dear.hpp>
+#include <cayspin/field/slow_field.hpp>
 #include <cayspin/stepper/multirate.hpp>
 
 #include <arkode/arkode_arkstep.h>
@@ -45,28 +44,28 @@ auto cheap_field() {
 }
 
 using Demag = HostField<Spins, DemagnetizingField<double>>;
-using DearDemag = Dear<Spins, Demag>;
+using SlowDemag = SlowField<Spins, Demag>;
 
 /// A stepper under a generator whose demagnetising field counts its evaluations.
 class Own {
  public:
   explicit Own(Demag const& demag)
       : like_("bench::like", film()),
-        dear_(like_, demag),
-        generator_(EffectiveField(Exchange(film(), exchange), Zeeman{{-0.0245, 0.0043, 0}}, dear_),
+        slow_(like_, demag),
+        generator_(EffectiveField(Exchange(film(), exchange), Zeeman{{-0.0245, 0.0043, 0}}, slow_),
                    damping),
         start_(start()) {}
 
   template <class Stepper>
   ladder::Run operator()(Stepper stepper, std::int64_t steps) const {
-    auto const before = dear_.evaluations_done();
+    auto const before = slow_.evaluations_done();
     auto run = ladder::take_steps(stepper, generator_, film(), start_, horizon, steps);
-    run.dear = dear_.evaluations_done() - before;
+    run.multirate = slow_.evaluations_done() - before;
     return run;
   }
   template <int Order>
   ladder::Run multirate(std::int64_t steps, std::int64_t substeps) const {
-    return (*this)(Multirate<Rkmk4<Spins>, DearDemag, Order>(like_, Rkmk4<Spins>(like_), dear_,
+    return (*this)(Multirate<Rkmk4<Spins>, SlowDemag, Order>(like_, Rkmk4<Spins>(like_), slow_,
                                                              {.substeps = substeps}),
                    steps);
   }
@@ -74,9 +73,9 @@ class Own {
 
  private:
   Spins like_;
-  DearDemag dear_;
+  SlowDemag slow_;
   decltype(LandauLifshitz(
-      EffectiveField(Exchange(film(), exchange), Zeeman{{}}, std::declval<DearDemag const&>()),
+      EffectiveField(Exchange(film(), exchange), Zeeman{{}}, std::declval<SlowDemag const&>()),
       damping)) generator_;
   std::vector<double> start_;
 };
@@ -127,7 +126,7 @@ class Mri {
       run.states.push_back(copy_to_host(spins));
       clock.reset();
     }
-    run.dear = slow_.evaluations;
+    run.multirate = slow_.evaluations;
     run.evaluations = fast_.evaluations;
     run.steps = steps;
     MRIStepCoupling_Free(coupling);
@@ -154,7 +153,7 @@ class Mri {
   std::vector<double> start_;
 };
 
-/// The slope of log(error) over log(steps) by least squares, where errors are below 2e-3.
+/// Returns the least-squares slope of log(error) over log(steps), for errors below 2e-3.
 double fitted_order(ladder::Ladder const& ladder) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (auto const& rung : ladder.rungs) {
@@ -167,8 +166,8 @@ double fitted_order(ladder::Ladder const& ladder) {
 
 void report(ladder::Ladder const& ladder) {
   for (auto const& rung : ladder.rungs)
-    std::printf("%-27s %5.0f steps | %5.0f dear %6.0f others %7.4f s | error %.1e\n",
-                ladder.name.c_str(), rung.steps, rung.dear, rung.evaluations, rung.seconds,
+    std::printf("%-27s %5.0f steps | %5.0f slow %6.0f others %7.4f s | error %.1e\n",
+                ladder.name.c_str(), rung.steps, rung.multirate, rung.evaluations, rung.seconds,
                 rung.error);
   std::fflush(stdout);
 }
@@ -213,12 +212,12 @@ int main(int argc, char** argv) {
     compare(name, false, 1.4, stages, mri);
   }
   std::vector<double> const errors{1e-3, 1e-4, 1e-5};
-  std::printf("\n%-27s | order", "dear evaluations, ms to");
+  std::printf("\n%-27s | order", "evaluations of the expensive field, ms to");
   for (double const error : errors) std::printf(" | %-16.0e", error);
   for (auto const& one : ladders) {
     std::printf("\n%-27s | %5.2f", one.name.c_str(), fitted_order(one));
     for (double const error : errors)
-      std::printf(" | %6.0f %9.4g", ladder::amount_to(one, error, &ladder::Rung::dear),
+      std::printf(" | %6.0f %9.4g", ladder::amount_to(one, error, &ladder::Rung::multirate),
                   1e3 * ladder::amount_to(one, error, &ladder::Rung::seconds));
   }
   std::printf("\n");

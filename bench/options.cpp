@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What each option of the integrators costs: nanoseconds per spin and step of a chain of 100 spins,
-// of cubes, and of a lattice that the second cache holds. Cases are named options/METHOD,
+// Cost of each option of the integrators: nanoseconds per spin and step of a chain of 100 spins, of
+// cubes, and of a lattice that fits the second-level cache. Cases are named options/METHOD,
 // OPTION/SIZE.
 #include "main.hpp"
 #include "scene.hpp"
@@ -19,12 +19,12 @@ using namespace cayspin;
 using Spins = SpinField<double>;
 using scene::Default, scene::Orthogonal;
 
-// The scene with one thing changed.
+// The scene with one change.
 struct Bodies {
   static auto generator(Lattice const&) { return RigidBody::principal(1, 2, 3); }
 };
 
-/// One number on all sites, kept for each of them.
+/// One number on all sites, stored for each of them.
 ScalarField<double> on_sites(Lattice const& lattice, double number) {
   return {"coefficient", lattice, number};
 }
@@ -79,7 +79,7 @@ struct DampingOfSites {
   }
 };
 
-/// Steps through integrate with energy, norm defect and magnetization taken after each.
+/// Steps through integrate, with energy, norm defect and magnetization computed after each.
 template <class Stepper>
 void time_observed_steps(benchmark::State& state, Lattice const& lattice) {
   auto spins = scene::random<typename Stepper::spins_type>(lattice);

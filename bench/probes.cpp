@@ -80,7 +80,7 @@ template <class Real, class P>
 PROBE_INLINE Vector<P> dcay_inverse(Vector<P> const& f, Vector<P> const& y) {
   return y + Real(-0.5) * cross(f, y) + (Real(0.25) * dot(f, y)) * f;
 }
-/// The spin that stereographic coordinates `step` times u, moved from m to m0, lead to.
+/// Returns the spin with stereographic coordinates `step` times u, transported from m to m0.
 template <class Real, class P>
 PROBE_INLINE Vector<P> chart_move(Real step, Vector<P> const& u, Vector<P> const& m,
                                   Vector<P> const& m0) {
@@ -90,7 +90,7 @@ PROBE_INLINE Vector<P> chart_move(Real step, Vector<P> const& u, Vector<P> const
   P const along = Real(-2) * scale * dot(u, m0);
   return m0 + (along - Real(2) * scale * reach) * m0 + (scale * e2) * u + along * m;
 }
-/// The coordinates that lead from m0 to w.
+/// Returns the coordinates that lead from m0 to w.
 template <class Real, class P>
 PROBE_INLINE Vector<P> chart_of(Vector<P> const& w, Vector<P> const& m0) {
   Vector<P> const d = w - m0;
@@ -130,7 +130,7 @@ PROBE_INLINE void Probe<Real>::write(Vector const& v, int field, std::ptrdiff_t 
 }
 
 /// Calls body(at, m, A) for each pack of the spins `level`, then writes the ghost sites of `out`.
-/// Without Whole, A is up to a multiple of m.
+/// Without Whole, A is only given up to a multiple of m.
 template <class Real>
 template <bool Whole, class Body>
 PROBE_INLINE void Probe<Real>::for_each_pack(int level, int out, Body const& body) {
@@ -168,7 +168,7 @@ PROBE_INLINE void Probe<Real>::for_each_pack(int level, int out, Body const& bod
     }
 }
 
-// With the ghost sites, which are those beside them.
+// Includes the ghost sites, which copy their neighbours.
 template <class Real>
 template <class Work>
 void Probe<Real>::for_each_site(Work const& work) const {

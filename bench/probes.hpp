@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-// How fast a step can be on one core, out of its second cache: each method written out for one
+// Speed limit of a step on one core, from its second-level cache: each method written out for one
 // lattice and one scene, with packs, rows that carry ghost sites, and nothing generic. The probes
-// share no code with cayspin; the benchmarks hold their spins against its own after each run.
+// share no code with cayspin; the benchmarks compare their spins with cayspin's after each run.
 namespace probes {
 
 struct Scene {

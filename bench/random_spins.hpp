@@ -6,7 +6,8 @@
 #include <map>
 #include <vector>
 
-/// Spins uniform on the sphere, (sites, 3), the same on every machine; made once for each number.
+/// Returns spins uniform on the sphere, (sites, 3), equal on every machine; generated once for each
+/// count.
 inline std::vector<double> const& random_spins(std::int64_t sites) {
   static std::map<std::int64_t, std::vector<double>> made;
   auto& spins = made[sites];

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Nanoseconds per spin and step on the ranks that mpiexec starts, and what the exchange of ghosts
-// takes of them, as Kokkos' regions say: one line per method. Usage: bench_ranks NX NY NZ [MODE];
+// Nanoseconds per spin and step on the ranks that mpiexec starts, and the part spent on exchanging
+// ghosts, measured by Kokkos' regions: one line per method. Usage: bench_ranks NX NY NZ [MODE];
 // compare_ranks.py and model_ranks.py start it. Mode "apart": each rank has such a lattice to
-// itself; "in_step": and waits for the others after each step; "passes": and takes a pass for each
-// stage, as exchanges between stages would want.
+// itself; "in_step": it also waits for the others after each step; "passes": it also takes a pass
+// for each stage, as exchanges between stages would need.
 #include "scene.hpp"
 
 #include <cayspin/mpi/domain.hpp>
@@ -20,7 +20,7 @@ namespace {
 
 using Spins = cayspin::SpinField<double>;
 
-/// Seconds in the exchange of ghosts, and how often there was one.
+/// Seconds spent on exchanges of ghosts, and their number.
 struct Exchange {
   double seconds = 0, begin = 0;
   int count = 0;
@@ -43,7 +43,7 @@ double of_all(double value, MPI_Op operation) {
   return value;
 }
 
-// As an exchange of ghosts waits.
+// Waits like an exchange of ghosts.
 void wait_for_all() {
   std::array<MPI_Request, 1> request;
   MPI_Ibarrier(MPI_COMM_WORLD, request.data());
@@ -73,7 +73,7 @@ void measure(char const* name, cayspin::Lattice const& lattice, std::string cons
     }
     exec.fence();
     double const seconds = of_all(MPI_Wtime() - begin, MPI_MAX);
-    double const waited = of_all(exchange.seconds, MPI_MIN);  // of the rank that came last
+    double const waited = of_all(exchange.seconds, MPI_MIN);  // of the last rank
     total += seconds;
     if (seconds < best) best = seconds, exchanging = waited, exchanges = exchange.count;
   }

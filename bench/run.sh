@@ -20,7 +20,7 @@ run() {
   printf '(%d s)\n' $((SECONDS - seconds))
 }
 
-# throughput NAME THREADS CASES OPTION...: the memory's speed is measured among the cases.
+# throughput NAME THREADS CASES OPTION...: also measures the speed of the memory.
 throughput() {
   local name=$1 threads=$2 cases=$3
   shift 3

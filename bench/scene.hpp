@@ -13,17 +13,17 @@
 #include <string>
 #include <vector>
 
-// The scene of the benchmarks, and how a stepper is timed on it.
+// The scene of the benchmarks, and the timing of a stepper on it.
 namespace scene {
 
-// The damping is computed, and 0: with any other a small lattice comes to rest in the time that a
-// repetition takes, and what is timed are denormal numbers.
+// Damping is computed, but 0: otherwise a small lattice reaches equilibrium within a repetition,
+// and the benchmark would time denormal numbers.
 inline constexpr double exchange = 1, anisotropy = 0.5, applied = 0.3, damping = 0, dt = 0.02;
 
-/// Small enough for the second cache, and run by the calling thread.
+/// Small enough for the second-level cache, and for the calling thread.
 inline cayspin::Lattice in_l2() { return cayspin::Lattice::cubic(128, 4, 4); }
 
-/// A lattice, and what cases on it are called.
+/// A lattice, and its name in cases.
 struct Size {
   cayspin::Lattice lattice;
   std::string name;
@@ -49,7 +49,7 @@ struct Orthogonal {
   }
 };
 
-/// Nanoseconds per spin and step, and what bounds them.
+/// Reports nanoseconds per spin and step, and the bounds on them.
 inline void report(benchmark::State& state, std::int64_t sites, double words, double work_bytes) {
   auto const spins = static_cast<double>(sites);
   state.counters["ns/spin"] =
@@ -75,7 +75,7 @@ Stepper make_stepper(typename Stepper::spins_type const& like) {
     return Stepper(like);
 }
 
-/// Numbers that a step moves per spin where no cache holds them: `of_passes` where each stage is a
+/// Returns the numbers that a step moves per spin without caches: `of_passes` if each stage is a
 /// pass over memory; a sweep reads and writes the spins.
 template <class Stepper>
 double words_moved(Stepper const& stepper, double of_passes) {
@@ -93,7 +93,7 @@ double work_bytes(Stepper const& stepper) {
     return 0;
 }
 
-/// Times step after step; returns the stepper.
+/// Times steps; returns the stepper.
 template <class Stepper, class System = Default>
 Stepper time_steps(benchmark::State& state, cayspin::Lattice const& lattice) {
   auto spins = random<typename Stepper::spins_type>(lattice);
@@ -108,14 +108,15 @@ Stepper time_steps(benchmark::State& state, cayspin::Lattice const& lattice) {
   }
   return stepper;
 }
-/// And reports them.
+/// Times steps and reports them.
 template <class Stepper, class System>
 void time_steps(benchmark::State& state, cayspin::Lattice const& lattice, double words_of_passes) {
   auto const stepper = time_steps<Stepper, System>(state, lattice);
   report(state, lattice.sites(), words_moved(stepper, words_of_passes), work_bytes(stepper));
 }
 
-/// How far `others`, (sites, 3), are from the spins after so many of the library's steps.
+/// Returns the distance of `others`, (sites, 3), from the spins after so many of the library's
+/// steps.
 template <class Stepper, class System = Default>
 double distance_to(std::vector<double> const& others, cayspin::Lattice const& lattice, int steps,
                    double step) {
@@ -136,7 +137,7 @@ template <class Run>
 void add(std::string const& name, Run run) {
   benchmark::RegisterBenchmark(name.c_str(), run)->UseRealTime()->Unit(benchmark::kMillisecond);
 }
-/// NAME/SIZE for each size: run(state, lattice).
+/// Registers NAME/SIZE for each size: run(state, lattice).
 template <class Run>
 void add(std::string const& name, std::vector<Size> const& sizes, Run run) {
   for (auto const& size : sizes)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""What terms cost in scenes: ns a spin and step, and over the scene with exchange, one axis and an
-applied field alone. Scenes of a shape and method run in turns; the shortest time of each counts."""
+"""Cost of terms in scenes: ns a spin and step, and over the scene with exchange, one axis and an
+applied field only. Scenes of a shape and method run in turns; the shortest time of each counts."""
 
 import argparse
 import pathlib

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// States of rest of films and cubes, to max |m x H| < 1e-6: evaluations of the field and seconds
-// of cayspin::minimize, of the same without its preconditioner, of Barzilai and Borwein's steps
-// with the same kernels, and of a relaxation in time. `bench_steady_states --large`: also 256^2 and
-// 64^3 spins. A method that takes more than 60000 evaluations is stopped.
+// Equilibria of films and cubes, to max |m x H| < 1e-6: field evaluations and seconds of
+// cayspin::minimize, with and without its preconditioner, of Barzilai and Borwein's steps with
+// equal kernels, and of a relaxation in time. `bench_steady_states --large`: also 256^2 and 64^3
+// spins. Stops a method after 60000 evaluations.
 #include "random_spins.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -56,7 +56,7 @@ Cost by_minimize(Field const& field, Spins& spins, bool preconditioned) {
   return {found.end == MinimizeEnd::converged, found.evaluations, clock.seconds()};
 }
 
-/// Steps along the gradient, of the lengths s.s / s.y and s.y / y.y in turn.
+/// Steps along the gradient, alternately of the lengths s.s / s.y and s.y / y.y.
 template <class Field>
 Cost by_barzilai_borwein(Field const& field, Spins& spins) {
   auto const& lattice = spins.lattice();

@@ -14,8 +14,8 @@
 #include <unistd.h>
 #endif
 
-// STREAM's copy, the yardstick of memory: b = a on arrays well past the caches, with ordinary
-// stores and with stores that go around the caches. On a device both are ordinary.
+// STREAM's copy, the reference for memory speed: b = a on arrays much larger than the caches, with
+// ordinary stores and with stores that bypass the caches. On a device both are ordinary.
 namespace stream {
 
 using Exec = Kokkos::DefaultExecutionSpace;
@@ -47,7 +47,7 @@ struct Copy {
   }
 };
 
-/// Four last caches, at least 256 MiB, at most 1 GiB.
+/// Returns four times the last cache, at least 256 MiB, at most 1 GiB.
 inline std::int64_t array_bytes() {
   std::int64_t cache = 0;
 #if defined(__linux__) && defined(_SC_LEVEL3_CACHE_SIZE)
@@ -56,7 +56,7 @@ inline std::int64_t array_bytes() {
   return std::clamp(4 * cache, std::int64_t(256) << 20, std::int64_t(1) << 30);
 }
 
-/// Allocated by the first copy.
+/// Arrays allocated by the first copy.
 struct Arrays {
   std::int64_t size = array_bytes() / 8 / block * block;
   Array from, to;

@@ -33,9 +33,9 @@ struct FreeVector {
 };
 using Vector = std::unique_ptr<_generic_N_Vector, FreeVector>;
 
-/// Serial vectors with the memory layout of a spin field, margins and all: kernels read and write
-/// them in place. Where padding is more than an eighth of a field, vectors have the sites alone,
-/// and are copied: long vectors would cost more. What pads a rate is zero.
+/// Serial vectors with the memory layout of a spin field, including margins: kernels read and write
+/// them in place. If padding is more than an eighth of a field, vectors hold only the sites, and
+/// are copied: long vectors would cost more. The padding of a rate is zero.
 class SpinVectors {
  public:
   explicit SpinVectors(cayspin::Lattice const& lattice)
@@ -62,13 +62,13 @@ class SpinVectors {
       unpack(from, to.array());
   }
 
-  /// Where kernels read a vector.
+  /// Returns where kernels read a vector.
   SiteArray input(N_Vector v) const {
     if (in_place_) return of_vector(v);
     unpack(v, spins_.array());
     return spins_.array();
   }
-  /// Where kernels write one, and what follows.
+  /// Returns where kernels write a vector.
   OutputArray output(N_Vector v) const {
     return {in_place_ ? of_vector(v) : rates_.array(), false};
   }
@@ -132,7 +132,7 @@ struct RateOfSites {
   }
 };
 
-/// The right side m' = A x m by the generator's own kernel. Nonlocal fields read `whole`, a copy.
+/// The right side m' = A x m by the generator's own kernel. Nonlocal fields read a copy, `whole`.
 template <class Generator>
 class RightSide {
  public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Steps alone, and with the noise of a temperature between them: nanoseconds per spin and step.
-// Cases are named thermal/METHOD, PRECISION[, noise]/SIZE.
+// Nanoseconds per spin and step without and with thermal noise between steps. Cases are named
+// thermal/METHOD, PRECISION[, noise]/SIZE.
 #include "main.hpp"
 #include "scene.hpp"
 

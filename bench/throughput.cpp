@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Nanoseconds per spin and step over the number of spins, beside the hand-written loops and the
-// memory's speed in the same run. Cases are named PRECISION/METHOD/SIZE; a size is a cube's edge,
-// or L2 for a lattice that the second cache holds. There a probe stands beside each method: its
-// step written out for this scene alone, on one core.
+// Nanoseconds per spin and step over the number of spins, next to the hand-written loops and the
+// memory's speed in one run. Cases are named PRECISION/METHOD/SIZE; a size is a cube's edge, or L2
+// for a lattice that fits the second-level cache. There a probe accompanies each method: its step
+// written out for this scene only, on one core.
 //   bench_throughput --benchmark_filter='/(32|128)/' --benchmark_out=32_128.json
 #include "hand_written.hpp"
 #include "main.hpp"
@@ -65,7 +65,7 @@ class Register {
   explicit Register(std::string const& precision) : prefix_(precision + "/") {
     using cayspin::StereographicRungeKutta, cayspin::tableau::Heun, cayspin::tableau::Classical4;
     using Orthogonal = scene::Orthogonal<scene::Default>;
-    // Numbers read and written per spin and step where each stage is a pass over memory.
+    // Numbers read and written per spin and step if each stage is a pass over memory.
     hand_written("hand-written Heun", &Loop::heun, 27);
     hand_written("hand-written RK4", &Loop::runge_kutta4, 63);
     add_probe<cayspin::LieEuler<Spins>>("Euler", &Probe::euler, 6);

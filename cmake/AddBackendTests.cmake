@@ -46,8 +46,8 @@ function(cayspin_add_test name)
 endfunction()
 
 # cayspin_add_host_device_test(<name> SOURCES <file>... [LIBRARIES <target>...])
-# A program test_<name> whose default space is the device of tests/host_device; nothing where there
-# is no such device, or where it is the default of all.
+# A program test_<name> whose default space is the device of tests/host_device; nothing if there is
+# no such device, or if it is the default of all programs.
 function(cayspin_add_host_device_test name)
   if(NOT TARGET cayspin_host_device_test_main)
     return()
@@ -64,7 +64,7 @@ endfunction()
 
 macro(cayspin_register_test entry program threads)
   add_test(NAME ${entry} COMMAND ${program})
-  # Threads that spin starve tests that run beside them.
+  # Threads that spin slow down tests that run at the same time.
   set(environment OMP_NUM_THREADS=${threads} KOKKOS_NUM_THREADS=${threads} OMP_PROC_BIND=false
                   OMP_WAIT_POLICY=passive)
   set_tests_properties(${entry} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} PROCESSORS

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# What `plot` and `view` start, where the program looks for it: share/cayspin/python beside bin.
+# Installs the scripts of `plot` and `view` where the program looks for them: share/cayspin/python
+# next to bin.
 function(cayspin_install_scripts prefix)
   set(folder ${prefix}/share/cayspin/python)
   set(python ${PROJECT_SOURCE_DIR}/python)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Where pip finds no Kokkos: its source, and how it is built inside the wheel's build.
+# Without an installed Kokkos under pip: its source, built inside the wheel's build.
 option(CAYSPIN_X86_64_V3 "Wheels for any x86-64 with AVX2, not for this processor alone" OFF)
 if(NOT CAYSPIN_KOKKOS_SOURCE)
   message(STATUS "No Kokkos is installed: fetch its source")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Manual pages from what --help prints, where help2man is installed: man/cayspin.1 for the program
-# and man/cayspin-COMMAND.1 for each command in the build folder.
+# Manual pages generated from --help if help2man is installed: man/cayspin.1 for the program and
+# man/cayspin-COMMAND.1 for each command, in the build folder.
 find_program(HELP2MAN help2man)
 if(NOT HELP2MAN OR CMAKE_CROSSCOMPILING)
   message(STATUS "cayspin no manual pages: there is no help2man")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Under pip, where nothing has installed them: one line names the libraries that are missing.
+# Under pip, where nothing installs the libraries: one line names those that are missing.
 enable_language(C) # FindHDF5 compiles a C program
 set(debian_of_HDF5 libhdf5-dev)
 set(debian_of_fmt libfmt-dev)

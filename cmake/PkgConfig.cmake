@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Files for pkg-config, for build systems other than CMake. Kokkos has none: its flags are stated in
-# ours, those of the Kokkos that cayspin was built with.
+# Files for pkg-config, for build systems other than CMake. Kokkos has none, so ours include the
+# flags of the Kokkos that cayspin was built with.
 
-# Calls itself along the libraries that a target is linked with; lists them in the order of a linker.
+# Recurses along the libraries that a target links with; lists them in the linker's order.
 function(cayspin_link_flags target flags)
-  # Kokkos in our own tree finds these for itself alone.
+  # A Kokkos in our own tree finds these only for itself.
   if(NOT TARGET ${target} AND target MATCHES "^(OpenMP|Threads|CUDA)::")
     string(REPLACE CUDA CUDAToolkit package ${CMAKE_MATCH_1})
     find_package(${package} QUIET)
   endif()
   if(NOT TARGET ${target})
-    if(target MATCHES "^cayspin_") # configured later: headers alone
+    if(target MATCHES "^cayspin_") # configured later: only headers
       return()
     endif()
     if(target MATCHES "^[A-Za-z0-9_.+]+$")
@@ -53,7 +53,7 @@ endfunction()
 
 # cayspin_install_pkg_config(<name> <description> <compile flags> <link flags>)
 function(cayspin_install_pkg_config name description compile_flags link_flags)
-  # Flags are the language's: CMake writes a file for each one, and that of C++ is installed.
+  # Flags depend on the language: CMake writes a file for each one, and that of C++ is installed.
   string(REPLACE "$<LINK_LANGUAGE:" "$<COMPILE_LANGUAGE:" link_flags "${link_flags}")
   file(RELATIVE_PATH to_prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
   string(REGEX REPLACE "/$" "" to_prefix "${to_prefix}")

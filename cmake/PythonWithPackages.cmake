@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# cayspin_find_python(<variable> <modules> <doc>): an interpreter that imports the modules, such as
-# "h5py, matplotlib". One that is put in front of the system's may lack them. .deps/site has the
-# theme of the site.
+# cayspin_find_python(<variable> <modules> <doc>): finds an interpreter that imports the modules,
+# such as "h5py, matplotlib". The first one on PATH may lack them. .deps/site has the theme of the
+# site.
 function(imports_modules result candidate)
   execute_process(
     COMMAND ${CMAKE_COMMAND} -E env "PYTHONPATH=${PROJECT_SOURCE_DIR}/.deps/site:$ENV{PYTHONPATH}"
@@ -14,5 +14,5 @@ function(cayspin_find_python variable modules doc)
   find_program(${variable} NAMES python3 PATHS /usr/bin VALIDATOR imports_modules DOC "${doc}")
 endfunction()
 
-# For what tests draw and for the module in the build tree.
+# For drawing tests and for the module in the build tree.
 cayspin_find_python(CAYSPIN_PYTHON "h5py, matplotlib" "Python with h5py and matplotlib")

@@ -10,8 +10,8 @@ Usage: bash cmake/bootstrap.sh deps|build|compile|test|test-all|python|docs|demo
   build    build the program into build/NAME/bin
   compile  build everything and run nothing: for a GPU that is elsewhere
   test     build everything but the benchmarks and run the tests
-  test-all the same, with the tests that compile the library once more: each header alone, with
-           sanitizers, for nvcc, by clang, on a device that host threads play
+  test-all the same, with the tests that take long, and those that compile the library once more:
+           each header alone, with sanitizers, for nvcc, by clang, on a device that host threads play
   python   build the Python package and install it into build/venv
   docs     build the documentation as a site, build/docs/site/index.html
   demo     build one small program, run a switching slab three ways and draw it: a first look
@@ -133,7 +133,7 @@ require_gpu() {
   esac
 }
 
-# What fails is part of the report.
+# The report includes failures.
 report_gpu() {
   mkdir -p "$build_dir"
   say "test (all of it in build/$preset/gpu-tests.txt)"

@@ -5,7 +5,7 @@
 # tests of these names run.
 
 core=(g++ cmake ninja-build git ca-certificates python3 python3-pip) # the header library, Kokkos
-io=(libhdf5-dev libfmt-dev libmuparser-dev libtomlplusplus-dev libeigen3-dev) # scenes and files
+io=(libhdf5-dev libfmt-dev libmuparser-dev libtomlplusplus-dev libeigen3-dev libpng-dev) # scenes and files
 program=(libcli11-dev nlohmann-json3-dev libfftw3-dev help2man)
 python=(python3-dev python3-venv) # the Python package, with nanobind from the package index
 drawing=(python3-h5py python3-matplotlib python3-tornado)
@@ -67,7 +67,7 @@ provide_tools() {
   fi
 }
 
-# What the test `style` runs.
+# Tools of the test `style`.
 provide_style_tools() { provide_tools style python3 "$root/tests/style/requirements.txt"; }
 
 # The theme of the site.

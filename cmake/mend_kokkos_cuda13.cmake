@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # cmake -DKOKKOS_SOURCE=DIR -P mend_kokkos_cuda13.cmake
 # Kokkos 4.7.0 does not build with CUDA 13, which changed two signatures and dropped sm_70, the
-# default of nvcc_wrapper. And its Views have members without an address, which nvcc 12.9 and 13 lay
-# out in one way for the host and in another for the device, so that kernels find nothing in a View.
-# Mends a source tree in place; a mended one is left as it is, and so is a newer Kokkos.
+# default of nvcc_wrapper. Its Views have members without an address, which nvcc 12.9 and 13 lay out
+# differently for host and device, so that kernels find nothing in a View. Patches a source tree in
+# place; leaves a patched tree and a newer Kokkos unchanged.
 cmake_policy(VERSION 3.25)
 
 # replace_once(<file> <old> <new>) stops unless the file holds either old or new, exactly once.

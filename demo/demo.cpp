@@ -59,7 +59,7 @@ io::TrajectoryFile create(std::filesystem::path const& path, io::Scene const& sc
   return {path, header, true};
 }
 
-/// An observer that writes what it sees.
+/// An observer that writes samples.
 template <class Generator>
 struct WriteFrame {
   Generator const& generator;

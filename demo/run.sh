@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# The switching slab by geometric and by classical Euler with the same step, beside an accurate run,
-# and one picture of the three. Usage: bash demo/run.sh BUILD_DIR
+# Runs the switching slab by geometric and by classical Euler with equal steps, and accurately, and
+# draws the three in one picture. Usage: bash demo/run.sh BUILD_DIR
 set -euo pipefail
 
 [ $# -eq 1 ] || { echo "usage: bash demo/run.sh BUILD_DIR" >&2; exit 2; }

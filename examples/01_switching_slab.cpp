@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A slab of a hundred spins is switched by a strong field. The README shows this program.
+// A strong field switches a slab of a hundred spins. The README shows this program.
 #include <cayspin/cayspin.hpp>
 
 #include <cstdio>

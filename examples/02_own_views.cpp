@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Spins that live in a View of yours: copied in, integrated on the device, copied out and used by a
-// kernel of yours. All of it is queued on one execution space; nothing waits in between. Samples of
-// energy, norm and magnetization are taken on the way.
+// Uses spins in your own View: copied in, integrated on the device, copied out and read by your own
+// kernel. Everything is queued on one execution space without waiting in between. Energy, norm and
+// magnetization are sampled on the way.
 #include <cayspin/cayspin.hpp>
 
 #include <cmath>
@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
 
   cayspin::SpinField<float> spins("spins", lattice);
   cayspin::copy(exec, mine, spins);
-  cayspin::require_unit_spins(exec, spins);  // steppers keep the lengths that they are given
+  cayspin::require_unit_spins(exec, spins);  // steppers preserve the lengths that they are given
 
   cayspin::LandauLifshitz const generator(
       cayspin::EffectiveField(cayspin::Exchange(lattice, 1.0), cayspin::Zeeman{{0, 0, 0.5}}), 0.2);

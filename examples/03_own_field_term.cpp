@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A field term of your own is a plain struct. It runs fused with the others, on every backend and
-// in both precisions; nothing is registered or instantiated elsewhere.
+// Your own field term is a plain struct. It runs fused with the others, on every backend and in
+// both precisions; nothing is registered or instantiated elsewhere.
 #include <cayspin/cayspin.hpp>
 
 #include <cstdio>
@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
   auto const lattice = cayspin::Lattice::square(20, 20);
   cayspin::SpinField<double> spins("spins", lattice);
 
-  // A field along (1, 1, 1) tips the spins from one easy axis towards it, then is gone.
+  // A field along (1, 1, 1) tips the spins from one easy axis towards it, and is then switched off.
   cayspin::EffectiveField const tipping(cayspin::Exchange(lattice, 2.0), CubicAnisotropy{1.0},
                                         cayspin::Zeeman{{2, 1, 1}});
   cayspin::EffectiveField const resting(cayspin::Exchange(lattice, 2.0), CubicAnisotropy{1.0});

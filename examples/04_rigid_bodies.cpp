@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Free rigid bodies on S^2: a thousand tumbling bodies of one inertia. The middle axis is unstable;
-// the angular momentum keeps its length to round-off, the energy to the method's order.
+// A thousand free rigid bodies of equal inertia, tumbling on S^2. The middle axis is unstable; the
+// angular momentum keeps its length to round-off, the energy to the method's order.
 #include <cayspin/cayspin.hpp>
 
 #include <cmath>

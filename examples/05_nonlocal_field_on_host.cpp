@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A non-local field that host code computes, through a mirror copy: the pattern for an FFT demag or
-// any solver that is not a kernel. Here: the spins of a ring coupled by dipoles, summed directly.
+// A non-local field that host code computes, through a mirror copy: use this for an FFT demag or
+// any solver that is not a kernel. Here the spins of a ring are coupled by dipoles, summed
+// directly.
 #include <cayspin/cayspin.hpp>
 
 #include <algorithm>

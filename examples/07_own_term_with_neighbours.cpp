@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A field term of your own that reads neighbours. `next<Axis>` and `previous<Axis>` take what
-// stands for a missing neighbour: here zero, so that an open end has no bond.
+// Your own field term that reads neighbours. The argument of `next<Axis>` and `previous<Axis>`
+// replaces a missing neighbour: here zero, so that an open end has no bond.
 #include <cayspin/cayspin.hpp>
 
 #include <cmath>

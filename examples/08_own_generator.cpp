@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A generator of your own: any A(m, t) with m' = A x m. This one adds Slonczewski's torque of a
-// spin-polarised current to a Landau-Lifshitz generator, whatever that is made of. The currents
-// that switch a magnetic layer come out as Slonczewski's formula says.
+// Your own generator: any A(m, t) with m' = A x m. This one adds Slonczewski's torque of a
+// spin-polarised current to any Landau-Lifshitz generator. The program finds the currents that
+// switch a magnetic layer and compares them with Slonczewski's formula.
 #include <cayspin/cayspin.hpp>
 
 #include <cmath>
@@ -14,10 +14,10 @@ struct Current {
   cayspin::Vec3<double> polarisation;  // p, a unit vector
 };
 
-/// Gilbert's equation with the torque -a m x (m x p): spins turn to the polarisation p.
-/// a = strength P L^2 / ((L^2 + 1) + (L^2 - 1) m.p), with the polarisation's degree P and the
-/// asymmetry L. Its own damping adds the field -damping a p. Forwarding makes the inner generator
-/// ready before each stage, so that its field may depend on time or come from the host.
+/// Gilbert's equation with the torque -a m x (m x p), which turns spins to the polarisation p. a =
+/// strength P L^2 / ((L^2 + 1) + (L^2 - 1) m.p), with degree of polarisation P and asymmetry L. Its
+/// own damping adds the field -damping a p. Forwarding prepares the inner generator before each
+/// stage, so that its field may depend on time or come from the host.
 template <class Inner>
 class SpinTorque : public cayspin::Forwarding<SpinTorque<Inner>, Inner> {
  public:
@@ -56,10 +56,10 @@ constexpr double mu0 = 4e-7 * std::numbers::pi, electron = 1.602176634e-19, hbar
 constexpr double saturation = 1e6, anisotropy = 8e5, thickness = 1.2e-9;  // A/m, J/m^3, m
 constexpr double damping = 0.01, degree = 0.6, asymmetry = 1.5;
 constexpr double constant = 2 * anisotropy / (mu0 * saturation * saturation) - 1;  // less demag
-/// Strength, in units of Ms, of one A/m^2.
+/// Strength, in units of Ms, of 1 A/m^2.
 constexpr double strength_of_unit = hbar / (mu0 * electron * saturation * saturation * thickness);
 
-/// Does a spin close to z or -z leave it?
+/// Returns true if a spin close to z or -z leaves it.
 bool leaves(bool down, double current) {
   Kokkos::DefaultExecutionSpace const exec;
   auto const one = cayspin::Lattice::chain(1);
@@ -76,7 +76,7 @@ bool leaves(bool down, double current) {
   return std::atan2(std::hypot(m[0], m[1]), down ? -m[2] : m[2]) > tilt;
 }
 
-/// By bisection, in A/m^2.
+/// Returns the critical current in A/m^2, by bisection.
 double critical_current(bool down) {
   double stays = 0, goes = down ? 1e12 : -1e12;
   for (int halving = 0; halving < 40; ++halving) {

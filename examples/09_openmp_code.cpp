@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Arrays of another code, here plain ones and OpenMP: unmanaged Views stand for them, without a
-// second allocation. A write head moves along a track; the code computes its field and reads the
-// bits, and cayspin moves the spins. Numbers are copied at each hand-over, not at each step.
+// Arrays of another code, here plain ones with OpenMP, wrapped in unmanaged Views without a second
+// allocation. A write head moves along a track; the code computes its field and reads the bits, and
+// cayspin moves the spins. Numbers are copied at each hand-over, not at each step.
 #include <cayspin/cayspin.hpp>
 
 #include <array>
@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <vector>
 
-// The code's own: site (x, y) has the components array[3 * (x + length * y) + component].
+// The other code: site (x, y) has the components array[3 * (x + length * y) + component].
 constexpr int length = 96, width = 12, bits = 6, bit_length = length / bits;
 constexpr std::array<int, bits> message{1, 0, 0, 1, 0, 1};
 
@@ -35,13 +35,13 @@ int bits_right(std::vector<double> const& m) {
   return right;
 }
 
-// What cayspin gets.
+// The part that uses cayspin.
 using Exec = Kokkos::DefaultHostExecutionSpace;
 using Field = cayspin::SiteField<double, 3, Kokkos::HostSpace>;
 using Theirs = Kokkos::View<double* [3], Kokkos::LayoutRight, Kokkos::HostSpace,
                             Kokkos::MemoryTraits<Kokkos::Unmanaged>>;
 
-/// A field that differs from site to site.
+/// A site-dependent field.
 struct FieldOfSites {
   static constexpr int degree = 1;  // H does not depend on the spins
   static constexpr bool is_local = true;

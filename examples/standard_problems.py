@@ -31,7 +31,7 @@ class Clock:
 
 
 class Loop:
-    """States of rest, each from the one before, in fields along a direction."""
+    """Equilibria, each from the one before, in fields along a direction."""
 
     def __init__(self, of, direction):
         self.sim = cayspin.Simulation(of)
@@ -63,7 +63,7 @@ def problem_1(quick):
     """Loops of 2 um x 1 um x 20 nm of permalloy along both axes."""
     loops = []
     print("axis     cells, nm   Hc, mT   <m> at H = 0       states  evaluations: median, most   s")
-    # The field is 1 degree off the axis, as the problem asks.
+    # The problem asks for a field 1 degree off the axis.
     for cells in [[50, 25, 1]] if quick else [[100, 50, 1], [200, 100, 1]]:
         size = {"shape": cells, "spacing": [2e-6 / cells[0], 1e-6 / cells[1], 20e-9]}
         for axis, degrees in (("long", 1), ("short", 91)):
@@ -181,14 +181,14 @@ def problem_3(quick):
     return edges, {state: [energy(state, edge, 16) for edge in edges] for state in starts}
 
 
-def curve(of, end, looks, evaluations_of_dear=None):
+def curve(of, end, looks, evaluations_of_multirate=None):
     """<m> at `looks` times, and a line on the cost."""
     sim, clock, m = cayspin.Simulation(of), Clock(), []
     for look in range(looks):
         sim.run(until=(look + 1) * end / looks, output=False)
         m.append(sim.magnetization())
-    dear = evaluations_of_dear or sim.evaluations
-    return np.array(m), f"{dear:17}{str(clock):>10}"
+    multirate = evaluations_of_multirate or sim.evaluations
+    return np.array(m), f"{multirate:17}{str(clock):>10}"
 
 
 def problem_4(quick):
@@ -203,8 +203,8 @@ def problem_4(quick):
     each_stage = {"method": "rkmk4", "substeps": 1}
     adaptive = {"dt": 1e-11, "tolerance": 0.05, "substeps": 1}
     for number, applied in ((1, [-24.6e-3, 4.3e-3, 0]), (2, [-35.5e-3, -6.3e-3, 0])):
-        def of(integrator, dear, applied=applied):
-            return scene(4, lattice=size, field={"applied": applied, "demag": {"dear": dear}},
+        def of(integrator, multirate, applied=applied):
+            return scene(4, lattice=size, field={"applied": applied, "demag": {"multirate": multirate}},
                          initial=start, integrator={"end": end, **integrator})
 
         exact, cost = curve(of({**each_stage, "dt": 2.5e-13}, False), end, 100)
@@ -216,12 +216,12 @@ def problem_4(quick):
         print(f"    method              error  evaluations         s\n    rkmk4, 4000 steps       "
               f"-{cost[2:]}")
         curves.append(m)
-        for name, integrator, dear, count in (
+        for name, integrator, multirate, count in (
                 ("the scene", {}, True, 800 + 13),
                 ("rkmk4, 2700 steps", {**each_stage, "dt": end / 2700}, False, None),
                 ("bs3", {"method": "bs3", **adaptive}, False, None),
                 ("dp5", {"method": "dp5", **adaptive}, False, None))[:1 if quick else 4]:
-            m, cost = curve(of(integrator, dear), end, 100, count)
+            m, cost = curve(of(integrator, multirate), end, 100, count)
             print(f"    {name:18}{np.abs(m - exact).max():8.1e}{cost[4:]}", flush=True)
     print("""OOMMF (std4/oommf.txt of fidimag), 200 x 50 cells: field 1
     zero at 0.13850 ns, at 1 ns (-0.984505, 0.127447, 0.043153)
@@ -243,9 +243,9 @@ def problem_5(quick):
                    torque={"zhang_li": {"velocity": velocity, "nonadiabaticity": 0.05}})
         looks = 100 * nanoseconds
         m, cost = curve(of, 1e-9 * nanoseconds, looks, 800 * nanoseconds + 21)
-        dear, seconds = cost.split()
+        multirate, seconds = cost.split()
         print(f"{name} cells: at rest <m_z> = {sim.spins[..., 2].mean():.6f}, {found.evaluations} "
-              f"evaluations; then {dear}, {seconds} s", flush=True)
+              f"evaluations; then {multirate}, {seconds} s", flush=True)
         for t in (1, 2, 5, 8):
             if 100 * t <= looks:
                 x, y, z = m[100 * t - 1]

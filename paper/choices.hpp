@@ -3,12 +3,12 @@
 
 #include "ensemble.hpp"
 
-/// The paper's names for the maps F of its Sec. 5, as choices of a scene.
+/// The paper's names for the maps F of its Sec. 5, as method choices of a scene.
 namespace cayspin::paper {
 
 using io::Generator, io::Isotropy;
 
-/// A choice of a method of this word.
+/// Returns a choice of the method with this name.
 inline MethodChoice choose(std::string_view method, Generator generator = Generator::standard,
                            Isotropy isotropy = Isotropy::zero, double sigma = 0) {
   return {.method = io::find_method(method),

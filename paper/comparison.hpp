@@ -8,17 +8,17 @@
 
 namespace cayspin::paper {
 
-/// Prints what errata do, as printed and as corrected.
+/// Printed effect of errata, with the formula as printed and as corrected.
 class Comparison {
  public:
   explicit Comparison(Context const& context)
       : context(context),
         file_(context.folder, "errata.csv", "erratum,quantity,printed,corrected") {}
 
-  /// Begins erratum `number`: where it is, what is printed, what is right.
+  /// Starts erratum `number`: its place, the printed formula, the correct one.
   void begin(int number, std::string_view where, std::string_view printed,
              std::string_view corrected);
-  /// The same quantity both ways.
+  /// Prints a quantity with both formulas.
   void row(std::string_view quantity, double printed, double corrected);
   void note(std::string_view text) const;
   void close() const { file_.write(); }

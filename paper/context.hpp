@@ -7,11 +7,11 @@
 
 namespace cayspin::paper {
 
-/// What all parts of the reproduction are told.
+/// Options of all parts of the reproduction.
 struct Context {
   std::int64_t bodies;
   std::uint64_t seed;
-  std::optional<std::filesystem::path> folder;  // where numbers go as CSV
+  std::optional<std::filesystem::path> folder;  // folder of the CSV files
 };
 
 void table1(Context const& context);

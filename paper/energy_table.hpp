@@ -10,7 +10,7 @@
 
 namespace cayspin::paper {
 
-/// One method of a table, and what the paper prints for it, dt by dt. NaN: not recoverable.
+/// One method of a table, with the values printed in the paper for each dt. NaN: not recoverable.
 struct Column {
   std::string_view name;
   MethodChoice choice;
@@ -21,20 +21,20 @@ struct Column {
 struct Block {
   std::string_view name;
   Law law;
-  double end;  // of the interval, from 0
+  double end;  // of the interval, which starts at 0
   std::vector<double> dts;
   std::vector<Column> columns;
 };
 
-/// Prints a table of largest energy errors, each of the paper's beside our median, our range, and
-/// the range of means over ten bodies, which is the paper's own statistic; and the order that means
-/// show from one dt to the next.
+/// Printed table of largest energy errors: the paper's next to our median, our range, and the
+/// range of means over ten bodies (the paper's statistic); and the order of the means from one dt
+/// to the next.
 class EnergyTable {
  public:
   /// `name`: of the CSV file.
   EnergyTable(Context const& context, std::string_view name, std::string_view title);
   void add(Block const& block);
-  /// Why figures differ: one paragraph.
+  /// Prints a paragraph on why figures differ.
   void note(std::string_view text) const;
   /// Writes the file.
   void close() const { file_.write(); }

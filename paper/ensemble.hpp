@@ -9,16 +9,16 @@
 
 namespace cayspin::paper {
 
-/// The [integrator] of a choice that steps to `end`.
+/// Returns the [integrator] of a choice that steps to `end`.
 io::Integrator integrator_of(MethodChoice const& choice, double dt, double end);
 
-/// What became of each body.
+/// Results for each body.
 struct EnsembleRun {
   std::vector<double> energy_errors;  // max over all steps of |H - H(start)|
   std::vector<Vector> ends;
 };
 
-/// Runs the bodies side by side, by the program's own method, in double precision on the host.
+/// Runs the bodies side by side with the program's own method, in double precision on the host.
 void run_bodies(std::vector<Body> const& bodies, MethodChoice const& choice, double dt, double end,
                 HostObserver& observer);
 EnsembleRun run_ensemble(std::vector<Body> const& bodies, MethodChoice const& choice, double dt,

@@ -7,7 +7,7 @@
 namespace cayspin::paper {
 namespace {
 
-// (I_j - I_k)^2 I_i (m_j m_k)^power, and the quotient of sums that F^Eul_cor takes of it.
+// (I_j - I_k)^2 I_i (m_j m_k)^power, and the quotient of sums that F^Eul_cor makes of it.
 double second_form(Body const& body, Vector const& m, int power) {
   auto const& moment = body.moments;
   double above = 0, below = 0;

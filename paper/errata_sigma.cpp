@@ -10,7 +10,7 @@ namespace {
 
 constexpr double end_time = 10;
 
-// <A', A x m> along the exact flow, of A = -I^-1 m and of A_o (they differ).
+// <A', A x m> along the exact flow, for A = -I^-1 m and for A_o (they differ).
 double default_product(Body const& body, Vector const& m) {
   Vector const x = cross(default_generator(body, m), m);
   return dot(default_generator(body, x), x);
@@ -54,7 +54,7 @@ auto energy_error(Form form) {
   };
 }
 
-// Of one step, along A_o, over dt^2; its limit for dt -> 0 is what sigma is there to remove.
+// Error of one step along A_o, over dt^2; sigma is meant to remove its limit for dt -> 0.
 auto local_error(Form form, double dt) {
   return [=](Body const& body) {
     auto const& m = body.start;

@@ -4,7 +4,7 @@
 #include "context.hpp"
 #include "slab.hpp"
 
-/// The numbers of the paper's figures: one or more CSV files each, and what can be said in a line.
+/// Numbers of the paper's figures: one or more CSV files each, and a one-line summary.
 namespace cayspin::paper {
 
 void figure_trajectories(Context const& context);

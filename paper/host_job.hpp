@@ -14,9 +14,9 @@ using HostSpace = Kokkos::DefaultHostExecutionSpace;
 using HostSpins = Simulation<double, HostSpace>::Spins;
 using HostObserver = RunObserver<HostSpace, HostSpins>;
 
-/// Runs a chain, spacing 1, as `cayspin run` does, but from a start and inverse inertias in memory
-/// and without files. Returns the state at the end. `starts`: sites x 3 unit vectors.
-/// `inverse_inertia`: one per body; not looked at for spins.
+/// Runs a chain, spacing 1, like `cayspin run`, but with starts and inverse inertias from memory
+/// and without files. Returns the final state. `starts`: sites x 3 unit vectors. `inverse_inertia`:
+/// one per body; ignored for spins.
 HostSpins run_on_host(io::Scene const& scene, std::vector<double> const& starts,
                       std::vector<SymmetricTensor> const& inverse_inertia, HostObserver& observer);
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstdint>
 
-/// Steps m <- cay(F(m)) m of one rigid body on plain numbers, for formulas that the library does
-/// not have because they are wrong.
+/// Steps m <- cay(F(m)) m of one rigid body on plain numbers, for wrong formulas, which the library
+/// does not have.
 namespace cayspin::paper {
 
 /// A without its part along m.
@@ -17,7 +17,7 @@ inline Vector orthogonal_part(Vector const& a, Vector const& m) {
   return multiply_add(-dot(a, m), m, a);
 }
 
-/// A = -I^-1 m, and the same without its part along m.
+/// A = -I^-1 m, and A without its part along m.
 inline Vector default_generator(Body const& body, Vector const& m) {
   return -1.0 * body.velocity(m);
 }
@@ -25,13 +25,13 @@ inline Vector orthogonal_generator(Body const& body, Vector const& m) {
   return orthogonal_part(default_generator(body, m), m);
 }
 
-/// What became of one body.
+/// Result for one body.
 struct HostRun {
   Vector end;
   double energy_error;  // max over all steps of |H - H(start)|
 };
 
-/// `update(m)` is F, with the step in it.
+/// `update(m)` returns F, which includes the step.
 template <class Update>
 HostRun take_steps(Body const& body, std::int64_t steps, Update const& update) {
   HostRun run{body.start, 0};
@@ -43,7 +43,7 @@ HostRun take_steps(Body const& body, std::int64_t steps, Update const& update) {
   return run;
 }
 
-/// Heun's F of any generator A(m).
+/// Heun's F for any generator A(m).
 template <class Generator>
 Vector heun_update(Generator const& generator, Vector const& m, double dt) {
   Vector const a = generator(m);

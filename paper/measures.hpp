@@ -14,7 +14,7 @@ inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 /// Below it, errors are rounding.
 inline constexpr double order_round_off = 1e-12;
 
-/// The steps between which errata's orders are taken.
+/// Steps between which the orders of the errata are measured.
 inline constexpr double coarse_dt = 0.05, fine_dt = 0.025;
 
 inline std::vector<Body> errata_bodies(Context const& context) {

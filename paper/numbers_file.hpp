@@ -9,7 +9,7 @@
 
 namespace cayspin::paper {
 
-/// A CSV file that appears whole, or not at all. Without a folder nothing is written.
+/// A CSV file that is written completely or not at all. Without a folder nothing is written.
 class NumbersFile {
  public:
   NumbersFile(std::optional<std::filesystem::path> const& folder, std::string_view name,
@@ -24,7 +24,7 @@ class NumbersFile {
     text_ += line;
   }
 
-  /// Throws std::runtime_error, one line, when it cannot be written.
+  /// Throws std::runtime_error with one line when it cannot be written.
   void write() const;
 
  private:

@@ -13,7 +13,7 @@ void print_paragraph(std::string_view text) {
   while (!text.empty()) {
     auto end = text.size();
     if (end > width) end = text.rfind(' ', width);
-    // A word that is longer than a line has one of its own.
+    // A word longer than a line gets its own line.
     if (end == text.npos) end = std::min(text.find(' '), text.size());
     fmt::print("  {}\n", text.substr(0, end));
     text.remove_prefix(std::min(text.size(), end + 1));

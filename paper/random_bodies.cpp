@@ -14,7 +14,7 @@ namespace {
 constexpr double flattening = 0.15;
 using Shape = Law::Shape;
 
-// The engine is the same everywhere, the distributions of the standard library are not.
+// Unlike the distributions of the standard library, its engines are equal on all platforms.
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : engine_(seed) {}
@@ -27,7 +27,7 @@ class Dice {
     double const radius = std::sqrt((1 - z) * (1 + z));
     return {radius * std::cos(azimuth), radius * std::sin(azimuth), z};
   }
-  // Axes uniform over all orientations: one on the sphere, the second turned evenly about it.
+  // Axes uniform over all orientations: one on the sphere, the second rotated uniformly about it.
   std::array<Vector, 3> frame() {
     Vector const first = on_sphere();
     Vector const helper = std::abs(first.x) < 0.6 ? Vector{1, 0, 0} : Vector{0, 1, 0};
@@ -62,8 +62,8 @@ std::array<double, 3> draw_moments(Law const& law, Dice& dice) {
   return moments;
 }
 
-// On the great circles H(m) = 1/(2 I_middle): <m, e_least> : <m, e_largest> is given, the rest
-// free.
+// On the great circles H(m) = 1/(2 I_middle): the ratio <m, e_least> : <m, e_largest> is fixed, the
+// rest random.
 Vector on_separatrix(Body const& body, Dice& dice) {
   std::array<std::size_t, 3> order{0, 1, 2};
   std::ranges::sort(order, {}, [&](std::size_t i) { return body.moments[i]; });

@@ -12,7 +12,7 @@ namespace cayspin::paper {
 
 using Vector = Vec3<double>;
 
-/// A free rigid body and the angular momentum it starts with.
+/// A free rigid body and its initial angular momentum.
 struct Body {
   std::array<double, 3> moments;  // of inertia, principal
   std::array<Vector, 3> axes;     // principal, right-handed
@@ -23,23 +23,23 @@ struct Body {
   double energy(Vector const& m) const { return 0.5 * dot(m, velocity(m)); }
 };
 
-/// How bodies and starts are drawn: principal moments of inertia uniform in [least, largest].
-/// The paper draws them at random and does not say how.
+/// Distribution of bodies and starts: principal moments of inertia uniform in [least, largest]. The
+/// paper draws them at random without saying how.
 struct Law {
   enum class Shape {
     triaxial,
     axisymmetric,      // two equal moments
     nearly_spherical,  // two equal moments, the third within 15 % of them
-    separatrix         // triaxial, starts on the separatrix, not anywhere on the sphere
+    separatrix         // triaxial, starts on the separatrix instead of anywhere on the sphere
   };
   Shape shape;
   double least = 1.25, largest = 3.75;
 };
 
-/// One line.
+/// Describes the distribution in one line.
 std::string describe(Law const& law);
 
-/// The same bodies for the same seed, on every machine up to the rounding of sin and cos.
+/// Returns equal bodies for equal seeds, on every machine up to the rounding of sin and cos.
 std::vector<Body> draw_bodies(Law const& law, std::int64_t count, std::uint64_t seed);
 
 /// A body whose axes are those of the frame.

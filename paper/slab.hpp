@@ -8,8 +8,9 @@
 
 namespace cayspin::paper {
 
-/// The paper's slab of 100 spins with all constants 1 (its Sec. 6). It leaves open the start, the
-/// easy axis and the spacing: spacing 1, and the start of scenes/slab_switching.toml.
+/// The paper's slab of 100 spins with all constants 1 (its Sec. 6). The paper does not give the
+/// start, the easy axis and the spacing: we use spacing 1, and the start of
+/// scenes/slab_switching.toml.
 struct Slab {
   std::string_view name;
   std::array<double, 3> applied;
@@ -28,32 +29,32 @@ inline constexpr Slab strong_damping{"strong_damping", weak_field, 10, true, 1, 
 inline constexpr Slab strong_damping_strong_field{
     "strong_damping_strong_field", strong_field, 10, true, 0.1, {1, 0, 0}};
 
-/// One spin's path, with what belongs to it.
+/// The path of one spin, with other observables.
 struct SlabPath {
   std::vector<double> times;
   std::vector<Vector> spin;        // site 37
-  std::vector<double> logarithms;  // of |m|, that with the largest magnitude over the sites
-  std::vector<double> sigma;       // of site 37; only of runs on plain numbers
+  std::vector<double> logarithms;  // of |m|; the one of largest magnitude over the sites
+  std::vector<double> sigma;       // of site 37; only for runs on plain numbers
   std::vector<Vector> end;         // every site
 };
 
-/// Looks at `looks` equally spaced times besides the start; dt has to divide their distance.
+/// Samples `looks` equally spaced times besides the start; dt must divide their distance.
 SlabPath run_slab(Slab const& slab, MethodChoice const& choice, double dt, int looks);
 
-/// Geometric Euler with sigma = -factor <dA_o, A_o x m>/|A_o|^2, dA_o by backward differences
-/// (forward at the first step), on plain numbers: factor 1 is right, -1 the paper's.
+/// Runs geometric Euler with sigma = -factor <dA_o, A_o x m>/|A_o|^2, dA_o by backward differences
+/// (forward at the first step), on plain numbers: factor 1 is correct, -1 is the paper's.
 SlabPath run_slab_with_sigma(Slab const& slab, double factor, double dt, int looks);
 
-/// The sigma of every site at the start, by forward differences over dt.
+/// Returns the sigma of every site at the start, by forward differences over dt.
 std::vector<double> sigma_at_start(Slab const& slab, double dt);
 
-/// Largest distance of two paths at their times.
+/// Returns the largest distance of two paths at their times.
 double largest_distance(SlabPath const& a, SlabPath const& b);
 
-/// Largest distance over the sites at the end.
+/// Returns the largest distance over the sites at the end.
 double distance_at_end(SlabPath const& a, SlabPath const& b);
 
-/// The errors at the end that five steps leave, the first `coarsest`, each half the one before.
+/// Errors at the end for five steps, each half the previous one, starting with `coarsest`.
 struct Convergence {
   std::vector<double> dts, errors;             // largest over the sites
   std::vector<double> first_component_errors;  // of site 37
@@ -65,7 +66,7 @@ struct Convergence {
 Convergence converge(Slab const& slab, MethodChoice const& choice, SlabPath const& reference,
                      double coarsest = 0.02);
 
-/// rkmk4 at a much smaller step.
+/// Runs rkmk4 at a much smaller step.
 SlabPath reference_run(Slab const& slab);
 
 }  // namespace cayspin::paper

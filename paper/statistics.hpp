@@ -5,7 +5,7 @@
 
 namespace cayspin::paper {
 
-/// The value below which the fraction `q` of the values lies; NaN when there are none.
+/// Returns the value below which the fraction `q` of the values lies; NaN when there are none.
 double quantile(std::vector<double> values, double q);
 
 double mean(std::vector<double> const& values);
@@ -16,16 +16,16 @@ struct Spread {
 };
 Spread spread(std::vector<double> const& values);
 
-/// The paper's statistic, again and again: means of ten consecutive values. With fewer than ten
+/// Returns the paper's statistic repeatedly: means of ten consecutive values. With fewer than ten
 /// values, their mean.
 std::vector<double> means_of_ten(std::vector<double> const& values);
 
-/// Orders log(coarse/fine) / log(ratio of the steps), value by value, where both are above
+/// Returns orders log(coarse/fine) / log(ratio of the steps), value by value, if both are above
 /// round-off.
 std::vector<double> orders(std::vector<double> const& coarse, std::vector<double> const& fine,
                            double step_ratio, double round_off);
 
-/// Least-squares slope of log(error) over log(dt).
+/// Returns the least-squares slope of log(error) over log(dt).
 double fitted_order(std::vector<double> const& dts, std::vector<double> const& errors);
 
 }  // namespace cayspin::paper

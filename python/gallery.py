@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Runs the commands of docs/gallery.md and draws its pictures; prints the seconds of each scene."""
+"""Runs the commands of docs/gallery.md and docs/guide/what_a_scene_can_hold.md and draws their
+pictures; prints the seconds of each scene."""
 
 import argparse
 import contextlib
@@ -13,22 +14,25 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs/gallery.md"
+PAGES = ROOT / "docs/gallery.md", ROOT / "docs/guide/what_a_scene_can_hold.md"
 SECTION = re.compile(r"^## .*?(?=^## |\Z)", re.DOTALL | re.MULTILINE)
+SCENE = re.compile(r"^```toml\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 COMMANDS = re.compile(r"^```sh\n(.*?)^```$", re.DOTALL | re.MULTILINE)
-PICTURE = re.compile(r"^!\[.+\]\(images/gallery_(\w+)\.png\)$", re.MULTILINE)
+PICTURE = re.compile(r"^!\[.+\]\((?:\.\./)?images/gallery_(\w+)\.png\)$", re.MULTILINE)
 WIDTH, BYTES = 500, 60_000  # of a picture
 
 
 def scenes(page):
-    """The commands of each picture, by its name."""
+    """The scene, or none, and the commands of each picture of a page, by the picture's name."""
     found = {}
-    for section in SECTION.findall(page):
-        commands, pictures = COMMANDS.findall(section), PICTURE.findall(section)
-        if len(commands) != 1 or len(pictures) != 1:
+    for section in SECTION.findall(page.read_text(encoding="utf-8")):
+        scene, commands, pictures = (
+            part.findall(section) for part in (SCENE, COMMANDS, PICTURE))
+        if len(commands) != 1 or len(pictures) != 1 or len(scene) > 1:
             title = section.partition("\n")[0]
-            raise SystemExit(f"{PAGE.name}: {title}: accepted: one block of commands, one picture")
-        found[pictures[0]] = commands[0].splitlines()
+            raise SystemExit(f"{page.name}: {title}: accepted: one block of commands, one picture, "
+                             "at most one scene")
+        found[pictures[0]] = (scene[0] if scene else None), commands[0].splitlines()
     return found
 
 
@@ -47,11 +51,11 @@ def workspace(program):
 
 
 def run(command, folder, environment):
-    """What a command prints."""
+    """Returns the output of a command."""
     done = subprocess.run(["bash", "-c", command], cwd=folder, env=environment, text=True,
                           capture_output=True)
     if done.returncode != 0:
-        raise SystemExit(f"{command}: exit status {done.returncode}: {done.stderr.strip()}")
+        raise SystemExit(f"{command}: exit status {done.returncode}: {done.stdout}{done.stderr}")
     return done.stdout
 
 
@@ -67,8 +71,10 @@ def shrink(picture, path):
         small.quantize(palette=palette).save(path, optimize=True)
 
 
-def draw(name, commands, program, images):
+def draw(name, scene, commands, program, images):
     with workspace(program) as (folder, environment):
+        if scene:
+            (folder / f"{name}.toml").write_text(scene, encoding="utf-8")
         environment |= {"OMP_NUM_THREADS": "1"}
         begin = time.monotonic()
         for command in commands[:-1]:
@@ -88,14 +94,14 @@ def main():
     parser.add_argument("--images", type=pathlib.Path, default=ROOT / "docs/images",
                         metavar="FOLDER", help="where pictures go (default: docs/images)")
     arguments = parser.parse_args()
-    found = scenes(PAGE.read_text(encoding="utf-8"))
+    found = {name: both for page in PAGES for name, both in scenes(page).items()}
     unknown = set(arguments.names) - set(found)
     if unknown:
         sys.exit(f"no scene {', '.join(sorted(unknown))}; accepted: {', '.join(found)}")
     if not arguments.program.is_file():
         sys.exit(f"{arguments.program}: there is no such program; accepted: a built cayspin")
     for name in arguments.names or found:
-        draw(name, found[name], arguments.program, arguments.images)
+        draw(name, *found[name], arguments.program, arguments.images)
 
 
 if __name__ == "__main__":

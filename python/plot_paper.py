@@ -14,7 +14,7 @@ SLABS = {
     "strong_overdamped": "fig:2  overdamped slab, applied (5, 0, 0)",
     "full": "fig:4  slab with precession, applied (5, 0, 0), damping 0.05",
 }
-# Of a slab's runs, those that the paper draws.
+# Runs of a slab that the paper draws.
 DRAWN = {
     "Euler, dt = 0.0001": style.INK,
     "geometric Euler, optimal sigma, dt = 0.01": style.BLUE,

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Draws the spins of a trajectory file: films and planes as colours with arrows, crystals by their
-sites, chains as lines; as a picture of one frame or a movie of all."""
+sites, chains as lines; as a picture of one frame or a movie of all. Of a path its energy and some
+of its images, of modes their spectrum and shapes, of waves their bands; of an ensemble one
+replica."""
 
 import argparse
 import pathlib
@@ -15,9 +17,12 @@ def parse_arguments():
     parser.add_argument("file", type=pathlib.Path, metavar="FILE.h5")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="PICTURE",
                         help="its ending chooses the kind, .png, .svg or .pdf "
-                             "(default: FILE_texture.png)")
-    parser.add_argument("--frame", type=int, default=-1,
-                        help="counted from 0, or from the end: -1 (default: the last)")
+                             "(default: FILE_texture.png, FILE_path.png or FILE_modes.png)")
+    parser.add_argument("--frame", type=int,
+                        help="counted from 0, or from the end: -1 (default: the last); an image of "
+                             "a path; the mode that moves (default: 0)")
+    parser.add_argument("--replica", type=int, metavar="N",
+                        help="of an ensemble, counted from 0, or from the end: -1 (default: 0)")
     parser.add_argument("--plane", metavar="z=0",
                         help="an axis and the number of a plane (default: the middle one across "
                              "the axis of fewest cells)")
@@ -30,19 +35,21 @@ def parse_arguments():
     what.add_argument("--charge", action="store_true",
                       help="draw the topological charge of each cell of a film")
     parser.add_argument("--movie", type=pathlib.Path, metavar="MOVIE",
-                        help="all frames, .mp4 (by ffmpeg) or .gif, in place of a picture")
+                        help="all frames, images of a path, or a mode that moves, .mp4 (by ffmpeg) "
+                             "or .gif, in place of a picture")
     parser.add_argument("--fps", type=float, default=20, help="frames in a second (default: 20)")
     return parser.parse_args()
 
 
 def import_libraries():
     """After --help, which needs none of them."""
-    global checksum, h5py, style, texture
+    global checksum, h5py, modes, path, replica_of_file, style, texture
     import h5py
-    from cayspin_plots import style
+    from cayspin_plots import modes, path, style
 
     import texture  # of python/cayspin, which cayspin_plots has put on the path
     from texture import checksum
+    from texture import replica as replica_of_file
 
 
 def movie_writer(path, fps):
@@ -61,18 +68,34 @@ def movie_writer(path, fps):
 
 def read(file, arguments, frame):
     """A frame and the options to draw it with."""
+    options = {"plane": arguments.plane, "before": None,
+               "quantity": "charge" if arguments.charge else "spins"}
+    if modes.is_modes(file):
+        mode = 0 if arguments.frame is None else arguments.frame
+        return modes.moving(file, mode, frame, texture), options
+    if path.is_path(file):
+        shown, options["before"] = path.texture_of(file, frame, arguments.difference, texture)
+        return shown, options
     shown, before = texture.of_file(file, frame, arguments.difference)
     checksum.require_undamaged(file, texture.frame_number(file, frame), shown.spins[None])
     if before is not None:
         checksum.require_undamaged(file, texture.frame_number(file, arguments.difference),
                                    before[None])
-    return shown, {"plane": arguments.plane, "before": before,
-                   "quantity": "charge" if arguments.charge else "spins"}
+    return shown, {**options, "before": before}
+
+
+def frames_of(file, arguments):
+    if modes.is_modes(file):
+        if arguments.difference is not None:
+            raise ValueError("--difference of a mode; accepted: a file of frames or of a path")
+        return range(modes.FRAMES)
+    count = path.number_of if path.is_path(file) else texture.frame_number
+    return range(count(file, -1) + 1)
 
 
 def draw_movie(file, arguments):
-    path, writer = arguments.movie, movie_writer(arguments.movie, arguments.fps)
-    frames = range(texture.frame_number(file, -1) + 1)
+    name, writer = arguments.movie, movie_writer(arguments.movie, arguments.fps)
+    frames = frames_of(file, arguments)
     limit = None
     if arguments.charge or arguments.difference is not None:
         limit = max(texture.largest(shown, **options) for shown, options in (
@@ -80,14 +103,35 @@ def draw_movie(file, arguments):
     shown, options = read(file, arguments, 0)
     axes = texture.draw(shown, colors=arguments.colors, limit=limit, **options)
     figure, place = axes.figure, axes.get_position(original=True)
-    with writer.saving(figure, str(path), dpi=100):
+    with writer.saving(figure, str(name), dpi=100):
         for frame in frames:
             shown, options = read(file, arguments, frame)
             figure.clear()
             texture.draw(shown, figure.add_axes(place, anchor="NW"), colors=arguments.colors,
                          limit=limit, key=True, **options)
             writer.grab_frame()
-    print(path)
+    print(name)
+
+
+def figure_of(file, arguments):
+    """The figure of a file, and what the name of its picture ends with."""
+    if modes.is_modes(file):
+        return modes.draw(file), "modes"
+    of_frames = arguments.charge or arguments.difference is not None
+    if path.is_path(file) and arguments.frame is None and not of_frames:
+        return path.draw(file, texture, arguments.colors), "path"
+    frame = -1 if arguments.frame is None else arguments.frame
+    shown, options = read(file, arguments, frame)
+    return texture.draw(shown, colors=arguments.colors, **options).figure, "texture"
+
+
+def of_replica(file, replica):
+    """A replica of the file of an ensemble; another file as it is."""
+    if replica_of_file.is_ensemble(file):
+        return replica_of_file.Replica(file, 0 if replica is None else replica)
+    if replica is not None:
+        raise ValueError("--replica of a file that is no ensemble; accepted: no --replica")
+    return file
 
 
 def run(arguments):
@@ -99,13 +143,13 @@ def run(arguments):
         raise ValueError(f"cannot be opened: {' '.join(str(error).split())}; accepted: a "
                          "file that cayspin wrote") from None
     with file:
+        shown = of_replica(file, arguments.replica)
         if arguments.movie:
-            draw_movie(file, arguments)
+            draw_movie(shown, arguments)
             return
-        shown, options = read(file, arguments, arguments.frame)
-        axes = texture.draw(shown, colors=arguments.colors, **options)
-    output = arguments.output or arguments.file.with_name(f"{arguments.file.stem}_texture.png")
-    style.save(axes.figure, output)
+        figure, ending = figure_of(shown, arguments)
+    style.save(figure, arguments.output or
+               arguments.file.with_name(f"{arguments.file.stem}_{ending}.png"))
 
 
 def main():

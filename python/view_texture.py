@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""What `cayspin view` starts: the package's view, which needs nothing compiled."""
+"""Started by `cayspin view`: the package's view, which needs nothing compiled."""
 
 import pathlib
 import sys

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A permalloy film with a demagnetising field of its own, by FFTs over all ranks. The printed
-// numbers have the same bits on any number of ranks.
+// A permalloy film with a user-written demagnetising field, by FFTs over all ranks. The printed
+// numbers have equal bits on any number of ranks.
 #include "film_demagnetising_field.hpp"
 
 #include <cayspin/cayspin.hpp>

@@ -18,7 +18,7 @@
 #include <vector>
 
 /// The field H = -N m of all cells of a film of one layer, divided along y, for HostField. Each
-/// rank transforms its rows along x; then each transforms some columns along y, of twice the
+/// rank transforms its rows along x; then each transforms some columns along y, padded to twice the
 /// extents, so that the film does not see its periodic images. All transforms are of one row or
 /// column, so the bits do not depend on the number of ranks. In units of Ms, for open boundaries.
 class FilmDemagnetisingField {
@@ -49,7 +49,7 @@ class FilmDemagnetisingField {
  private:
   using Complex = std::complex<double>;
 
-  /// Items of 0 .. extent - 1 that each rank has.
+  /// Division of 0 .. extent - 1 among the ranks.
   struct Shares {
     std::vector<std::size_t> begin;
     std::size_t of(std::size_t rank) const { return begin[rank + 1] - begin[rank]; }
@@ -67,7 +67,7 @@ class FilmDemagnetisingField {
       ny_ = static_cast<std::size_t>(film.shape[1]);
       auto const ranks = static_cast<std::size_t>(domain.division().y);
       for (std::size_t rank = 0; rank <= ranks; ++rank) {
-        y_.begin.push_back(ny_ * rank / ranks);  // as the domain divides
+        y_.begin.push_back(ny_ * rank / ranks);  // divided like the domain
         k_.begin.push_back((nx_ + 1) * rank / ranks);
       }
       row_.resize(2 * nx_);
@@ -86,8 +86,8 @@ class FilmDemagnetisingField {
       return results_[c * rows() * nx_ + site];
     }
 
-    /// fill(row, component, own row): the numbers of a row along x. After it each rank has the
-    /// spectra of its columns.
+    /// Calls fill(row, component, own row) for the numbers of a row along x. Afterwards each rank
+    /// has the spectra of its columns.
     template <class Fill>
     void transform(Fill const& fill) {
       for (std::size_t c = 0; c < 3; ++c)
@@ -142,12 +142,12 @@ class FilmDemagnetisingField {
       return reinterpret_cast<fftw_complex*>(numbers);
     }
     std::size_t columns() const { return k_.of(rank_); }
-    /// The share of a rank, which may be none, of an own row.
+    /// Returns the share of a rank, which may be empty, of an own row.
     Complex* in_rows(std::size_t c, std::size_t y, std::size_t rank) {
       return of_rows_.data() + 3 * rows() * k_.begin[rank] + (c * rows() + y) * k_.of(rank);
     }
 
-    // FFTW_ESTIMATE and FFTW_UNALIGNED: the same plan for each row, and with it the same bits.
+    // FFTW_ESTIMATE and FFTW_UNALIGNED give one plan for all rows, and thus equal bits.
     void make_plans() {
       constexpr unsigned flags = FFTW_ESTIMATE | FFTW_UNALIGNED;
       auto const x = static_cast<int>(2 * nx_), y = static_cast<int>(2 * ny_);
@@ -166,7 +166,7 @@ class FilmDemagnetisingField {
         work(rank, shares.begin[rank], shares.of(rank));
     }
 
-    // Each of the columns with all rows, and where a message has it: (component, row, column) of
+    // Each of the columns with all rows, and their place in a message: (component, row, column) of
     // the rows of each rank.
     template <class Work>
     void for_each_number(Work const& work) {
@@ -183,7 +183,7 @@ class FilmDemagnetisingField {
       for (std::size_t i = 0; i < 3 * columns(); ++i) work(as_fftw(&column_[i * 2 * ny_]));
     }
 
-    // What a rank has are `lines` lines, and of each the share of every other rank.
+    // Each rank has `lines` lines, and exchanges the share of every other rank.
     void exchange(std::vector<Complex> const& from, std::size_t lines, Shares const& shares,
                   std::vector<Complex>& to, std::size_t lines_there, Shares const& shares_there) {
       auto const counts = [](std::size_t of_line, Shares const& of_ranks) {
@@ -199,7 +199,8 @@ class FilmDemagnetisingField {
                     received[0].data(), received[1].data(), MPI_C_DOUBLE_COMPLEX, comm_);
     }
 
-    /// The spectrum of -N, which is real: N is even along x and y, but for xy, which is odd.
+    /// Computes the spectrum of -N, which is real: N is even along x and y, except xy, which is
+    /// odd.
     void find_kernel(cayspin::Lattice const& film, cayspin::TensorOfCells& tensor) {
       kernel_.resize(columns() * 2 * ny_);
       for (bool const odd : {false, true}) {
@@ -230,7 +231,7 @@ class FilmDemagnetisingField {
         }
       });
     }
-    // Of a column's spectrum of half of its numbers, that with their mirror images.
+    // Fills a column's spectrum from half of its numbers by mirroring.
     void mirror(Complex* column, bool odd) {
       fftw_execute_dft(backward_y_.get(), as_fftw(column), as_fftw(column));
       for (std::size_t y = 0; y < ny_; ++y) column[y] /= static_cast<double>(2 * ny_);

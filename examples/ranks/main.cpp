@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A code with a communicator and a field of its own, divided along z: cayspin takes the steps. The
-// printed numbers have the same bits on any number of ranks.
+// A code with its own communicator and field, divided along z, that uses cayspin for the steps. The
+// printed numbers have equal bits on any number of ranks.
 #include <cayspin/cayspin.hpp>
 #include <cayspin/mpi/domain.hpp>
 
@@ -9,7 +9,7 @@
 
 namespace {
 
-/// What the code starts from: a helix along z. `first` is the first plane of the rank.
+/// The initial state: a helix along z. `first` is the first plane of the rank.
 struct Helix {
   Kokkos::View<double* [3]> m;
   std::int64_t in_plane, first;
@@ -29,7 +29,7 @@ void run(MPI_Comm comm) {
   using Stepper = cayspin::Rkmk4<cayspin::SpinField<double>>;
   cayspin::mpi::Domain const domain(comm, lattice, Stepper::ghosts);
   auto const& local = domain.local();
-  Kokkos::View<double* [3]> const mine("mine", local.sites());  // no ghosts in it
+  Kokkos::View<double* [3]> const mine("mine", local.sites());  // without ghosts
   std::int64_t const first = domain.begin()[2] + local.ghosts[2].before;
   Kokkos::parallel_for("helix", Kokkos::RangePolicy<>(exec, 0, local.sites()),
                        Helix{mine, lattice.shape[0] * lattice.shape[1], first});
@@ -43,7 +43,7 @@ void run(MPI_Comm comm) {
   cayspin::integrate(exec, stepper, generator, spins, cayspin::Times{0, 0.1, 200});
   cayspin::copy(exec, spins, mine);
 
-  // Sums are those of all ranks, on each of them.
+  // Sums are over all ranks, on each of them.
   double const energy = cayspin::energy(exec, field, spins).value;
   auto const m = cayspin::magnetization(exec, spins);
   if (domain.rank() == 0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# PROGRAM prints the same line on 1, 2 and 4 ranks.
+# Checks that PROGRAM prints equal lines on 1, 2 and 4 ranks.
 set(ENV{OMP_NUM_THREADS} 1)
 foreach(ranks 1 2 4)
   execute_process(COMMAND ${MPIEXEC} ${NUMPROC} ${ranks} ${PROGRAM} OUTPUT_VARIABLE output

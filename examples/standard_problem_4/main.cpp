@@ -4,9 +4,9 @@
 //   example_standard_problem_4          128 x 32 cells, beside mumax3
 //   example_standard_problem_4 mumax3   the same with mumax3's approximation of the tensor
 //   example_standard_problem_4 oommf    200 x 50 cells, beside OOMMF
-//   example_standard_problem_4 dear     200 x 50 cells, the demagnetising field once a step
-//   example_standard_problem_4 adaptive the same beside adaptive methods; dear10: over 10 ns
-#include "dear.hpp"
+//   example_standard_problem_4 multirate     200 x 50 cells, the demagnetising field once a step
+//   example_standard_problem_4 adaptive the same beside adaptive methods; multirate10: over 10 ns
+#include "multirate.hpp"
 #include "problem.hpp"
 #include "quadrature.hpp"
 
@@ -59,38 +59,39 @@ bool agrees_with_oommf() {
          std::abs(reversal.crossing - crossing) < 1e-4;
 }
 
-/// The demagnetising field evaluated once a step, beside rkmk4 which evaluates it in each stage.
-bool follows_with_a_dear_field(bool with_adaptive_methods) {
+/// The demagnetising field evaluated once a step, compared with rkmk4, which evaluates it in each
+/// stage.
+bool follows_with_a_multirate_field(bool with_adaptive_methods) {
   StandardProblem4 problem(200, 50);
   problem.relax(1e-6);
-  DearProblem4 dear(problem, field_1, 1);
-  auto const converged = dear.rkmk4(2800);
+  MultirateProblem4 multirate(problem, field_1, 1);
+  auto const converged = multirate.rkmk4(2800);
   report("rkmk4, 2800 steps", converged, converged, 1);
   bool fine = true;
   auto const tried = [&]<int Order>(std::integral_constant<int, Order>, int steps, int substeps,
                                     double limit) {
     char name[64];
     std::snprintf(name, sizeof name, "order %d, %d steps, %d substeps", Order, steps, substeps);
-    auto const run = dear.multirate<Order>(steps, substeps);
-    fine &= report(name, run, converged, limit) && 10 * run.dear < converged.dear;
+    auto const run = multirate.multirate<Order>(steps, substeps);
+    fine &= report(name, run, converged, limit) && 10 * run.multirate < converged.multirate;
   };
   tried(std::integral_constant<int, 3>(), 900, 3, 1e-3);
   tried(std::integral_constant<int, 3>(), 700, 4, 2e-3);
   tried(std::integral_constant<int, 4>(), 900, 3, 2e-4);
   if (!with_adaptive_methods) return fine;
-  constexpr double tolerance = 0.05;  // stability bounds the steps
-  report("bs3", dear.adaptive<cayspin::tableau::BogackiShampine3>(tolerance), converged, 1);
-  report("tsit5", dear.adaptive<cayspin::tableau::Tsitouras5>(tolerance), converged, 1);
-  report("dp5", dear.adaptive<cayspin::tableau::DormandPrince5>(tolerance), converged, 1);
+  constexpr double tolerance = 0.05;  // stability limits the steps
+  report("bs3", multirate.adaptive<cayspin::tableau::BogackiShampine3>(tolerance), converged, 1);
+  report("tsit5", multirate.adaptive<cayspin::tableau::Tsitouras5>(tolerance), converged, 1);
+  report("dp5", multirate.adaptive<cayspin::tableau::DormandPrince5>(tolerance), converged, 1);
   return fine;
 }
 
-/// The energy law over 10 ns, until the film is at rest.
+/// The energy law over 10 ns, until the film reaches equilibrium.
 bool falls_for_10_nanoseconds() {
   StandardProblem4 problem(200, 50);
   problem.relax(1e-6);
-  DearProblem4 dear(problem, field_1, 10);
-  auto const run = dear.multirate<3>(9000, 3);
+  MultirateProblem4 multirate(problem, field_1, 10);
+  auto const run = multirate.multirate<3>(9000, 3);
   std::printf("energy falls by %.6g, rises by at most %.1e (round-off %.1e)\n", run.fall,
               run.largest_rise, run.round_off);
   return report("order 3, 9000 steps, 3 substeps", run, run, 1);
@@ -102,11 +103,11 @@ int main(int argc, char** argv) {
   Kokkos::ScopeGuard kokkos(argc, argv);
   char const* const beside = argc > 1 ? argv[1] : "";
   if (std::strcmp(beside, "oommf") == 0) return agrees_with_oommf() ? 0 : 1;
-  if (std::strcmp(beside, "dear") == 0) return follows_with_a_dear_field(false) ? 0 : 1;
-  if (std::strcmp(beside, "adaptive") == 0) return follows_with_a_dear_field(true) ? 0 : 1;
-  if (std::strcmp(beside, "dear10") == 0) return falls_for_10_nanoseconds() ? 0 : 1;
+  if (std::strcmp(beside, "multirate") == 0) return follows_with_a_multirate_field(false) ? 0 : 1;
+  if (std::strcmp(beside, "adaptive") == 0) return follows_with_a_multirate_field(true) ? 0 : 1;
+  if (std::strcmp(beside, "multirate10") == 0) return falls_for_10_nanoseconds() ? 0 : 1;
   if (std::strcmp(beside, "mumax3") == 0)
     return agrees_with_mumax3(quadrature::tensor, 1e-3) ? 0 : 1;
-  // m_y changes by 8e-3 in a picosecond then.
+  // m_y changes by 8e-3 in a picosecond there.
   return agrees_with_mumax3(cayspin::demagnetizing_tensor, 6e-3) ? 0 : 1;
 }

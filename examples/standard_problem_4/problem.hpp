@@ -27,7 +27,7 @@ class StandardProblem4 {
         spins_("spins", film_),
         demag_(spins_, cayspin::DemagnetizingField<double>(film_, {.tensor = &tensor})) {}
 
-  /// The S state: from (1, 0.1, 0), without precession, until |m'| < torque everywhere.
+  /// Relaxes to the S state: from (1, 0.1, 0), without precession, until |m'| < torque everywhere.
   Vector relax(double torque) {
     std::vector<double> start;
     for (std::int64_t site = 0; site < film_.sites(); ++site)
@@ -52,7 +52,8 @@ class StandardProblem4 {
     return cayspin::magnetization(exec_, spins_);
   }
 
-  /// What a program needs to go on by itself: the film, its S state, its equation of motion.
+  /// Return what a program needs to continue by itself: the film, its S state, its equation of
+  /// motion.
   cayspin::Lattice const& film() const { return film_; }
   std::vector<double> const& at_rest() const { return at_rest_; }
   auto const& demag() const { return demag_; }
@@ -69,7 +70,7 @@ class StandardProblem4 {
     Vector m;             // after a nanosecond
     double crossing = 0;  // the first time at which <m_x> is zero, in ns
   };
-  /// From the S state in a field, given in mT.
+  /// Reverses the S state by a field in mT.
   Reversal reverse(Vector const& millitesla, int steps) {
     cayspin::copy_from_host(at_rest_, spins_);
     auto const of_film = generator(demag_, millitesla);

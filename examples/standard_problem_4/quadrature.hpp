@@ -11,12 +11,12 @@
 
 /// The tensor by the quadrature of mumax3 (Vansteenkiste et al. 2014, Sec. II.E), with its default
 /// accuracy: point charges on the faces of one cell, and the mean of their fields at points in the
-/// other cell. It errs by up to 2.5e-4.
+/// other cell. Its error is up to 2.5e-4.
 namespace quadrature {
 
 constexpr double accuracy = 6;  // distance over the size of a piece
 
-/// The middle of piece `index` of `pieces` of an edge.
+/// Returns the middle of piece `index` of `pieces` pieces of an edge.
 inline double middle(double edge, int pieces, int index) {
   return edge * ((index + 0.5) / pieces - 0.5);
 }
@@ -35,7 +35,7 @@ inline cayspin::DemagnetizingTensor tensor(std::array<double, 3> const& distance
   std::array<std::array<double, 3>, 3> n{};  // [direction of m][component of -H]
   for (std::size_t u = 0; u < 3; ++u) {
     std::size_t const v = (u + 1) % 3, w = (u + 2) % 3;
-    // Twice as many charges as points: where the grids are staggered, errors cancel.
+    // Twice as many charges as points: errors cancel because the grids are staggered.
     int const along_v = 2 * pieces[v], along_w = 2 * pieces[w];
     double const charge =
         size[v] * size[w] /

@@ -73,7 +73,7 @@ class DemagnetisingField:
             whole[CELLS[0] + 1:, :CELLS[1]] = odd * n[:0:-1]
             whole[:CELLS[0], CELLS[1] + 1:] = odd * n[:, :0:-1]
             whole[CELLS[0] + 1:, CELLS[1] + 1:] = n[:0:-1, :0:-1]
-            # One layer: N_xz and N_yz are 0, and all transforms are real.
+            # For one layer N_xz and N_yz are 0, and all transforms are real.
             self.tensor[a, b] = -MU0 * MS * np.fft.rfft2(whole.T).real
 
     def __call__(self, spins, t):

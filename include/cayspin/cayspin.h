@@ -66,7 +66,7 @@ char const* cayspin_last_error(void);
 /* Such as "0.1.0". */
 char const* cayspin_version(void);
 
-/* Opens a scene file; one without [integrator] is for cayspin_relax alone. `space`: openmp, threads,
+/* Opens a scene file; one without [integrator] is only for cayspin_relax. `space`: openmp, threads,
    cuda, ..., "serial" for the host's with one thread, or NULL for Kokkos' default. Starts Kokkos
    unless the program has. */
 cayspin_status cayspin_open_file(char const* path, cayspin_precision precision, char const* space,
@@ -84,7 +84,7 @@ cayspin_status cayspin_step(cayspin_simulation* simulation, int64_t count);
    that is NULL the scene's output.file. A file that exists is an error unless `overwrite`. */
 cayspin_status cayspin_run(cayspin_simulation* simulation, char const* output, int overwrite);
 
-/* Moves the spins to a state of rest, as `cayspin relax` does: until max |m x H| is below `torque`,
+/* Moves the spins to an equilibrium, as `cayspin relax` does: until max |m x H| is below `torque`,
    or for so many `evaluations` of the field. `applied`, three numbers, takes the place of the
    scene's field.applied; NULL: H is that at the time now. Time and steps stay as they are. */
 cayspin_status cayspin_relax(cayspin_simulation* simulation, double torque, int64_t evaluations,

@@ -7,11 +7,9 @@
 #include <cayspin/coupling.hpp>
 #include <cayspin/crystal.hpp>
 #include <cayspin/evaluate.hpp>
-#include <cayspin/exchange_memory.hpp>
 #include <cayspin/field/bulk_dmi.hpp>
 #include <cayspin/field/cell_moments.hpp>
 #include <cayspin/field/cubic_anisotropy.hpp>
-#include <cayspin/field/dear.hpp>
 #include <cayspin/field/effective_field.hpp>
 #include <cayspin/field/exchange.hpp>
 #include <cayspin/field/field_of_moments.hpp>
@@ -24,6 +22,7 @@
 #include <cayspin/field/slab_demag.hpp>
 #include <cayspin/field/slab_demag_on_host.hpp>
 #include <cayspin/field/slonczewski.hpp>
+#include <cayspin/field/slow_field.hpp>
 #include <cayspin/field/uniaxial_anisotropy.hpp>
 #include <cayspin/field/zeeman.hpp>
 #include <cayspin/field/zhang_li.hpp>
@@ -44,6 +43,7 @@
 #include <cayspin/rotation/exponential.hpp>
 #include <cayspin/row_layout.hpp>
 #include <cayspin/scalars.hpp>
+#include <cayspin/serialize.hpp>
 #include <cayspin/shells.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stability.hpp>

@@ -8,27 +8,28 @@
 
 namespace cayspin::inline v0_1 {
 
-/// Numbers and fields by name: what a run carries from one step to the next beside its spins. With
-/// the spins it gives the bits of a run without a break, on any host space and thread count.
+/// Named numbers and fields that a run carries from step to step besides its spins. Restoring them
+/// with the spins continues the run with the same bits as without a break, on any host space and
+/// thread count.
 class Checkpoint {
  public:
   virtual ~Checkpoint() = default;
-  /// Does it give back what it holds, or take what it is given?
+  /// Returns true when values are read back from the checkpoint, false when they are stored in it.
   virtual bool restores() const = 0;
-  /// Takes `value`, or replaces it. Counts and flags are numbers, too.
+  /// Stores or restores `value`. Counts and flags are passed as numbers, too.
   virtual void number(std::string const& name, double& value) = 0;
-  /// The same for the numbers of all sites, (sites, components) with x fastest.
+  /// Stores or restores the values of all sites, (sites, components) with x fastest.
   virtual void field(std::string const& name, std::vector<double>& numbers) = 0;
 };
 
 /// A checkpoint in host memory, empty at first.
 class CheckpointInMemory final : public Checkpoint {
  public:
-  /// From now on it gives back.
+  /// Ends storing: from now on, calls restore.
   void close() { restores_ = true; }
 
   bool restores() const override { return restores_; }
-  /// Throws std::out_of_range for a name that it does not hold.
+  /// Throws std::out_of_range when no number of this name was stored.
   void number(std::string const& name, double& value) override {
     if (restores_)
       value = numbers_.at(name);

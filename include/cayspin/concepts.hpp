@@ -13,9 +13,9 @@
 #include <type_traits>
 #include <utility>
 
-// The five contracts of the library: what a user may bring, and what each of them may leave out.
-// Terms and generators are templates over the stencil; the concepts check them with the host's
-// stencil of Spins, by default spins of double precision in host memory.
+// The five contracts of the library: which members a user's type must have, and which are optional.
+// Terms and generators are templates over the stencil. The concepts check them with the host
+// stencil of Spins (default: double precision in host memory).
 namespace cayspin::inline v0_1 {
 
 namespace detail {
@@ -44,13 +44,13 @@ concept has_evaluations = requires {
   { Stepper::evaluations } -> std::convertible_to<int>;
 };
 
-/// Where the number of evaluations depends on the spins, the stepper counts them itself.
+/// True when the stepper counts evaluations itself, because their number depends on the spins.
 template <class Stepper>
 concept counts_evaluations = requires(Stepper const& stepper) {
   { stepper.evaluations_done() } -> std::convertible_to<std::int64_t>;
 };
 
-/// Evaluations in the next step of a stepper that does not count them itself.
+/// Returns the number of evaluations in the next step of a stepper that does not count them itself.
 template <class Stepper>
 int evaluations_of_next_step(Stepper const& stepper) {
   if constexpr (requires { stepper.next_step_evaluations(); })
@@ -61,80 +61,80 @@ int evaluations_of_next_step(Stepper const& stepper) {
 
 }  // namespace detail
 
-/// A term of the effective field, with H = -dE/dm. On devices it has const templates over the
+/// A term of the effective field, with H = -dE/dm. Its device members are const templates over the
 /// stencil; Value = Stencil::value_type.
 ///
-/// | member | says | left out |
+/// | member | meaning | default |
 /// |---|---|---|
 /// | `Vec3<Value> field(stencil)` | H at the stencil's centre | required |
 /// | `Value energy_density(stencil)` | the site's share of E | required |
-/// | `Vec3<Value> add_field(stencil, h)` | h + H, where that takes less | h + field |
-/// | `Vec3<Value> add_turning_field(stencil, h)` | the same, less a multiple of m | add_field |
-/// | `static int degree` | 1: H without the spins, 2: linear in them | H is neither |
-/// | `static bool is_local` | H depends on the spin itself and t only | false |
-/// | `Vec3<Value> neighbor_field(stencil)` | H of the others, less a multiple of m | see below |
+/// | `Vec3<Value> add_field(stencil, h)` | h + H, where that is faster | h + field |
+/// | `Vec3<Value> add_turning_field(stencil, h)` | h + H, up to a multiple of m | add_field |
+/// | `static int degree` | 1: H does not depend on the spins, 2: H is linear in them | neither |
+/// | `static bool is_local` | H depends only on the site's spin and t | false |
+/// | `Vec3<Value> neighbor_field(stencil)` | H of other spins, up to a multiple of m | see below |
 ///
-/// Conditions on values are select(condition, yes, no). No `if` works: on the host a value is a
-/// pack of several sites. RedBlack moves a spin in the field of the others, by neighbor_field: H
-/// has no other part then. Where a term that is not local leaves it out, the whole field is
-/// evaluated for each iterate of a spin.
+/// Choose between values with select(condition, yes, no). `if` does not work, because on the host a
+/// value is a pack of several sites. RedBlack rotates each spin about neighbor_field, which then
+/// must be all of H. If a non-local term omits it, RedBlack evaluates the whole field for each
+/// iterate of a spin.
 ///
-/// On the host, before a kernel, these are called:
+/// These members are called on the host before a kernel:
 ///
-/// | member | says | left out |
+/// | member | meaning | default |
 /// |---|---|---|
-/// | `check_spins(spins)` | throws for other spins and wrong numbers | takes any spins |
+/// | `check_spins(spins)` | throws for unsuitable spins or invalid values | accepts all spins |
 /// | `auto prepare(exec, spins, t)` | the term for kernels at time t | the term itself |
-/// | `static bool depends_on_time` | H changes with t, not by what is prepared | false |
-/// | `bool is_stationary(exec, spins)` | prepared once for all t and spins | true without prepare |
-/// | `bool needs_time_alone(exec, spins)` | t is enough to prepare | one of the two above |
-/// | `bool is_affine()` | H is affine in the spins | where it has a degree |
-/// | `static bool is_conservative` | false: H is the derivative of no energy, as a torque | true |
+/// | `static bool depends_on_time` | H changes with t after prepare | false |
+/// | `bool is_stationary(exec, spins)` | one prepare serves all t, spins | true without prepare |
+/// | `bool needs_only_time(exec, spins)` | prepare needs t, not the spins | one of the above |
+/// | `bool is_affine()` | H is affine in the spins | true if degree is given |
+/// | `static bool is_conservative` | false: H has no energy, as for a torque | true |
 ///
-/// A term with a prepare has the device members in what that returns. One that is made of others
-/// gets the host members from Forwarding (field/forwarding.hpp), and has gather (field/parts.hpp)
-/// on devices. The derivatives that some methods of the paper ask for are in cayspin_paper.
+/// If a term has prepare, the device members belong to the returned object. A term made of other
+/// terms inherits the host members from Forwarding (field/forwarding.hpp), and needs gather
+/// (field/parts.hpp) on devices. Some methods of the paper need derivatives, which are in
+/// cayspin_paper.
 template <class Term, class Spins = SpinField<double, Kokkos::HostSpace>>
 concept FieldTerm = requires {
   requires detail::has_field<detail::PreparedFor<Term, Spins>, detail::StencilOf<Spins>>;
   requires detail::has_energy_density<detail::PreparedFor<Term, Spins>, detail::StencilOf<Spins>>;
 };
 
-/// The A of m' = A x m. The host members are those of a FieldTerm, and so are those of an energy.
+/// The generator A of m' = A x m. Its host members, and those about energy, are as in FieldTerm.
 ///
-/// | member | says | left out |
+/// | member | meaning | default |
 /// |---|---|---|
 /// | `Vec3<Value> operator()(stencil)` | A at the stencil's centre | required |
-/// | `Vec3<Value> turning_part(stencil)` | A, less a multiple of m: what turns m | A |
-/// | `Value energy_density(stencil)` | the site's share of E | it has no energy |
-/// | `bool conserves_energy()` | E is kept: A = -dE/dm + c m (host) | EnergyControl refuses it |
-/// | `bool is_orthogonal()` | A has no part along m | false |
+/// | `Vec3<Value> turning_part(stencil)` | A, up to a multiple of m | A |
+/// | `Value energy_density(stencil)` | the site's share of E | no energy |
+/// | `bool conserves_energy()` | A = -dE/dm + c m conserves E (host) | EnergyControl refuses |
+/// | `bool is_orthogonal()` | A has no component along m | false |
 template <class Type, class Spins = SpinField<double, Kokkos::HostSpace>>
 concept Generator =
     detail::is_generator<detail::PreparedFor<Type, Spins>, detail::StencilOf<Spins>>;
 
-/// A method that takes steps. A stepper is made for a lattice and holds its work memory. A step may
-/// exchange the memory of the spins with the stepper's own.
+/// A method that takes steps. A stepper is constructed for a lattice and owns its work memory. A
+/// step may swap the memory of the spins with memory of the stepper.
 ///
-/// | member | says | left out |
+/// | member | meaning | default |
 /// |---|---|---|
-/// | `spins_type` | the SpinField that it advances | required |
+/// | `spins_type` | the SpinField type that it advances | required |
 /// | `step(exec, generator, spins, t, dt)` | advances spins from t to t + dt | required |
-/// | `static int evaluations` | of the generator in each step | evaluations_done() is required |
-/// | `int64 evaluations_done()` | of the generator so far | evaluations is required |
-/// | `int next_step_evaluations()` | those of a first step may be more | evaluations |
-/// | `static int order` | of the error | not known |
-/// | `static int ghosts` | a step needs at each inner end of a part of a lattice | no parts |
-/// | `reset()` | forgets the steps so far | there is nothing to forget |
-/// | `check_spins(spins)` | throws for spins of another lattice | step does |
-/// | `bool takes_batches(exec, generator, spins)` | may batch be called? | false |
-/// | `batch(exec, generator, spins, t, dt, count)` | count steps, same bits | one by one |
-/// | `static int work_fields` | fields of three numbers per site | not known |
-/// | `size_t work_bytes()` | bytes of work memory | not known |
-/// | `visit_exchanged(visit)` | visit(field) for fields that a step exchanges for the spins | none
-/// |
+/// | `static int evaluations` | generator evaluations per step | evaluations_done() is required |
+/// | `int64 evaluations_done()` | generator evaluations so far | evaluations is required |
+/// | `int next_step_evaluations()` | differs where a first step needs more | evaluations |
+/// | `static int order` | order of convergence | unknown |
+/// | `static int ghosts` | ghost layers that a step needs at each inner end of a part | no parts |
+/// | `reset()` | forgets the previous steps | nothing to forget |
+/// | `check_spins(spins)` | throws for spins of another lattice | checked by step |
+/// | `bool takes_batches(exec, generator, spins)` | batch may be called | false |
+/// | `batch(exec, generator, spins, t, dt, count)` | takes count steps, same bits | one by one |
+/// | `static int work_fields` | work fields, of three numbers per site | unknown |
+/// | `size_t work_bytes()` | bytes of work memory | unknown |
+/// | `visit_exchanged(visit)` | visit(field) for fields that a step may swap for spins | none |
 ///
-/// integrate() ends in the memory that the spins had at first, by visit_exchanged.
+/// integrate() uses visit_exchanged to leave the spins in their original memory.
 template <class Type>
 concept Stepper =
     requires(Type& stepper, detail::ExecutionOf<typename Type::spins_type> const& exec,
@@ -143,17 +143,17 @@ concept Stepper =
       requires detail::has_evaluations<Type> || detail::counts_evaluations<Type>;
     };
 
-/// A Stepper that chooses its own steps and delivers spins at the times that are asked for. It goes
-/// on from a state of its own: what is written into the spins between two steps has no effect.
+/// A Stepper that chooses its own steps and delivers spins at the requested times. It continues
+/// from an internal state: writing into the spins between two steps has no effect.
 ///
-/// | member | says | left out |
+/// | member | meaning | default |
 /// |---|---|---|
-/// | `int64 evaluations_done()` | evaluations of the generator so far | required |
-/// | `int64 accepted_steps()` | own steps taken so far | required |
-/// | `int64 rejected_steps()` | own steps thrown away so far | required |
-/// | `reset()` | the next step begins at its own t and spins | required |
-/// | `step_towards(exec, generator, spins, t, dt, wanted)` | writes spins at `wanted` only | step |
-/// | `bool has_reached(t, dt)` | has it reached t, where a step of dt ends? | step is called |
+/// | `int64 evaluations_done()` | generator evaluations so far | required |
+/// | `int64 accepted_steps()` | internal steps accepted so far | required |
+/// | `int64 rejected_steps()` | internal steps rejected so far | required |
+/// | `reset()` | the next step starts from its t and spins | required |
+/// | `step_towards(exec, generator, spins, t, dt, wanted)` | writes spins only if `wanted` | step |
+/// | `bool has_reached(t, dt)` | it has reached t, the end of a step of dt | step is called |
 template <class Type>
 concept AdaptiveStepper = Stepper<Type> && detail::counts_evaluations<Type> &&
                           requires(Type& stepper, Type const& constant) {
@@ -162,13 +162,14 @@ concept AdaptiveStepper = Stepper<Type> && detail::counts_evaluations<Type> &&
                             stepper.reset();
                           };
 
-/// What integrate() calls with the state before the first step and after each step.
+/// A callable that integrate() calls with the state before the first step and after each step.
 ///
-/// | member | says | left out |
+/// | member | meaning | default |
 /// |---|---|---|
-/// | `operator()(exec, Step, spins)` | returns nothing, or a Next | required |
-/// | `bool due(Step)` | is the call wanted at this step? | true |
-/// | `static bool changes_spins` | it writes into the spins: no AdaptiveStepper takes it | false |
+/// | `operator()(exec, Step, spins)` | returns nothing or a Next | required |
+/// | `bool due(Step)` | true if it wants the call at this step | true |
+/// | `static bool changes_spins` | it writes into the spins; no AdaptiveStepper accepts it | false
+/// |
 template <class Type, class Spins = SpinField<double, Kokkos::HostSpace>>
 concept Observer = requires(Type& observer, detail::ExecutionOf<Spins> const& exec,
                             Step const& step, Spins const& spins) {
@@ -177,7 +178,7 @@ concept Observer = requires(Type& observer, detail::ExecutionOf<Spins> const& ex
                std::is_same_v<decltype(observer(exec, step, spins)), Next>;
 };
 
-/// Evaluations of the generator in each step; none where their number depends on the spins.
+/// Evaluations of the generator per step; empty where their number depends on the spins.
 template <class Stepper>
 constexpr std::optional<int> evaluations_per_step() {
   if constexpr (detail::has_evaluations<Stepper>) {
@@ -188,7 +189,7 @@ constexpr std::optional<int> evaluations_per_step() {
 
 namespace detail {
 
-/// An observer may be a std::reference_wrapper of one, too.
+/// An observer may also be a std::reference_wrapper of one.
 template <class Observer>
 inline constexpr bool changes_spins =
     requires { requires std::remove_cvref_t<std::unwrap_ref_decay_t<Observer>>::changes_spins; };

@@ -28,19 +28,19 @@ inline std::array<double, 3> vector_product(std::array<double, 3> const& a,
 
 }  // namespace detail
 
-/// A cell of three vectors, repeated, with sites in it. Plain numbers: scenes are read without
-/// Kokkos.
+/// A periodic crystal: a unit cell of three vectors and the sites in it. It needs no Kokkos, so
+/// that scenes can be read without it.
 struct Crystal {
   using Point = std::array<double, 3>;
 
-  std::array<Point, 3> cell{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< the vectors
-  std::vector<Point> basis{{0, 0, 0}};                           ///< sites, in fractions of these
+  std::array<Point, 3> cell{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< cell vectors
+  std::vector<Point> basis{{0, 0, 0}};  ///< sites, in fractions of the cell vectors
 
   /// Cubic cells of edge 1.
   static Crystal simple_cubic() { return {}; }
   static Crystal bcc() { return {cubic, {{0, 0, 0}, {0.5, 0.5, 0.5}}}; }
   static Crystal fcc() { return {cubic, {{0, 0, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}}}; }
-  /// Corners of tetrahedra: 16 sites, next neighbours sqrt(1/8) apart.
+  /// Corners of tetrahedra: 16 sites per cell, nearest neighbours sqrt(1/8) apart.
   static Crystal pyrochlore() {
     Crystal made{cubic, {}};
     for (auto const& corner : fcc().basis)
@@ -49,7 +49,7 @@ struct Crystal {
             {corner[0] + 0.5 * site[0], corner[1] + 0.5 * site[1], corner[2] + 0.5 * site[2]});
     return made;
   }
-  /// Hexagonal cells of edge 1 along x. hcp: ideally packed.
+  /// Hexagonal cells of edge 1 along x. hcp has the ideal c/a.
   static Crystal hcp() {
     auto cell = hexagonal();
     cell[2][2] = std::sqrt(8.0 / 3);
@@ -58,7 +58,7 @@ struct Crystal {
   static Crystal honeycomb() { return {hexagonal(), {{0, 0, 0}, {1.0 / 3, 1.0 / 3, 0}}}; }
   static Crystal kagome() { return {hexagonal(), {{0, 0, 0}, {0.5, 0, 0}, {0, 0.5, 0}}}; }
 
-  /// Where site `site` of a cell is.
+  /// Returns the position of site `site` of a cell.
   Point position(std::array<std::int64_t, 3> const& of_cell, std::size_t site) const {
     Point place{0, 0, 0};
     for (std::size_t vector = 0; vector < 3; ++vector) {
@@ -68,30 +68,31 @@ struct Crystal {
     return place;
   }
 
-  /// `cells` of them as a lattice for fields: plane k * basis.size() + s along z has the sites s of
-  /// the cells k.
+  /// Returns the lattice of fields on `cells` cells: plane k * basis.size() + s along z holds site
+  /// s of the cells k.
   Lattice lattice(std::array<std::int64_t, 3> const& cells,
                   std::array<Boundary, 3> const& boundary = {}) const {
     Lattice made{cells, {1, 1, 1}, boundary};
-    made.validate();  // the product of other numbers of cells may overflow
+    made.validate();  // the product of unchecked cell counts may overflow
     made.cell_sites = static_cast<std::int64_t>(basis.size());
     made.shape[2] *= made.cell_sites;
     made.validate();
     return made;
   }
 
-  /// Of a cell.
+  /// Returns the volume of a cell.
   double volume() const {
     return std::abs(detail::scalar_product(cell[0], detail::vector_product(cell[1], cell[2])));
   }
 
-  /// The cell's volume over that of a box of the same edges.
+  /// Returns the cell's volume divided by that of a box with the same edges.
   double fullness() const {
     auto const length = [](Point const& v) { return std::hypot(v[0], v[1], v[2]); };
     return volume() / (length(cell[0]) * length(cell[1]) * length(cell[2]));
   }
 
-  /// Two sites within a millionth of the cell's vectors, in the same or in different cells.
+  /// Returns two sites that lie within a millionth of the cell's vectors, in the same or in
+  /// different cells.
   std::optional<std::array<std::size_t, 2>> sites_at_one_place() const {
     auto const fraction = [](double x) { return x - std::floor(x); };
     std::vector<std::size_t> by_x(basis.size());
@@ -109,8 +110,8 @@ struct Crystal {
     return std::nullopt;
   }
 
-  /// Throws std::invalid_argument for a cell without volume or sites, and sites at one place or not
-  /// at a finite one.
+  /// Throws std::invalid_argument for a cell without volume or sites, for coinciding sites, and for
+  /// non-finite positions.
   void validate() const {
     if (!(fullness() > 1e-12))
       throw std::invalid_argument("cayspin::Crystal: the cell's vectors span no volume");

@@ -18,30 +18,31 @@
 
 namespace cayspin::inline v0_1 {
 
-/// Steps of length dt up to number `steps`; the time of step n is begin + n dt. A run that goes on
-/// begins after step `first`, at that step's time.
+/// Steps of length dt up to number `steps`; step n is at time begin + n dt. A continued run starts
+/// after step `first`, at that step's time.
 struct Times {
   double begin = 0, dt = 0;
   std::int64_t steps = 0;
   std::int64_t first = 0;
-  bool continues = false;  // the stepper goes on with what it remembers of the run before
+  bool continues = false;   // the stepper keeps its memory of the previous run
+  std::int64_t origin = 0;  // the step whose time is begin, if not step 0
 
-  double at(std::int64_t step) const { return begin + static_cast<double>(step) * dt; }
+  double at(std::int64_t step) const { return begin + static_cast<double>(step - origin) * dt; }
 };
 
-/// What an integration did.
+/// Statistics of an integration.
 struct Summary {
   std::int64_t steps = 0;
-  std::int64_t evaluations = 0;  // of the generator
-  double step_seconds = 0;       // stepping alone: fenced, without observers
+  std::int64_t evaluations = 0;  // generator evaluations
+  double step_seconds = 0;       // time spent stepping, fenced, without observers
   bool stopped = false;          // by an observer
-  std::int64_t own_steps = 0;    // of an adaptive method: taken
-  std::int64_t rejected = 0;     // and thrown away
+  std::int64_t own_steps = 0;    // accepted steps of an adaptive method
+  std::int64_t rejected = 0;     // rejected steps of an adaptive method
 };
 
-/// Calls an observer after every `period` steps, counted from step 0, and after the last one; where
-/// the observer has a due(Step) of its own, only if that wants the call, too. Like integrate(), it
-/// refers to an observer with a name, which has to live as long. A temporary moves into it.
+/// Observer that calls another one after every `period` steps, counted from step 0, and after the
+/// last one. If the observer has a due(Step), it must want the call, too. Like integrate(), it
+/// refers to a named observer, which must outlive it; a temporary is moved into it.
 ///   Every(10, control)             control.energy() is that of the run
 ///   Every(10, Record(field, to))
 template <class Observer>
@@ -66,7 +67,7 @@ class Every {
 
  private:
   std::int64_t period_;
-  Observer observer_;  // a reference to one with a name
+  Observer observer_;  // a reference to a named observer
 };
 
 template <class Observer>
@@ -74,7 +75,7 @@ Every(std::int64_t, Observer&&) -> Every<Observer>;
 
 namespace detail {
 
-/// A stepper that can take several steps of few spins in one launch.
+/// A stepper that can take several steps of few spins in a single launch.
 template <class Stepper, class Exec, class Generator, class Spins>
 concept has_batches =
     requires(Stepper& stepper, Exec const& exec, Generator const& generator, Spins& spins) {
@@ -82,7 +83,7 @@ concept has_batches =
       stepper.batch(exec, generator, spins, 0.0, 0.0, std::int64_t{1});
     };
 
-/// A stepper that need not write the spins at times where nobody looks.
+/// A stepper that can skip writing the spins at times when no observer reads them.
 template <class Stepper, class Exec, class Generator, class Spins>
 concept has_steps_towards =
     requires(Stepper& stepper, Exec const& exec, Generator const& generator, Spins& spins) {
@@ -109,11 +110,11 @@ Next observe(Exec const& exec, Observer& observer, Step const& step, Spins const
   }
 }
 
-/// Does an observer begin the next step, as the noise of a temperature does?
+/// True if an observer starts the next step, as thermal noise does.
 template <class Observer>
 inline constexpr bool begins_step = requires { requires Observer::begins_step; };
 
-/// In the order of the observers: may one stop the run after another one has begun a step?
+/// Returns true if an observer may stop the run after an earlier observer has started a step.
 template <class Exec, class Spins, class... Observers>
 constexpr bool may_stop_in_a_step() {
   bool begun = false, stops = false;
@@ -141,14 +142,14 @@ void check_spins_of_parts(Term const& term, Spins const& spins) {
   if constexpr (requires { term.all_parts(check); }) term.all_parts(check);
 }
 
-/// An integration without its types: the loop is compiled once for all of them.
+/// A type-erased integration, so that the loop is compiled once.
 class Integration {
  public:
   virtual void fence(char const* label) = 0;
   virtual bool is_due(Step const& step) = 0;  // for any observer
   virtual Next observe(Step const& step) = 0;
-  /// Takes steps towards one that is due, at least one; returns how many. The spins are those at
-  /// its end where that one is reached, and else they may be older.
+  /// Takes at least one step towards step `due`; returns how many. If it reaches `due`, the spins
+  /// are those at that step; otherwise they may be older.
   virtual std::int64_t take_steps(Times const& times, std::int64_t number, std::int64_t due) = 0;
 
   /// `looks_ahead`: take_steps makes use of a later `due`.
@@ -179,8 +180,9 @@ class Integration {
   ~Integration() = default;
 
  private:
-  /// The step after `number` that an observer, or the end, waits for; at most 1000 steps later, so
-  /// that what an observer asks the world outside is asked again soon. `known`: the last one.
+  /// Returns the next step after `number` that an observer waits for, or the last step; at most
+  /// 1000 steps later, so that observers that poll are soon called again. `known`: the previous
+  /// result.
   std::int64_t next_due(Times const& times, std::int64_t number, std::int64_t known) {
     bool const is_known = known > number;
     std::int64_t const last = is_known ? known : std::min(times.steps, number + 1000);
@@ -242,7 +244,7 @@ class IntegrationOf final : public Integration {
   std::tuple<Observers&...> observers_;
 };
 
-/// integrate(), which may leave the spins in memory that was the stepper's.
+/// integrate() that may leave the spins in memory of the stepper.
 template <class Exec, class Stepper, class Generator, class Spins, class... Observers>
 Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator const& generator,
                                 Spins& spins, Times const& times, Observers&&... observers) {
@@ -264,7 +266,7 @@ Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator co
     throw std::invalid_argument("cayspin::integrate: begin and dt must be finite");
   if (times.first < 0 || times.steps < times.first)
     throw std::invalid_argument("cayspin::integrate: the number of steps is negative");
-  // Before an observer sees them, and also where there are no steps to take.
+  // Checked before an observer sees the spins, and also if there are no steps to take.
   if constexpr (requires { stepper.check_spins(spins); }) stepper.check_spins(spins);
   check_spins_of_parts(generator, spins);
 
@@ -299,15 +301,17 @@ Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator co
 
 }  // namespace detail
 
-/// Advances `spins` over `times`. A stepper that remembers steps forgets those of runs before,
-/// unless times.continues: then runs in pieces give the bits of one run.
-/// Observers see the state before the first step and after each one.
-/// Returns what was done; `spins` holds the state at the end, and the work has finished. That is in
-/// the memory that `spins` had at first, whichever method: copies of it see the state, too.
-/// Lengths of spins are not checked: require_unit_spins does that for spins of one's own.
+/// Advances `spins` over `times`, and returns statistics. Observers are called with the state
+/// before the first step and after each one. Steppers with memory forget the steps of previous
+/// runs, unless times.continues: then a run in pieces gives the bits of a single run.
+///
+/// On return the work has finished and `spins` holds the final state in its original memory, with
+/// any method, so that copies of it see the state, too. Lengths of spins are not checked: call
+/// require_unit_spins for your own spins.
+///
 /// Throws std::invalid_argument when dt is not finite, the number of steps is negative, or the
-/// stepper or a term of the field was made for another lattice than that of the spins: before an
-/// observer is called, and for 0 steps, too.
+/// stepper or a term of the field was made for another lattice than that of the spins. It throws
+/// before an observer is called, and also for 0 steps.
 template <class Exec, class Stepper, class Generator, class Spins, class... Observers>
 Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator, Spins& spins,
                   Times const& times, Observers&&... observers) {

@@ -11,27 +11,27 @@
 
 namespace cayspin::inline v0_1 {
 
-/// open: a missing neighbour adds nothing (Neumann). periodic: the axis closes on itself.
+/// open: a missing neighbour contributes nothing (Neumann). periodic: the axis wraps around.
 enum class Boundary { open, periodic };
 
 class Part;  // part.hpp
 
-/// Rows or planes at the ends of an axis that belong to other parts of a larger lattice.
+/// Number of rows or planes at the ends of an axis that belong to other parts of a larger lattice.
 struct Ghosts {
   std::int64_t before = 0, after = 0;
   friend bool operator==(Ghosts const&, Ghosts const&) = default;
 };
 
 /// A simple lattice of sites in one, two or three dimensions, x fastest. An axis of extent 1 has no
-/// neighbours; a periodic axis of extent 2 has its other site twice.
+/// neighbours; on a periodic axis of extent 2 each site has the other as both neighbours.
 struct Lattice {
   std::array<std::int64_t, 3> shape{1, 1, 1};
   std::array<double, 3> spacing{1, 1, 1};
   std::array<Boundary, 3> boundary{Boundary::open, Boundary::open, Boundary::open};
-  /// Of a part of a larger lattice (mpi::Domain): its ghosts along y and z, which `shape` includes.
+  /// Ghosts along y and z of a part of a larger lattice (mpi::Domain), included in `shape`.
   std::array<Ghosts, 3> ghosts{};
   Part const* part = nullptr;
-  /// Of a crystal (crystal.hpp): its planes along z are the sites of a cell in turn.
+  /// Sites per cell of a crystal (crystal.hpp): planes along z are the sites of a cell in turn.
   std::int64_t cell_sites = 1;
 
   static Lattice chain(std::int64_t nx, double spacing = 1, Boundary boundary = Boundary::open) {
@@ -46,19 +46,19 @@ struct Lattice {
     return {{nx, ny, nz}, {spacing, spacing, spacing}, {boundary, boundary, boundary}};
   }
 
-  /// Ghosts not counted.
+  /// Returns the number of sites without ghosts.
   std::int64_t sites() const { return own(0) * own(1) * own(2); }
   bool has_neighbors(int axis) const { return shape[static_cast<std::size_t>(axis)] > 1; }
 
-  /// The extent along an axis without ghosts.
+  /// Returns the extent along an axis without ghosts.
   std::int64_t own(std::size_t axis) const {
     return shape[axis] - ghosts[axis].before - ghosts[axis].after;
   }
 
   friend bool operator==(Lattice const&, Lattice const&) = default;
 
-  /// Throws std::invalid_argument naming the first extent, spacing or number of sites in a cell
-  /// that no lattice can have.
+  /// Throws std::invalid_argument that names the first invalid extent, spacing or number of sites
+  /// in a cell.
   void validate() const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       std::string const which(1, "xyz"[axis]);

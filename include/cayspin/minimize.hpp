@@ -17,24 +17,27 @@
 
 namespace cayspin::inline v0_1 {
 
-/// Finds states of rest of the energy of a field, by L-BFGS on the spheres: along great circles by
-/// the Cayley map, with the pairs of steps and gradients projected to the present tangent planes.
-/// The inverse of exchange and a constant, (K + c)^-1, by a cycle of multigrid, makes the number of
-/// evaluations nearly independent of the lattice and of the exchange; its coefficients are found
-/// from the field itself, so terms of one's own, vacancies and coefficients of sites need nothing
-/// more. c follows the curvature along the last step, and is not below the mean field of parallel
-/// spins once all torques are. A state where the torque vanishes is left
-/// again when the Hessian has a negative eigenvalue there.
-/// Energies fall from iteration to iteration, up to round-off.
+/// Search for equilibria of the energy of a field by L-BFGS on the product of spheres. Spins move
+/// along great circles by the Cayley map; earlier steps and gradients are projected to the current
+/// tangent planes.
+///
+/// The preconditioner is the inverse (K + c)^-1 of the exchange K and a constant c, by a multigrid
+/// cycle. It makes the number of evaluations nearly independent of the lattice and of the exchange.
+/// K is measured on the field itself, so user terms, vacancies and site-dependent coefficients need
+/// nothing more. c follows the curvature along the last step; once all torques are below the mean
+/// field of parallel spins, c is not below that field.
+///
+/// If the Hessian has a negative eigenvalue where the torque vanishes, the search leaves that state
+/// again. Energies decrease from iteration to iteration, up to round-off.
 template <class Spins>
 class Minimizer {
   using Real = typename Spins::value_type;
   using Memory = typename Spins::memory_space;
 
  public:
-  /// Fields of three numbers per site that it allocates, the grids of the multigrid included.
+  /// Allocated fields of three numbers per site, including the multigrid levels.
   static constexpr int work_fields = 24;
-  /// The least bound on the torque, of which squares are summed.
+  /// Least bound on the torque, limited by underflow of its square.
   static constexpr double least_bound = 1e-150;
 
   /// Throws std::invalid_argument for a part of a lattice.
@@ -42,9 +45,8 @@ class Minimizer {
     detail::require_whole("cayspin::Minimizer", like.lattice());
   }
 
-  /// Moves `spins` to a minimum. Waits. Throws
-  /// std::invalid_argument for spins of another lattice and options that cannot be, and
-  /// FieldNotFinite for a field that is not finite at the start.
+  /// Moves `spins` to a minimum. Waits. Throws std::invalid_argument for spins of another lattice
+  /// and invalid options, and FieldNotFinite for a field that is not finite at the start.
   template <class Exec, class Field>
   Minimum minimize(Exec const& exec, Field const& field, Spins& spins,
                    MinimizeOptions const& options = {}) {
@@ -71,7 +73,7 @@ class Minimizer {
     }
   }
 
-  /// The field whose memory a search exchanges for that of the spins, until it ends.
+  /// Visits the field whose memory may be swapped with that of the spins during a search.
   template <class Visit>
   void visit_exchanged(Visit const& visit) {
     visit(descent_.search.trial);
@@ -86,7 +88,7 @@ class Minimizer {
     return descent_.so_far;
   }
 
-  /// At an equilibrium, or near one: turns the spins out of a saddle, or says what the state is.
+  /// At or near an equilibrium: turns the spins out of a saddle, or classifies the state.
   template <class Exec, class Field>
   std::optional<MinimizeEnd> leave_saddle(Exec const& exec, Field const& field, Spins& spins,
                                           MinimizeOptions const& options) {
@@ -96,8 +98,8 @@ class Minimizer {
     descent_.so_far.curvature = found.value;
     if (!found.is_negative) return MinimizeEnd::converged;
     ++descent_.so_far.saddles;
-    // Along a great circle each, to where the energy is clearly lower; or, near an instability, to
-    // where it falls further while round-off hides by how much.
+    // Turns each spin along a great circle until the energy is clearly lower; or, near an
+    // instability, until it falls further while round-off hides by how much.
     auto const &vector = descent_.search.direction, &none = descent_.search.trial;
     detail::combine(exec, 0, vector, 0, vector, none);
     double const longest = detail::largest_difference(exec, vector, none);
@@ -118,7 +120,7 @@ class Minimizer {
     return MinimizeEnd::stagnated;
   }
 
-  /// The vector of the lowest curvature in search.direction.
+  /// Writes the vector of the lowest curvature into search.direction.
   template <class Exec, class Field>
   detail::LowestCurvature find_curvature(Exec const& exec, Field const& field, Spins const& spins,
                                          MinimizeOptions const& options) {
@@ -129,7 +131,7 @@ class Minimizer {
     detail::Hessian hessian(exec, field, options.time, spins, descent_.is_mobile,
                             detail::HessianArrays<Spins>{descent_.search.trial, pairs.change(2),
                                                          descent_.lbfgs.scratch()});
-    // Along what is flatter, a turn by a radian does not bring the torque above its bound.
+    // Below this curvature, a turn by a radian does not bring the torque above its bound.
     auto const found = detail::find_lowest_curvature(
         hessian, exec, arrays,
         {.scale = descent_.first_shift(),
@@ -143,7 +145,7 @@ class Minimizer {
     return found;
   }
 
-  /// Out of a saddle of small curvature, the vector of which is search.direction.
+  /// Leaves a saddle of small curvature along its vector in search.direction.
   template <class Exec, class Field>
   bool leave_softly(Exec const& exec, Field const& field, Spins& spins, double longest,
                     MinimizeOptions const& options) {
@@ -164,7 +166,7 @@ class Minimizer {
 };
 
 /// Moves `spins` to a minimum of the energy of `field`, an EffectiveField or a field term: a
-/// Minimizer for one call.
+/// Minimizer for a single call.
 ///   auto const found = cayspin::minimize(exec, field, spins, {.torque = 1e-6});
 ///   if (found.end != cayspin::MinimizeEnd::converged) ...
 template <class Exec, class Field, class Spins>

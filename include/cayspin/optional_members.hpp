@@ -5,9 +5,9 @@
 
 #include <concepts>
 
-// Field terms and generators as the library calls them: each function calls the member of its name
-// or, where there is none, does what the tables of concepts.hpp say. field/parts.hpp has those of a
-// field that is made of others.
+// Calls of field terms and generators by the library. Each function calls the member of its name
+// or, if there is none, does what the tables of concepts.hpp say. field/parts.hpp has the functions
+// for a field made of others.
 namespace cayspin::inline v0_1::detail {
 
 template <class Term, class Stencil>
@@ -25,7 +25,7 @@ concept is_generator = requires(Generator const& generator, Stencil const& stenc
   { generator(stencil) } -> std::convertible_to<VectorOf<Stencil>>;
 };
 
-/// The sentences that a wrong term is answered with.
+/// Compile-time error messages for an invalid term.
 template <class Term, class Stencil>
 constexpr void check_field() {
   static_assert(has_field<Term, Stencil>,
@@ -40,12 +40,12 @@ constexpr void check_energy_density() {
                 "that returns typename Stencil::value_type, with field = -d energy / d spin.");
 }
 
-/// Is H of a term, or of the field in a generator, the derivative of an energy? Whether the motion
-/// keeps that energy is another question: a generator's conserves_energy().
+/// True if H of a term, or of the field in a generator, is the derivative of an energy. Whether the
+/// motion conserves that energy is a different question: see a generator's conserves_energy().
 template <class Source>
 inline constexpr bool is_conservative = !requires { requires !Source::is_conservative; };
 
-/// For what follows an energy.
+/// Requires an energy, for algorithms that minimise or conserve it.
 template <class Source>
 constexpr void check_conservative() {
   static_assert(is_conservative<Source>,
@@ -53,7 +53,7 @@ constexpr void check_conservative() {
                 "is_conservative = false, such as ZhangLi and Slonczewski.");
 }
 
-/// `h` and a term's field at a stencil's centre: most terms add it in fewer operations.
+/// Returns `h` plus a term's field at a stencil's centre: most terms add it in fewer operations.
 template <class Term, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_field(Term const& term, Stencil const& stencil,
                                                         VectorOf<Stencil> const& h) {
@@ -64,7 +64,7 @@ KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_field(Term const& term, Stenci
     return h + term.field(stencil);
 }
 
-/// The same up to a multiple of the spin.
+/// Returns `h` plus a term's field, up to a multiple of the spin.
 template <class Term, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_turning_field(Term const& term,
                                                                 Stencil const& stencil,
@@ -78,11 +78,11 @@ KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_turning_field(Term const& term
 template <class Term>
 inline constexpr bool depends_on_time = requires { requires Term::depends_on_time; };
 
-/// A term is local where H at a site depends on nothing but the spin there and t.
+/// True for a local term: H at a site depends only on its spin and t.
 template <class Term>
 inline constexpr bool is_local = requires { requires Term::is_local; };
 
-/// A base of terms that are prepared once for all t and spins.
+/// Base class of terms for which one prepare serves all t and spins.
 struct PreparedOnce {
   template <class Exec, class Spins>
   bool is_stationary(Exec const&, Spins const&) const {
@@ -99,20 +99,20 @@ bool is_stationary(Term const& term, Exec const& exec, Spins const& spins) {
 }
 
 template <class Term, class Exec, class Spins>
-bool needs_time_alone(Term const& term, Exec const& exec, Spins const& spins) {
-  if constexpr (requires { term.needs_time_alone(exec, spins); })
-    return term.needs_time_alone(exec, spins);
+bool needs_only_time(Term const& term, Exec const& exec, Spins const& spins) {
+  if constexpr (requires { term.needs_only_time(exec, spins); })
+    return term.needs_only_time(exec, spins);
   else
     return depends_on_time<Term> || is_stationary(term, exec, spins);
 }
 
-/// Is t enough for prepare_for_rows?
+/// Returns true if prepare_for_rows needs t but not the spins.
 template <class Term, class Exec, class Spins>
-bool rows_need_time_alone(Term const& term, Exec const& exec, Spins const& spins) {
-  if constexpr (requires { term.rows_need_time_alone(exec, spins); })
-    return term.rows_need_time_alone(exec, spins);
+bool rows_need_only_time(Term const& term, Exec const& exec, Spins const& spins) {
+  if constexpr (requires { term.rows_need_only_time(exec, spins); })
+    return term.rows_need_only_time(exec, spins);
   else
-    return needs_time_alone(term, exec, spins);
+    return needs_only_time(term, exec, spins);
 }
 
 template <class Term, class Spins>
@@ -120,7 +120,7 @@ void check_spins(Term const& term, Spins const& spins) {
   if constexpr (requires { term.check_spins(spins); }) term.check_spins(spins);
 }
 
-/// The device-callable form of a term or generator for one evaluation at time t. Throws
+/// Returns the kernel version of a term or generator for one evaluation at time t. Throws
 /// std::invalid_argument when it was made for spins of another lattice.
 template <class Term, class Exec, class Spins>
 auto prepare_term(Term const& term, Exec const& exec, Spins const& spins, double t) {
@@ -132,8 +132,8 @@ auto prepare_term(Term const& term, Exec const& exec, Spins const& spins, double
   }
 }
 
-/// The same for a host loop that calls begin_row (detail/row_fields.hpp): a term may then leave its
-/// work to it.
+/// Returns the version for a host loop that calls begin_row (detail/row_fields.hpp): a term may
+/// leave its work to begin_row.
 template <class Term, class Exec, class Spins>
 auto prepare_for_rows(Term const& term, Exec const& exec, Spins const& spins, double t) {
   if constexpr (requires { term.prepare_for_rows(exec, spins, t); }) {
@@ -144,7 +144,8 @@ auto prepare_for_rows(Term const& term, Exec const& exec, Spins const& spins, do
   }
 }
 
-/// Is H affine in the spins? A term of which this is known when compiled has a degree.
+/// Returns true if H is affine in the spins. A term for which this is known at compile time has a
+/// degree.
 template <class Term, class Exec, class Spins>
 bool has_affine_field(Term const& term, Exec const& exec, Spins const& spins) {
   auto const is = [&](auto const& part) { return has_affine_field(part, exec, spins); };
@@ -156,7 +157,7 @@ bool has_affine_field(Term const& term, Exec const& exec, Spins const& spins) {
     return requires { decltype(prepare_term(term, exec, spins, 0.0))::degree; };
 }
 
-/// A generator's A at the centre of a stencil.
+/// Returns a generator's A at the centre of a stencil.
 template <class Generator, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> evaluate(Generator const& generator,
                                                        Stencil const& stencil) {
@@ -166,7 +167,7 @@ KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> evaluate(Generator const& generato
   return generator(stencil);
 }
 
-/// The same up to a multiple of the spin: what turns it.
+/// Returns A up to a multiple of the spin, which does not turn it.
 template <class Generator, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> turning_part(Generator const& generator,
                                                            Stencil const& stencil) {

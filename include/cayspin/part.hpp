@@ -9,42 +9,43 @@
 
 namespace cayspin::inline v0_1 {
 
-/// The numbers of a field, without its types.
+/// Type-erased pointer and strides of a field.
 struct FieldNumbers {
   void* data = nullptr;  // component 0 of site 0
   std::size_t number_bytes = 0;
   int components = 0;
-  std::ptrdiff_t row = 0, plane = 0, component = 0;  // from one to the next
+  std::ptrdiff_t row = 0, plane = 0, component = 0;  // strides
   std::int64_t nx = 0, ny = 0, nz = 0;
   bool on_device = false;
 
   friend bool operator==(FieldNumbers const&, FieldNumbers const&) = default;
 };
 
-/// What a part of a larger lattice asks of the others. All parts ask in the same order.
+/// Communication of a part of a larger lattice with the other parts. All parts must make the same
+/// calls in the same order.
 class Part {
  public:
   virtual ~Part() = default;
-  /// The larger lattice.
+  /// Returns the larger lattice.
   virtual Lattice const& whole() const = 0;
-  /// The larger lattice's row or plane that is number 0 of this part, ghosts included.
+  /// Returns the row or plane of the larger lattice that is number 0 of this part, ghosts included.
   virtual std::array<std::int64_t, 3> begin() const = 0;
-  /// How many parts there are, and the number of this one among them.
+  /// Return the number of parts, and the index of this one.
   virtual std::size_t parts() const = 0;
   virtual std::size_t index() const = 0;
   /// Replaces words by their sums over the parts.
   virtual void sum(std::span<std::int64_t> words) const = 0;
-  /// Replaces words by the largest of the parts.
+  /// Replaces words by their maxima over the parts.
   virtual void maximum(std::span<std::int64_t> words) const = 0;
-  /// Brings the ghosts of fields up to date; waits. Work on the fields has finished.
+  /// Updates the ghosts of fields; waits. Call when work on the fields has finished.
   virtual void update_ghosts(std::span<FieldNumbers const> fields) const = 0;
-  /// Sends bytes to each part, itself included, and takes as many as each sends; waits. In the
-  /// order of the parts' numbers, in multiples of 8 bytes.
+  /// Sends bytes to each part, including itself, and receives as many as each sends; waits. Spans
+  /// are in the order of the parts, in multiples of 8 bytes.
   virtual void exchange(std::span<std::span<std::byte const> const> sent,
                         std::span<std::span<std::byte> const> received) const = 0;
 };
 
-/// The lattice that this one is a part of, or itself.
+/// Returns the lattice that this one is a part of, or itself.
 inline Lattice const& whole(Lattice const& lattice) {
   return lattice.part == nullptr ? lattice : lattice.part->whole();
 }

@@ -21,20 +21,20 @@ struct RowRange {
   KOKKOS_FUNCTION std::int64_t count() const { return std::int64_t(ny()) * nz(); }
 };
 
-/// Where sites lie in memory: one array per component, rows along x padded to whole packs. From row
-/// to row, plane to plane and component to component it is an odd number of cache lines once there
-/// are several, and from plane to plane no whole number of pages, nearly: so neighbours do not
-/// compete for the same cache sets.
+/// Memory layout of the sites: one array per component, rows along x padded to whole packs. The
+/// distances between rows, planes and components are odd numbers of cache lines once there are
+/// several lines, and planes are not close to a whole number of pages apart, so that neighbours do
+/// not compete for the same cache sets.
 struct RowLayout {
   std::int32_t nx = 0, ny = 0, nz = 0;
   bool periodic[3] = {false, false, false};
-  std::ptrdiff_t pitch = 0;             // from row to row
-  std::ptrdiff_t plane = 0;             // from plane to plane
-  std::ptrdiff_t component_stride = 0;  // from component to component
-  std::ptrdiff_t origin = 0;            // of site 0 in the allocation; a pack may read before it
-  RowRange own;                         // all but the ghosts
+  std::ptrdiff_t pitch = 0;             // stride of rows
+  std::ptrdiff_t plane = 0;             // stride of planes
+  std::ptrdiff_t component_stride = 0;  // stride of components
+  std::ptrdiff_t origin = 0;  // position of site 0 in the allocation; a pack may read before it
+  RowRange own;               // all rows but the ghosts
   Part const* part = nullptr;
-  std::int32_t parity = 0;  // of y + z in the whole lattice, where it is even here
+  std::int32_t parity = 0;  // of y + z in the whole lattice, where y + z is even here
 
   template <class Real>
   static RowLayout of(Lattice const& lattice) {
@@ -72,7 +72,8 @@ struct RowLayout {
     return layout;
   }
 
-  /// At least so many cache lines: an odd number, a sixth of a page or more from whole pages.
+  /// Returns at least this many cache lines: an odd number, at least a sixth of a page from whole
+  /// pages.
   static std::ptrdiff_t lines_of_plane(std::ptrdiff_t least) {
     constexpr std::ptrdiff_t page = detail::page_bytes / detail::cache_line_bytes,
                              sixth = page / 6 | 1;
@@ -82,7 +83,7 @@ struct RowLayout {
   }
 
   RowRange all() const { return {0, ny, 0, nz}; }
-  /// The part's own rows, and `more` of each of its ghosts.
+  /// Returns the part's own rows, and `more` rows of each of its ghosts.
   RowRange own_and(std::int32_t more) const {
     auto const low = [&](std::int32_t own_begin) {
       return own_begin > more ? own_begin - more : 0;
@@ -98,7 +99,7 @@ struct RowLayout {
   std::size_t allocation(int components) const {
     return static_cast<std::size_t>(2 * origin + components * component_stride);
   }
-  /// Of a site by its number, ix + nx (iy + ny iz) without ghosts.
+  /// Returns the offset of a site numbered ix + nx (iy + ny iz) without ghosts.
   KOKKOS_FUNCTION std::ptrdiff_t offset(std::int64_t site) const {
     std::int64_t row = site / nx;
     if (part != nullptr) row = (own.z_begin + row / own.ny()) * ny + own.y_begin + row % own.ny();
@@ -112,7 +113,7 @@ struct RowLayout {
   }
 };
 
-/// A field as a kernel sees it, and what a field term keeps of one: stencil.site().load(array).
+/// A field for kernels, and the form in which a field term stores one: stencil.site().load(array).
 /// Component c of the site at RowLayout::offset is data[c * stride + offset].
 template <class Real, int Components>
 struct SiteArray {

@@ -19,7 +19,7 @@ namespace cayspin::inline v0_1 {
 
 namespace detail {
 
-/// The energy density and the sum of its terms' absolute values.
+/// Returns the energy density, and the sum of its terms' absolute values.
 template <class Source, class Stencil, class Value>
 KOKKOS_FORCEINLINE_FUNCTION void energy_at(Source const& source, Stencil const& stencil,
                                            Value* values) {
@@ -42,7 +42,7 @@ struct EnergyOfSites {
   }
 };
 
-/// The energy density of each term and its absolute value.
+/// Functor that returns the energy density of each term, and its absolute value.
 template <class Source, class Real>
 struct TermEnergiesOfSites {
   Source source;
@@ -56,8 +56,8 @@ struct TermEnergiesOfSites {
   }
 };
 
-/// How far m.m is above and below 1: of the largest of these over sites, one root gives the largest
-/// | |m| - 1 |.
+/// Finds how far m.m is above and below 1; one root of the largest of these gives the largest | |m|
+/// - 1 |.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION void off_the_sphere(Vec3<Value> const& m, Value* values) {
   Value const square = dot(m, m);
@@ -104,7 +104,7 @@ struct WeightedSpinOfSites {
   }
 };
 
-/// |A x m|^2
+/// Returns |A x m|^2.
 template <class Generator, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION auto squared_torque(Generator const& generator,
                                                 Stencil const& stencil) {
@@ -125,14 +125,14 @@ struct TorqueOfSites {
 
 }  // namespace detail
 
-/// An energy summed over sites, and the sum of the absolute values of its terms, to which its
-/// round-off is proportional.
+/// An energy summed over sites, and the sum of absolute values of its terms, to which its round-off
+/// is proportional.
 struct Energy {
   double value = 0, magnitude = 0;
 };
 
-/// Energy of `spins` at time t, in reduced units, summed over sites in double. `source` is an
-/// EffectiveField, a field term, or a generator that has an energy.
+/// Returns the energy of `spins` at time t, in reduced units, summed over sites in double. `source`
+/// is an EffectiveField, a field term, or a generator with an energy.
 template <class Exec, class Source, class Real, class MemorySpace>
 Energy energy(Exec const& exec, Source const& source, SpinField<Real, MemorySpace> const& spins,
               double t = 0) {
@@ -144,9 +144,9 @@ Energy energy(Exec const& exec, Source const& source, SpinField<Real, MemorySpac
   return {total[0], total[1]};
 }
 
-/// The energy of each term of an EffectiveField, in the order of its terms, from one pass over the
-/// spins at time t. The terms may stand in a FieldWithVacancies or a generator; a single field term
-/// is a sum of one.
+/// Returns the energy of each term of an EffectiveField, in the order of its terms, in one pass
+/// over the spins at time t. The EffectiveField may be inside a FieldWithVacancies or a generator;
+/// a single field term counts as a sum of one.
 template <class Exec, class Source, class Real, class MemorySpace>
 std::array<Energy, static_cast<std::size_t>(detail::energy_terms<Source>)> term_energies(
     Exec const& exec, Source const& source, SpinField<Real, MemorySpace> const& spins,
@@ -165,7 +165,7 @@ std::array<Energy, static_cast<std::size_t>(detail::energy_terms<Source>)> term_
   return energies;
 }
 
-/// max | |m| - 1 |; NaN when any spin is NaN.
+/// Returns max | |m| - 1 |; NaN when any spin is NaN.
 template <class Exec, class Real, class MemorySpace>
 double norm_defect(Exec const& exec, SpinField<Real, MemorySpace> const& spins) {
   detail::check_access<Exec, MemorySpace>();
@@ -174,7 +174,7 @@ double norm_defect(Exec const& exec, SpinField<Real, MemorySpace> const& spins) 
   return detail::norm_defect_of(largest[0], largest[1]);
 }
 
-/// The mean of m over the sites.
+/// Returns the mean of m over the sites.
 template <class Exec, class Real, class MemorySpace>
 Vec3<double> magnetization(Exec const& exec, SpinField<Real, MemorySpace> const& spins) {
   detail::check_access<Exec, MemorySpace>();
@@ -184,8 +184,8 @@ Vec3<double> magnetization(Exec const& exec, SpinField<Real, MemorySpace> const&
   return {total[0] / sites, total[1] / sites, total[2] / sites};
 }
 
-/// The mean of m with a weight for each site: with an occupation of 0 and 1 as weights, the mean
-/// over the occupied sites. Throws std::invalid_argument when the weights are on another lattice or
+/// Returns the mean of m weighted by site: with an occupation of 0 and 1 as weights, the mean over
+/// the occupied sites. Throws std::invalid_argument when the weights are on another lattice or
 /// their sum is zero.
 template <class Exec, class Real, class MemorySpace>
 Vec3<double> magnetization(Exec const& exec, SpinField<Real, MemorySpace> const& spins,
@@ -200,7 +200,7 @@ Vec3<double> magnetization(Exec const& exec, SpinField<Real, MemorySpace> const&
   return {total[0] / total[3], total[1] / total[3], total[2] / total[3]};
 }
 
-/// max |A x m|: how fast the fastest spin moves at time t. Zero at rest.
+/// Returns max |A x m|, the rate of the fastest spin at time t. Zero at equilibrium.
 template <class Exec, class Generator, class Real, class MemorySpace>
 double largest_rate(Exec const& exec, Generator const& generator,
                     SpinField<Real, MemorySpace> const& spins, double t = 0) {

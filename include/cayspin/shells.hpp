@@ -22,7 +22,7 @@ struct BondOfLength {
   std::array<int, 3> offset;
 };
 
-/// Every bond up to `reach` cells away along the vectors that repeat, once.
+/// Returns every bond once, up to `reach` cells away along the periodic vectors.
 inline std::vector<BondOfLength> bonds_within(Crystal const& crystal, int reach,
                                               std::array<bool, 3> const& repeats) {
   std::vector<BondOfLength> bonds;
@@ -36,7 +36,7 @@ inline std::vector<BondOfLength> bonds_within(Crystal const& crystal, int reach,
       for (int i = -x; i <= x; ++i)
         for (int j = -y; j <= y; ++j)
           for (int k = -z; k <= z; ++k) {
-            // Of a bond between sites of one kind and its reverse, one.
+            // Keeps one of a bond between sites of one kind and its reverse.
             if (a == b && !(i > 0 || (i == 0 && (j > 0 || (j == 0 && k > 0))))) continue;
             auto const here = crystal.position({0, 0, 0}, static_cast<std::size_t>(a)),
                        there = crystal.position({i, j, k}, static_cast<std::size_t>(b));
@@ -48,7 +48,7 @@ inline std::vector<BondOfLength> bonds_within(Crystal const& crystal, int reach,
   return bonds;
 }
 
-/// How many cells along a vector hold all sites within a length.
+/// Returns how many cells along a vector contain all sites within a length.
 inline double cells_within(Crystal const& crystal, double length) {
   auto const& [a, b, c] = crystal.cell;
   double const volume = std::abs(scalar_product(a, vector_product(b, c)));
@@ -65,11 +65,12 @@ inline double cells_within(Crystal const& crystal, double length) {
 
 }  // namespace detail
 
-/// Distances that differ by less than this fraction are one: vectors are typed with a few digits.
+/// Distances that differ by less than this fraction are equal, since vectors are typed with few
+/// digits.
 inline constexpr double same_distance = 1e-4;
 
-/// Exchange between all pairs at the first, second, ... distance of a crystal. `repeats`: along
-/// which vectors there are other cells.
+/// Returns exchange bonds between all pairs at the first, second, ... distance in a crystal.
+/// `repeats`: the vectors along which there are other cells.
 inline std::vector<Coupling> couplings_of_shells(Crystal const& crystal,
                                                  std::vector<double> const& exchange,
                                                  std::array<bool, 3> const& repeats = {true, true,
@@ -96,7 +97,7 @@ inline std::vector<Coupling> couplings_of_shells(Crystal const& crystal,
     if (is_bounded && shells < exchange.size())
       throw std::invalid_argument("cayspin::couplings_of_shells: the sites of a cell have only " +
                                   std::to_string(shells) + " distances");
-    // Shorter ones may lie further along a vector that is skew.
+    // Shorter bonds may be farther along a skew vector.
     if (is_whole && (is_bounded || detail::cells_within(crystal, length) <= reach)) break;
   }
   return couplings;

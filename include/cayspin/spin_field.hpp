@@ -25,9 +25,9 @@ inline Lattice const& validated(Lattice const& lattice) {
   return lattice;
 }
 
-/// A field's first numbers: tasks are its rows and then its margins, before, between and after the
-/// components. Packs at the ends of rows read a few numbers there that belong to no site; they are
-/// discarded, but must not trap or be denormal.
+/// Functor that initialises a field: tasks are its rows and then its margins, before, between and
+/// after the components. Packs at the ends of rows read padding there. It is discarded, but must
+/// not trap or be denormal.
 template <class Real>
 struct FillField {
   Real* data;
@@ -39,7 +39,7 @@ struct FillField {
 
   KOKKOS_FUNCTION void operator()(std::int64_t task) const {
     if (task < layout.rows()) {
-      // The last row of a plane goes with what pads the plane.
+      // The last row of a plane includes the padding of the plane.
       std::int64_t const y = task % layout.ny, z = task / layout.ny;
       std::ptrdiff_t const begin = layout.row_offset(y, z);
       std::ptrdiff_t const end = y + 1 < layout.ny ? begin + layout.pitch : (z + 1) * layout.plane;
@@ -83,9 +83,9 @@ struct CopySites {
 
 }  // namespace detail
 
-/// Components numbers on every site of a lattice, each component an array of its own (RowLayout).
-/// A handle: copies share the memory, as copies of a Kokkos::View do. One that is
-/// default-constructed or moved from has no sites, and every call refuses it.
+/// `Components` numbers on every site of a lattice, each component in a separate array (RowLayout).
+/// A handle: copies share the memory, as copies of a Kokkos::View do. A default-constructed or
+/// moved-from field has no sites, and every call refuses it.
 template <std::floating_point Real, int Components,
           class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class SiteField {
@@ -125,17 +125,18 @@ class SiteField {
 
   Lattice const& lattice() const { return lattice_; }
   RowLayout const& layout() const { return layout_; }
-  std::int64_t sites() const { return layout_.own.count() * layout_.nx; }  // ghosts not counted
+  std::int64_t sites() const { return layout_.own.count() * layout_.nx; }  // without ghosts
   std::size_t bytes() const { return data_.size() * sizeof(Real); }
   std::string label() const { return data_.label(); }
 
-  /// The array that kernels and field terms take.
+  /// Returns the array that kernels and field terms take.
   array_type array() const { return {data_.data() + layout_.origin, layout_.component_stride}; }
   OutputArray<Real, Components> output(bool streaming) const { return {array(), streaming}; }
-  /// The allocation, for deep copies between fields of one lattice.
+  /// Returns the allocation, for deep copies between fields on equal lattices.
   Kokkos::View<Real*, MemorySpace> const& allocation() const { return data_; }
 
-  /// The numbers of one site, for host code on fields in host memory. `site` is not checked.
+  /// Returns the numbers of one site; only for host code on fields in host memory. `site` is not
+  /// checked.
   Vec3<Real> get(std::int64_t site) const
     requires(Components == 3 && std::is_same_v<MemorySpace, Kokkos::HostSpace>)
   {
@@ -158,13 +159,13 @@ class SiteField {
   }
 
  private:
-  Lattice lattice_{{0, 0, 0}};  // that of no other field
+  Lattice lattice_{{0, 0, 0}};  // equal to that of no other field
   RowLayout layout_;
   Kokkos::View<Real*, MemorySpace> data_;
 };
 
 /// Throws std::invalid_argument when `who`, which was made for `lattice`, is given spins on another
-/// one. What a term or generator calls in its check_spins.
+/// lattice. Terms and generators call it in check_spins.
 inline void require_lattice(char const* who, Lattice const& lattice, Lattice const& spins) {
   if (lattice == spins) return;
   auto const sites = [](Lattice const& lattice_of_sites) {
@@ -183,7 +184,7 @@ inline void require_lattice(char const* who, Lattice const& lattice, Lattice con
 
 namespace detail {
 
-/// Fields "name_1", "name_2", ..
+/// Returns fields "name_1", "name_2", ..
 template <class Field, std::size_t Count>
 CAYSPIN_DETAIL_NOINLINE std::array<Field, Count> numbered_fields(std::string const& name,
                                                                  Lattice const& lattice) {
@@ -199,8 +200,8 @@ CAYSPIN_DETAIL_NOINLINE std::array<Field, Count> numbered_fields(std::string con
 template <std::floating_point Real, class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 using ScalarField = SiteField<Real, 1, MemorySpace>;
 
-/// A unit vector per site; starts as +z everywhere. Steppers keep the lengths that they are given:
-/// require_unit_spins (observer/normalize.hpp) checks spins that were copied in.
+/// A unit vector per site; starts as +z everywhere. Steppers preserve the lengths that they are
+/// given: check copied-in spins with require_unit_spins (observer/normalize.hpp).
 template <std::floating_point Real, class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class SpinField : public SiteField<Real, 3, MemorySpace> {
  public:
@@ -227,8 +228,8 @@ void copy_sites(Exec const& exec, View const& view,
 }  // namespace detail
 
 /// Copies a View of extents (sites, Components), x fastest, into a field. Does not wait, unless the
-/// field is on a part of a lattice: then ghosts are brought up to date, and all parts call it.
-/// Throws std::invalid_argument when the extents differ.
+/// field is on a part of a lattice: then it updates ghosts and is collective. Throws
+/// std::invalid_argument when the extents differ.
 template <class Exec, class View, class Real, int Components, class MemorySpace>
 void copy(Exec const& exec, View const& from, SiteField<Real, Components, MemorySpace> const& to) {
   detail::copy_sites<true>(exec, from, to);
@@ -242,7 +243,7 @@ void copy(Exec const& exec, SiteField<Real, Components, MemorySpace> const& from
   detail::copy_sites<false>(exec, to, from);
 }
 
-/// Reads numbers in host memory, (sites, Components) with x fastest, into a field; waits.
+/// Copies numbers in host memory, (sites, Components) with x fastest, into a field; waits.
 template <class Number, class Real, int Components, class MemorySpace>
 void copy_from_host(std::vector<Number> const& from,
                     SiteField<Real, Components, MemorySpace> const& to) {
@@ -257,7 +258,7 @@ void copy_from_host(std::vector<Number> const& from,
   exec.fence("cayspin::copy_from_host");
 }
 
-/// The field's numbers in host memory, (sites, Components) with x fastest; waits.
+/// Returns the field's numbers in host memory, (sites, Components) with x fastest; waits.
 template <class Real, int Components, class MemorySpace>
 std::vector<Real> copy_to_host(SiteField<Real, Components, MemorySpace> const& from) {
   using Exec = typename MemorySpace::execution_space;

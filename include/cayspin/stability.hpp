@@ -18,17 +18,17 @@
 #include <numbers>
 #include <stdexcept>
 
-// The largest stable time step of a method for the Landau-Lifshitz equation, known before a run:
-// the method's own stages act on one transverse mode of a nearly uniform state,
-// u' = s (-damping + i) u, with a parallel part sigma in the generator.
+// The largest stable time step of a method for the Landau-Lifshitz equation, computed before a run.
+// The method's own stages act on one transverse mode of a nearly uniform state, u' = s (-damping +
+// i) u, with a parallel part sigma in the generator.
 namespace cayspin::inline v0_1 {
 
 namespace detail {
 
 using Complex = std::complex<double>;
 
-/// Lie-algebra coordinates of a spin near the axis, across the spin (first order in the mode's
-/// amplitude) and along it (zeroth order).
+/// Lie-algebra coordinates of a spin near the axis: transverse (first order in the mode's
+/// amplitude) and parallel (zeroth order).
 struct NearAxis {
   Complex transverse{0, 0};
   double parallel = 0;
@@ -44,7 +44,7 @@ inline NearAxis operator*(double s, NearAxis const& a) {
 template <class Update>
 struct LinearUpdate;
 
-// The transverse part of f x y.
+// Returns the transverse part of f x y.
 inline Complex transverse_cross(NearAxis const& f, NearAxis const& y) {
   return Complex(0, 1) * (f.parallel * y.transverse - y.parallel * f.transverse);
 }
@@ -56,7 +56,7 @@ struct LinearUpdate<update::Lie<Cayley>> {
         y.transverse - 0.5 * transverse_cross(f, y) + 0.25 * f.parallel * y.parallel * f.transverse,
         y.parallel * (1 + 0.25 * f.parallel * f.parallel)};
   }
-  /// Amplitude after the move, less one.
+  /// Returns the amplitude after the move, minus one.
   static Complex growth(NearAxis const& f) {
     return Complex(0, -1) * f.transverse / Complex(1, -0.5 * f.parallel);
   }
@@ -104,20 +104,20 @@ struct LinearUpdate<update::Classical> {
 template <>
 struct LinearUpdate<update::Projected> : LinearUpdate<update::Classical> {};
 
-/// Growth by the rotation of these coordinates, and then the second one where the tableau has it:
-/// row `stages` for the end of the step.
+/// Returns the growth by the rotation of these coordinates, followed by the second rotation if the
+/// tableau has one; row `stages` is the end of the step.
 template <class Tableau, class Linear, class Coordinates>
 Complex growth_to(int row, NearAxis const& first, Coordinates const& increments) {
   Complex const growth = Linear::growth(first);
   NearAxis second;
   for (int j = 0; j < row && j < Tableau::stages; ++j)
     second = second + second_weight<Tableau>(row, j) * increments[j];
-  // Relative to the spin that the first one has moved.
+  // Relative to the spin after the first rotation.
   second.transverse -= second.parallel * growth;
   return growth + Linear::growth(second);
 }
 
-/// One step on the mode: its factor less one. z = dt s (-damping + i), q = dt sigma.
+/// Returns the factor of one step on the mode, minus one. z = dt s (-damping + i), q = dt sigma.
 template <class Tableau, class Update>
 Complex mode_growth(Complex z, double q) {
   using Linear = LinearUpdate<Update>;
@@ -135,7 +135,7 @@ Complex mode_growth(Complex z, double q) {
   return growth_to<Tableau, Linear>(stages, total, increments);
 }
 
-/// The largest sum of a row's magnitudes, by which a tableau magnifies round-off.
+/// Returns the largest absolute row sum, by which a tableau magnifies round-off.
 template <class Tableau>
 constexpr double largest_row() {
   double largest = 1;
@@ -150,7 +150,7 @@ constexpr double largest_row() {
   return largest;
 }
 
-/// The mode's growth in one step of a method; a stepper may define its own.
+/// Returns the mode's growth in one step of a method; a stepper may define its own.
 template <class Stepper>
 Complex growth_of_step(Complex z, double q) {
   if constexpr (requires { Stepper::mode_growth(z, q); })
@@ -159,7 +159,8 @@ Complex growth_of_step(Complex z, double q) {
     return mode_growth<typename Stepper::tableau_type, typename Stepper::update_type>(z, q);
 }
 
-/// Clearly: by more than round-off. If not, what cannot be told from no change counts too.
+/// Returns true if the mode grows. `clearly`: by more than round-off; otherwise growth that
+/// round-off could hide counts, too.
 template <class Stepper>
 bool amplifies(Complex rate, double dt, double sigma, bool clearly) {
   Complex const growth = growth_of_step<Stepper>(dt * rate, dt * sigma);
@@ -171,9 +172,9 @@ bool amplifies(Complex rate, double dt, double sigma, bool clearly) {
   return !(excess < (clearly ? size : -size) * std::abs(growth));
 }
 
-/// The smallest dt below `limit` from which on grows(dt, clearly); `limit` when there is none, 0
-/// when every dt down to 1e-9 of the mode's time `unit` amplifies. Looked for upwards of `from`
-/// units. Short steps of high order change nothing that round-off would show.
+/// Returns the smallest dt below `limit` above which grows(dt, clearly) is true; `limit` when there
+/// is none, 0 when every dt down to 1e-9 of the mode's time `unit` amplifies. Searches upwards from
+/// `from` units: at short steps of high order, round-off would hide growth.
 template <class Grows>
 double first_amplifying_step(Grows const& grows, double unit, double limit, double from) {
   double stable = from * unit, unstable = stable;
@@ -199,7 +200,7 @@ double first_amplifying_step(Grows const& grows, double unit, double limit, doub
   return std::min(stable, limit);
 }
 
-/// Throws std::invalid_argument when no mode has these.
+/// Throws std::invalid_argument for a negative or non-finite bound or damping.
 inline void check_bound(double field_bound, double damping) {
   if (!(field_bound >= 0) || !(damping >= 0) ||
       !std::isfinite(field_bound * std::hypot(damping, 1.0)))
@@ -209,8 +210,8 @@ inline void check_bound(double field_bound, double damping) {
 
 }  // namespace detail
 
-/// The largest eigenvalue of -constant Lap on the lattice: the exchange's part of a field bound.
-/// Throws std::invalid_argument when the constant is not finite.
+/// Returns the largest eigenvalue of -constant Lap on the lattice: the exchange's part of a field
+/// bound. Throws std::invalid_argument when the constant is not finite.
 inline double exchange_bound(Lattice const& of_spins, double constant) {
   detail::finite(constant, "cayspin::exchange_bound: the constant");
   Lattice const& lattice = whole(of_spins);
@@ -228,16 +229,15 @@ inline double exchange_bound(Lattice const& of_spins, double constant) {
   return bound;
 }
 
-/// The equation, as far as largest_stable_step has to know it besides field and damping.
+/// Parameters of the equation that largest_stable_step needs besides field and damping.
 struct StabilityOptions {
   bool precession = true;
   double sigma = 0;  ///< of isotropy::Constant
 };
 
-/// The largest dt at which no mode of a nearly uniform state grows by more than round-off, an
-/// a-priori bound that is never above the linear limit. 0 when every dt amplifies, infinity when
-/// none does.
-/// Throws std::invalid_argument for a bound or a damping that is negative or not finite.
+/// Returns the largest dt at which no mode of a nearly uniform state grows by more than round-off:
+/// an a-priori bound that never exceeds the linear limit. 0 when every dt amplifies, infinity when
+/// none does. Throws std::invalid_argument for a bound or a damping that is negative or not finite.
 /// `field_bound`: exchange_bound + |applied| + sum of |anisotropy constants| + |demag strengths|.
 ///   largest_stable_step<Rkmk4<Spins>>(field_bound, damping, {.precession = false})
 template <class Stepper>
@@ -248,7 +248,7 @@ double largest_stable_step(double field_bound, double damping,
   double limit = std::numeric_limits<double>::infinity();
   detail::Complex const rate(-damping, options.precession ? 1 : 0);
   if (!(field_bound > 0) || std::abs(rate) == 0) return limit;
-  limit = 1e3 / (field_bound * std::abs(rate));  // of the scan; no explicit method gets there
+  limit = 1e3 / (field_bound * std::abs(rate));  // of the search; no explicit method gets there
   double const scan_end = limit;
   // Without sigma the limit is y/s, so the stiffest mode decides; with it any mode may.
   int const modes = sigma == 0 ? 1 : 400;

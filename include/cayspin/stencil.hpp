@@ -5,10 +5,10 @@
 
 namespace cayspin::inline v0_1 {
 
-/// What a field term or generator sees: the spin of a site and its neighbours along the axes of
-/// the lattice. On the host a value is a pack: one number for each of several sites.
-/// Functions cayspin::next<0>(stencil) and cayspin::previous<0>(stencil) are the same as the
-/// members, and need no word `template` in generic code.
+/// The argument of field terms and generators: the spin of a site and its neighbours along the axes
+/// of the lattice. On the host a value is a pack: one number for each of several sites. Functions
+/// cayspin::next<0>(stencil) and cayspin::previous<0>(stencil) equal the members, and need no
+/// `template` keyword in generic code.
 template <class Site, class Real, class Spins = SiteArray<Real, 3>>
 class Stencil {
  public:
@@ -22,18 +22,18 @@ class Stencil {
 
   KOKKOS_FORCEINLINE_FUNCTION vector_type const& center() const { return center_; }
 
-  /// The neighbour at index - 1; the spin itself where there is none.
+  /// Returns the neighbour at index - 1, or the spin itself if there is none.
   template <int Axis>
   KOKKOS_FORCEINLINE_FUNCTION vector_type previous() const {
     return neighbor<Axis, 0>();
   }
-  /// The neighbour at index + 1; the spin itself where there is none.
+  /// Returns the neighbour at index + 1, or the spin itself if there is none.
   template <int Axis>
   KOKKOS_FORCEINLINE_FUNCTION vector_type next() const {
     return neighbor<Axis, 1>();
   }
 
-  /// The same with `missing` for a neighbour where there is none.
+  /// Return the neighbour, or `missing` if there is none.
   template <int Axis>
   KOKKOS_FORCEINLINE_FUNCTION vector_type previous(vector_type const& missing) const {
     return neighbor_or<Axis, 0>(missing);
@@ -43,7 +43,7 @@ class Stencil {
     return neighbor_or<Axis, 1>(missing);
   }
 
-  /// Are there neighbours on both sides, at all sites of a pack?
+  /// Returns true if all sites of a pack have neighbours on both sides.
   template <int Axis>
   KOKKOS_FORCEINLINE_FUNCTION bool is_between() const
     requires requires(Site const& site) { site.template is_between<Axis>(); }
@@ -51,7 +51,7 @@ class Stencil {
     return site_.template is_between<Axis>();
   }
 
-  /// Position and loads of further per-site arrays (SiteField::array).
+  /// Returns the site, which loads further per-site arrays (SiteField::array).
   KOKKOS_FORCEINLINE_FUNCTION Site const& site() const { return site_; }
 
  private:
@@ -74,12 +74,13 @@ class Stencil {
   Spins const& spins_;
   typename Site::Place place_;
   vector_type center_;
-  // Along x, where the ends of rows make a branch: once for all terms. Unused ones cost nothing.
+  // Neighbours along x, where the ends of rows need a branch: loaded once for all terms. Unused
+  // ones cost nothing.
   vector_type beside_[2];
 };
 
-/// The neighbour at index + 1 along an axis (0, 1, 2 for x, y, z); the spin itself, or `missing`,
-/// where there is none.
+/// Returns the neighbour at index + 1 along an axis (0, 1, 2 for x, y, z); the spin itself, or
+/// `missing`, if there is none.
 template <int Axis, class AnyStencil>
 KOKKOS_FORCEINLINE_FUNCTION auto next(AnyStencil const& stencil) {
   return stencil.template next<Axis>();
@@ -90,7 +91,8 @@ KOKKOS_FORCEINLINE_FUNCTION auto next(AnyStencil const& stencil,
   return stencil.template next<Axis>(missing);
 }
 
-/// The neighbour at index - 1 along an axis; the spin itself, or `missing`, where there is none.
+/// Returns the neighbour at index - 1 along an axis; the spin itself, or `missing`, if there is
+/// none.
 template <int Axis, class AnyStencil>
 KOKKOS_FORCEINLINE_FUNCTION auto previous(AnyStencil const& stencil) {
   return stencil.template previous<Axis>();
@@ -103,14 +105,14 @@ KOKKOS_FORCEINLINE_FUNCTION auto previous(AnyStencil const& stencil,
 
 namespace detail {
 
-/// Is it a stencil of a row that a stage goes along, as between its ends?
+/// True for the stencil of a stage inside a row, away from its ends.
 template <class Stencil>
 inline constexpr bool is_along_row = false;
 template <class Site, class Real>
 inline constexpr bool is_along_row<Stencil<Site, Real, RowStencil<Real>>> = Site::is_between_ends;
 
-/// m_next - m_previous, the zero vector in place of a missing neighbour. Where none is missing,
-/// from what other terms load, too.
+/// Returns m_next - m_previous, with the zero vector for a missing neighbour. If none is missing,
+/// it uses values that other terms load, too.
 template <int Axis, class AnyStencil>
 KOKKOS_FORCEINLINE_FUNCTION typename AnyStencil::vector_type difference(AnyStencil const& stencil) {
   if constexpr (requires { stencil.template is_between<Axis>(); }) {
@@ -121,7 +123,7 @@ KOKKOS_FORCEINLINE_FUNCTION typename AnyStencil::vector_type difference(AnyStenc
   return stencil.template next<Axis>(none) - stencil.template previous<Axis>(none);
 }
 
-/// A stencil without neighbours: a spin that is in no field, and a site for coefficients.
+/// A stencil without neighbours: a spin in no field, and a site for coefficients.
 template <class Site>
 class SpinAlone {
  public:

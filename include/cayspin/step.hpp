@@ -5,15 +5,16 @@
 
 namespace cayspin::inline v0_1 {
 
-/// Where an integration stands when an observer is called.
+/// Progress of an integration when an observer is called.
 struct Step {
   std::int64_t number = 0;  // steps taken
   double time = 0, dt = 0;
   bool last = false;
-  bool stops = false;  // an observer before this one ends the run here
+  bool stops = false;  // an earlier observer ends the run here
 };
 
-/// What an observer may return to end an integration early. Observers that return nothing proceed.
+/// Return value by which an observer may end an integration early. Observers that return nothing
+/// proceed.
 enum class Next { proceed, stop };
 
 }  // namespace cayspin::inline v0_1

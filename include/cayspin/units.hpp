@@ -30,14 +30,14 @@ inline double positive(double value, char const* what) {
 }
 }  // namespace detail
 
-/// A damping constant together with the equation that it belongs to. The constant is the `damping`
-/// of LandauLifshitz in both forms; they differ in the unit of time.
+/// A damping constant and the equation that it belongs to. In both forms the constant is the
+/// `damping` of LandauLifshitz; they differ in the unit of time.
 class Damping {
  public:
   Damping() = default;  ///< none
 
   double alpha() const { return alpha_; }
-  /// What the unit of time is multiplied by: 1 + alpha^2 in Gilbert's form, otherwise 1.
+  /// Returns the factor of the unit of time: 1 + alpha^2 in Gilbert's form, otherwise 1.
   double time_factor() const { return time_factor_; }
 
   friend Damping gilbert(double alpha);
@@ -63,24 +63,24 @@ struct PolarizedCurrent {
   double Ms = 0;            ///< saturation magnetization, A/m
   double gamma = electron_gamma;
 };
-/// The velocity of Zhang and Li's torque in m/s, as Thiaville et al. (2005) have it:
-/// u = -g mu_B P j / (2 e Ms) with g mu_B = gamma hbar. Electrons, and walls where P > 0, go
-/// against the current.
+/// Returns the velocity of Zhang and Li's torque in m/s, as defined by Thiaville et al. (2005): u =
+/// -g mu_B P j / (2 e Ms) with g mu_B = gamma hbar. Electrons, and walls if P > 0, move against the
+/// current.
 ///   drift_velocity({.density = 1e12, .polarization = 0.4, .Ms = 8e5})
 inline double drift_velocity(PolarizedCurrent const& current) {
   return -current.gamma * reduced_planck * current.polarization * current.density /
          (2 * elementary_charge * detail::positive(current.Ms, "Ms"));
 }
 
-/// A current that brings spins into a magnetic layer.
+/// A current that injects spins into a magnetic layer.
 struct LayerCurrent {
   double density = 0;     ///< j, A/m^2
-  double efficiency = 0;  ///< a polarization, or a spin Hall angle
+  double efficiency = 0;  ///< polarization or spin Hall angle
   double Ms = 0;          ///< saturation magnetization of the layer, A/m
   double thickness = 0;   ///< of the layer, m
 };
-/// The damping-like torque of a current in T: hbar j efficiency / (2 e Ms thickness). Where
-/// j efficiency is positive, spins turn towards the polarization.
+/// Returns the damping-like torque of a current in T: hbar j efficiency / (2 e Ms thickness). If j
+/// efficiency is positive, spins turn towards the polarization.
 ///   spin_torque({.density = 1e12, .efficiency = 0.1, .Ms = 8e5, .thickness = 3e-9})
 inline double spin_torque(LayerCurrent const& current) {
   return reduced_planck * current.efficiency * current.density /
@@ -88,14 +88,14 @@ inline double spin_torque(LayerCurrent const& current) {
           detail::positive(current.thickness, "the thickness"));
 }
 
-/// What one reduced unit is in SI, and numbers in either.
+/// SI values of the reduced units, and conversions.
 class ReducedUnits {
  public:
   double time_unit() const { return time_; }      ///< s
   double length_unit() const { return length_; }  ///< m
   double field_unit() const { return field_; }    ///< T, of B = mu0 H
   double energy_unit() const { return energy_; }  ///< J
-  /// m/s, of ZhangLi. Its torque gets the factor of the damping's form from the equation.
+  /// m/s, for ZhangLi. The equation applies the factor of the damping's form to its torque.
   double velocity_unit() const { return velocity_; }
   double damping() const { return damping_; }  ///< of LandauLifshitz
 
@@ -106,7 +106,7 @@ class ReducedUnits {
   double applied_from_ampere_per_metre(double h) const { return applied(vacuum_permeability * h); }
   double energy(double joules) const { return joules / energy_; }
   double temperature(double kelvin) const { return boltzmann * kelvin / energy_; }
-  /// Such as an angular frequency.
+  /// Converts a rate, such as an angular frequency.
   double rate(double per_second) const { return per_second * time_; }
 
   double seconds(double time) const { return time * time_; }
@@ -130,11 +130,11 @@ class ReducedUnits {
   double time_, length_, field_, energy_, velocity_, damping_;
 };
 
-/// Micromagnetics. The field unit is Ms, the energy unit mu0 Ms^2 times the volume of a cell, the
-/// length unit the cell's extent along x.
+/// Units of micromagnetics: field Ms, energy mu0 Ms^2 times the volume of a cell, length the cell's
+/// extent along x.
 class Micromagnetic : public ReducedUnits {
  public:
-  /// What the units are made of.
+  /// Constants that define the units.
   struct Material {
     double Ms = 0;                    ///< saturation magnetization, A/m
     std::array<double, 3> cell = {};  ///< extents of a cell, m
@@ -142,21 +142,21 @@ class Micromagnetic : public ReducedUnits {
     double gamma = electron_gamma;    ///< |gamma|, rad/(s T); gamma0 = mu0 gamma in m/(A s)
   };
 
-  /// Throws std::invalid_argument for what is not positive and finite.
+  /// Throws std::invalid_argument for values that are not positive and finite.
   explicit Micromagnetic(Material const& material)
       : Micromagnetic(material, detail::positive(material.Ms, "Ms"), volume_of(material.cell)) {}
 
   std::array<double, 3> spacing() const { return spacing_; }
 
-  /// The constant of Exchange, from A in J/m.
+  /// Returns the constant of Exchange, from A in J/m.
   double exchange(double A) const { return 2 * A / (pressure_ * length_unit() * length_unit()); }
-  /// The constant of UniaxialAnisotropy, from Ku in J/m^3 with E = -Ku V (m.e)^2.
+  /// Returns the constant of UniaxialAnisotropy, from Ku in J/m^3 with E = -Ku V (m.e)^2.
   double anisotropy(double Ku) const { return 2 * Ku / pressure_; }
-  /// The constant of CubicAnisotropy, from Kc in J/m^3.
+  /// Returns the constant of CubicAnisotropy, from Kc in J/m^3.
   double cubic_anisotropy(double Kc) const { return Kc / pressure_; }
-  /// The constant of InterfacialDmi and BulkDmi, from D in J/m^2.
+  /// Returns the constant of InterfacialDmi and BulkDmi, from D in J/m^2.
   double dmi(double D) const { return D / (pressure_ * length_unit()); }
-  /// The strength of SlabDemag, from a demagnetising factor.
+  /// Returns the strength of SlabDemag, from a demagnetising factor.
   double demagnetization(double factor) const { return factor; }
 
  private:
@@ -174,11 +174,11 @@ class Micromagnetic : public ReducedUnits {
   std::array<double, 3> spacing_;
 };
 
-/// Atomistic spins, with E = -J sum of S_i.S_j over pairs counted once - K sum of (S.e)^2
+/// Units of atomistic spins, with E = -J sum of S_i.S_j over pairs counted once - K sum of (S.e)^2
 /// - mu_s sum of S.B. Lattices have a spacing of 1.
 class Atomistic : public ReducedUnits {
  public:
-  /// What the units are made of.
+  /// Constants that define the units.
   struct Material {
     double mu_s = 0;                ///< moment of an atom, J/T
     double energy = 0;              ///< unit of energy, such as |J|, in joules
@@ -187,7 +187,7 @@ class Atomistic : public ReducedUnits {
     double gamma = electron_gamma;  ///< |gamma|, rad/(s T)
   };
 
-  /// Throws std::invalid_argument for what is not positive and finite.
+  /// Throws std::invalid_argument for values that are not positive and finite.
   explicit Atomistic(Material const& material)
       : ReducedUnits(detail::positive(material.mu_s, "mu_s"),
                      detail::positive(material.energy, "the unit of energy"),
@@ -196,15 +196,16 @@ class Atomistic : public ReducedUnits {
         dipolar_(vacuum_permeability * material.mu_s * material.mu_s /
                  std::pow(material.lattice_constant, 3) / material.energy) {}
 
-  /// The constant of Exchange, from J in joules. It counts energies from parallel spins.
+  /// Returns the constant of Exchange, from J in joules. Its energies are relative to parallel
+  /// spins.
   double exchange(double J) const { return J / energy_unit(); }
-  /// The constant of UniaxialAnisotropy, from K in joules.
+  /// Returns the constant of UniaxialAnisotropy, from K in joules.
   double anisotropy(double K) const { return 2 * K / energy_unit(); }
-  /// The constant of CubicAnisotropy, from Kc in joules.
+  /// Returns the constant of CubicAnisotropy, from Kc in joules.
   double cubic_anisotropy(double Kc) const { return Kc / energy_unit(); }
-  /// The constant of InterfacialDmi and BulkDmi, from D of a bond in joules.
+  /// Returns the constant of InterfacialDmi and BulkDmi, from D of a bond in joules.
   double dmi(double D) const { return D / energy_unit(); }
-  /// The strength of SlabDemag, from a demagnetising factor.
+  /// Returns the strength of SlabDemag, from a demagnetising factor.
   double demagnetization(double factor) const { return factor * dipolar_; }
 
  private:

@@ -11,7 +11,8 @@
 namespace cayspin::inline v0_1 {
 
 /// Three components. Value is float, double, or a pack of either: on the host one value holds
-/// several sites. Numbers of another type (2.0 * v, v * 2) become the scalar of Value first.
+/// several sites. Numbers of another type (2.0 * v, v * 2) are first converted to the scalar of
+/// Value.
 template <class Value>
 struct Vec3 {
   using value_type = Value;
@@ -46,13 +47,13 @@ struct Vec3 {
   KOKKOS_FORCEINLINE_FUNCTION Vec3& operator-=(Vec3 const& a) { return *this = *this - a; }
 };
 
-/// The numbers and the vectors of a stencil, a spin or a site, in the words of terms.
+/// Value and vector types of a stencil, a spin or a site, as terms name them.
 template <class Stencil>
 using ValueOf = typename Stencil::value_type;
 template <class Stencil>
 using VectorOf = Vec3<typename Stencil::value_type>;
 
-/// s a + b
+/// Returns s a + b.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> multiply_add(Value const& s, Vec3<Value> const& a,
                                                      Vec3<Value> const& b) {
@@ -72,25 +73,25 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> cross(Vec3<Value> const& a, Vec3<Value> 
           detail::multiply_subtract(a.x, b.y, Value(a.y * b.x))};
 }
 
-/// The zero vector.
+/// Returns the zero vector.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> zero() {
   return {Value(0), Value(0), Value(0)};
 }
 
-/// A number as value of a kernel.
+/// Returns a number as a kernel's value type.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value as_value(double number) {
   return Value(static_cast<detail::scalar_t<Value>>(number));
 }
 
-/// The components of v as values of a kernel.
+/// Returns the components of v as kernel values.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> as_value(Vec3<double> const& v) {
   return {as_value<Value>(v.x), as_value<Value>(v.y), as_value<Value>(v.z)};
 }
 
-/// `axis` divided by its length; throws std::invalid_argument when it has none.
+/// Returns `axis` divided by its length; throws std::invalid_argument if that is zero.
 inline Vec3<double> normalized(Vec3<double> const& axis, char const* what) {
   double const length = std::hypot(axis.x, axis.y, axis.z);
   if (!(length > 0) || !std::isfinite(length))
@@ -100,7 +101,7 @@ inline Vec3<double> normalized(Vec3<double> const& axis, char const* what) {
 
 namespace detail {
 
-/// `number`; throws std::invalid_argument when it is not finite.
+/// Returns `number`; throws std::invalid_argument when it is not finite.
 inline double finite(double number, char const* what) {
   if (!std::isfinite(number)) throw std::invalid_argument(std::string(what) + " must be finite");
   return number;
@@ -117,7 +118,7 @@ KOKKOS_FORCEINLINE_FUNCTION constexpr scalar_t<Value> smallest_square() {
                                           : static_cast<Scalar>(0x1p-103);
 }
 
-/// |m|^2 to divide by: of a vacant site, whose spin is zero, a number by which zeros stay zeros.
+/// Returns |m|^2 as a divisor: for the zero spin of a vacant site, a number that keeps zeros zero.
 /// NaN stays NaN.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value square_to_divide_by(Vec3<Value> const& m) {
@@ -133,10 +134,10 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> select(typename ValueTraits<Value>::mask
 
 }  // namespace detail
 
-/// select<Value>(condition, yes, no): `yes` at the sites where the condition holds, `no` elsewhere;
-/// numbers or vectors. Kernels use it in place of `if`, since a pack of sites may need both.
-/// Write conditions with < and == alone: select<Value>(Value(0) < m.z, a, b). Kokkos 4.7 compares
-/// packs of 512 bits the wrong way round with > and >=.
+/// select<Value>(condition, yes, no) is `yes` at the sites where the condition holds, `no`
+/// elsewhere; for numbers or vectors. Use it in kernels instead of `if`, since a pack of sites may
+/// need both. Write conditions only with < and ==: select<Value>(Value(0) < m.z, a, b). Kokkos 4.7
+/// compares packs of 512 bits the wrong way round with > and >=.
 using detail::select;
 
 }  // namespace cayspin::inline v0_1

@@ -31,6 +31,7 @@ class Cayspin(CMakePackage):
     variant("program", default=True, description="The program, scenes, files and the C interface")
     variant("examples", default=False, description="Build the examples")
     variant("fftw", default=False, description="The demagnetising field; FFTW is under the GPL")
+    variant("png", default=True, when="+program", description="Images in scenes, by libpng")
     variant("shared", default=False, when="+program", description="Programs share one library")
 
     depends_on("c", type="build", when="+program")
@@ -48,6 +49,7 @@ class Cayspin(CMakePackage):
         depends_on("muparser@2.3.3:")
         depends_on("tomlplusplus")
         depends_on("eigen@3.4:", type="build")
+        depends_on("libpng@1.6:", when="+png")
         depends_on("cli11", type="build")
         depends_on("nlohmann-json", type="build")
 
@@ -59,6 +61,7 @@ class Cayspin(CMakePackage):
             self.define_from_variant("CAYSPIN_BUILD_PROGRAM", "program"),
             self.define_from_variant("CAYSPIN_BUILD_EXAMPLES", "examples"),
             self.define_from_variant("CAYSPIN_FFTW", "fftw"),
+            self.define_from_variant("CAYSPIN_PNG", "png"),
             self.define_from_variant("BUILD_SHARED_LIBS", "shared"),
             self.define("CAYSPIN_BUILD_TESTS", False),
             self.define("CAYSPIN_BUILD_BENCH", False),

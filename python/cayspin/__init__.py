@@ -13,13 +13,17 @@ Arrays of vectors have the shape (nz, ny, nx, 3), of crystals with several sites
 from cayspin._cayspin import CayspinError, NumbersFailed, SceneError
 from cayspin._cayspin import version as __version__
 from cayspin.averages import Averages
+from cayspin.ensemble import Ensemble
+from cayspin.mesh import occupied_of_mesh
 from cayspin.observables import Average, Dispersion, average, dispersion, topological_charge
+from cayspin.path import MinimumEnergyPath, path
 from cayspin.scene import Scene
-from cayspin.simulation import Minimum, Simulation
+from cayspin.simulation import Minimum, Modes, Simulation
 from cayspin.trade import Advice, Trade, advise, trade
 from cayspin.trajectory import Trajectory, open
 from cayspin.view import View, view
 
-__all__ = ["Advice", "Average", "Averages", "CayspinError", "Dispersion", "Minimum", "NumbersFailed",
-           "Scene", "SceneError", "Simulation", "Trade", "Trajectory", "View", "__version__",
-           "advise", "average", "dispersion", "open", "topological_charge", "trade", "view"]
+__all__ = ["Advice", "Average", "Averages", "CayspinError", "Dispersion", "Ensemble", "Minimum",
+           "MinimumEnergyPath", "Modes", "NumbersFailed", "Scene", "SceneError", "Simulation",
+           "Trade", "Trajectory", "View", "__version__", "advise", "average", "dispersion",
+           "occupied_of_mesh", "open", "path", "topological_charge", "trade", "view"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""What functions of the package are called with, or one line about what is wrong with it.
+"""Checks of arguments: each returns the value, or raises an error of one line.
 
 NumPy's scalars and arrays without axes are what they hold."""
 

@@ -48,22 +48,22 @@ class Averages:
 
     @property
     def magnetization(self) -> Average:
-        """Of the magnetization, (3,)."""
+        """Returns the mean of the magnetization, (3,)."""
         return self._average(self._looks["magnetization"])
 
     @property
     def sublattice_magnetization(self) -> Average:
-        """Of the mean spin of each site of the cell, (site, 3)."""
+        """Returns the mean of the mean spin of each site of the cell, (site, 3)."""
         return self._average(self._looks["sublattices"])
 
     @property
     def energy(self) -> Average:
-        """Of the energy, summed over sites."""
+        """Returns the mean of the energy, summed over sites."""
         return self._average(self._looks["energy"])
 
     @property
     def energies(self) -> dict[str, Average]:
-        """Of the energy of each term of the scene."""
+        """Returns the mean of the energy of each term of the scene."""
         return {name: self._average(looks) for name, looks in self._terms.items()}
 
     def __repr__(self):

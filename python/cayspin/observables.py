@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""What is computed from spins and from numbers over time, with numpy alone."""
+"""Functions of spins and of time series, which need only numpy."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def _along(path, shape, reciprocal):
         distances.append(start + length * part)
         numbers.append(found)
     distance = np.concatenate(distances)
-    # A corner ends one part and begins another.
+    # A corner ends one part and starts another.
     once = np.diff(distance, prepend=-np.inf) > 1e-9 * at[-1]
     return np.concatenate(numbers)[once], distance[once], at
 

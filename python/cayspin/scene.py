@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""What is to be modelled."""
+"""Scenes: descriptions of what to simulate."""
 
 from __future__ import annotations
 
 import os
+import re
 from typing import Any
 
 import numpy as np
@@ -11,10 +12,14 @@ import numpy as np
 from cayspin import _cayspin, arguments, sites, toml_text
 
 _OWN = ("applied", "nonlocal")
+_VECTORS = re.compile(r".*(sources\[\d+\]\.profile|axis|axes\[\d+\]|in_plane|normal|polarization)")
 
 
 def _without_arrays(thing, key, arrays):
     """A value of a scene, whose arrays of numbers of sites go into `arrays` by their keys."""
+    if isinstance(thing, np.ndarray) and thing.ndim in (4, 5) and thing.shape[-1] == 3 \
+            and _VECTORS.fullmatch(key):
+        thing = [thing[..., component] for component in range(3)]
     if isinstance(thing, np.ndarray) and thing.ndim in (3, 4):
         arrays[key] = arguments.numbers(thing, key)
         return {"given": True}
@@ -82,7 +87,8 @@ class Scene:
     `field["nonlocal"]` may be a function of (spins, t) that returns H of all sites as an array
     (nz, ny, nx, 3). Arrays of a crystal with several sites in a cell are (site, nz, ny, nx, 3).
     Numbers of sites may be arrays (nz, ny, nx), of a crystal (site, nz, ny, nx):
-    lattice={"shape": [20, 20], "occupied": mask}.
+    lattice={"shape": [20, 20], "occupied": mask}. So may vectors of sites, with a last axis of 3:
+    field={"sources": [{"profile": array}]}.
     The function is called before each stage with a copy of the spins, and H has to be linear
     in them and symmetric: its energy is -sum m.H / 2.
     Without `end` and `steps` in `integrator` the scene has no end. Without `integrator` it is for
@@ -148,6 +154,30 @@ class Scene:
         changed._scene = self._scene.with_overrides(overrides)
         changed._overrides = None if self._overrides is None else self._overrides + overrides
         changed._only_here = self._only_here
+        return changed
+
+    def _changes(self, tables):
+        """Tables and dotted keys without their arrays of numbers of sites, and these."""
+        def refuse_functions(thing, key):
+            if callable(thing):
+                raise _cayspin.SceneError(f"{key}: a function; accepted: numbers and expressions")
+            for name, one in thing.items() if isinstance(thing, dict) else ():
+                refuse_functions(one, f"{key}.{name}")
+
+        arrays = {}
+        for name, table in tables.items():
+            refuse_functions(table, name)
+        tables = {name: _without_arrays(table, name, arrays) for name, table in tables.items()}
+        for key, array in arrays.items():
+            if array.shape != self.shape:
+                raise _cayspin.SceneError(f"{key}: an array of shape {array.shape}; accepted: "
+                                          f"{self.shape}")
+        return tables, _flat(arrays)
+
+    def _changed(self, scene, arrays):
+        changed = Scene.__new__(Scene)
+        changed._scene, changed._overrides = scene, None
+        changed._only_here = self._only_here + [f"an array as {key}" for key in arrays]
         return changed
 
     @property

@@ -10,7 +10,7 @@ from typing import Any, Callable, Sequence
 
 import numpy as np
 
-from cayspin import _cayspin, arguments, sites, texture
+from cayspin import _cayspin, arguments, sites, texture, toml_text
 from cayspin.averages import Averages
 from cayspin.scene import Scene
 
@@ -19,7 +19,7 @@ _GUARD_PERIOD = 100  # steps between two looks at energy and lengths in step()
 
 @dataclasses.dataclass(frozen=True)
 class Minimum:
-    """What relax() found, in the units of the scene."""
+    """Result of relax(), in the units of the scene."""
 
     end: str  #: "converged", "stagnated" (by round-off) or "evaluation limit"
     torque: float  #: max |m x H|
@@ -33,6 +33,18 @@ class Minimum:
     def converged(self) -> bool:
         """Is the torque below its bound, and was no direction found that leads down?"""
         return self.end == "converged"
+
+
+@dataclasses.dataclass(frozen=True)
+class Modes:
+    """Result of modes(), slowest first."""
+
+    frequency: np.ndarray  #: angular; in Hz in SI
+    decay: np.ndarray  #: in 1/s in SI; negative where the motion grows
+    residual: np.ndarray  #: errors of the shapes, relative
+    shape: np.ndarray  #: complex dm, (mode, nz, ny, nx, 3); the longest has length 1
+    converged: bool
+    evaluations: int  #: of the field of all sites
 
 
 class Simulation:
@@ -94,10 +106,11 @@ class Simulation:
         if until is None and self._scene.steps == 0:
             raise _cayspin.CayspinError("run: the scene has no end; accepted: run(until=t), or "
                                         "integrator.end in the scene")
-        end = self._scene.steps if until is None else self._run.step_at(
+        end = self._run.last_step if until is None else self._run.step_at(
             arguments.real(until, "run: until"))
         if end < self.steps:
-            raise _cayspin.CayspinError(f"run: until t = {end * self._scene.dt:g}, and the time is "
+            until = end * self._scene.dt if until is None else until
+            raise _cayspin.CayspinError(f"run: until t = {until:g}, and the time is "
                                         f"{self.time:g}; accepted: a later time")
         self._run.require_reachable(end - self.steps)
         self._check_dt()
@@ -145,6 +158,42 @@ class Simulation:
                                 arguments.whole(evaluations, "relax: evaluations"), applied,
                                 arguments.flag(keep_saddles, "relax: keep_saddles"))
         return Minimum(*(getattr(found, field.name) for field in dataclasses.fields(Minimum)))
+
+    def modes(self, count: int = 8, tolerance: float = 1e-9,
+              evaluations: int = 100000) -> Modes:
+        """The slowest normal modes about the spins, which have to be at rest: call relax() before.
+        The spins move by the real part of shape e^((i frequency - decay) t), with frequency in
+        radians. `tolerance` is the error of the shapes; frequencies are more accurate.
+        """
+        *numbers, shapes, converged, cost = self._run.modes(
+            arguments.whole(count, "modes: count"), arguments.real(tolerance, "modes: tolerance"),
+            arguments.whole(evaluations, "modes: evaluations"))
+        parts = np.array(shapes).reshape((len(shapes), *self._run.spins().shape, 2))
+        return Modes(*(np.array(each) for each in numbers), parts[..., 0] + 1j * parts[..., 1],
+                     converged, cost)
+
+    def set(self, keys: str | dict[str, Any], value: Any = None) -> None:
+        """Goes on with other keys of the scene, from the spins, time and steps now:
+        set("field.applied", [0.1, 0, 0]), set({"system.damping": 0.02, "integrator.dt": 0.01}),
+        set({"integrator": {"method": "tsit5", "tolerance": 1e-6, "end": 50}}).
+
+        They are changed as by a table [[stage]] of a scene, with the same rules: integrator.method
+        begins a new [integrator], and its end or steps are counted from now. Where no integrator is
+        among the keys, run() goes on for as long again as the scene did. Methods that remember
+        earlier steps begin again. Numbers of sites may be arrays. Raises SceneError for keys that
+        stay as they are, such as those of lattice, and for what cannot be; nothing is changed then.
+        """
+        changes = {arguments.word(keys, "set"): value} if isinstance(keys, str) else keys
+        if not isinstance(changes, dict):
+            raise _cayspin.CayspinError(f"set: a {type(changes).__name__}; accepted: a key and its "
+                                        "value, or a dict of them")
+        changes, arrays = self._scene._changes(changes)
+        try:
+            self._run.change(toml_text.overrides(changes), arrays)
+        except _cayspin.SceneError as error:
+            raise _cayspin.SceneError(str(error).removeprefix("--set ")) from None
+        self._scene = self._scene._changed(self._run.scene, arrays)
+        self._dt_is_checked = False
 
     def save(self, checkpoint: str | os.PathLike) -> None:
         """Stores all that Simulation(scene, restart=checkpoint) needs to go on with the same bits.
@@ -246,7 +295,7 @@ class Simulation:
 
     def energies(self) -> dict[str, float]:
         """The energy of each term of the scene: exchange, dmi, anisotropy, applied, slab_demag,
-        demag, nonlocal; of rigid bodies: rotation."""
+        demag, dipoles, nonlocal; of rigid bodies: rotation."""
         return self._run.energies()
 
     def magnetization(self) -> np.ndarray:
@@ -281,7 +330,7 @@ class Simulation:
 
     @property
     def step_seconds(self) -> float:
-        """Seconds of stepping alone so far."""
+        """Seconds spent on stepping so far."""
         return self._run.step_seconds
 
     @property

@@ -8,7 +8,7 @@ import numpy as np
 
 
 def by_site(vectors: np.ndarray, sites: int) -> np.ndarray:
-    """What the library has as programs have it: a view."""
+    """Returns an array of the library in the order of the package: a view."""
     if sites == 1:
         return vectors
     planes, *rest = vectors.shape
@@ -16,7 +16,7 @@ def by_site(vectors: np.ndarray, sites: int) -> np.ndarray:
 
 
 def by_plane(vectors: np.ndarray, sites: int) -> np.ndarray:
-    """What programs have as the library has it: a copy."""
+    """Returns an array of the package in the order of the library: a copy."""
     if sites == 1:
         return vectors
     vectors = vectors.swapaxes(0, 1)

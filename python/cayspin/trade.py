@@ -7,6 +7,7 @@ import dataclasses
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import tempfile
 from typing import Any
@@ -17,9 +18,10 @@ from cayspin.scene import Scene
 
 
 def program() -> str:
-    """The program `cayspin` of this package, or the one that CAYSPIN_PROGRAM names."""
-    named = os.environ.get("CAYSPIN_PROGRAM")
-    return named or str(pathlib.Path(__file__).resolve().parent / "bin" / "cayspin")
+    """The program that CAYSPIN_PROGRAM names, that of this package, or the one on the PATH."""
+    packaged = pathlib.Path(__file__).resolve().parent / "bin" / "cayspin"
+    found = None if packaged.exists() else shutil.which("cayspin")
+    return os.environ.get("CAYSPIN_PROGRAM") or found or str(packaged)
 
 
 LONGEST = 7 * 24 * 3600  # seconds: trials of large scenes take hours

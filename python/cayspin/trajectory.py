@@ -11,6 +11,7 @@ import numpy as np
 
 from cayspin import arguments, observables, texture
 from cayspin._cayspin import CayspinError, complete_file
+from cayspin.ensemble import Ensemble
 from cayspin.scene import Scene
 
 
@@ -29,16 +30,22 @@ class Trajectory:
     """An open trajectory file. Its members are read when they are indexed: trajectory.spins[-1].
 
     spins (frame, nz, ny, nx, 3); time, step, energy, norm_defect (frame); magnetization (frame, 3);
-    scalars: the same names at the samples. Use it in a `with`, or call close().
+    scalars: the same names at the samples, and where the scene asks for them region_magnetization
+    (sample, region, 3), region_energy (sample, region) and term_energy (sample, term), whose names
+    `terms` has. Use it in a `with`, or call close().
 
     Of crystals with several sites in a cell: spins (frame, site, nz, ny, nx, 3),
     sublattice_magnetization (frame, site, 3). Where the sites are on no rectangular grid:
     positions, in the shape of a frame of the spins.
+
+    Of lattices that follow: shift (frame) and scalars["shift"], the cells by which they moved.
+    Of a run in stages: stage (frame).
     """
 
     _names = ("spins", "time", "step", "energy", "norm_defect", "magnetization")
-    _of_crystals = {"sublattice_magnetization": "a crystal with several sites in a cell",
-                    "positions": "a crystal"}
+    _of_some = {"sublattice_magnetization": "a crystal with several sites in a cell",
+                "positions": "a crystal", "shift": "a scene with lattice.follow",
+                "stage": "a run in stages"}
 
     def __init__(self, path: str | os.PathLike):
         import h5py
@@ -63,17 +70,24 @@ class Trajectory:
     def __getattr__(self, name: str) -> Any:
         if name in self._names:
             return self.file[name]
-        if name in self._of_crystals:
+        if name in self._of_some:
             if name in self.file:
                 return self.file[name]
             raise AttributeError(f"{self.path}: it has no {name}; accepted: the file of "
-                                 f"{self._of_crystals[name]}")
+                                 f"{self._of_some[name]}")
         raise AttributeError(name)
 
     @property
     def scene(self) -> str:
         """The TOML text of the scene that ran."""
         return self.file.attrs["scene"]
+
+    @property
+    def terms(self) -> list[str]:
+        """The names of the terms of scalars["term_energy"]; none where it is not there."""
+        if "term_energy" not in self.scalars:
+            return []
+        return [name.decode() for name in self.scalars["term_energy"].attrs["terms"]]
 
     @property
     def complete(self) -> bool:
@@ -90,7 +104,7 @@ class Trajectory:
         return tomllib.loads(self.scene)
 
     def _crystal(self, argument: str) -> Scene:
-        """A scene of the same cells alone."""
+        """A scene with only these cells."""
         lattice = self._tables("cell", argument).get("lattice", {})
         cells = {key: lattice[key] for key in ("crystal", "cell", "basis") if key in lattice}
         cells["shape"] = [*lattice["shape"], 1, 1][:3]
@@ -99,7 +113,7 @@ class Trajectory:
                      initial={"uniform": [0, 0, 1]})
 
     def _lattice(self, key: str, otherwise: Any, argument: str) -> list:
-        """What the scene says of x, y and z: lattice.KEY, one for all axes or one for each."""
+        """Returns the scene's lattice.KEY for x, y and z: one for all axes, or one for each."""
         given = self._tables(key, argument).get("lattice", {}).get(key, otherwise)
         given = given if isinstance(given, list) else [given] * 3
         return given + [otherwise] * (3 - len(given))
@@ -186,7 +200,7 @@ class Trajectory:
         dimensions = {"spins": ("frame", *axes), "magnetization": ("frame", "component"),
                       "sublattice_magnetization": ("frame", "site", "component"),
                       "positions": axes}
-        names = (*self._names, *(name for name in self._of_crystals if name in self.file))
+        names = (*self._names, *(name for name in self._of_some if name in self.file))
         frames, variables = len(self), {}
         for name in names:
             dataset, axes_of = self.file[name], dimensions.get(name, ("frame",))
@@ -208,7 +222,7 @@ class Trajectory:
         self.close()
 
     def __len__(self):
-        names = (*self._names, "sublattice_magnetization")
+        names = (*self._names, "sublattice_magnetization", "shift", "stage")
         return builtins.min(len(self.file[name]) for name in names if name in self.file)
 
     def __repr__(self):
@@ -218,6 +232,19 @@ class Trajectory:
                 f"{nx} x {ny} x {nz}{crystal}>")
 
 
-def open(path: str | os.PathLike) -> Trajectory:
-    """Opens the file of a run. Raises CayspinError when it is none. Needs h5py."""
+def open(path: str | os.PathLike) -> Trajectory | Ensemble:
+    """Opens the file of a run, or of an ensemble. Raises CayspinError when it is none. Needs
+    h5py."""
+    import h5py
+
+    from cayspin.texture.replica import is_ensemble
+
+    name = arguments.file_name(path, "open")
+    try:
+        file = h5py.File(name, "r")
+    except (OSError, ValueError):
+        return Trajectory(path)  # completes it, or says why it cannot be opened
+    if is_ensemble(file):
+        return Ensemble(name, file)
+    file.close()
     return Trajectory(path)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""What options cost, and how much of it bytes and arithmetic explain."""
+"""Cost of options, and how much of it bytes and arithmetic explain."""
 
 SIZES = ("100", "32", "128")
 PLAIN = ("Euler", "Heun of bodies", "RKMK4 of bodies")

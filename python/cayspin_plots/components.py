@@ -32,6 +32,6 @@ def draw_components(axes, trajectory):
 
 
 def _limit(component):
-    """The largest magnitude; rounding errors alone are not worth a scale of their own."""
+    """The largest magnitude; mere rounding errors are not worth a separate scale."""
     largest = float(np.abs(component).max())
     return largest if largest > 1e-9 else 1.0

@@ -5,7 +5,7 @@ import numpy as np
 
 from .style import BLUE, COMPONENTS
 
-# A defect of exactly 0 still has a place on a logarithmic axis.
+# Replaces a defect of exactly 0, for a logarithmic axis.
 SMALLEST = 1e-17
 
 

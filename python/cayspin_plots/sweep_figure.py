@@ -37,7 +37,7 @@ def draw(sweep, axes_keys):
     for row, fixed in zip(axes, rows):
         where = ", ".join(f"{sweep.keys[i]} = {sweep.values[i][v]}" for i, v in zip(others, fixed)
                           if len(sweep.values[i]) > 1)
-        # The axes of the arrays become those of the picture.
+        # Reorders the axes of the arrays to those of the picture.
         order = axes_keys + others
         energy = sweep.energy.transpose(order)[(Ellipsis, *fixed)]
         m = sweep.magnetization.transpose(*order, len(order))[(Ellipsis, *fixed, slice(None))]

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""What `cayspin trade --json` says about the cost of an error."""
+"""Cost of an error, from `cayspin trade --json`."""
 
 import math
 import pathlib
 
-# What a user would take otherwise: the classical methods, with renormalising.
+# The alternatives without cayspin: classical methods with renormalisation.
 BASELINES = ("projected_heun", "projected_rk4", "projected_rk5", "projected_dp5")
 WITHOUT_GEOMETRY = "projected_rk8"
 ERRORS = (1e-2, 1e-4, 1e-6, 1e-8)
@@ -33,7 +33,7 @@ def is_double(method):
 
 
 def cost(method, key, error):
-    """Of one of the ERRORS, as the program has it; infinite where the method does not get there."""
+    """Returns the cost of one of the ERRORS; infinite if the method does not reach it."""
     amount = {one["error"]: one[key] for one in method["costs"]}[error]
     return math.inf if amount is None else amount
 

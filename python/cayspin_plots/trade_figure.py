@@ -8,7 +8,7 @@ from cayspin_plots.trade_costs import BASELINES, ERRORS, cheapest, cost, scene_n
 
 LINES = 7  # at most
 OF_BASELINES = 2  # among them
-# Okabe and Ito's, for all eyes; and marks, for print without colour.
+# Okabe and Ito's colours, safe for colour-blind readers; and markers, for print without colour.
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 MARKS = "osD^vPX"
 AXES = {"seconds": "seconds of stepping", "evaluations": "evaluations of the field"}

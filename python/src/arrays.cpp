@@ -17,7 +17,7 @@ namespace {
 
 using simulation::UsageError;
 
-// A Python object that any thread may let go.
+// Wraps a Python object so that any thread may release it.
 std::shared_ptr<nb::object> kept(nb::object object) {
   return {new nb::object(std::move(object)), [](nb::object* held) {
             if (!nb::is_alive()) return;
@@ -26,7 +26,7 @@ std::shared_ptr<nb::object> kept(nb::object object) {
           }};
 }
 
-// NumPy would take the real part of a complex number, and the entry of an array of one.
+// NumPy would take the real part of a complex number, and the element of an array of one.
 bool is_real_number(nb::object const& number) {
   if (PyFloat_CheckExact(number.ptr())) return true;
   if (PyComplex_Check(number.ptr())) return false;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The module _cayspin: scenes and runs as the package python/cayspin wraps them.
+// The module _cayspin: scenes and runs, wrapped by the package python/cayspin.
 #include "arrays.hpp"
 #include "cayspin_git_commit.hpp"
 #include "io/relax.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/guard.hpp"
+#include "simulation/path_of_run.hpp"
 #include "simulation/run_recorder.hpp"
 
 #include <cayspin/version.hpp>
@@ -16,11 +17,14 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <iterator>
 #include <map>
 #include <stdexcept>
+#include <variant>
 
 namespace cayspin::python {
 namespace {
@@ -61,7 +65,7 @@ Precision precision_of(std::string const& name) {
   throw UsageError("precision \"" + name + "\"; accepted: \"double\", \"single\"");
 }
 
-// True with Python's exception set, which the caller raises.
+// Returns true with Python's exception set, which the caller raises.
 bool interrupted() {
   nb::gil_scoped_acquire const gil;
   return PyErr_CheckSignals() != 0;
@@ -86,6 +90,68 @@ Minimum relax(SceneRun& run, double torque, std::int64_t evaluations,
   }
   if (found.end == MinimizeEnd::interrupted) throw nb::python_error();
   return found;
+}
+
+// Returns the modes' frequencies, decays, errors and shapes, whether all converged, and
+// evaluations.
+nb::tuple modes(SceneRun& run, std::int64_t count, double tolerance, std::int64_t evaluations) {
+  FoundModes found;
+  {
+    nb::gil_scoped_release const released;
+    found = run.modes({.count = static_cast<std::size_t>(std::max<std::int64_t>(count, 0)),
+                       .tolerance = tolerance,
+                       .evaluations = evaluations,
+                       .poll = [] { return interrupted() ? Next::stop : Next::proceed; }});
+  }
+  if (found.end == ModesEnd::interrupted) throw nb::python_error();
+  auto const& [nx, ny, nz] = run.scene().lattice.shape;
+  nb::list shapes;
+  for (auto& shape : found.shapes) shapes.append(array_of(std::move(shape), {nz, ny, 6 * nx}));
+  return nb::make_tuple(found.frequencies, found.decays, found.errors, shapes,
+                        found.end == ModesEnd::converged, found.evaluations);
+}
+
+using StateIn = std::variant<NumbersIn, std::filesystem::path>;
+
+EndOfPath end_of_path(char const* name, StateIn const& state) {
+  if (auto const* const file = std::get_if<std::filesystem::path>(&state)) return {name, *file};
+  return {name, vectors_of(std::get<NumbersIn>(state))};
+}
+
+nb::dict as_dict(ScenePath found, std::array<std::int64_t, 3> const& shape) {
+  auto const& [nx, ny, nz] = shape;
+  auto& [end, path] = found;
+  auto const images = static_cast<std::int64_t>(path.energy.size());
+  nb::dict all;
+  all["end"] = path.end;
+  all["converged"] = path.converged;
+  all["evaluations"] = path.evaluations;
+  all["energy"] = path.energy;
+  all["distance"] = path.distance;
+  all["spins"] = array_of(std::move(path.spins), {images * nz, ny, 3 * nx});
+  nb::list saddles;
+  for (auto const& one : path.saddles)
+    saddles.append(nb::make_tuple(one.energy, one.curvature, one.next_curvature, one.image));
+  all["saddles"] = saddles;
+  all["saddle"] = array_of(std::move(path.saddle), {nz, ny, 3 * nx});
+  if (auto const& rates = path.rates)
+    all["rates"] = nb::make_tuple(rates->prefactor_forward, rates->prefactor_backward,
+                                  rates->langer_forward, rates->langer_backward, rates->zero_modes);
+  return all;
+}
+
+nb::dict path(SceneRun const& run, StateIn const& start, StateIn const& end, std::int64_t images,
+              double torque, std::int64_t evaluations, bool rates) {
+  auto const from = end_of_path("start", start), to = end_of_path("end", end);
+  std::optional<ScenePath> found;
+  {
+    nb::gil_scoped_release const released;
+    ScenePathOptions const options{
+        .images = images, .torque = torque, .evaluations = evaluations, .rates = rates};
+    found = path_of_run(run, from, to, options, interrupted, CAYSPIN_GIT_COMMIT);
+  }
+  if (found->end == PathEnd::interrupted) throw nb::python_error();
+  return as_dict(std::move(*found), run.scene().lattice.shape);
 }
 
 // A list of fields would take several runs.
@@ -175,7 +241,7 @@ void define_scene(nb::module_& module) {
                    [](io::Scene const& scene) { return Guard::period_of(io::sites(scene)); });
 }
 
-// No call waits for another run, or for HDF5, with the GIL: who has these may need it.
+// Releases the GIL while waiting for another run or for HDF5, whose owner may need it.
 template <class Work>
 auto as_error(Work const& work) {
   try {
@@ -206,8 +272,18 @@ void define_run(nb::module_& module) {
              as_error([&] { run.save(checkpoint); });
            })
       .def("require_reachable", &SceneRun::require_reachable)
+      .def("change",
+           [](SceneRun& run, Overrides const& overrides, ArraysIn const& numbers) {
+             auto const arrays = given(std::nullopt, numbers);
+             nb::gil_scoped_release const released;
+             run.change(overrides, arrays);
+           })
+      .def_prop_ro("scene", &SceneRun::typed_scene)
+      .def_prop_ro("last_step", &SceneRun::last_step)
       .def("advance", advance, "count"_a, "period"_a, "until_torque"_a)
       .def("relax", relax, "torque"_a, "evaluations"_a, "applied"_a.none(), "keep_saddles"_a)
+      .def("modes", modes, "count"_a, "tolerance"_a, "evaluations"_a)
+      .def("path", path, "start"_a, "end"_a, "images"_a, "torque"_a, "evaluations"_a, "rates"_a)
       .def("warning", &SceneRun::warning)
       .def("restart_warning", &SceneRun::restart_warning)
       .def("step_at", &SceneRun::step_at)
@@ -270,7 +346,7 @@ void define_recorder(nb::module_& module) {
       });
 }
 
-// A scene of tables has no lines: "Scene:12: " names one of the text that is made of them.
+// A scene given as tables has no lines: "Scene:12: " is a line of the text generated from them.
 std::string without_line_of_tables(std::string_view line) {
   constexpr std::string_view name = "Scene:";
   if (!line.starts_with(name)) return std::string(line);
@@ -300,7 +376,7 @@ void define_scene_error(nb::module_& module, nb::handle base) {
 NB_MODULE(_cayspin, module) {
   using namespace cayspin;
   namespace nb = nanobind;
-  nb::set_leak_warnings(false);  // a field that refers to its own simulation is one
+  nb::set_leak_warnings(false);  // a field that refers to its own simulation counts as a leak
   nb::exception<simulation::UsageError> const base(module, "CayspinError");
   python::define_scene_error(module, base);
   nb::exception<simulation::NumbersFailed>(module, "NumbersFailed", base);

@@ -21,20 +21,20 @@ using namespace cayspin::simulation;
 namespace io = cayspin::io;
 
 struct cayspin_simulation {
-  std::mutex turn;  // of the calls of several threads
+  std::mutex turn;  // serialises calls from several threads
   std::unique_ptr<SceneRun> run;
   std::optional<LentVectors> borrowed, borrowed_field;
 };
 
 namespace {
 
-/// What cayspin_last_error returns.
+/// Returns the text of cayspin_last_error.
 std::string& last_error() {
   thread_local std::string message;
   return message;
 }
 
-/// The status and message of the exception that is being handled.
+/// Returns the status of the exception being handled, and stores its message.
 cayspin_status failure() {
   auto const is = [](cayspin_status status, char const* message) {
     try {
@@ -61,7 +61,7 @@ cayspin_status failure() {
   }
 }
 
-/// CAYSPIN_OK after work(), otherwise the status of what it throws.
+/// Returns CAYSPIN_OK after work(), otherwise the status of its exception.
 template <class Work>
 cayspin_status guarded(Work const& work) {
   try {
@@ -72,7 +72,7 @@ cayspin_status guarded(Work const& work) {
   }
 }
 
-/// Throws UsageError naming a null pointer.
+/// Throws UsageError that names a null pointer.
 template <class Type>
 Type& required(Type* pointer, char const* name) {
   if (pointer == nullptr)
@@ -104,7 +104,7 @@ SceneRun& run_of(cayspin_simulation const* simulation) {
   return *required(simulation, "simulation").run;
 }
 
-/// work(run) while no other thread is in a call on the simulation.
+/// Calls work(run) while no other thread is in a call on the simulation.
 template <class Work>
 cayspin_status in_turn(cayspin_simulation* simulation, Work const& work) {
   return guarded([&] {
@@ -114,7 +114,7 @@ cayspin_status in_turn(cayspin_simulation* simulation, Work const& work) {
   });
 }
 
-/// The same, with the spins that were borrowed given back before.
+/// Calls work(run) after taking back borrowed spins.
 template <class Work>
 cayspin_status changing(cayspin_simulation* simulation, Work const& work) {
   return in_turn(simulation, [&](SceneRun& run) {
@@ -142,7 +142,7 @@ void run_to_end(SceneRun& run, RunRecorder& recorder) {
 }
 
 void run_with_file(SceneRun& run, std::filesystem::path const& path, bool overwrite) {
-  RunRecorder recorder(run, run.scene().integrator.steps, path, overwrite, CAYSPIN_GIT_COMMIT);
+  RunRecorder recorder(run, run.last_step(), path, overwrite, CAYSPIN_GIT_COMMIT);
   try {
     run_to_end(run, recorder);
   } catch (...) {
@@ -190,10 +190,10 @@ cayspin_status cayspin_run(cayspin_simulation* simulation, char const* output, i
     auto const& file = run.scene().output.file;
     if (output == nullptr && !file)
       throw UsageError("output is NULL and the scene has no output.file; accepted: either");
-    if (run.steps() > run.scene().integrator.steps || run.scene().integrator.steps == 0)
+    if (run.steps() > run.last_step() || run.scene().integrator.steps == 0)
       throw UsageError("the simulation is at step " + std::to_string(run.steps()) +
-                       " and the scene ends at step " +
-                       std::to_string(run.scene().integrator.steps) + "; accepted: a later end");
+                       " and the scene ends at step " + std::to_string(run.last_step()) +
+                       "; accepted: a later end");
     run_with_file(run, output != nullptr ? std::filesystem::path(output) : *file, overwrite != 0);
   });
 }
@@ -230,7 +230,7 @@ cayspin_status cayspin_steps(cayspin_simulation const* simulation, int64_t* step
 cayspin_status cayspin_borrow_spins(cayspin_simulation* simulation, cayspin_array* spins) {
   return in_turn(simulation, [&](SceneRun& run) {
     required(spins, "spins");
-    // On a device they are a copy, which stays valid when it is asked for again.
+    // On a device this is a copy, which stays valid if it is requested again.
     if (!simulation->borrowed) simulation->borrowed.emplace(run.spins());
     *spins = array_of(simulation->borrowed->vectors);
   });
@@ -251,11 +251,11 @@ cayspin_status cayspin_set_spins(cayspin_simulation* simulation, cayspin_array c
       throw UsageError("spins of " + std::to_string(spins->shape[3]) +
                        " components; accepted: shape[3] = 3");
     io::HostVectors vectors;
-    vectors.data = const_cast<void*>(spins->data);  // is read
+    vectors.data = const_cast<void*>(spins->data);  // only read
     vectors.is_double = precision_of(spins->precision) == Precision::double_precision;
     vectors.shape = {spins->shape[0], spins->shape[1], spins->shape[2]};
     std::ranges::copy(spins->strides, vectors.strides.begin());
-    // They may be the ones that were borrowed: those stay until they are read.
+    // The source may be the borrowed spins, so they are kept until it has been read.
     run.set_spins(vectors);
     simulation->borrowed.reset();
   });

@@ -15,12 +15,13 @@ namespace fs = std::filesystem;
 
 constexpr auto unlimited = std::numeric_limits<std::int64_t>::max();
 
-/// The files of a control group.
+/// Files of a control group.
 struct Group {
   char const* folder;
   char const* limit;
   char const* usage;
-  char const* cached[2];  // keys of memory.stat: files that the kernel drops when it needs memory
+  char const*
+      cached[2];  // keys of memory.stat: file caches that the kernel drops when it needs memory
 };
 constexpr Group version_1{"sys/fs/cgroup/memory",
                           "memory.limit_in_bytes",
@@ -53,8 +54,8 @@ std::int64_t left_in(Group const& group, fs::path const& folder) {
   return std::max<std::int64_t>(0, *limit - std::max<std::int64_t>(0, used));
 }
 
-// A group has at most what those around it have. The last one is the folder that a container sees
-// in place of all.
+// Returns the memory left in a group, which is limited by the groups around it. A container sees
+// the last folder in place of all.
 std::int64_t left_around(Group const& group, fs::path const& root, fs::path const& name) {
   auto least = unlimited;
   for (auto inner = name.relative_path();; inner = inner.parent_path()) {
@@ -63,7 +64,7 @@ std::int64_t left_around(Group const& group, fs::path const& root, fs::path cons
   }
 }
 
-// Lines number:controllers:name. Version 2 has no controllers, in one line 0::name.
+// Lines have the form number:controllers:name. Version 2 has no controllers and one line 0::name.
 std::int64_t left_in_groups(fs::path const& root) {
   auto least = unlimited;
   std::ifstream file(root / "proc/self/cgroup");

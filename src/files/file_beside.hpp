@@ -6,20 +6,20 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// A file in the making, written as PATH.partial, which takes its name when commit() says so.
-/// Failures throw std::runtime_error("PATH: cannot write the file: REASON").
+/// A file being written as PATH.partial, which commit() renames to PATH. Failures throw
+/// std::runtime_error("PATH: cannot write the file: REASON").
 class FileBeside {
  public:
-  /// A file that exists is an error unless `overwrite`.
+  /// An existing file is an error unless `overwrite`.
   FileBeside(std::filesystem::path path, bool overwrite);
-  /// Uncommitted: removes what was written.
+  /// Removes the written file unless committed.
   ~FileBeside();
   FileBeside(FileBeside const&) = delete;
   FileBeside& operator=(FileBeside const&) = delete;
 
   std::ostream& stream() { return stream_; }
 
-  /// Puts the whole file under its name, or throws and leaves what was there.
+  /// Gives the complete file its name, or throws and leaves the old file.
   void commit();
 
  private:
@@ -30,7 +30,7 @@ class FileBeside {
   bool committed_ = false;
 };
 
-/// Throws if a file is there that may not be replaced.
+/// Throws if a file exists that may not be replaced.
 void require_free(std::filesystem::path const& path, bool overwrite);
 
 }  // namespace cayspin::inline v0_1::io

@@ -23,7 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t journal_magic = 0x314c4e4a59414321;  // of this layout, and of byte order
+constexpr std::uint64_t journal_magic =
+    0x314c4e4a59414321;  // identifies this layout and the byte order
 
 struct Head {
   std::uint64_t magic, mark_offset, mark, sectors, checksum;
@@ -31,7 +32,7 @@ struct Head {
 static_assert(sizeof(Sector) == sizeof(std::uint64_t) + sector_bytes);
 static_assert(std::is_trivially_copyable_v<Sector> && std::is_trivially_copyable_v<Head>);
 
-// Sectors of zeros and of ones occur, which Fletcher's sum takes for one another.
+// Not Fletcher's sum, which cannot tell sectors of zeros from sectors of ones; both occur.
 std::uint64_t checksum(Head head, std::span<Sector const> sectors) {
   head.checksum = 0;
   std::uint64_t hash = 0;
@@ -68,7 +69,7 @@ class Descriptor {
   int file_;
 };
 
-// Was it removed while one waited for it?
+// Returns true unless the file was removed while this process waited for its lock.
 bool has_name(int file, fs::path const& path) {
   struct stat open {
   }, named{};
@@ -81,7 +82,7 @@ struct Record {
   std::vector<Sector> sectors;
 };
 
-// Nothing where it is not whole: then the file needs none.
+// Returns nothing if the journal is incomplete: then the file does not need it.
 std::optional<Record> read_record(int file) {
   struct stat status {};
   Head head{};
@@ -148,7 +149,7 @@ int Journal::write(std::span<Sector const> sectors) const {
 
 void Journal::remove() const { ::unlink(path_.c_str()); }
 
-// Several readers may do so at once, who write the same.
+// Several readers may do this at once: they write the same bytes.
 void complete_from_journal(fs::path const& path) {
   auto const beside = journal_of(path);
   Descriptor const journal(::open(beside.c_str(), O_RDONLY | O_CLOEXEC));
@@ -160,7 +161,7 @@ void complete_from_journal(fs::path const& path) {
   if (auto const record = read_record(journal.get())) {
     if (!has_mark(file.get(), record->mark)) return;
     auto const error = has_all(file.get(), record->sectors) ? sync_file(file.get())
-                       : unlocked != 0                      ? unlocked  // there may be a writer
+                       : unlocked != 0                      ? unlocked  // a writer may be active
                                                             : complete(path, record->sectors);
     if (error != 0)
       throw std::runtime_error(fmt::format("{}: cannot complete the file from {}: {}",

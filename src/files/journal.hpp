@@ -9,33 +9,33 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// What a disk writes as a whole or not at all.
+/// Size of the unit that a disk writes completely or not at all.
 inline constexpr std::size_t sector_bytes = 512;
 
-/// A sector of a file, as it is to be.
+/// A sector of a file with its new content.
 struct Sector {
   std::uint64_t offset;
   std::array<std::byte, sector_bytes> bytes;
 };
 
-/// What stands in a file at the same place from its creation on, and in no other file.
+/// A number at a fixed place of a file, constant from its creation on and different in every file.
 struct FileMark {
   std::uint64_t offset, value;
 };
 
-/// PATH.journal: the sectors that are next written over those of the file PATH. As long as they
-/// have not reached the disk, they can be taken from there.
+/// PATH.journal: new content of sectors of the file PATH. Until those sectors have reached the
+/// disk, they can be restored from it.
 class Journal {
  public:
-  /// Creates the file, or empties the one that an earlier run left, and keeps it locked. Throws
+  /// Creates the file, or empties the one left by an earlier run, and locks it. Throws
   /// std::runtime_error.
   Journal(std::filesystem::path const& path, FileMark mark);
-  /// Closes the file and leaves it.
+  /// Closes the file without removing it.
   ~Journal();
   Journal(Journal const&) = delete;
   Journal& operator=(Journal const&) = delete;
 
-  /// Puts these in place of the sectors of before, and waits for the disk. 0, or the system's error
+  /// Replaces the stored sectors by these, and waits for the disk. Returns 0, or the system's error
   /// number.
   int write(std::span<Sector const> sectors) const;
 
@@ -47,9 +47,9 @@ class Journal {
   int file_ = -1;
 };
 
-/// Where a power cut or a kill left a journal beside a file, completes the file from it and removes
-/// the journal. Leaves both as they are while a writer has them, and what is the journal of another
-/// file. Throws std::runtime_error where the file needs it and cannot be written.
+/// Completes a file from the journal that a power cut or a kill left next to it, and removes the
+/// journal. Changes nothing while a writer has them open, or if the journal belongs to another
+/// file. Throws std::runtime_error if the file needs its journal and cannot be written.
 void complete_from_journal(std::filesystem::path const& path);
 
 }  // namespace cayspin::inline v0_1::io

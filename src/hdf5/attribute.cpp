@@ -3,6 +3,8 @@
 
 #include "error.hpp"
 
+#include <algorithm>
+
 namespace cayspin::inline v0_1::io {
 namespace {
 
@@ -17,6 +19,49 @@ DatatypeHandle text_type() {
   H5Tset_size(type.get(), H5T_VARIABLE);
   H5Tset_cset(type.get(), H5T_CSET_UTF8);
   return type;
+}
+
+void write_names(hid_t object, char const* name, std::vector<std::string> const& names,
+                 std::filesystem::path const& path) {
+  std::size_t length = 1;
+  for (auto const& text : names) length = std::max(length, text.size());
+  std::string texts;
+  for (auto text : names) {
+    text.resize(length, '\0');
+    texts += text;
+  }
+  DatatypeHandle const type(H5Tcopy(H5T_C_S1));
+  H5Tset_size(type.get(), length);
+  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
+  hsize_t const count = names.size();
+  DataspaceHandle const space(H5Screate_simple(1, &count, nullptr));
+  AttributeHandle const attribute(
+      check(H5Acreate2(object, name, type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT), path,
+            action("create", name)));
+  check(H5Awrite(attribute.get(), type.get(), texts.data()), path, action("write", name));
+}
+
+std::vector<std::string> read_names(hid_t object, char const* name,
+                                    std::filesystem::path const& path) {
+  AttributeHandle const attribute(
+      check(H5Aopen(object, name, H5P_DEFAULT), path, action("open", name)));
+  DatatypeHandle const type(check(H5Aget_type(attribute.get()), path, action("read", name)));
+  DataspaceHandle const space(check(H5Aget_space(attribute.get()), path, action("read", name)));
+  auto const count = H5Sget_simple_extent_npoints(space.get());
+  auto const length = H5Tget_size(type.get());
+  constexpr hssize_t most = 65536;  // largest size of an attribute
+  if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0 || count < 1 ||
+      count > most || length < 1 || length > most)
+    throw_failure(path, action("read", name), "it is not a list of names");
+  std::string texts(static_cast<std::size_t>(count) * length, '\0');
+  check(H5Aread(attribute.get(), type.get(), texts.data()), path, action("read", name));
+  std::vector<std::string> names;
+  for (std::size_t begin = 0; begin < texts.size(); begin += length) {
+    auto text = texts.substr(begin, length);
+    text.erase(std::min(text.find('\0'), text.size()));
+    names.push_back(text);
+  }
+  return names;
 }
 
 void RootAttributes::create(char const* name, hid_t stored, hid_t given, void const* value) const {

@@ -6,13 +6,20 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace cayspin::inline v0_1::io {
 
-/// UTF-8 of variable length.
+/// Returns the type of variable-length UTF-8 strings.
 DatatypeHandle text_type();
 
-/// The attributes of a file's root group.
+/// Writes an attribute with names, as ASCII of fixed length: HDF5's checksums cover no other text.
+void write_names(hid_t object, char const* name, std::vector<std::string> const& names,
+                 std::filesystem::path const& path);
+std::vector<std::string> read_names(hid_t object, char const* name,
+                                    std::filesystem::path const& path);
+
+/// Attributes of a file's root group.
 class RootAttributes {
  public:
   RootAttributes(hid_t file, std::filesystem::path const& path) : file_(file), path_(path) {}
@@ -21,7 +28,7 @@ class RootAttributes {
   void create(char const* name, std::int64_t value) const;
   void create(char const* name, double value) const;
 
-  /// Overwrites a number in place, which takes no room on the disk.
+  /// Overwrites a number in place, without allocating space on the disk.
   void replace(char const* name, std::int64_t value) const;
   void replace(char const* name, double value) const;
 
@@ -29,7 +36,8 @@ class RootAttributes {
   std::string read_text(char const* name) const;
   std::int64_t read_integer(char const* name) const;
   double read_real(char const* name) const;
-  /// Of the layout of the file. Any other than `accepted` throws PATH: ACTION: REASON.
+  /// Requires this version of the file layout: any other than `accepted` throws PATH: ACTION:
+  /// REASON.
   void require_version(char const* name, std::int64_t accepted, char const* action) const;
 
  private:

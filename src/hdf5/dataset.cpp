@@ -53,7 +53,7 @@ DatasetHandle create_growing_dataset(hid_t group, char const* name, hid_t type,
   check(H5Pset_chunk(properties.get(), rank, chunk.data()), path, action);
   DataspaceHandle const space(
       check(H5Screate_simple(rank, extents.data(), largest.data()), path, action));
-  // Without a cache of chunks, what is appended is written alone.
+  // Without a chunk cache, appending writes only the new data.
   PropertyHandle const access(H5Pcreate(H5P_DATASET_ACCESS));
   check(H5Pset_chunk_cache(access.get(), 1, 0, 1), path, action);
   return DatasetHandle(

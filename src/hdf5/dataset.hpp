@@ -12,28 +12,28 @@ namespace cayspin::inline v0_1::io {
 
 using Extents = std::vector<hsize_t>;
 
-/// How many elements a dataset of these extents has.
+/// Returns the number of elements of a dataset of these extents.
 hsize_t elements(Extents const& extents);
 
-/// A chunked dataset whose first extent is 0 and unlimited and whose other extents are `inner`, or
-/// those of the chunk when `inner` is empty. `properties` may bring filters along.
+/// Creates a chunked dataset whose first extent is 0 and unlimited. Its other extents are `inner`,
+/// or those of the chunk when `inner` is empty. `properties` may add filters.
 DatasetHandle create_growing_dataset(hid_t group, char const* name, hid_t type,
                                      std::span<hsize_t const> chunk, PropertyHandle properties,
                                      std::filesystem::path const& path,
                                      std::span<hsize_t const> inner = {});
 
-/// A dataset of these extents. `properties`: H5P_DATASET_CREATE, or the default.
+/// Creates a dataset of these extents. `properties`: H5P_DATASET_CREATE, or the default.
 DatasetHandle create_dataset(hid_t group, char const* name, hid_t type, Extents const& extents,
                              std::filesystem::path const& path, hid_t properties = H5P_DEFAULT);
 
-/// The same, with all its values, which are of `memory_type`.
+/// Creates a dataset and writes all its values, which are of `memory_type`.
 void write_dataset(hid_t group, char const* name, hid_t type, hid_t memory_type,
                    Extents const& extents, void const* values, std::filesystem::path const& path,
                    hid_t properties = H5P_DEFAULT);
 
 DatasetHandle open_dataset(hid_t group, char const* name, std::filesystem::path const& path);
 
-/// The same, and an error unless the dataset has `rank` extents.
+/// Opens a dataset; throws unless it has `rank` extents.
 DatasetHandle open_dataset(hid_t group, char const* name, std::size_t rank,
                            std::filesystem::path const& path);
 
@@ -47,10 +47,10 @@ void write_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents
 void append_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents const& extents,
                   void const* values, std::filesystem::path const& path);
 
-/// Grows it along its first extent, with nothing written there.
+/// Grows a dataset along its first extent without writing.
 void grow(hid_t dataset, hsize_t first_extent, std::filesystem::path const& path);
 
-/// Writes the chunk that begins there, given as it is to stand in the file: filters applied.
+/// Writes the chunk that starts at `begin`, as stored in the file, with filters applied.
 void write_raw_chunk(hid_t dataset, Extents const& begin, void const* stored, std::size_t bytes,
                      std::filesystem::path const& path);
 

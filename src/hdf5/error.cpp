@@ -13,7 +13,7 @@ herr_t keep_description(unsigned, H5E_error2_t const* error, void* data) {
   return 0;
 }
 
-// The file drivers put the system's words into their own: "..., error message = 'No space left on
+// Extracts the system's message from that of a file driver: "..., error message = 'No space left on
 // device', ...".
 std::string system_words(std::string const& description) {
   std::string const opening = "error message = '";
@@ -25,8 +25,8 @@ std::string system_words(std::string const& description) {
 
 }  // namespace
 
-// At the exit of a program HDF5 closes what is open, and crashes on a file whose disk has failed.
-// Here nothing is left open that could be closed, so HDF5 is told, before it starts, not to.
+// At exit, HDF5 closes open files and crashes on one whose disk has failed. This library leaves no
+// file open, so it disables that before HDF5 starts.
 QuietErrors::QuietErrors() {
   [[maybe_unused]] static auto const told = H5dont_atexit();
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);

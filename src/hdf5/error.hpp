@@ -10,8 +10,8 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// While in scope, no other thread of the library uses HDF5, which need not be built for several,
-/// and HDF5 does not print its error stack.
+/// While in scope, no other thread of the library uses HDF5, which may be built without thread
+/// safety, and HDF5 does not print its error stack.
 class QuietErrors {
  public:
   QuietErrors();
@@ -25,15 +25,15 @@ class QuietErrors {
   void* data_ = nullptr;
 };
 
-/// Why the last HDF5 call failed: the system's own words where it has some, else the innermost line
-/// of HDF5's error stack. To be asked before any other HDF5 call.
+/// Returns why the last HDF5 call failed: the system's message if there is one, otherwise the
+/// innermost line of HDF5's error stack. Call it before any other HDF5 function.
 std::string failure_reason();
 
 /// Throws std::runtime_error("PATH: ACTION: REASON").
 [[noreturn]] void throw_failure(std::filesystem::path const& path, std::string const& action,
                                 std::string const& reason);
 
-/// Returns what an HDF5 call returned, or throws if that says it failed.
+/// Returns the result of an HDF5 call; throws if it signals failure.
 template <class Result>
 Result check(Result result, std::filesystem::path const& path, std::string const& action) {
   if (result < 0) throw_failure(path, action, failure_reason());

@@ -9,17 +9,17 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// The trial of `reading`; does nothing where none is set.
+/// Runs the trial of `reading`; does nothing if none is set.
 void try_before(std::filesystem::path const& path, std::function<void()> const& reading);
 
-/// The same, but where no trial is set, `reading` is performed here.
+/// Runs the trial of `reading`; if none is set, runs `reading` itself.
 void try_reading(std::filesystem::path const& path, std::function<void()> const& reading);
 
-/// Throws the exception that is being handled; where memory ran out, with one line about the file.
+/// Rethrows the exception being handled; if memory ran out, as one line about the file.
 [[noreturn]] void rethrow_reading(std::filesystem::path const& path);
 
-/// What `reading` returns, after its trial. The same code on the same bytes does the same again.
-/// `reading` must open the file itself: a file that is open already keeps its state.
+/// Returns the result of `reading` after its trial, which has run equal code on equal bytes.
+/// `reading` must open the file itself: a file that is already open keeps its state.
 template <class Reading>
 auto read_guarded(std::filesystem::path const& path, Reading const& reading) {
   QuietErrors const quiet;

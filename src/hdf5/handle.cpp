@@ -9,10 +9,10 @@
 namespace cayspin::inline v0_1::io {
 namespace {
 
-thread_local int depth_of_turns = 0;  // of the scopes that this thread is in
+thread_local int depth_of_turns = 0;  // how many scopes this thread is in
 
 std::mutex& one_at_a_time() {
-  static auto& mutex = *new std::mutex;  // also while the program ends
+  static auto& mutex = *new std::mutex;  // never destroyed: it is used while the program ends
   return mutex;
 }
 
@@ -28,7 +28,7 @@ TurnOfHdf5::~TurnOfHdf5() {
 
 FileHandle open_file(std::filesystem::path const& path, Locking locking) {
   std::string const action = "cannot open the file";
-  // HDF5 would wait for the other end of a pipe.
+  // Otherwise HDF5 would wait for the other end of a pipe.
   std::error_code ignored;
   auto const status = std::filesystem::status(path, ignored);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))

@@ -8,8 +8,8 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// While in scope, no other thread of the library uses HDF5. Scopes may be nested. A child that is
-/// forked in scope has the turn, too, which a std::recursive_mutex would not give it.
+/// While in scope, no other thread of the library uses HDF5. Scopes may be nested. A child forked
+/// in scope owns the lock, too, unlike with std::recursive_mutex.
 class TurnOfHdf5 {
  public:
   TurnOfHdf5();
@@ -33,7 +33,7 @@ class Handle {
 
   hid_t get() const { return id_; }
 
-  /// Closes now; the result tells what a destructor has to swallow.
+  /// Closes now, and returns the result, which the destructor ignores.
   herr_t close() {
     auto const id = std::exchange(id_, H5I_INVALID_HID);
     if (id < 0) return 0;
@@ -53,14 +53,14 @@ using DatatypeHandle = Handle<H5Tclose>;
 using AttributeHandle = Handle<H5Aclose>;
 using PropertyHandle = Handle<H5Pclose>;
 
-/// Is a file that is read locked against writers? Without, what another process writes meanwhile
+/// Lock on a file that is read against writers. Without it, data that another process is writing
 /// may be read half written.
 enum class Locking { on, off };
 
 /// Opens an existing file for reading, completed from its journal.
 FileHandle open_file(std::filesystem::path const& path, Locking locking = Locking::on);
 
-// A group of the file `path`.
+// Creates a group of the file `path`.
 GroupHandle create_group(hid_t parent, char const* name, std::filesystem::path const& path);
 GroupHandle open_group(hid_t parent, char const* name, std::filesystem::path const& path);
 

@@ -10,20 +10,20 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// A dataset of type float or double in any HDF5 file, read as double.
-/// Its members throw std::runtime_error with one line that begins with the file.
+/// A dataset of type float or double in any HDF5 file, read as double. Its members throw
+/// std::runtime_error with one line that starts with the file.
 class RealDataset {
  public:
   RealDataset(std::filesystem::path path, std::string name);
 
   hid_t file() const { return file_.get(); }
   Extents const& extents() const { return extents_; }
-  /// Extents of a chunk; 1 along each axis where there are no chunks.
+  /// Returns the extents of a chunk; 1 along each axis if the dataset is not chunked.
   Extents chunk() const;
-  /// Machine epsilon of the stored type.
+  /// Returns the machine epsilon of the stored type.
   double epsilon() const { return epsilon_; }
 
-  /// All of it, or the block of `extents` from `begin` on; the last index is the fastest.
+  /// Reads all of it, or the block of `extents` from `begin` on; the last index is the fastest.
   std::vector<double> read() const;
   std::vector<double> read(Extents const& begin, Extents const& extents) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// SyncedFile as a driver of HDF5 1.10 to 1.14.
+// HDF5 file driver (1.10 to 1.14) for SyncedFile.
 #include "synced_file.hpp"
 
 #include <fcntl.h>
@@ -17,7 +17,7 @@
 namespace cayspin::inline v0_1::io {
 namespace {
 
-// HDF5 knows the file by the first member.
+// HDF5 requires its own struct as the first member.
 struct OpenFile {
   H5FD_t shared;
   SyncedFile* file;
@@ -25,7 +25,7 @@ struct OpenFile {
 
 SyncedFile& file_of(H5FD_t const* file) { return *reinterpret_cast<OpenFile const*>(file)->file; }
 
-// In the words of HDF5's own drivers, for failure_reason().
+// Reports an error in the format of HDF5's own drivers, which failure_reason() parses.
 herr_t report(int error) {
   if (error == 0) return 0;
   H5Epush2(H5E_DEFAULT, __FILE__, __func__, __LINE__, H5E_ERR_CLS, H5E_FILE, H5E_CANTOPERATE,
@@ -83,7 +83,7 @@ herr_t write(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t offset, size_t bytes, void
   return report(file_of(file).write(offset, data, bytes));
 }
 
-// Room that was reserved stays: the file is cut when it is closed.
+// Reserved space stays: closing truncates the file.
 herr_t truncate(H5FD_t*, hid_t, hbool_t) { return 0; }
 
 herr_t change_lock(H5FD_t* file, int operation) {
@@ -98,11 +98,11 @@ herr_t lock(H5FD_t* file, hbool_t for_writing) {
 herr_t unlock(H5FD_t* file) { return change_lock(file, LOCK_UN); }
 
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"  // they differ between versions
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"  // members differ between versions
 H5FD_class_t const driver = {
 #ifdef H5FD_CLASS_VERSION
     .version = H5FD_CLASS_VERSION,
-    .value = static_cast<H5FD_class_value_t>(511),  // the last of those for drivers of one's own
+    .value = static_cast<H5FD_class_value_t>(511),  // the last of those for user drivers
 #endif
     .name = "cayspin_synced",
     .maxaddr = std::numeric_limits<off_t>::max(),
@@ -126,7 +126,7 @@ H5FD_class_t const driver = {
 
 hid_t registered_driver() {
   static hid_t id = H5I_INVALID_HID;
-  if (H5Iget_type(id) != H5I_VFL) id = H5FDregister(&driver);  // HDF5 forgets it in H5close
+  if (H5Iget_type(id) != H5I_VFL) id = H5FDregister(&driver);  // H5close unregisters the driver
   return id;
 }
 

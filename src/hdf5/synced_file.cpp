@@ -96,7 +96,7 @@ int SyncedFile::commit() {
   return 0;
 }
 
-// With it goes what the last commit wrote over the file, whose journal is then free.
+// Also puts the sectors on disk that the last commit overwrote, which frees their journal.
 int SyncedFile::put_appended_on_disk() const {
   struct stat status {};
   if (::fstat(file_, &status) != 0) return errno;
@@ -143,7 +143,7 @@ void SyncedFile::begin(std::filesystem::path const& path) {
 
 int SyncedFile::close() {
   int error = commit();
-  // What was written over it is there without the journal, which goes.
+  // The overwritten sectors are on disk, so the journal is removed.
   if (journal_ && !half_applied_ && sync_file(file_) == 0) {
     if (error == 0 && ::ftruncate(file_, static_cast<off_t>(end)) != 0) error = errno;
     if (error == 0) error = sync_file(file_);

@@ -13,11 +13,11 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// A file that HDF5 writes and that a power cut leaves as it was at the last commit().
+/// A file written by HDF5 that a power cut returns to its state at the last commit().
 ///
-/// HDF5 writes over its own blocks. What it writes over committed bytes stays in memory until
-/// commit(), which puts it into a journal before the file. What it appends goes to the file at
-/// once: nothing that is committed refers to it.
+/// HDF5 overwrites its own blocks. New content of committed bytes stays in memory until commit(),
+/// which writes it to a journal before the file. Appended data go to the file at once, because no
+/// committed data refer to them.
 class SyncedFile {
  public:
   SyncedFile();
@@ -25,30 +25,30 @@ class SyncedFile {
   SyncedFile(SyncedFile const&) = delete;
   SyncedFile& operator=(SyncedFile const&) = delete;
 
-  /// Makes HDF5 open and close a file through this object, which has to outlive it.
+  /// Makes HDF5 open and close a file through this object, which must outlive it.
   void use_in(hid_t file_access);
 
-  /// To be written into the file, and 8 bytes that no other file has.
+  /// Returns a number to be stored in the file: 8 bytes that no other file has.
   std::uint64_t mark() const { return mark_; }
 
-  /// The first commit of a file that is to be named `path`, with a journal beside that. Throws
-  /// std::runtime_error.
+  /// Commits for the first time a file that is to be named `path`, with a journal next to it.
+  /// Throws std::runtime_error.
   void begin(std::filesystem::path const& path);
 
-  // What follows returns 0, or the system's error number. After an error nothing is committed.
+  // These functions return 0, or the system's error number. After an error nothing is committed.
 
-  /// All that was written is there after a power cut. The file has to be flushed.
+  /// Makes all written data survive a power cut. Flush the file before.
   int commit();
 
   // For HDF5's driver.
   int open(char const* name, int flags);
   int read(std::uint64_t offset, void* data, std::size_t bytes) const;
   int write(std::uint64_t offset, void const* data, std::size_t bytes);
-  /// Commits, cuts the file to its end and removes the journal.
+  /// Commits, truncates the file to its end and removes the journal.
   int close();
   int* descriptor() { return &file_; }
-  std::uint64_t end = 0;          ///< of what HDF5 has allocated
-  std::uint64_t written_end = 0;  ///< of what stands in the file
+  std::uint64_t end = 0;          ///< end of what HDF5 has allocated
+  std::uint64_t written_end = 0;  ///< end of the data in the file
 
  private:
   int write_over(std::uint64_t offset, std::byte const* data, std::size_t bytes);

@@ -6,19 +6,19 @@
 #include <string>
 #include <vector>
 
-/// In what two scenes differ, for a run that goes on from what another one left.
+/// Differences between two scenes, for a run that continues from another one's state.
 namespace cayspin::inline v0_1::io {
 
-/// The first key by which two scenes of one shape and cell_sites have other sites:
+/// Returns the first key by which two scenes of equal shape and cell_sites have different sites:
 /// "lattice.spacing", boundary, cell, basis, moments, gyromagnetic, occupied, frozen, or
-/// "system.kind"; empty where all are equal. Compared as numbers: in SI, of every site. An axis of
-/// one site has no spacing and no boundary, unless the field has demag. Throws SceneError where a
-/// file cannot be read.
+/// "system.kind"; empty if all are equal. Values are compared in SI, site by site. An axis of one
+/// site has no spacing and no boundary, unless the field has demag. Throws SceneError when a file
+/// cannot be read.
 std::string changed_lattice_key(Scene const& before, Scene const& now);
 
-/// The keys whose values differ between two scenes' texts, such as "field.applied", in the order of
-/// the alphabet. 1 and 1.0 are equal; a default that is typed differs from one that is not. Throws
-/// SceneError for a text that is not TOML.
+/// Returns the keys whose values differ between two scene texts, such as "field.applied", in
+/// alphabetical order. 1 and 1.0 are equal; a default that is typed differs from one that is not.
+/// Throws SceneError for a text that is not TOML.
 std::vector<std::string> changed_keys(std::string const& before, std::string const& now);
 
 }  // namespace cayspin::inline v0_1::io

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "io/site_box.hpp"
+#include "io/stage.hpp"
 
 #include <cayspin/checkpoint.hpp>
 
@@ -12,11 +13,11 @@
 #include <string>
 #include <vector>
 
-/// The file that a run is continued from (HDF5, laid out as docs/reference/file_format.md says).
-/// Failures throw std::runtime_error with one line: the file, what could not be done, and why.
+/// The file from which a run is continued (HDF5; docs/reference/file_format.md has the layout).
+/// Failures throw std::runtime_error with one line: the file, the action that failed, and why.
 namespace cayspin::inline v0_1::io {
 
-/// Of which run, and where it stands.
+/// The run that a checkpoint belongs to, and its progress.
 struct CheckpointHeader {
   std::string scene_text, resolved_scene;  ///< as in TrajectoryHeader
   std::string cayspin_version;
@@ -24,18 +25,19 @@ struct CheckpointHeader {
   std::array<std::int64_t, 3> shape{1, 1, 1};  ///< nx, ny, nz, as in TrajectoryHeader
   std::int64_t cell_sites = 1;
   std::int64_t step = 0;
-  double time = 0;  ///< in the scene's units
-  bool si = false;  ///< are they SI?
+  double time = 0;        ///< in the scene's units
+  bool si = false;        ///< true if those are SI
+  StageBegin stage = {};  ///< current stage of the run
 };
 
 /// "run.checkpoint.h5" for "run.h5"
 std::filesystem::path checkpoint_beside(std::filesystem::path trajectory);
 
-/// Writes PATH.partial, which takes the place of what is at PATH when commit() says so.
+/// Writer of PATH.partial, which commit() renames to PATH.
 class CheckpointWriter final : public Checkpoint {
  public:
   CheckpointWriter(std::filesystem::path path, CheckpointHeader const& header);
-  /// Uncommitted: removes what was written.
+  /// Removes the written file unless committed.
   ~CheckpointWriter() override;
   CheckpointWriter(CheckpointWriter const&) = delete;
   CheckpointWriter& operator=(CheckpointWriter const&) = delete;
@@ -43,7 +45,7 @@ class CheckpointWriter final : public Checkpoint {
   bool restores() const override { return false; }
   void number(std::string const& name, double& value) override;
   void field(std::string const& name, std::vector<double>& numbers) override;
-  /// The same by planes along z, one call after the other: `components` numbers of each site.
+  /// Stores a field in several calls, by planes along z: `components` numbers of each site.
   void planes(std::string const& name, std::int64_t components, std::vector<double> const& numbers);
 
   /// Waits until the file is on the disk, then gives it its name.
@@ -54,8 +56,8 @@ class CheckpointWriter final : public Checkpoint {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Reads a checkpoint. Each field is held against its checksum, and all else against that of the
-/// file, which those of earlier versions do not have.
+/// Reader of a checkpoint. Verifies each field by its checksum, and the rest by the checksum of the
+/// file, which files of earlier versions lack.
 class CheckpointReader final : public Checkpoint {
  public:
   explicit CheckpointReader(std::filesystem::path path);
@@ -69,7 +71,7 @@ class CheckpointReader final : public Checkpoint {
   bool restores() const override { return true; }
   void number(std::string const& name, double& value) override;
   void field(std::string const& name, std::vector<double>& numbers) override;
-  /// The numbers of these sites alone. Memory is taken for them, and for some planes.
+  /// Returns the numbers of only these sites. It needs memory for them, and for some planes.
   std::vector<double> field(std::string const& name, SiteBox const& box) const;
 
  private:
@@ -77,7 +79,7 @@ class CheckpointReader final : public Checkpoint {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Is this an HDF5 file that says it is a checkpoint?
+/// Returns true for an HDF5 file that is marked as a checkpoint.
 bool is_checkpoint(std::filesystem::path const& path);
 
 }  // namespace cayspin::inline v0_1::io

@@ -9,21 +9,20 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// A function of two numbers and the values of an expression's variables, for use in it. May throw
-/// std::runtime_error with one line.
+/// A function of two numbers and of the values of an expression's variables, to be called in it.
+/// May throw std::runtime_error with one line.
 struct ExpressionFunction {
   std::string name;
   std::function<double(double, double, double const*)> value;
 };
 
 /// A formula typed in a scene, such as "0.3 + 0.2*cos(pi*x)", compiled once and evaluated on the
-/// host. Knows the variables and functions it is given, the constants pi, _pi and _e, and
-/// muParser's functions and operators except assignment. One object must not be evaluated by two
-/// threads at a time.
+/// host. It may use the given variables and functions, the constants pi, _pi and _e, and muParser's
+/// functions and operators except assignment. Not thread-safe.
 class Expression {
  public:
-  /// Compiles. Throws std::invalid_argument with one line that says what is wrong and what is
-  /// known.
+  /// Compiles the text. Throws std::invalid_argument with one line that says what is wrong and
+  /// which names are known.
   Expression(std::string text, std::vector<std::string> variables,
              std::vector<ExpressionFunction> functions = {});
   Expression(Expression const& other);
@@ -31,13 +30,13 @@ class Expression {
   Expression& operator=(Expression other) noexcept;
   ~Expression();
 
-  /// The value at `values`, one per variable in the constructor's order.
-  /// Throws std::runtime_error with one line when the result is not finite, or a function throws.
+  /// Returns the value at `values`, one per variable in the constructor's order. Throws
+  /// std::runtime_error with one line when the result is not finite, or a function throws.
   double operator()(double const* values) const;
 
   std::string const& text() const;
 
-  /// True when the formula contains the variable.
+  /// Returns true if the formula contains the variable.
   bool depends_on(std::string_view variable) const;
 
  private:

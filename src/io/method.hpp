@@ -9,30 +9,30 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// A way in which `cayspin trade` tries a method.
+/// A variant of a method that `cayspin trade` tries.
 enum class Trial { plain, in_chart, sigma, single_precision, compensated_single_precision };
 
-/// What is known of a method of scenes. All methods stand in src/simulation/method_list.hpp.
+/// Properties of a method of scenes. src/simulation/method_list.hpp lists all methods.
 struct Method {
   std::string_view word;              ///< integrator.method
-  int order = 0;                      ///< of trajectories
-  std::optional<int> evaluations{};   ///< per step; none where it iterates or chooses its steps
+  int order = 0;                      ///< order of the trajectories
+  std::optional<int> evaluations{};   ///< per step; empty if it iterates or chooses its steps
   bool adaptive = false;              ///< chooses its steps by integrator.tolerance
   bool automatic = false;             ///< stands for another method, chosen by integrator.error
   bool keeps_length = true;           ///< |m| = 1 to round-off
-  bool compensated = false;           ///< takes integrator.compensated
-  bool stiff = false;                 ///< takes steps that exchange does not limit
+  bool compensated = false;           ///< accepts integrator.compensated
+  bool stiff = false;                 ///< exchange does not limit its steps
   bool differentiates_field = false;  ///< refuses fields that depend on t
-  bool corrects_energy = false;       ///< takes the isotropy energy on rigid bodies
+  bool corrects_energy = false;       ///< accepts the isotropy energy on rigid bodies
   bool by_colour = false;             ///< moves the spins of one colour of a checkerboard at a time
-  SetOf<Rotation> rotations{};        ///< none: a baseline
-  SetOf<Generator> generators{};      ///< none: a baseline
-  SetOf<Isotropy> isotropies{};       ///< but for energy
+  SetOf<Rotation> rotations{};        ///< empty: a baseline
+  SetOf<Generator> generators{};      ///< empty: a baseline
+  SetOf<Isotropy> isotropies{};       ///< without energy
   SetOf<Trial> trials{};
 
-  /// Outside the Lie group: takes neither generator, isotropy nor rotation.
+  /// Returns true for a method outside the Lie group, without generator, isotropy and rotation.
   constexpr bool is_baseline() const { return rotations.empty() && !automatic; }
-  /// Takes equal steps of integrator.dt.
+  /// Returns true for a method with constant steps of integrator.dt.
   constexpr bool has_equal_steps() const { return !adaptive && !automatic; }
   constexpr bool takes(Rotation rotation) const { return rotations.contains(rotation); }
   constexpr bool takes(Generator generator) const { return generators.contains(generator); }
@@ -40,7 +40,7 @@ struct Method {
     return isotropy == Isotropy::energy ? corrects_energy && kind == SystemKind::rigid_body
                                         : isotropies.contains(isotropy);
   }
-  /// The rotation of a scene that names none.
+  /// Returns the rotation used if a scene gives none.
   constexpr Rotation usual_rotation() const {
     return takes(Rotation::cayley) || rotations.empty() ? Rotation::cayley : Rotation::exponential;
   }
@@ -49,7 +49,7 @@ struct Method {
 /// All methods, in the order of the documentation.
 std::span<Method const* const> methods();
 
-/// The method of this word, or nullptr.
+/// Returns the method of this name, or nullptr.
 Method const* find_method(std::string_view word);
 
 }  // namespace cayspin::inline v0_1::io

@@ -8,13 +8,13 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// Lists each key of a scene that acts nowhere, or that does not go with another key, in one line,
-/// "FILE:LINE: key: message". `cayspin check` prints these, and `run` and `relax` warn of them.
-/// Opens the files with numbers of sites. Throws SceneError.
+/// Lists each key of a scene that has no effect, or that does not go with another key, in one line,
+/// "FILE:LINE: key: message". `cayspin check` prints these notes, `run` and `relax` print them as
+/// warnings. Opens the files with site-dependent numbers. Throws SceneError.
 std::vector<std::string> notes(Scene const& scene);
 
-/// The scene with lattice.occupied = { file = .. } of its start where that file has zero vectors
-/// and the scene does not say where spins are; otherwise the scene. Reads the file. Throws
+/// Returns the scene, with lattice.occupied = { file = .. } set to its start file if that file has
+/// zero vectors and the scene does not say which sites are occupied. Reads the file. Throws
 /// SceneError.
 Scene with_shape_of_start(Scene scene);
 

@@ -7,22 +7,22 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// Three numbers of every site in host memory: component c of site (i, j, k) lies
-/// k strides[0] + j strides[1] + i strides[2] + c strides[3] numbers after `data`.
+/// Three numbers of every site in host memory: component c of site (i, j, k) is k strides[0] + j
+/// strides[1] + i strides[2] + c strides[3] numbers after `data`.
 struct HostVectors {
   void* data = nullptr;
-  bool is_double = true;                ///< numbers are double, otherwise float
+  bool is_double = true;                ///< true: double; false: float
   std::array<std::int64_t, 3> shape{};  ///< nz, ny, nx
   std::array<std::int64_t, 4> strides{};
 };
 
-/// Fields that a program adds to its scene. No file has them. Both are called on the host, by the
-/// thread that steps; what they throw ends the run.
+/// Fields that a program adds to its scene; they are stored in no file. Both functions are called
+/// on the host, by the stepping thread; an exception from them ends the run.
 struct OwnField {
-  /// The uniform field at t, in place of field.applied; mu0 multiplies it, too.
+  /// Returns the uniform field at t, instead of field.applied; mu0 multiplies it, too.
   std::function<std::array<double, 3>(double t)> uniform;
-  /// Puts H of all sites into `field`. H must be linear in the spins and symmetric, as that of an
-  /// FFT demag is: E = -sum m.H / 2. Reduced units.
+  /// Writes H of all sites to `field`. H must be linear in the spins and symmetric, like that of an
+  /// FFT demag: E = -sum m.H / 2. Reduced units.
   std::function<void(HostVectors const& spins, HostVectors const& field, double t)> nonlocal;
 };
 

@@ -9,13 +9,13 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// Sites from `begin`, so many along each axis.
+/// A box of sites from `begin`, with a count along each axis.
 struct SiteBox {
   std::array<std::int64_t, 3> begin{0, 0, 0}, extent{0, 0, 0};
 };
 
-/// What a box has of `planes` planes along z, where the first of them has this number. The result
-/// counts from that one.
+/// Returns the part of a box in `planes` planes along z, starting at plane number `first`; z of the
+/// result counts from `first`.
 inline SiteBox in_planes(SiteBox const& box, std::int64_t first, std::int64_t planes) {
   SiteBox part = box;
   std::int64_t const begin = std::max(box.begin[2], first);
@@ -25,8 +25,8 @@ inline SiteBox in_planes(SiteBox const& box, std::int64_t first, std::int64_t pl
   return part;
 }
 
-/// Of numbers of consecutive planes of a lattice (nx, ny, nz), `of_site` of each site, appends
-/// those of a box.
+/// Appends those numbers of a box that are in consecutive planes of a lattice (nx, ny, nz);
+/// `of_site` numbers per site.
 template <class Number>
 void append_numbers_in(SiteBox const& box, std::array<std::int64_t, 3> const& shape,
                        std::int64_t of_site, std::vector<Number> const& of_planes,
@@ -40,7 +40,7 @@ void append_numbers_in(SiteBox const& box, std::array<std::int64_t, 3> const& sh
     }
 }
 
-/// Of the numbers of all sites of a lattice, `of_site` of each, those of a box.
+/// Returns the numbers of a box out of those of all sites of a lattice, `of_site` per site.
 template <class Number>
 std::vector<Number> numbers_in(SiteBox const& box, std::array<std::int64_t, 3> const& shape,
                                std::int64_t of_site, std::vector<Number> const& of_all) {
@@ -51,8 +51,8 @@ std::vector<Number> numbers_in(SiteBox const& box, std::array<std::int64_t, 3> c
   return chosen;
 }
 
-/// Reads numbers of all sites, `of_site` of each, by so many planes at once, and keeps those of a
-/// box: read(first plane, number of planes) returns a vector.
+/// Reads numbers of all sites, `of_site` per site, some planes at a time, and keeps those of a box:
+/// read(first plane, number of planes) returns a vector.
 template <class Read>
 std::vector<double> read_by_planes(SiteBox const& box, std::array<std::int64_t, 3> const& shape,
                                    std::int64_t of_site, std::int64_t at_once, Read const& read) {
@@ -66,11 +66,20 @@ std::vector<double> read_by_planes(SiteBox const& box, std::array<std::int64_t, 
   return chosen;
 }
 
-/// Planes along z of a lattice (nx, ny, nz) of which 16 MiB hold the numbers, and one at least.
+/// Returns how many planes along z of a lattice (nx, ny, nz) fit into 16 MiB, at least one.
 inline std::int64_t planes_to_read(std::array<std::int64_t, 3> const& shape,
                                    std::int64_t bytes_of_site) {
   constexpr std::int64_t at_once = 16 << 20;
   return std::max<std::int64_t>(1, at_once / (bytes_of_site * shape[0] * shape[1]));
+}
+
+/// Calls work(box) for all planes of a lattice, some planes at a time.
+template <class Work>
+void for_each_box_of_planes(std::array<std::int64_t, 3> const& shape, std::int64_t bytes_of_site,
+                            Work const& work) {
+  auto const at_once = planes_to_read(shape, bytes_of_site);
+  for (std::int64_t first = 0; first < shape[2]; first += at_once)
+    work(SiteBox{{0, 0, first}, {shape[0], shape[1], std::min(at_once, shape[2] - first)}});
 }
 
 }  // namespace cayspin::inline v0_1::io

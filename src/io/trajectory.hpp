@@ -2,6 +2,7 @@
 #pragma once
 
 #include "io/site_box.hpp"
+#include "io/stage.hpp"
 #include "io/units.hpp"
 
 #include <array>
@@ -13,49 +14,68 @@
 #include <string>
 #include <vector>
 
-/// The trajectory file of a run (HDF5, laid out as docs/reference/file_format.md says).
+/// The trajectory file of a run (HDF5; docs/reference/file_format.md has the layout).
 ///
-/// Every failure of the file system or of HDF5 throws std::runtime_error whose message is one line:
-/// the file, what could not be done, and why. HDF5 itself prints nothing. Not thread-safe.
-/// Where this is a program's first use of HDF5, HDF5 does not close files of others at exit.
+/// Every failure of the file system or of HDF5 throws std::runtime_error with one line: the file,
+/// the action that failed, and why. HDF5 itself prints nothing. Not thread-safe. If this is a
+/// program's first use of HDF5, HDF5 does not close files of others at exit.
 namespace cayspin::inline v0_1::io {
 
-/// What a trajectory file says about the run that writes it.
+/// Optional numbers of each sample besides its Scalars, in this order.
+struct MoreScalars {
+  std::int64_t regions = 0;             ///< their magnetizations, and then their energies
+  std::vector<std::string> terms = {};  ///< names of the terms, whose energies follow
+  bool shift = false;                   ///< cells by which the lattice has followed; also in frames
+  bool stage = false;                   ///< only in frames
+
+  std::size_t count() const {
+    return 4 * static_cast<std::size_t>(regions) + terms.size() + (shift ? 1 : 0) + (stage ? 1 : 0);
+  }
+};
+
+/// Optional numbers of a frame, as listed in MoreScalars.
+struct FrameNumbers {
+  std::int64_t shift = 0, stage = 0;
+};
+
+/// Metadata of the run that writes a trajectory file.
 struct TrajectoryHeader {
   std::string scene_text;      ///< the scene as run, command line overrides applied
-  std::string resolved_scene;  ///< of method "auto": with the method it chose; otherwise empty
+  std::string resolved_scene;  ///< for method "auto": with the chosen method; otherwise empty
   std::string cayspin_version;
   std::string git_commit;
   std::string kokkos_version;
   std::string space;                 ///< name of the execution space
   std::string precision = "double";  ///< of the run and of /spins: "single" or "double"
   int threads = 1;
-  /// nx, ny, nz. Of a crystal nz is cells times cell_sites: plane k * cell_sites + s has the sites
+  /// nx, ny, nz. For a crystal nz is cells times cell_sites: plane k * cell_sites + s has the sites
   /// s of the cells k.
   std::array<std::int64_t, 3> shape{1, 1, 1};
-  std::int64_t cell_sites = 1;  ///< sites of a cell
-  Units units;                  ///< of the times and energies in the file
-  bool relaxes = false;         ///< it ends with RunCost::relaxed
+  std::int64_t cell_sites = 1;           ///< sites of a cell
+  Units units;                           ///< of the times and energies in the file
+  bool relaxes = false;                  ///< it ends with RunCost::relaxed
+  MoreScalars more = {};                 ///< of samples; without the stage
+  std::optional<StageBegin> stage = {};  ///< of a run in stages: that of the first frame
 };
 
-/// How /spins lies in the file.
+/// Storage layout of /spins.
 struct TrajectoryStorage {
   int compression = 0;      ///< level of deflate with shuffle, 0 (none) to 9
   std::int64_t chunk = 0;   ///< planes along z in a chunk; 0: the frame, or as many as 256 MiB hold
-  std::int64_t frames = 0;  ///< that are planned; a kill loses none of them, or of 8180 chunks
-  bool sync = false;        ///< a power cut loses at most the frame that is being written
+  std::int64_t frames = 0;  ///< number planned: a kill loses none of these, or of 8180 chunks
+  bool sync = false;        ///< a power cut loses at most the frame being written
 };
 
-/// How a frame goes into a file: by pieces of so many planes along z; the last may have fewer.
+/// Division of a frame into pieces of so many planes along z for writing; the last may have fewer.
 struct FramePieces {
   std::int64_t planes = 0;
-  std::size_t bytes = 0;   ///< of room for a piece
-  std::size_t copied = 0;  ///< bytes that HDF5 takes for copies
+  std::size_t bytes = 0;   ///< memory for a piece
+  std::size_t copied = 0;  ///< bytes that HDF5 needs for copies
 };
 
-/// Pieces of whole chunks and at most so many planes (0: all), but of one chunk at least. For a
-/// lattice (nx, ny, nz) and numbers of 4 or 8 bytes. A frame of a crystal with several sites in a
-/// cell is one piece.
+/// Returns pieces of whole chunks with at most `most_planes` planes (0: all), but at least one
+/// chunk, for a lattice (nx, ny, nz) and numbers of 4 or 8 bytes. A frame of a crystal with several
+/// sites per cell is a single piece.
 FramePieces frame_pieces(std::array<std::int64_t, 3> const& shape, std::size_t number_bytes,
                          TrajectoryStorage const& storage, std::int64_t most_planes = 0,
                          std::int64_t cell_sites = 1);
@@ -74,7 +94,7 @@ struct Sample {
   Scalars scalars = {};
 };
 
-/// visit(name, member) for each of the scalars, by the names of their datasets.
+/// Calls visit(name, member) for each of the scalars, by the names of their datasets.
 template <class Visit>
 void for_each_scalar(Visit const& visit) {
   visit("energy", &Scalars::energy);
@@ -82,29 +102,29 @@ void for_each_scalar(Visit const& visit) {
   visit("magnetization", &Scalars::magnetization);
 }
 
-/// What `cayspin relax` came to.
+/// Result of `cayspin relax`.
 struct Relaxed {
   double torque = 0;       ///< the largest max |m x H| of its frames: reduced, or mu0 H in T
-  bool converged = false;  ///< each frame a minimum, to the bound on the torque
+  bool converged = false;  ///< true if each frame is a minimum, within the bound on the torque
 };
 
-/// What a run cost, known once it has ended.
+/// Cost of a run, known at its end.
 struct RunCost {
   std::int64_t evaluations = 0;  ///< evaluations of the generator over all sites
   double wall_seconds = 0;       ///< the whole run
-  double step_seconds = 0;       ///< stepping alone: no observers, no writing
+  double step_seconds = 0;       ///< stepping without observers and writing
   std::optional<Relaxed> relaxed = {};
 };
 
-/// Writes one run. The file is readable after every write_frame, also by a reader that finds the
-/// writer killed: it then holds whole frames and `complete` = 0. Where TrajectoryStorage::sync says
-/// so, this holds after a power cut, too.
+/// Writer of one run. The file is readable after every write_frame, even if the writer is killed:
+/// it then holds whole frames and `complete` = 0. With TrajectoryStorage::sync this also holds
+/// after a power cut.
 class TrajectoryFile {
  public:
   /// Creates the file with everything but frames. An existing file is an error unless `overwrite`;
-  /// it is then replaced only once the new one stands beside it (as PATH.partial) with its header.
-  /// A failed creation changes nothing that was there and leaves no new file. `positions` of the
-  /// sites, three numbers each in the order of the file, or none.
+  /// it is then replaced only once the new one exists (as PATH.partial) with its header. A failed
+  /// creation changes no existing file and leaves no new one. `positions` of the sites: three
+  /// numbers each in the order of the file, or empty.
   TrajectoryFile(std::filesystem::path path, TrajectoryHeader const& header, bool overwrite,
                  TrajectoryStorage const& storage = {}, std::vector<double> const& positions = {});
 
@@ -114,25 +134,27 @@ class TrajectoryFile {
   TrajectoryFile& operator=(TrajectoryFile&&) noexcept;
 
   /// Appends one frame and its scalars, and flushes. `spins` is packed as (nz, ny, nx, 3), in the
-  /// precision of the header; the other one throws std::logic_error.
+  /// precision of the header; the other precision throws std::logic_error.
   void write_frame(std::int64_t step, double time, Scalars const& scalars, float const* spins);
   void write_frame(std::int64_t step, double time, Scalars const& scalars, double const* spins);
 
-  /// The same by planes along z, in the precision of the header: write_planes() for some after the
-  /// other, so many at once as frame_pieces() says and at the end the rest, and then end_frame().
-  /// `spins` has the room of a piece, which is used. Other numbers of planes throw
+  /// Appends a frame in pieces along z, in the precision of the header: call write_planes() with as
+  /// many planes at a time as frame_pieces() says and then with the rest, and then end_frame().
+  /// `spins` has the size of a piece and is overwritten. Other numbers of planes throw
   /// std::logic_error.
   void write_planes(std::int64_t planes, std::byte* spins);
-  void end_frame(std::int64_t step, double time, Scalars const& scalars);
+  void end_frame(std::int64_t step, double time, Scalars const& scalars,
+                 FrameNumbers const& numbers = {});
 
   /// Appends one sample to /scalars; samples reach the file with the next frame, or within about a
-  /// second of calls.
-  void write_scalars(std::int64_t step, double time, Scalars const& scalars);
+  /// second of calls. A wrong count of `more` throws std::logic_error.
+  void write_scalars(std::int64_t step, double time, Scalars const& scalars,
+                     std::vector<double> const& more = {});
 
-  /// Ends a run that went as planned: `complete` = 1, written after all else is in the file.
+  /// Ends a run that went as planned: sets `complete` = 1 after everything else is in the file.
   void finish(RunCost const& cost);
 
-  /// Ends a run that was interrupted or failed: the same, but `complete` stays 0.
+  /// Ends a run that was interrupted or failed: like finish(), but `complete` stays 0.
   void close(RunCost const& cost);
 
   std::int64_t frames() const;  ///< frames written so far
@@ -143,7 +165,7 @@ class TrajectoryFile {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// What a trajectory file holds, without its spins.
+/// Contents of a trajectory file, without its spins.
 struct TrajectoryInfo {
   std::filesystem::path path;
   int format = 0;
@@ -154,44 +176,48 @@ struct TrajectoryInfo {
   std::vector<std::int64_t> frame_steps;
   std::vector<double> frame_times;
   std::vector<Scalars> frame_scalars;
-  /// Of crystals with several sites in a cell, cell_sites entries for each frame: the mean of m
-  /// over the sites s that have a spin; zero where none has.
+  /// For crystals with several sites per cell, cell_sites entries for each frame: the mean of m
+  /// over the occupied sites s; zero if none is occupied.
   std::vector<std::array<double, 3>> frame_sublattices;
+  std::vector<std::int64_t> frame_shifts;  ///< of lattices that follow
+  std::vector<std::int64_t> frame_stages;  ///< of a run in stages
   std::int64_t samples = 0;                ///< length of /scalars
-  std::optional<Sample> last_sample = {};  ///< where the run is not complete: the last of /scalars
+  /// The last of /scalars, if the run is not complete or the samples have more than Scalars.
+  std::optional<Sample> last_sample = {};
+  std::vector<double> more_of_last_sample = {};  ///< as listed in header.more
 };
 
 /// Completes a file of TrajectoryStorage::sync after a kill or a power cut, for other readers than
-/// those below, which do so themselves. Leaves any other file as it is.
+/// those below, which do so themselves. Leaves any other file unchanged.
 void complete_file(std::filesystem::path const& path);
 
 /// Reads all but the spins of a trajectory file.
 TrajectoryInfo read_info(std::filesystem::path const& path);
 
-/// Reads a file that another process writes: this takes no lock and writes nothing, so the
-/// writer does not notice. Samples that are half written do not count. What cannot be read at one
-/// moment throws std::runtime_error; a moment later it may be whole.
+/// Reads a file that another process is writing. Takes no lock and writes nothing, so the writer
+/// does not notice. Ignores half-written samples. Throws std::runtime_error for an inconsistent
+/// state; a later call may succeed.
 TrajectoryInfo read_info_while_written(std::filesystem::path const& path);
 
-/// Does a process have the file open for writing? Unknown where files are not locked.
+/// Returns true if a process has the file open for writing. Unknown if files are not locked.
 std::optional<bool> is_being_written(std::filesystem::path const& path);
 
-/// Whatever the file has, where its sites fill the planes of the lattice.
+/// Accepts any number of sites per cell that the file has, if they fill the planes of the lattice.
 inline constexpr std::int64_t any_cell_sites = 0;
 
 /// Reads dataset /spins of any HDF5 file for a lattice (nx, ny, nz): (nz, ny, nx, 3), or the last
-/// of (frame, nz, ny, nx, 3), of a trajectory file the last whole one. Of a crystal also
-/// the last of (frame, cell_sites, nz / cell_sites, ny, nx, 3). Float or double, bits are kept; the
+/// of (frame, nz, ny, nx, 3), or the last whole frame of a trajectory file. For a crystal also the
+/// last of (frame, cell_sites, nz / cell_sites, ny, nx, 3). Float or double, bits are kept; the
 /// result is packed as (nz, ny, nx, 3), in the order of TrajectoryHeader::shape.
 std::vector<double> read_spins(std::filesystem::path const& path,
                                std::array<std::int64_t, 3> const& shape);
 
-/// The same for the sites of a box. Memory is taken for them, and for a chunk or some planes.
+/// Reads the spins of the sites of a box. It needs memory for them, and for a chunk or some planes.
 std::vector<double> read_spins(std::filesystem::path const& path,
                                std::array<std::int64_t, 3> const& shape, SiteBox const& box,
                                std::int64_t cell_sites = any_cell_sites);
 
-/// The same for frame number `frame`, counted from 0, of a file with frames.
+/// Reads the spins of frame number `frame`, counted from 0, of a file with frames.
 std::vector<double> read_spins(std::filesystem::path const& path,
                                std::array<std::int64_t, 3> const& shape, std::int64_t frame,
                                std::int64_t cell_sites = any_cell_sites);

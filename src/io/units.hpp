@@ -3,7 +3,7 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// What one reduced unit is in the units that a scene is typed in and its files are written in.
+/// The reduced units in the units that a scene is typed in and its files are written in.
 struct Units {
   bool si = false;    ///< units = "SI"; otherwise all are 1
   double time = 1;    ///< s

@@ -6,13 +6,13 @@
 #include <span>
 #include <string_view>
 
-/// The words a scene may use, but for those of methods, which io/method.hpp has.
+/// The named values of a scene, except those of methods, which are in io/method.hpp.
 namespace cayspin::inline v0_1::io {
 
 enum class SystemKind { llg, rigid_body };
 enum class BoundaryKind { open, periodic };
 
-/// `standard` is the scene's word "default": the system's own A, unchanged.
+/// `standard` is "default" in a scene: the system's own A, unchanged.
 enum class Generator { standard, orthogonal, tangent };
 enum class Isotropy {
   zero,
@@ -24,14 +24,14 @@ enum class Isotropy {
 };
 enum class Rotation { cayley, exponential };
 
-/// One word of a scene.
+/// A named value of a scene.
 template <class Value>
 struct Word {
   std::string_view name;
   Value value;
 };
 
-/// All words of a kind, in the order of the documentation. Specialised for every enum above.
+/// All names of a kind, in the order of the documentation. Specialised for every enum above.
 template <class Value>
 std::span<Word<Value> const> words();
 
@@ -86,14 +86,14 @@ inline std::span<Word<Rotation> const> words() {
   return all;
 }
 
-/// The scene's spelling of a value.
+/// Returns the name of a value in a scene.
 template <class Value>
 std::string_view to_string(Value value) {
   auto const table = words<Value>();
   return std::ranges::find(table, value, &Word<Value>::value)->name;
 }
 
-/// The table entry spelled `name`, or nullptr.
+/// Returns the table entry named `name`, or nullptr.
 template <class Value>
 Word<Value> const* find_word(std::string_view name) {
   auto const table = words<Value>();
@@ -101,7 +101,7 @@ Word<Value> const* find_word(std::string_view name) {
   return found == table.end() ? nullptr : &*found;
 }
 
-/// Some values of an enum.
+/// A set of values of an enum.
 template <class Value>
 class SetOf {
  public:

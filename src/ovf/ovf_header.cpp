@@ -23,7 +23,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(blanks) + 1 - begin);
 }
 
-/// The records of a header by label, with messages that name the label.
+/// Records of a header by label, with messages that name the label.
 class Records {
  public:
   explicit Records(std::filesystem::path const& path) : path_(path) {}
@@ -80,10 +80,10 @@ class Records {
 
   std::filesystem::path const& path_;
   std::map<std::string, std::string> values_;
-  std::set<std::string> repeated_;  // with other values
+  std::set<std::string> repeated_;  // with different values
 };
 
-/// The next line, or nothing at the end of the file.
+/// Returns the next line, or nothing at the end of the file.
 std::optional<std::string> next_line(std::istream& stream, std::filesystem::path const& path) {
   std::string line;
   for (int c = stream.get(); c != std::istream::traits_type::eof(); c = stream.get()) {
@@ -95,16 +95,15 @@ std::optional<std::string> next_line(std::istream& stream, std::filesystem::path
   return line;
 }
 
-void require_first_line(std::string const& line, std::filesystem::path const& path) {
+/// Returns the version of the format, 1 or 2.
+int version_of(std::string const& line, std::filesystem::path const& path) {
   auto const first = squeezed(line);
-  if (first == "#oommfovf2.0") return;
-  constexpr std::string_view accepted = "OVF 2.0 (# OOMMF OVF 2.0)";
-  // Such as "# OOMMF: irregular mesh v1.0"; of 0.99, too.
-  bool const is_mesh =
-      first.starts_with("#oommf:rectangularmeshv") || first.starts_with("#oommf:irregularmeshv");
-  auto const version = std::string_view(first).substr(first.find_last_of('v') + 1);
-  if (is_mesh && (version.starts_with("0.") || version.starts_with("1.")))
-    refuse_ovf(path, fmt::format("it is OVF 1.0; accepted: {}", accepted));
+  if (first == "#oommfovf2.0") return 2;
+  if (first == "#oommf:rectangularmeshv1.0") return 1;
+  if (first.starts_with("#oommf:irregularmeshv"))
+    refuse_ovf(path, "its mesh is irregular; accepted: a rectangular mesh");
+  constexpr std::string_view accepted =
+      "OVF 2.0 (# OOMMF OVF 2.0) or OVF 1.0 (# OOMMF: rectangular mesh v1.0)";
   if (first.starts_with("#oommf"))
     refuse_ovf(path, fmt::format("its first line is \"{}\"; accepted: {}",
                                  trimmed(line).substr(0, 40), accepted));
@@ -114,8 +113,6 @@ void require_first_line(std::string const& line, std::filesystem::path const& pa
 OvfMesh mesh_of(Records const& records) {
   if (auto const type = records.required("meshtype"); squeezed(type) != "rectangular")
     records.refuse("meshtype", type, "rectangular");
-  if (auto const dimension = records.required("valuedim"); dimension != "3")
-    records.refuse("valuedim", dimension, "3");
   OvfMesh mesh;
   if (auto const unit = records.find("meshunit")) mesh.unit = *unit;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -125,6 +122,17 @@ OvfMesh mesh_of(Records const& records) {
     mesh.base[axis] = records.number(label("base"), mesh.step[axis] / 2);
   }
   return mesh;
+}
+
+void read_values_of(Records const& records, OvfHeader& header) {
+  if (header.version == 1) {
+    header.field.value_unit = records.find("valueunit").value_or("1");
+    header.multiplier = records.number("valuemultiplier", 1);
+    return;
+  }
+  header.components = records.count("valuedim");
+  auto const units = records.find("valueunits").value_or("1");
+  header.field.value_unit = units.substr(0, units.find_first_of(blanks));
 }
 
 std::optional<OvfFormat> format_of(std::string const& block) {
@@ -177,10 +185,9 @@ OvfLine split_line(std::string_view line) {
 }
 
 OvfHeader read_header(std::istream& stream, std::filesystem::path const& path) {
-  auto const first = next_line(stream, path);
-  require_first_line(first.value_or(""), path);
-  Records records(path);
   OvfHeader header;
+  header.version = version_of(next_line(stream, path).value_or(""), path);
+  Records records(path);
   while (auto const text = next_line(stream, path)) {
     if (!trimmed(*text).empty() && !trimmed(*text).starts_with('#'))
       refuse_ovf(path, "a line of its header does not begin with #");
@@ -197,8 +204,7 @@ OvfHeader read_header(std::istream& stream, std::filesystem::path const& path) {
         records.refuse("segmentcount", *records.find("segmentcount"), "1");
       header.field.title = records.find("title").value_or("");
       header.field.mesh = mesh_of(records);
-      auto const units = records.find("valueunits").value_or("1");
-      header.field.value_unit = units.substr(0, units.find_first_of(blanks));
+      read_values_of(records, header);
       return header;
     }
   }

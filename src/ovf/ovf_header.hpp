@@ -9,31 +9,35 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// The first datum of a binary block, by which readers know the byte order.
+/// The first datum of a binary block, which identifies the byte order: big endian in OVF 1.0,
+/// little endian in OVF 2.0.
 inline constexpr float check_value_4 = 1234567.0F;
 inline constexpr double check_value_8 = 123456789012345.0;
 
-/// "Text", "Binary 4", "Binary 8": as the lines around the values spell it.
+/// Returns "Text", "Binary 4" or "Binary 8", as in the lines around the values.
 std::string_view representation(OvfFormat format);
 
 struct OvfHeader {
   OvfField field;  ///< without its values
-  OvfFormat format;
+  OvfFormat format = OvfFormat::text;
+  int version = 2;
+  std::int64_t components = 3;
+  double multiplier = 1;  ///< of the values; OVF 1.0
 };
 
-/// A line of a header without its '#': "label: value". The label is in small letters without
-/// blanks; the value ends at a comment.
+/// A line of a header without its '#': "label: value". The label is in lower case without blanks;
+/// the value ends at a comment.
 struct OvfLine {
   std::string label, value;
 };
 
-/// Empty for a comment and for a line without a label.
+/// Returns an empty line for a comment and for a line without a label.
 OvfLine split_line(std::string_view line);
 
-/// Lower case, blanks removed.
+/// Returns the text in lower case without blanks.
 std::string squeezed(std::string_view text);
 
-/// Reads up to the line `# Begin: Data ...`, after which the values begin.
+/// Reads up to the line `# Begin: Data ...`, after which the values start.
 OvfHeader read_header(std::istream& stream, std::filesystem::path const& path);
 
 /// Throws std::runtime_error("PATH: cannot read the OVF file: REASON").

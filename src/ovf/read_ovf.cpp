@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cerrno>
 #include <charconv>
@@ -16,7 +17,7 @@
 namespace cayspin::inline v0_1::io {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "OVF 2.0 is little endian");
+static_assert(std::endian::native == std::endian::little);
 
 namespace fs = std::filesystem;
 
@@ -41,7 +42,14 @@ std::uint64_t bytes_left(std::istream& stream) {
   return static_cast<std::uint64_t>(end - here);
 }
 
-/// The values of a file whose header has been read.
+void require_components(OvfHeader const& header, fs::path const& path, std::int64_t components) {
+  if (header.components == components) return;
+  if (header.version == 1)
+    refuse_ovf(path, "OVF 1.0 has three values in a node; accepted: OVF 2.0 with valuedim 1");
+  refuse_ovf(path, fmt::format("valuedim is \"{}\"; accepted: {}", header.components, components));
+}
+
+/// Reader of the values that follow the header.
 class OvfValues {
  public:
   OvfValues(std::istream& stream, fs::path const& path, OvfHeader const& header)
@@ -60,24 +68,27 @@ class OvfValues {
         read_binary(check_value_8);
     }
     require_one_segment();
+    if (header_.multiplier != 1)
+      for (double& value : values_) value *= header_.multiplier;
     return std::move(values_);
   }
 
  private:
-  /// Before anything is allocated for nodes that the file cannot hold.
+  /// Checks the file's size before memory for nodes is allocated.
   void require_room() {
     auto const left = bytes_left(stream_);
-    auto const least = header_.format == OvfFormat::binary8   ? 3 * sizeof(double)
-                       : header_.format == OvfFormat::binary4 ? 3 * sizeof(float)
-                                                              : 3 * sizeof "0";
-    auto room = (left + 1) / least;
+    auto const components = static_cast<std::uint64_t>(header_.components);
+    auto const least = header_.format == OvfFormat::binary8   ? sizeof(double)
+                       : header_.format == OvfFormat::binary4 ? sizeof(float)
+                                                              : sizeof "0";
+    auto room = (left + 1) / (components * least);
     for (auto const count : header_.field.mesh.nodes) {
       auto const nodes = static_cast<std::uint64_t>(count);
       if (nodes > room) truncated();
       room /= nodes;
     }
     auto const& [nx, ny, nz] = header_.field.mesh.nodes;
-    count_ = 3 * static_cast<std::size_t>(nx * ny * nz);
+    count_ = components * static_cast<std::size_t>(nx * ny * nz);
     values_.reserve(count_);
   }
 
@@ -86,8 +97,9 @@ class OvfValues {
     Real first{};
     read_block(&first, 1);
     if (first != check)
-      refuse_ovf(path_, fmt::format("its check value is {:.9g}; accepted: {:.15g}, little endian",
-                                    static_cast<double>(first), static_cast<double>(check)));
+      refuse_ovf(path_, fmt::format("its check value is {:.9g}; accepted: {:.15g}, {} endian",
+                                    static_cast<double>(first), static_cast<double>(check),
+                                    header_.version == 1 ? "big" : "little"));
     std::vector<Real> block(std::min<std::size_t>(count_, 65536));
     while (values_.size() < count_) {
       auto const size = std::min(block.size(), count_ - values_.size());
@@ -107,6 +119,14 @@ class OvfValues {
     auto const bytes = static_cast<std::streamsize>(count * sizeof(Real));
     stream_.read(reinterpret_cast<char*>(values), bytes);
     if (stream_.gcount() != bytes) truncated();
+    if (header_.version == 1) std::for_each_n(values, count, reverse_bytes<Real>);
+  }
+
+  template <class Real>
+  static void reverse_bytes(Real& value) {
+    auto bytes = std::bit_cast<std::array<char, sizeof(Real)>>(value);
+    std::ranges::reverse(bytes);
+    value = std::bit_cast<Real>(bytes);
   }
 
   void read_text() {
@@ -124,7 +144,7 @@ class OvfValues {
     return std::string_view(" \t\r\v\f").find(c) != std::string::npos;
   }
 
-  /// A comment begins with ##, or with # after a blank: 1.#QNAN is none.
+  /// A comment starts with ##, or with # after a blank: 1.#QNAN is not a comment.
   static std::string_view without_comment(std::string_view line) {
     for (auto at = line.find('#'); at != line.npos; at = line.find('#', at + 1))
       if (at == 0 || is_blank(line[at - 1]) || line.substr(at).starts_with("##"))
@@ -132,8 +152,8 @@ class OvfValues {
     return line;
   }
 
-  /// Of a number that a double cannot hold: 0 or an infinity. With a decimal point, whatever the
-  /// locale of the program has.
+  /// Returns 0 or an infinity for a number that a double cannot hold. Expects a decimal point in
+  /// any locale.
   static double limit(char const* number) {
     static auto const classic = ::newlocale(LC_ALL_MASK, "C", nullptr);
     return ::strtod_l(number, nullptr, classic);
@@ -146,7 +166,8 @@ class OvfValues {
       while (begin != end && is_blank(*begin)) ++begin;
       if (begin == end) return;
       if (values_.size() == count_)
-        refuse_ovf(path_, fmt::format("it has more values than its {} nodes", count_ / 3));
+        refuse_ovf(path_, fmt::format("it has more values than its {} nodes",
+                                      count_ / static_cast<std::size_t>(header_.components)));
       double value = 0;
       auto const [stop, error] = std::from_chars(begin + (*begin == '+' ? 1 : 0), end, value);
       bool const whole = stop == end || is_blank(*stop);
@@ -158,7 +179,7 @@ class OvfValues {
     }
   }
 
-  /// Nothing but the end of the segment and comments follow the values.
+  /// Requires that only the end of the segment and comments follow the values.
   void require_one_segment() {
     for (std::string text; std::getline(stream_, text);) {
       auto const line = split_line(text);
@@ -181,9 +202,8 @@ class OvfValues {
 
   [[noreturn]] void truncated() const {
     auto const& [nx, ny, nz] = header_.field.mesh.nodes;
-    refuse_ovf(path_, fmt::format("it is truncated: its header says {} x {} x {} nodes of three "
-                                  "values",
-                                  nx, ny, nz));
+    refuse_ovf(path_, fmt::format("it is truncated: its header says {} x {} x {} nodes of {}", nx,
+                                  ny, nz, header_.components == 1 ? "one value" : "three values"));
   }
 
   std::istream& stream_;
@@ -207,14 +227,22 @@ bool is_ovf(fs::path const& path) {
   return squeezed(begin).starts_with("#oommf");
 }
 
-OvfMesh read_ovf_mesh(fs::path const& path) {
+OvfMesh read_ovf_mesh(fs::path const& path, std::int64_t components) {
   auto stream = open(path);
-  return read_header(stream, path).field.mesh;
+  auto const header = read_header(stream, path);
+  require_components(header, path, components);
+  return header.field.mesh;
 }
 
-OvfField read_ovf(fs::path const& path) {
+std::int64_t ovf_components(fs::path const& path) {
+  auto stream = open(path);
+  return read_header(stream, path).components;
+}
+
+OvfField read_ovf(fs::path const& path, std::int64_t components) {
   auto stream = open(path);
   auto header = read_header(stream, path);
+  require_components(header, path, components);
   header.field.values = OvfValues(stream, path, header).read();
   return std::move(header.field);
 }

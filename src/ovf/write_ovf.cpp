@@ -83,7 +83,7 @@ void write_binary(std::ostream& stream, std::vector<double> const& values, Real 
   stream << '\n';
 }
 
-// Shortest digits that give the double back.
+// Writes the fewest digits that restore the double.
 void write_text(std::ostream& stream, std::vector<double> const& values) {
   fmt::memory_buffer lines;
   for (std::size_t i = 0; i + 2 < values.size(); i += 3) {

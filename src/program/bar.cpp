@@ -12,7 +12,7 @@
 namespace cayspin::program {
 namespace {
 
-// Zeros where no stream is a terminal.
+// Returns zeros if no stream is a terminal.
 winsize terminal_size() {
   winsize size{};
   for (int const stream : {STDOUT_FILENO, STDERR_FILENO})
@@ -49,7 +49,7 @@ int terminal_lines() {
 std::string fitted(std::string line) {
   auto const columns = terminal_size().ws_col;
   std::size_t const width = columns > 0 ? columns : 80;
-  // Columns, not bytes: continuation bytes of UTF-8 take none.
+  // Counts columns, not bytes: continuation bytes of UTF-8 take none.
   std::size_t column = 0;
   for (std::size_t byte = 0; byte < line.size(); ++byte) {
     if ((static_cast<unsigned char>(line[byte]) & 0xC0U) == 0x80U) continue;

@@ -6,19 +6,19 @@
 
 namespace cayspin::program {
 
-/// Is it one that understands what moves the cursor?
+/// Returns true for a terminal that understands cursor movements.
 bool is_terminal(std::FILE* stream);
 
-/// Has the locale block characters?
+/// Returns true if the locale has block characters.
 bool has_blocks();
 
-/// "[#####...................]"
+/// Returns "[#####...................]".
 std::string bar(double share);
 
-/// How many lines the terminal shows.
+/// Returns how many lines the terminal shows.
 int terminal_lines();
 
-/// A line, cut where it would wrap on the terminal.
+/// Returns a line, cut where it would wrap on the terminal.
 std::string fitted(std::string line);
 
 }  // namespace cayspin::program

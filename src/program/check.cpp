@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "check_text.hpp"
 #include "command.hpp"
 #include "describe.hpp"
 #include "io/notes.hpp"
 #include "io/relax.hpp"
-#include "simulation/dear_method.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
+#include "simulation/multirate_method.hpp"
 #include "simulation/parts.hpp"
 #include "simulation/plan.hpp"
 #include "simulation/run_files.hpp"
@@ -16,6 +17,7 @@
 #include "trade/resolved.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -31,13 +33,11 @@ struct CheckOptions : SceneOptions {
   bool json = false;
 };
 
-bool has_stable_dt(Plan const& plan) { return std::isfinite(plan.stable_dt); }
-
 double bytes_per_site(Plan const& plan) {
   return static_cast<double>(plan.memory.simulation()) / static_cast<double>(plan.lattice.sites());
 }
 
-/// What a step repeats on the ranks that are asked for.
+/// Returns the work that a step repeats on the requested ranks.
 std::optional<double> repeated_on(CheckOptions const& options, io::Scene const& scene,
                                   Plan const& plan) {
   if (!options.ranks) return std::nullopt;
@@ -46,16 +46,6 @@ std::optional<double> repeated_on(CheckOptions const& options, io::Scene const& 
                                  *options.ranks));
   auto const parts = read_parts(*options.ranks, plan.lattice, depth_of_parts(scene, plan));
   return repeated_share(plan.lattice, plan.variant.ghosts, parts);
-}
-
-int order(io::Scene const& scene, Variant const& variant) {
-  return has_dear_field(scene) ? order_around_dear(scene, variant) : variant.order;
-}
-
-// Two passes through the substeps of the method.
-std::optional<std::int64_t> evaluations(io::Scene const& scene, Variant const& variant) {
-  if (!variant.evaluations || !has_dear_field(scene)) return variant.evaluations;
-  return 2 * scene.integrator.substeps * *variant.evaluations;
 }
 
 std::string memory_json(Plan const& plan) {
@@ -67,7 +57,7 @@ std::string memory_json(Plan const& plan) {
       memory.files, memory.total());
 }
 
-// Nothing in reduced units.
+// Empty in reduced units.
 std::string units_json(io::Units const& units) {
   if (!units.si) return {};
   return fmt::format(
@@ -76,13 +66,11 @@ std::string units_json(io::Units const& units) {
       units.time, units.length, units.field, units.energy);
 }
 
-void print(std::string_view name, std::string_view text) { fmt::print("{:<11} {}\n", name, text); }
-
 void print_notes(io::Scene const& scene) {
   for (auto const& note : io::notes(scene)) print("note", note);
 }
 
-// Nothing without notes.
+// Empty without notes.
 std::string notes_json(io::Scene const& scene) {
   auto const all = io::notes(scene);
   return all.empty() ? std::string()
@@ -102,7 +90,7 @@ void print_json(io::Scene const& scene, Plan const& plan, Precision precision,
       "{{\"stable_dt\": {}, \"dt\": {}, \"steps\": {}, {}, \"evaluations_per_step\": {}, "
       "\"order\": {}, \"frames\": {}, \"file_bytes\": {:.0f}, \"method\": \"{}\", "
       "\"precision\": \"{}\"{}",
-      stable_in(units.time), plan.times.dt * units.time, plan.times.steps, memory_json(plan),
+      stable_in(units.time), plan.times.dt * units.time, scene.integrator.steps, memory_json(plan),
       per_step ? fmt::format("{}", *per_step) : "null", order(scene, plan.variant), plan.frames,
       plan.file_bytes, plan.variant.method->word, to_string(precision), units_json(units));
   if (units.si)
@@ -128,40 +116,6 @@ void print_json_to_relax(io::Scene const& scene, Plan const& plan, Precision pre
       units_json(scene.units), notes_json(scene));
 }
 
-// In SI with the reduced number after it.
-std::string both(io::Units const& units, double time, int digits) {
-  auto const text = time_text(units, time, digits);
-  return units.si ? fmt::format("{} ({:.{}g})", text, time, digits) : text;
-}
-
-std::string evaluations_text(io::Scene const& scene, Variant const& variant) {
-  if (has_dear_field(scene))
-    return fmt::format("1 evaluation of the dear field and {} of the others",
-                       *evaluations(scene, variant));
-  if (variant.method->adaptive) return "as many evaluations of the field as the tolerance takes";
-  if (!variant.evaluations) return "as many evaluations of the field as the iteration takes";
-  if (variant.evaluations == 1) return "1 evaluation of the field";
-  return fmt::format("{} evaluations of the field", *variant.evaluations);
-}
-
-std::string stability_text(io::Units const& units, Plan const& plan) {
-  if (!has_stable_dt(plan)) return "no limit known beforehand";
-  if (plan.stable_dt == 0) return "none: at this damping the method amplifies at every dt";
-  return fmt::format("{}; dt is {:.3g} of it{}", both(units, plan.stable_dt, 6),
-                     std::min(plan.times.dt / plan.stable_dt, std::numeric_limits<double>::max()),
-                     plan.times.dt > plan.stable_dt ? ", which is too large" : "");
-}
-
-std::string noise_text(io::Scene const& scene, Plan const& plan) {
-  double const of_moments = io::largest_noise(scene);
-  auto const per_step =
-      of_moments * scene.system.damping * scene.thermal->temperature * plan.times.dt;
-  return fmt::format(
-      "{}damping x temperature x dt = {:.3g}, turns a spin by {:.3g} radians a step{}",
-      of_moments == 1 ? "" : "gyromagnetic / moment x ", per_step, plan.noise_turn,
-      plan.noise_turn > Plan::most_noise ? ", which is too large" : "");
-}
-
 std::string output_text(io::Scene const& scene, Plan const& plan) {
   auto const& output = scene.output;
   auto text =
@@ -170,21 +124,13 @@ std::string output_text(io::Scene const& scene, Plan const& plan) {
   if (output.compression > 0) text += fmt::format(", compressed at level {}", output.compression);
   if (output.xdmf) text += ", described by an XDMF file";
   if (output.table) text += ", samples also in a text table";
+  if (output.regions) text += ", samples of each region";
+  if (output.terms) text += ", energies of each term";
   if (output.sync) text += ", each frame safe from power cuts";
   return text;
 }
 
-// Of what depends on t.
-std::string features_text(io::Scene const& scene, TimeFeatures const& features) {
-  std::string text;
-  if (auto const& shortest = features.shortest)
-    text = fmt::format("the shortest is {} long, of {} at t = {}; ",
-                       time_text(scene.units, shortest->length, 3), shortest->key,
-                       time_text(scene.units, shortest->time, 6));
-  return text + counted(features.jumps, "jump");
-}
-
-// Every number of the start and of the inertia, where that is a matter of seconds.
+// Checks every number of the start and of the inertia, if that takes only seconds.
 constexpr std::int64_t most_sites_checked = 10'000'000;
 
 bool is_start_checked(Plan const& plan) {
@@ -221,21 +167,7 @@ void print_memory(Plan const& plan, Precision precision, char const* work) {
 void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
                 std::optional<double> const& repeated) {
   for (auto const& [name, text] : describe(scene)) print(name, text);
-  print("method", fmt::format("{}, order {}, {} per step", describe_method(scene),
-                              order(scene, plan.variant), evaluations_text(scene, plan.variant)));
-  print("time", fmt::format("{} of {}, to t = {}", counted(plan.times.steps, "step"),
-                            both(scene.units, plan.times.dt, 9),
-                            both(scene.units, plan.times.at(plan.times.steps), 9)));
-  print("stable dt", stability_text(scene.units, plan));
-  if (scene.system.kind == io::SystemKind::llg && io::depends_on_time(scene.field))
-    print("features", features_text(scene, *plan.features));
-  if (is_thermal(scene)) print("noise", noise_text(scene, plan));
-  auto const updates =
-      static_cast<double>(plan.times.steps) * static_cast<double>(plan.lattice.sites());
-  auto cost = evaluations_text(scene, plan.variant);
-  if (!plan.variant.method->adaptive)
-    cost += fmt::format(" per step, {:.4g} spin updates in all", updates);
-  print("cost", cost);
+  print_steps(scene, plan);
   print_memory(plan, precision, "method");
   print_notes(scene);
   if (repeated)
@@ -246,7 +178,7 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
   print_output(scene, plan);
 }
 
-// The field itself decides on the rest when the search begins.
+// The remaining choices depend on the field, and are made when the search starts.
 std::string search_text(io::Scene const& scene) {
   return fmt::format("L-BFGS {}, to max |m x H| < --torque{}",
                      scene.field.exchange ? "preconditioned by exchange" : "without exchange",
@@ -272,11 +204,56 @@ int check_to_relax(CheckOptions const& options, io::Scene const& scene) {
   return Status::done;
 }
 
+int check_in_stages(CheckOptions const& options, io::Scene const& scene) {
+  if (options.ranks)
+    throw UsageError(
+        fmt::format("--ranks {}: not told of a run in stages; accepted: a scene "
+                    "without [[stage]]",
+                    *options.ranks));
+  auto const planned = plan_stages(scene, options.precision);
+  auto const& largest = *std::ranges::max_element(
+      planned, {}, [](auto const& one) { return one.plan.memory.total(); });
+  auto const start = is_start_checked(largest.plan) ? check_start(scene) : std::vector<double>();
+  if (options.json) {
+    fmt::print("{{{}, {}, \"precision\": \"{}\"{}{}}}\n", stages_json(planned),
+               memory_json(largest.plan), to_string(options.precision), units_json(scene.units),
+               notes_json(scene));
+    return Status::done;
+  }
+  for (auto const& [name, text] : describe(planned.front().stage.scene)) print(name, text);
+  print_stages(planned);
+  print_memory(largest.plan, options.precision, "method");
+  auto whole = planned.back().plan;
+  whole.frames = 0, whole.file_bytes = 0;
+  for (auto const& [stage, plan] : planned) {
+    whole.frames += stage.scene.begin.stage == 0 ? plan.frames : plan.frames - !stage.relax;
+    whole.file_bytes += plan.file_bytes;
+  }
+  print_output(scene, whole);
+  draw(scene, start);
+  return Status::done;
+}
+
+// Prints how many replicas there are, and returns the scene of the first, which is checked.
+io::Scene first_replica(CheckOptions const& options, io::Scene const& scene) {
+  auto const& [replicas, vary] = scene.ensemble;
+  std::vector<std::string> keys;
+  for (auto const& varied : vary) keys.push_back(varied.key);
+  if (!options.json)
+    print("ensemble",
+          fmt::format("{} replicas of what follows, whose memory is for one{}", replicas,
+                      keys.empty() ? std::string()
+                                   : fmt::format("; they vary in {}", fmt::join(keys, ", "))));
+  return io::is_to_relax(scene) ? io::replica_to_relax(scene, 0) : io::replica_of(scene, 0);
+}
+
 int check(CheckOptions const& options) {
   auto scene =
       io::with_shape_of_start(io::read_scene_to_run_or_relax(options.scene, options.overrides));
   io::check_files(scene);
+  if (scene.ensemble.there()) scene = first_replica(options, scene);
   if (io::is_to_relax(scene)) return check_to_relax(options, scene);
+  if (!scene.stages.empty()) return check_in_stages(options, scene);
   if (scene.integrator.method->automatic) {
     auto const space = chosen_space({});
     KokkosSession const kokkos(space, {}, {});

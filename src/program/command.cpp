@@ -13,7 +13,7 @@ Precision precision_named(std::string const& name) {
 
 void add_device_options(CLI::App& command, DeviceOptions& options) {
   add_scene_options(command, options);
-  command.add_option("--output", options.output, "The file to write; wins over output.file");
+  command.add_option("-o,--output", options.output, "The file to write; wins over output.file");
   command.add_flag("--overwrite", options.overwrite, "Replace a file that exists");
   add_space_options(command, options);
   command.add_option("--device", options.device, "Number of the device")

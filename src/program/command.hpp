@@ -21,29 +21,31 @@ namespace cayspin::program {
 
 using namespace simulation;
 
-/// A command of the program: what reads its options, and what it does with them. `perform` returns
-/// the exit status, or throws.
+/// A command of the program: its option parser, and its action. `perform` returns the exit status,
+/// or throws.
 struct Command {
   CLI::App* parser;
   std::function<int(Ranks&)> perform;
 };
 
-/// Each adds its command, with sentence and options, in the source of its name (advise: trade.cpp).
+/// Each adds its command, with description and options, in the source of its name (advise:
+/// trade.cpp).
 using AddCommand = Command(CLI::App& program);
-AddCommand add_run, add_relax, add_sweep, add_check, add_new, add_trade, add_advise, add_methods,
-    add_info, add_export;
+AddCommand add_run, add_relax, add_modes, add_path, add_sweep, add_check, add_new, add_trade,
+    add_advise, add_methods, add_info, add_export;
 
-/// In the order of --help.
-inline constexpr std::array all_commands{add_run,   add_relax,  add_sweep,   add_check, add_new,
-                                         add_trade, add_advise, add_methods, add_info,  add_export};
+/// All commands, in the order of --help.
+inline constexpr std::array all_commands{add_run,    add_relax,   add_modes, add_path,
+                                         add_sweep,  add_check,   add_new,   add_trade,
+                                         add_advise, add_methods, add_info,  add_export};
 
-/// Of a command that reads a scene.
+/// Options of a command that reads a scene.
 struct SceneOptions {
   std::filesystem::path scene;
   std::vector<std::string> overrides;
 };
 
-/// Of a command that computes on one device and writes a file.
+/// Options of a command that computes on one device and writes a file.
 struct DeviceOptions : SceneOptions {
   Precision precision = Precision::double_precision;
   std::optional<std::filesystem::path> output;
@@ -52,10 +54,10 @@ struct DeviceOptions : SceneOptions {
   bool overwrite = false;
 };
 
-/// "double" or "single". Throws UsageError for any other.
+/// Returns the precision "double" or "single". Throws UsageError for any other.
 Precision precision_named(std::string const& name);
 
-/// SCENE, --set and --precision.
+/// Adds SCENE, --set and --precision.
 template <class Options>
 void add_scene_options(CLI::App& command, Options& options,
                        char const* precisions = "double (default) or single") {
@@ -70,8 +72,7 @@ void add_scene_options(CLI::App& command, Options& options,
       ->type_name("NAME");
 }
 
-/// An option that may be given more than once, always with the same value. Throws UsageError for
-/// two values.
+/// Adds an option that may be repeated only with an equal value. Throws UsageError for two values.
 template <class Value>
 CLI::Option* add_one_value(CLI::App& command, std::string const& name, std::optional<Value>& value,
                            char const* description) {
@@ -91,7 +92,7 @@ CLI::Option* add_one_value(CLI::App& command, std::string const& name, std::opti
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-/// --space and --threads.
+/// Adds --space and --threads.
 template <class Options>
 void add_space_options(CLI::App& command, Options& options) {
   add_one_value(command, "--space", options.space, "Kokkos execution space");
@@ -101,10 +102,11 @@ void add_space_options(CLI::App& command, Options& options) {
 
 void add_device_options(CLI::App& command, DeviceOptions& options);
 
-/// --ranks, "Y,Z".
+/// Adds --ranks, "Y,Z".
 void add_ranks_option(CLI::App& command, std::optional<std::string>& ranks, char const* what);
 
-/// Where a scene is written to: `output`, or its own file. Throws io::SceneError for neither.
+/// Returns the file that a scene writes: `output`, or the scene's own. Throws io::SceneError for
+/// neither.
 std::filesystem::path output_file(io::Scene const& scene,
                                   std::optional<std::filesystem::path> const& output);
 

@@ -2,7 +2,7 @@
 #include "describe.hpp"
 
 #include "io/notes.hpp"
-#include "simulation/dear_method.hpp"
+#include "simulation/multirate_method.hpp"
 #include "simulation/text.hpp"
 #include "simulation/thermal.hpp"
 
@@ -29,6 +29,9 @@ std::string vector_text(io::Triple const& v) {
 
 std::string text_of(io::SiteNumbers const& numbers) {
   if (numbers.given) return "numbers of the program";
+  if (!numbers.of_regions.empty())
+    return fmt::format("of regions [{:.6g}]", fmt::join(numbers.of_regions, ", "));
+  if (!numbers.image.empty()) return numbers.image.string();
   return numbers.file.empty() ? numbers.expression : numbers.file.string();
 }
 
@@ -67,18 +70,34 @@ std::string lattice_text(io::Scene const& scene) {
       more += fmt::format("; {}: spacing {}, {}", "xyz"[axis],
                           length_text(scene.units, lattice.spacing[axis]),
                           io::to_string(lattice.boundary[axis]));
-  if (scene.material && !lattice.moments.empty())
+  if (lattice.regions.there()) more += "; regions " + text_of(lattice.regions);
+  if (lattice.moments_of_sites.there())
+    more += fmt::format("; {} {}",
+                        !scene.material             ? "moments"
+                        : scene.material->atomistic ? "mu_s in J/T"
+                                                    : "Ms in A/m",
+                        text_of(lattice.moments_of_sites));
+  else if (scene.material && !lattice.moments.empty())
     more += fmt::format("; mu_s {} J/T", numbers_text(scene.material->moments));
   else if (!lattice.moments.empty())
     more += "; moments " + numbers_text(lattice.moments);
   if (!lattice.gyromagnetic.empty()) more += "; gyromagnetic " + numbers_text(lattice.gyromagnetic);
+  if (lattice.gyromagnetic_of_sites.there())
+    more +=
+        fmt::format("; {} {}",
+                    scene.material && scene.material->gamma_factors.there() ? "gamma in rad/(s T)"
+                                                                            : "gyromagnetic",
+                    text_of(lattice.gyromagnetic_of_sites));
   if (lattice.occupied.there()) more += "; occupied where " + text_of(lattice.occupied);
   if (lattice.frozen.there()) more += "; frozen where " + text_of(lattice.frozen);
+  if (auto const& follow = lattice.follow)
+    more +=
+        fmt::format("; follows {} along {}", io::to_string(follow->quantity), "xyz"[follow->axis]);
   return fmt::format("{} = {} sites{}", cells_text(lattice.shape, cell_sites), io::sites(scene),
                      more);
 }
 
-// The term's formula with its parameters in it.
+// Returns the term's formula with its parameters inserted.
 template <class Term>
 std::string term_text(Term const& term) {
   fmt::dynamic_format_arg_store<fmt::format_context> numbers;
@@ -109,6 +128,25 @@ std::string applied_text(io::Scene const& scene) {
   return fmt::format("{} T, {}", components_text(*scene.applied_in_tesla), text);
 }
 
+std::string vectors_text(io::SiteVectors const& vectors) {
+  if (!vectors.file.empty()) return vectors.file.string();
+  if (!vectors.of_regions.empty())
+    return fmt::format("of regions {}", fmt::join(vectors.of_regions, ", "));
+  auto const component = [&](std::size_t c) {
+    auto const& numbers = vectors.components[c];
+    return numbers.there() ? text_of(numbers) : fmt::format("{:.6g}", vectors.uniform[c]);
+  };
+  return fmt::format("({}, {}, {})", component(0), component(1), component(2));
+}
+
+std::string source_text(io::Scene const& scene, io::Source const& source) {
+  auto const& [profile, time] = source;
+  return fmt::format("H = {}{}{}{}",
+                     scene.field.mu0 == 1 ? "" : fmt::format("{:.6g} ", scene.field.mu0),
+                     vectors_text(profile), scene.units.si ? " T" : "",
+                     time == io::AppliedComponent(1.0) ? "" : " times " + component_text(time));
+}
+
 std::string list_text(io::Scene const& scene) {
   auto const& list = scene.field.applied_in_turn;
   double const unit = scene.units.si ? scene.units.field : 1;
@@ -123,8 +161,11 @@ std::string list_text(io::Scene const& scene) {
 
 std::string material_text(io::Material const& material) {
   bool const atoms = material.atomistic;
-  auto text =
-      fmt::format("{} = {:.7g} {}", atoms ? "mu_s" : "Ms", material.moment, atoms ? "J/T" : "A/m");
+  auto const name = atoms ? "mu_s" : "Ms", unit = atoms ? "J/T" : "A/m";
+  auto text = material.moment_factors.there()
+                  ? fmt::format("{} = {}, in units of {:.7g} {}", name,
+                                text_of(material.moment_factors), material.moment, unit)
+                  : fmt::format("{} = {:.7g} {}", name, material.moment, unit);
   auto const add = [&](std::optional<double> value, io::SiteNumbers const& factors,
                        char const* name, char const* unit) {
     if (!value) return;
@@ -136,15 +177,17 @@ std::string material_text(io::Material const& material) {
       atoms ? " J" : " J/m^3");
   add(material.dmi, material.dmi_factors, "D", atoms ? " J" : " J/m^2");
   add(material.bulk_dmi, material.dmi_factors, "D_bulk", atoms ? " J" : " J/m^2");
+  add(material.d2d_dmi, material.dmi_factors, "D2d", atoms ? " J" : " J/m^2");
   add(material.alpha, material.alpha_factors, "alpha", "");
   if (material.alpha > 0 || material.alpha_factors.there())
     text += material.gilbert ? " (Gilbert)" : " (Landau-Lifshitz)";
-  add(material.gamma, {}, "gamma", " rad/(s T)");
+  add(material.gamma, material.gamma_factors, "gamma", " rad/(s T)");
   return text;
 }
 
 std::string factors_text(io::SiteNumbers const& numbers) {
   if (!numbers.there()) return {};
+  if (numbers.expression == "1") return fmt::format(", times {:.6g}", numbers.unit);
   return numbers.unit == 1 ? ", times " + text_of(numbers)
                            : fmt::format(", times {:.6g} ({})", numbers.unit, text_of(numbers));
 }
@@ -153,7 +196,7 @@ std::string of_site_text(int site) {
   return site < 0 ? std::string() : fmt::format(", site {}", site);
 }
 
-// In SI " (K = .. J)": what the constant of a formula is a multiple of.
+// Returns " (K = .. J)" in SI: the unit of a formula's constant.
 std::string in_si_text(io::Scene const& scene, char const* name, double constant) {
   if (!scene.material) return {};
   auto const& [x, y, z] = scene.lattice.spacing;
@@ -163,20 +206,42 @@ std::string in_si_text(io::Scene const& scene, char const* name, double constant
                      constant * scene.units.energy / (atoms ? 1 : volume), atoms ? "J" : "J/m^3");
 }
 
+std::string second_text(io::Anisotropy const& term) {
+  std::string text;
+  if (term.axes.there()) text += ", e = " + vectors_text(term.axes);
+  if (term.constant2 != 0)
+    text +=
+        fmt::format(", and H = {:.6g} (m.e)^3 e{}", term.constant2, factors_text(term.factors2));
+  return text;
+}
+
+std::string crystal_text(io::Scene const& scene, io::CrystalAnisotropy const& term) {
+  auto const axis = [&](std::size_t i) {
+    return term.axes_of_sites[i].there() ? vectors_text(term.axes_of_sites[i])
+                                         : vector_text(term.axes[i]);
+  };
+  auto text =
+      fmt::format("E = {:.6g} {}", term.constant,
+                  term.hexagonal ? "sin(theta)^6 cos(6 phi)" : "(a^2 b^2 + b^2 c^2 + c^2 a^2)");
+  text += factors_text(term.factors);
+  if (term.constant2 != 0)
+    text += fmt::format(", and {:.6g} a^2 b^2 c^2{}", term.constant2, factors_text(term.factors2));
+  text += fmt::format(", {} {} and {}", term.hexagonal ? "axis and in plane" : "axes", axis(0),
+                      axis(1));
+  if (!term.factors.there()) text += in_si_text(scene, term.hexagonal ? "K" : "Kc", term.constant);
+  return text + of_site_text(term.site);
+}
+
 void add_anisotropies(io::Scene const& scene,
                       std::vector<std::pair<std::string, std::string>>& lines) {
   for (auto const& term : scene.field.anisotropies)
     lines.emplace_back("anisotropy",
-                       term_text(term) +
+                       term_text(term) + second_text(term) +
                            (term.factors.there() ? factors_text(term.factors)
                                                  : in_si_text(scene, "K", term.constant / 2)) +
                            of_site_text(term.site));
-  for (auto const& term : scene.field.cubic_anisotropies)
-    lines.emplace_back(
-        "anisotropy",
-        fmt::format("E = {:.6g} (a^2 b^2 + b^2 c^2 + c^2 a^2), axes {} and {}{}{}", term.constant,
-                    vector_text(term.axes[0]), vector_text(term.axes[1]),
-                    in_si_text(scene, "Kc", term.constant), of_site_text(term.site)));
+  for (auto const& term : scene.field.crystal_anisotropies)
+    lines.emplace_back("anisotropy", crystal_text(scene, term));
 }
 
 std::string couplings_text(io::Scene const& scene, std::vector<Coupling> const& couplings) {
@@ -198,17 +263,22 @@ void add_torques(io::Scene const& scene, std::vector<std::pair<std::string, std:
                        fmt::format("Zhang-Li, u = {}{}, xi = {:.6g}", components_text(of->velocity),
                                    si ? " m/s" : "", of->nonadiabaticity));
   if (auto const& of = torque.slonczewski)
-    lines.emplace_back("torque",
-                       fmt::format("Slonczewski, damping-like {}, field-like {}{}, p = {}",
-                                   component_text(of->damping_like), component_text(of->field_like),
-                                   si ? " (T)" : "", vector_text(of->polarization)));
+    lines.emplace_back(
+        "torque",
+        fmt::format("Slonczewski, damping-like {}{}, field-like {}{}{}, p = {}{}",
+                    component_text(of->damping_like), factors_text(of->damping_like_of_sites),
+                    component_text(of->field_like), factors_text(of->field_like_of_sites),
+                    si ? " (T)" : "",
+                    of->polarizations.there() ? vectors_text(of->polarizations)
+                                              : vector_text(of->polarization),
+                    of->lambda == 1 ? "" : fmt::format(", Lambda = {:.6g}", of->lambda)));
 }
 
 std::string slab_text(io::Field const& field) {
   auto const& slab = *field.slab_demag;
   return fmt::format("H = -{:.6g} (m.n) n, n = {}{}", field.mu0 * slab.strength,
                      vector_text(slab.normal),
-                     slab.dear      ? ", dear: computed on the host once a step"
+                     slab.multirate ? ", multirate: computed on the host once a step"
                      : slab.on_host ? ", computed on the host"
                                     : "");
 }
@@ -226,28 +296,27 @@ std::string images_text(std::array<int, 3> const& images) {
 
 std::string demag_text(io::Scene const& scene) {
   auto const& demag = *scene.field.demag;
-  return fmt::format("H = -{:.6g} N m, of all cells on all cells by FFTs{}{}",
-                     scene.field.mu0 * demag.strength, images_text(demag.periodic_images),
-                     has_dear_field(scene) ? ", dear: once a step" : "");
+  double const strength = scene.field.mu0 * demag.strength;
+  auto const [x, y, z] = demag.demagnetizing_factors;
+  return fmt::format(
+      "{}, {} by FFTs{}{}{}",
+      demag.dipoles ? fmt::format("H = {:.6g} sum V (3 r (r.m) - m r^2) / (4 pi r^5)", strength)
+                    : fmt::format("H = -{:.6g} N m", strength),
+      demag.dipoles ? "of all dipoles on all dipoles" : "of all cells on all cells",
+      images_text(demag.periodic_images),
+      x != 0 || y != 0 || z != 0
+          ? fmt::format(", demagnetizing factors {:.6g} {:.6g} {:.6g}", x, y, z)
+          : "",
+      has_slow_field(scene) ? ", multirate: once a step" : "");
 }
 
 std::string thermal_text(io::Scene const& scene) {
-  auto const& [temperature, seed] = *scene.thermal;
-  auto const typed = fmt::format("{:.6g}", typed_temperature(scene));
-  return fmt::format("{}, seed {}",
-                     scene.units.si ? fmt::format("{} K ({:.6g})", typed, temperature) : typed,
-                     seed);
-}
-
-std::string initial_text(io::Initial const& initial) {
-  if (auto const* start = std::get_if<io::UniformStart>(&initial))
-    return "uniform " + vector_text(start->direction);
-  if (auto const* start = std::get_if<io::ExpressionStart>(&initial))
-    return fmt::format("({}, {}, {}), normalised", start->components[0], start->components[1],
-                       start->components[2]);
-  if (auto const* start = std::get_if<io::RandomStart>(&initial))
-    return fmt::format("random on the sphere, seed {}", start->seed);
-  return "from " + std::get<io::FileStart>(initial).path.string();
+  auto const& [temperature, in_time, of_sites, seed] = *scene.thermal;
+  auto text = fmt::format("{:.6g}", typed_temperature(scene));
+  if (scene.units.si) text = fmt::format("{} K ({:.6g})", text, temperature);
+  if (of_sites.there()) text += ", times " + text_of(of_sites);
+  if (std::holds_alternative<std::string>(in_time)) text += ", times " + component_text(in_time);
+  return fmt::format("{}, seed {}", text, seed);
 }
 
 }  // namespace
@@ -271,19 +340,41 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
     io::for_each_lattice_term(field, [&]<class Term>(std::optional<Term> const& term) {
       constexpr bool is_exchange = std::is_same_v<Term, io::Exchange>;
       auto const& factors = is_exchange ? field.exchange_factors : field.dmi_factors;
-      if (term) lines.emplace_back(Term::key, term_text(*term) + factors_text(factors));
+      auto text = term ? term_text(*term) + factors_text(factors) : std::string();
+      if (std::is_same_v<Term, io::InterfacialDmi> && field.dmi_normals.there())
+        text += ", n = " + vectors_text(field.dmi_normals);
+      if (term) lines.emplace_back(Term::key, text);
     });
+    if (field.d2d_dmi)
+      lines.emplace_back("dmi", term_text(*field.d2d_dmi) + factors_text(field.dmi_factors));
     if (auto const bonds = io::couplings(scene); !bonds.empty())
       lines.emplace_back("couplings", couplings_text(scene, bonds));
     add_anisotropies(scene, lines);
     add_torques(scene, lines);
+    for (auto const& [regions, factor] : field.exchange_between)
+      lines.emplace_back("exchange", fmt::format("times {:.6g} between regions {} and {}", factor,
+                                                 regions[0], regions[1]));
+    for (auto const& [regions, bilinear, biquadratic, range] : field.interlayers)
+      lines.emplace_back("interlayer",
+                         fmt::format("E = {:.6g} m.m' + {:.6g} (m.m')^2, regions {} and {}{}{}",
+                                     -bilinear, 0 - biquadratic, regions[0], regions[1],
+                                     range > 0 ? fmt::format(", {} cells apart", range) : "",
+                                     field.exchange_at_faces.there() ? ", at the faces" : ""));
+    for (auto const& [name, factor] : {std::pair{"exchange", field.in_time.exchange},
+                                       {"anisotropy", field.in_time.anisotropy},
+                                       {"dmi", field.in_time.dmi}})
+      if (factor != io::AppliedComponent(1.0))
+        lines.emplace_back("in time", fmt::format("{} times {}", name, component_text(factor)));
     if (field.applied) lines.emplace_back("applied", applied_text(scene));
+    for (auto const& source : field.sources)
+      lines.emplace_back("source", source_text(scene, source));
     if (!field.applied_in_turn.empty()) lines.emplace_back("applied", list_text(scene));
     if (field.slab_demag) lines.emplace_back("slab demag", slab_text(field));
-    if (field.demag) lines.emplace_back("demag", demag_text(scene));
+    if (field.demag)
+      lines.emplace_back(field.demag->dipoles ? "dipoles" : "demag", demag_text(scene));
   }
   if (scene.thermal) lines.emplace_back("temperature", thermal_text(scene));
-  lines.emplace_back("start", initial_text(scene.initial));
+  lines.emplace_back("start", describe_start(scene));
   return lines;
 }
 

@@ -9,14 +9,17 @@
 
 namespace cayspin::program {
 
-/// What a scene models, in words: headings and lines.
+/// Describes what a scene models: headings and lines.
 std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene);
 
-/// Reduced units, or what one of them is in SI.
+/// Describes the units: reduced, or the SI value of each.
 std::string describe_units(io::Units const& units);
 
-/// "rkmk4, orthogonal generator, sigma = 0.7, cayley rotation"
+/// Returns, for example, "rkmk4, orthogonal generator, sigma = 0.7, cayley rotation".
 std::string describe_method(io::Scene const& scene);
+
+/// Returns, for example, "uniform (0, 0, 1)".
+std::string describe_start(io::Scene const& scene);
 
 /// Prints the notes on a scene as warnings.
 void warn_of_notes(io::Scene const& scene);

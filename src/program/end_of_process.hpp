@@ -8,9 +8,9 @@
 
 namespace cayspin::program {
 
-/// The status of a child that is about to end, as waitpid() gives it. It is killed where it has not
-/// ended within `longest`, and left where the system cannot end it. Nothing where there is no
-/// status.
+/// Returns the status of a child that is about to end, as waitpid() gives it. Kills it if it has
+/// not ended within `longest`, and gives up if the system cannot end it. Returns nothing if there
+/// is no status.
 std::optional<int> end_of_process(pid_t child,
                                   std::chrono::milliseconds longest = std::chrono::seconds(10));
 

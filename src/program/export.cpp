@@ -39,12 +39,15 @@ std::vector<std::int64_t> chosen_frames(ExportOptions const& options, std::int64
     std::iota(all.begin(), all.end(), 0);
     return all;
   }
-  std::int64_t number = -1;
+  std::int64_t number = 0;
   auto const [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || stop != text.data() + text.size() || number < 0 || number >= frames)
-    throw UsageError(fmt::format("--frames {}: accepted: last, all, or 0 to {}, the frames of {}",
-                                 text, frames - 1, options.file.string()));
-  return {number};
+  if (error != std::errc() || stop != text.data() + text.size() || number < -frames ||
+      number >= frames)
+    throw UsageError(
+        fmt::format("--frames {}: accepted: last, all, 0 to {}, or -1 to -{} from the "
+                    "end of {}",
+                    text, frames - 1, frames, options.file.string()));
+  return {number < 0 ? frames + number : number};
 }
 
 bool is_rectangular(io::Lattice const& lattice) {
@@ -55,8 +58,8 @@ bool is_rectangular(io::Lattice const& lattice) {
   return true;
 }
 
-// Nodes in the middle of cells of the lattice's spacing. The start is of no interest here, and may
-// be one that only the run's own program could give.
+// Returns nodes in the middle of cells of the lattice's spacing. Ignores the start of the scene,
+// which may be one that only the run's own program could give.
 io::OvfMesh mesh_of(io::TrajectoryInfo const& info) {
   auto const scene = io::parse_scene_to_run_or_relax(info.header.scene_text, info.path,
                                                      {"initial={uniform=[0,0,1]}"});
@@ -76,7 +79,8 @@ io::OvfMesh mesh_of(io::TrajectoryInfo const& info) {
   return mesh;
 }
 
-io::OvfField field_of(io::TrajectoryInfo const& info, io::OvfMesh const& mesh, std::int64_t frame) {
+io::OvfField ovf_field_of(io::TrajectoryInfo const& info, io::OvfMesh const& mesh,
+                          std::int64_t frame) {
   auto const number = static_cast<std::size_t>(frame);
   io::OvfField field;
   field.title = "m";
@@ -112,7 +116,7 @@ void create_folder(fs::path const& folder) {
 
 int export_ovf(ExportOptions const& options) {
 #if defined(SIGXFSZ)
-  std::signal(SIGXFSZ, SIG_IGN);  // then a write past the limit of a file's size is an error
+  std::signal(SIGXFSZ, SIG_IGN);  // makes a write past the file size limit an error
 #endif
   auto const info = io::read_info(options.file);
   auto const frames = chosen_frames(options, info.frames);
@@ -123,7 +127,8 @@ int export_ovf(ExportOptions const& options) {
   require_none_exists(options, frames);
   create_folder(options.folder);
   for (auto const frame : frames)
-    io::write_ovf(name_of(options, frame), field_of(info, mesh, frame), format, options.overwrite);
+    io::write_ovf(name_of(options, frame), ovf_field_of(info, mesh, frame), format,
+                  options.overwrite);
   auto const last = name_of(options, frames.back()).string();
   if (frames.size() == 1)
     fmt::print("{}\n", last);
@@ -148,7 +153,8 @@ Command add_export(CLI::App& program) {
           "--format", [options](std::string const& name) { options->format = ovf_format(name); },
           "text, binary4 or binary8 (default: the binary one that keeps the bits)")
       ->type_name("NAME");
-  command->add_option("--frames", options->frames, "last (default), all or a number");
+  command->add_option("--frames", options->frames,
+                      "last (default), all or a number; from the end: -1");
   command->add_flag("--overwrite", options->overwrite, "Replace files that exist");
   return {command, [options](Ranks&) { return export_ovf(*options); }};
 }

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
 #include "describe.hpp"
+#include "info_ensemble.hpp"
+#include "info_found.hpp"
 #include "info_progress.hpp"
+#include "io/ensemble_file.hpp"
+#include "io/modes.hpp"
+#include "io/path.hpp"
 #include "io/trajectory.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/text.hpp"
@@ -9,13 +14,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <thread>
 
 namespace cayspin::program {
 namespace {
 
-// `si`: as the file's numbers are.
+// `si`: true if the file's numbers are in SI.
 void print_sample(char const* name, io::Sample const& sample, bool si) {
   auto const& [step, time, scalars] = sample;
   auto const& m = scalars.magnetization;
@@ -38,6 +45,26 @@ void print_frame(char const* name, io::TrajectoryInfo const& info, std::size_t f
   }
 }
 
+// Prints the numbers of the last sample besides its scalars.
+void print_more(io::TrajectoryInfo const& info) {
+  constexpr std::int64_t most_regions = 16;
+  auto const& more = info.header.more;
+  auto const* const joule = info.header.units.si ? " J" : "";
+  auto const* means = info.more_of_last_sample.data();
+  if (info.more_of_last_sample.empty()) return;
+  auto const* energy = means + 3 * more.regions;
+  auto const shown = std::min(most_regions, more.regions);
+  for (std::int64_t region = 0; region < shown; ++region, means += 3)
+    fmt::print("{:<12} energy {:.9g}{}, magnetization ({:.6f}, {:.6f}, {:.6f})\n",
+               fmt::format("region {}", region), energy[region], joule, means[0], means[1],
+               means[2]);
+  if (shown < more.regions) fmt::print("{:<12} {} in all\n", "regions", more.regions);
+  energy += more.regions;
+  for (auto const& term : more.terms)
+    fmt::print("{:<12} energy {:.9g}{}\n", term, *energy++, joule);
+  if (more.shift) fmt::print("{:<12} {} cells\n", "shift", *energy);
+}
+
 void print_scene(char const* name, std::string const& text) {
   fmt::print("{}:\n{}{}", name, text, text.ends_with('\n') ? "" : "\n");
 }
@@ -55,7 +82,7 @@ int print_sweep(std::filesystem::path const& file) {
   return Status::done;
 }
 
-// Reads again for a while: a part that is half written may be whole in a moment.
+// Retries for a while: a half-written part may soon be complete.
 io::TrajectoryInfo read_beside_writer(std::filesystem::path const& file) {
   for (int tries = 20;; --tries) {
     try {
@@ -69,7 +96,12 @@ io::TrajectoryInfo read_beside_writer(std::filesystem::path const& file) {
 
 int print_info(std::filesystem::path const& file) {
   auto const being_written = io::is_being_written(file);
-  if (being_written != true && io::is_sweep(file)) return print_sweep(file);
+  if (being_written != true) {
+    if (io::is_sweep(file)) return print_sweep(file);
+    if (io::is_ensemble(file)) return print_ensemble(file);
+    if (io::is_path(file)) return print_path(file);
+    if (io::is_modes(file)) return print_modes(file);
+  }
   auto const info = being_written == false ? io::read_info(file) : read_beside_writer(file);
   auto const& header = info.header;
   fmt::print("{:<12} {} (format {})\n", "file", file.string(), info.format);
@@ -80,12 +112,15 @@ int print_info(std::filesystem::path const& file) {
   fmt::print("{:<12} {}, {} precision\n", "lattice", sites_text(header.shape, header.cell_sites),
              header.precision);
   fmt::print("{:<12} {}\n{:<12} {}\n", "frames", info.frames, "samples", info.samples);
+  if (!info.frame_stages.empty())
+    fmt::print("{:<12} {} at the last frame\n", "stage", info.frame_stages.back());
   fmt::print("{:<12} {}\n", "units", describe_units(header.units));
   if (info.frames > 0) print_frame("first frame", info, 0);
   if (info.frames > 1) print_frame("last frame", info, static_cast<std::size_t>(info.frames) - 1);
   auto const& sample = info.last_sample;
   if (sample && (info.frames == 0 || sample->step > info.frame_steps.back()))
     print_sample("last sample", *sample, header.units.si);
+  print_more(info);
   bool const has_ended = info.complete || info.cost.wall_seconds > 0;
   if (has_ended && info.cost.relaxed)
     fmt::print("{:<12} {}, max |m x H| = {:.3g}{}\n", "at rest",
@@ -106,9 +141,11 @@ int print_info(std::filesystem::path const& file) {
 
 Command add_info(CLI::App& program) {
   auto const file = std::make_shared<std::filesystem::path>();
-  auto* const command =
-      program.add_subcommand("info", "Summarise a trajectory file, also while a run writes it");
-  command->add_option("FILE", *file, "Trajectory file (HDF5)")->required();
+  auto* const command = program.add_subcommand(
+      "info",
+      "Summarise a file of cayspin: a trajectory, also while a run writes it, an ensemble, a sweep, "
+      "a path or modes");
+  command->add_option("FILE", *file, "The file (HDF5)")->required();
   return {command, [file](Ranks&) { return print_info(*file); }};
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "info_progress.hpp"
 
-#include "io/scene.hpp"
+#include "io/stages.hpp"
 #include "simulation/text.hpp"
 
 #include <fcntl.h>
@@ -18,10 +18,10 @@ using namespace simulation;
 
 namespace {
 
-/// In seconds.
+/// Ages in seconds.
 struct FileAge {
   double idle = 0;     // since it was last written
-  double written = 0;  // from its creation until then; 0 where the file system does not know
+  double written = 0;  // from its creation until then; 0 if the file system does not know
 };
 
 FileAge age_of(std::filesystem::path const& path) {
@@ -43,10 +43,10 @@ FileAge age_of(std::filesystem::path const& path) {
 #endif
 }
 
-/// The steps that the scene in a file plans. A newer version may have written it.
+/// Planned steps of the scene in a file, which a newer version may have written.
 struct PlannedSteps {
-  std::int64_t steps = 0;    // 0 where that is not known
-  bool equal_steps = false;  // those of the method are those of the run
+  std::int64_t steps = 0;    // 0 if unknown
+  bool equal_steps = false;  // steps of the method are those of the run
 };
 
 PlannedSteps planned_steps(io::TrajectoryInfo const& info) {
@@ -56,8 +56,10 @@ PlannedSteps planned_steps(io::TrajectoryInfo const& info) {
   scene.path = info.path;
   scene.text = header.resolved_scene.empty() ? header.scene_text : header.resolved_scene;
   try {
-    auto const integrator = io::with_overrides(scene, {}).integrator;
-    return {integrator.steps, !integrator.tolerance};
+    auto const stages = io::stages_of(io::with_overrides(scene, {}));
+    bool const equal = std::ranges::none_of(
+        stages, [](auto& one) { return one.scene.integrator.tolerance.has_value(); });
+    return {io::end_of(stages.back()), equal};
   } catch (std::exception const&) {
     return {};
   }
@@ -95,7 +97,7 @@ std::vector<std::pair<std::string, std::string>> progress_lines(io::TrajectoryIn
   auto const plan = planned_steps(info);
   lines.emplace_back("progress", progress_text(info, *now, plan.steps));
 
-  bool const has_ended = info.cost.wall_seconds > 0;  // and says its cost
+  bool const has_ended = info.cost.wall_seconds > 0;  // and reports its cost
   if (has_ended || age.written == 0) return lines;
   auto time = duration_text(age.written);
   auto const first = info.frames > 0 ? info.frame_steps.front() : now->step;

@@ -10,9 +10,9 @@
 
 namespace cayspin::program {
 
-/// Headings and lines on a run that is not complete: whether it is still running, how far it is,
-/// and for how long it goes on. `being_written`: as io::is_being_written says of its file, asked
-/// before `info` was read.
+/// Returns headings and lines on an incomplete run: whether it is still running, its progress, and
+/// the time left. `being_written`: the result of io::is_being_written for its file, obtained before
+/// `info` was read.
 std::vector<std::pair<std::string, std::string>> progress_lines(io::TrajectoryInfo const& info,
                                                                 std::optional<bool> being_written);
 

@@ -10,7 +10,7 @@ std::sig_atomic_t volatile requested = 0;
 
 extern "C" void request_interrupt(int signal) {
   requested = 1;
-  std::signal(signal, SIG_DFL);  // a second one ends at once
+  std::signal(signal, SIG_DFL);  // a second signal kills the program
 }
 
 }  // namespace

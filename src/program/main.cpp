@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
 #include "hdf5/reading_trial.hpp"
+#include "io/words_of_others.hpp"
 #include "launch/launched_ranks.hpp"
 #include "read_in_child.hpp"
 #include "simulation/command_line.hpp"
@@ -10,11 +11,16 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <span>
+#include <string_view>
+#include <vector>
 
 namespace cayspin::program {
 namespace {
@@ -25,16 +31,18 @@ std::filesystem::path self(char** argv) {
   return unknown ? std::filesystem::path(argv[0]) : path;
 }
 
-// Becomes the program of this name that lies beside this one, with the arguments after the command.
+// Replaces this process by the program of this name in the same folder, passing the arguments after
+// the command.
 [[noreturn]] void become_sibling(std::string const& name, char** argv) {
   auto const path = self(argv).parent_path() / name;
-  argv[1] = argv[0];  // its own name for itself, in place of the command
+  argv[1] = argv[0];  // name by which it is called, instead of the command
   ::execv(path.c_str(), argv + 1);
   throw UsageError(fmt::format("{}: cannot be started: {} (the build puts it beside cayspin)",
                                path.string(), std::strerror(errno)));
 }
 
-// The same for a Python script in share/cayspin/python, beside the folder of this program.
+// Replaces this process by a Python script in share/cayspin/python, relative to this program's
+// folder.
 [[noreturn]] void become_script(std::string const& name, char** argv) {
   auto const program = self(argv);
   auto path = (program.parent_path().parent_path() / "share/cayspin/python" / name).string();
@@ -42,7 +50,7 @@ std::filesystem::path self(char** argv) {
     throw UsageError(fmt::format("{}: {} (the build and the installation put it there)", path,
                                  std::strerror(errno)));
   char const* const chosen = std::getenv("CAYSPIN_PYTHON");
-  ::setenv("CAYSPIN_PROGRAM", program.c_str(), 0);  // for what starts runs
+  ::setenv("CAYSPIN_PROGRAM", program.c_str(), 0);  // for scripts that start runs
   std::string python = chosen && *chosen != '\0' ? chosen : CAYSPIN_PYTHON;
   argv[0] = python.data();
   argv[1] = path.data();
@@ -53,7 +61,7 @@ std::filesystem::path self(char** argv) {
                   python, std::strerror(errno)));
 }
 
-/// A command that is a program of its own, which reads its own options.
+/// A command that is a separate program with its own options.
 struct OtherProgram {
   std::string command, sentence;
   void (*become)(std::string const& name, char** argv);
@@ -70,7 +78,20 @@ std::vector<OtherProgram> other_programs() {
        become_script, "view_texture.py"}};
 }
 
-// CLI11 would only say that there is none.
+// The heading of --help under which a command stands.
+std::string group_of(std::string_view command) {
+  constexpr std::array of_scenes{"run", "relax", "modes", "path", "sweep"};
+  constexpr std::array before{"new", "check", "advise", "trade", "methods"};
+  constexpr std::array of_files{"info", "plot", "view", "export"};
+  auto const is_in = [&](auto const& names) {
+    return std::ranges::find(names, command) != names.end();
+  };
+  if (is_in(of_scenes)) return "Compute";
+  if (is_in(before)) return "Prepare";
+  return is_in(of_files) ? "Files" : "Paper";
+}
+
+// Names the unknown command; CLI11 would only say that there is none.
 void require_command(CLI::App const& app, std::string_view first) {
   if (first.starts_with('-')) return;
   std::string names;
@@ -78,12 +99,28 @@ void require_command(CLI::App const& app, std::string_view first) {
     if (command->get_name() == first) return;
     names += (names.empty() ? "" : ", ") + command->get_name();
   }
-  throw UsageError(fmt::format(
-      "{}: accepted: {} (see cayspin --help)",
-      first.empty() ? std::string("no command") : fmt::format("unknown command {}", first), names));
+  throw UsageError(fmt::format("{}: accepted: {} (see cayspin --help)",
+                               first.empty() ? std::string("no command")
+                                             : fmt::format("unknown command {}{}", first,
+                                                           io::hint_for_word_of_others(first)),
+                               names));
 }
 
-int perform(int argc, char** argv) {
+// `cayspin help` and `cayspin help COMMAND` are --help and COMMAND --help.
+std::vector<char*> with_help_as_option(std::span<char* const> arguments) {
+  static char help[] = "--help";
+  std::vector<char*> plain(arguments.begin(), arguments.end());
+  if (plain.size() < 2 || std::string_view(plain[1]) != "help") return plain;
+  plain.erase(plain.begin() + 1);
+  plain.push_back(help);
+  return plain;
+}
+
+int perform(int count, char** given) {
+  auto arguments = with_help_as_option({given, static_cast<std::size_t>(count)});
+  auto const argc = static_cast<int>(arguments.size());
+  arguments.push_back(nullptr);
+  char** const argv = arguments.data();
   io::set_trial(try_in_child);
   CLI::App app("Lie-group time integration of spin fields", "cayspin");
   app.set_version_flag("--version", CAYSPIN_VERSION_STRING);
@@ -92,6 +129,7 @@ int perform(int argc, char** argv) {
   for (auto* const add : all_commands) commands.push_back(add(app));
   auto const others = other_programs();
   for (auto const& other : others) app.add_subcommand(other.command, other.sentence);
+  for (auto* command : app.get_subcommands({})) command->group(group_of(command->get_name()));
 
   std::string_view const first = argc > 1 ? argv[1] : "";
   auto const ranks = launched_ranks();
@@ -110,7 +148,7 @@ int perform(int argc, char** argv) {
     return Status::done;
   } catch (...) {
     if (!ranks->many()) throw;
-    // Said while all are there: launchers stop the others when one has ended with a failure.
+    // Reported while all ranks exist: launchers stop the others when one has failed.
     int const status = report(std::current_exception());
     if (!ranks->agreed()) ranks->leave_by(status);
     return status;

@@ -37,7 +37,12 @@ int write_new(NewOptions const& options) {
     throw UsageError(fmt::format("new {}: accepted: {}", options.kind, names_of_new_scenes()));
   auto const path = options.output.value_or(options.kind + ".toml");
   io::FileBeside file(path, options.overwrite);
-  file.stream() << replaced(std::string(scene->text), scene->path, path.string());
+  // The new scene's own name stands for that of the shipped one.
+  auto const results = [](std::filesystem::path name) {
+    return name.filename().replace_extension(".h5").string();
+  };
+  auto const text = replaced(std::string(scene->text), scene->path, path.string());
+  file.stream() << replaced(text, results(scene->path), results(path));
   file.commit();
   fmt::print("{0}: try `cayspin check {1}`, then `cayspin run {1}`\n", path.string(),
              simulation::shell_word(path.string()));
@@ -50,7 +55,7 @@ Command add_new(CLI::App& program) {
   auto const options = std::make_shared<NewOptions>();
   auto* const command = program.add_subcommand("new", "Write a commented scene to begin with");
   command->add_option("KIND", options->kind, names_of_new_scenes())->required();
-  command->add_option("--output", options->output, "The file to write (default: KIND.toml)");
+  command->add_option("-o,--output", options->output, "The file to write (default: KIND.toml)");
   command->add_flag("--overwrite", options->overwrite, "Replace a file that exists");
   return {command, [options](Ranks&) { return write_new(*options); }};
 }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 namespace cayspin::program {
 
@@ -16,12 +17,12 @@ using namespace simulation;
 
 namespace {
 
-// A bar with a text in place of the line that is there.
+// Draws a bar and a text over the current line.
 void draw_over(std::FILE* stream, double share, std::string const& text) {
   fmt::print(stream, "\r{}\x1b[K", fitted(fmt::format("{} {}", bar(share), text)));
 }
 
-// Into a pipe lines come one by one, too.
+// Flushes, so that lines also reach a pipe one by one.
 void say(std::string const& line) {
   fmt::print("{}\n", line);
   std::fflush(stdout);
@@ -29,17 +30,32 @@ void say(std::string const& line) {
 
 }  // namespace
 
-Progress::Progress(std::int64_t first, std::int64_t steps, std::int64_t sites, bool equal_steps,
-                   Listener listener)
-    : listener_(listener),
-      terminal_(is_terminal(stdout)),
-      equal_steps_(equal_steps),
-      first_(first),
-      steps_(steps),
-      sites_(sites),
-      next_(listener == Listener::nobody ? std::numeric_limits<std::int64_t>::max()
-            : terminal_                  ? first
-                                         : first + 1) {}
+Progress::Progress(std::int64_t sites, Listener listener)
+    : listener_(listener), terminal_(is_terminal(stdout)), sites_(sites) {}
+
+void Progress::begin_stage(std::int64_t first, std::int64_t end, bool equal_steps,
+                           std::string name) {
+  first_ = first;
+  steps_ = end;
+  equal_steps_ = equal_steps;
+  stage_ = std::move(name);
+  stage_begin_ = shown_ = Clock::now();
+  if (!begin_) begin_ = stage_begin_;
+  next_ = listener_ == Listener::nobody ? std::numeric_limits<std::int64_t>::max()
+          : terminal_                   ? first
+                                        : first + 1;
+}
+
+void Progress::add(Summary const& summary) {
+  method_steps_ += equal_steps_ ? summary.steps : summary.own_steps;
+}
+
+void Progress::tell(std::string const& text) {
+  if (listener_ != Listener::user) return;
+  if (on_line_) fmt::print("\r\x1b[K");
+  on_line_ = false;
+  say(fmt::format("{}: {}", stage_, text));
+}
 
 void Progress::draw(double done, std::string const& text) {
   draw_over(stdout, done, text);
@@ -49,10 +65,10 @@ void Progress::draw(double done, std::string const& text) {
 
 void Progress::show(Step const& step) {
   auto const now = Clock::now();
-  std::chrono::duration<double> const total = now - begin_, pause = now - shown_;
-  double const seconds = std::max(total.count(), 1e-9);
+  std::chrono::duration<double> const of_stage = now - stage_begin_, pause = now - shown_;
+  double const seconds = std::max(of_stage.count(), 1e-9);
   double const rate = static_cast<double>(step.number - first_) / seconds;
-  // Looking at the clock costs as much as a small step, so it is done about ten times a second.
+  // Reading the clock costs as much as a small step, so it is done about ten times a second.
   next_ = step.number + std::max<std::int64_t>(1, static_cast<std::int64_t>(0.1 * rate));
   double const least_pause = listener_ == Listener::program ? 0.2 : terminal_ ? 0.1 : 5;
   if (step.number == first_) {
@@ -65,7 +81,8 @@ void Progress::show(Step const& step) {
   shown_ = now;
   if (listener_ == Listener::program) return say(fmt::format("{} {}", step.number, steps_));
   double const done = static_cast<double>(step.number) / static_cast<double>(steps_);
-  auto text = fmt::format("{:5.1f} %  step {} of {}", 100 * done, step.number, steps_);
+  auto text = fmt::format("{:5.1f} %  {}step {} of {}", 100 * done,
+                          stage_.empty() ? "" : stage_ + ", ", step.number, steps_);
   if (equal_steps_)
     text += fmt::format("  {}spin updates/s", rate_text(rate * static_cast<double>(sites_)));
   text += fmt::format("  {} left", duration_text(static_cast<double>(steps_ - step.number) / rate));
@@ -75,11 +92,11 @@ void Progress::show(Step const& step) {
 void Progress::close(Summary const& summary, std::int64_t frames, std::string const& file) {
   if (listener_ != Listener::user) return;
   if (on_line_) fmt::print("\r\x1b[K");
-  std::chrono::duration<double> const total = Clock::now() - begin_;
-  auto const steps = equal_steps_ ? summary.steps : summary.own_steps;
-  auto const updates = static_cast<double>(steps) * static_cast<double>(sites_);
+  auto const now = Clock::now();
+  std::chrono::duration<double> const total = now - begin_.value_or(now);
+  auto const updates = static_cast<double>(method_steps_) * static_cast<double>(sites_);
   std::string rate;
-  if (steps > 0)
+  if (method_steps_ > 0)
     rate = fmt::format(", stepping at {}spin updates/s",
                        rate_text(updates / std::max(summary.step_seconds, 1e-9)));
   if (summary.own_steps > 0)
@@ -91,7 +108,7 @@ void Progress::close(Summary const& summary, std::int64_t frames, std::string co
 
 TrialProgress::TrialProgress(bool quiet, bool lines)
     : quiet_(quiet), lines_(lines), terminal_(is_terminal(stderr)) {
-  if (terminal_) shown_ = {};  // the first one at once
+  if (terminal_) shown_ = {};  // shows the first one at once
 }
 
 void TrialProgress::announce(double most_seconds) {

@@ -5,32 +5,39 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace cayspin::program {
 
-/// From here on SIGINT and SIGTERM ask a run to end after its step instead of killing it, and a
-/// write past the limit of a file's size is an error like any other.
+/// Makes SIGINT and SIGTERM end a run after its step instead of killing it, and a write past the
+/// file size limit an error like any other.
 void catch_signals();
 
-/// True once one of them came.
+/// Returns true once one of these signals came.
 bool interrupt_requested();
 
-/// To whom a run says how far it is.
+/// The reader of a run's progress messages.
 enum class Listener { nobody, user, program };
 
-/// Tells on standard output how far a run is: a bar on a terminal, otherwise now and then a line.
-/// For a program, a line "STEP STEPS" some times a second.
+/// Progress report of a run on standard output: a bar on a terminal, otherwise a line now and
+/// then. For a program, a line "STEP STEPS" several times a second.
 class Progress {
  public:
-  /// `equal_steps`: those of the method are those of the run.
-  Progress(std::int64_t first, std::int64_t steps, std::int64_t sites, bool equal_steps,
-           Listener listener);
+  Progress(std::int64_t sites, Listener listener);
+
+  /// Call before the first step after `first` of a stage, or of the run. `end`: the last step of
+  /// the run. `equal_steps`: the method's steps are those of the run. `name`: of a stage, or empty.
+  void begin_stage(std::int64_t first, std::int64_t end, bool equal_steps, std::string name);
+  /// Counts the steps of a stage.
+  void add(Summary const& summary);
+  /// Prints a line about the stage.
+  void tell(std::string const& text);
 
   bool due(Step const& step) const { return step.number >= next_; }
   void show(Step const& step);
 
-  /// One closing line: what was done, and into which file.
+  /// Prints one closing line: what was done, and the name of the file.
   void close(Summary const& summary, std::int64_t frames, std::string const& file);
 
  private:
@@ -39,26 +46,29 @@ class Progress {
   void draw(double done, std::string const& text);
 
   Listener listener_;
-  bool terminal_, equal_steps_;
-  std::int64_t first_, steps_, sites_, next_;
-  Clock::time_point begin_ = Clock::now(), shown_ = begin_;
+  bool terminal_, equal_steps_ = true;
+  std::int64_t sites_, first_ = 0, steps_ = 0, next_ = 0;
+  std::int64_t method_steps_ = 0;  // internal steps of the method
+  std::string stage_;
+  std::optional<Clock::time_point> begin_;  // start of the run
+  Clock::time_point stage_begin_, shown_;
   bool on_line_ = false;
 };
 
-/// How far the tries are, with an estimate of the time left. A bar where standard error is a
+/// Progress report of trials, with an estimate of the time left: a bar if standard error is a
 /// terminal, so that results in a file or a pipe stay clean; otherwise lines on standard output.
 class TrialProgress {
  public:
-  /// `lines`: may standard output have them?
+  /// `lines`: standard output may be used.
   TrialProgress(bool quiet, bool lines);
-  /// Takes the bar away.
+  /// Removes the bar.
   ~TrialProgress() { clear(); }
   TrialProgress(TrialProgress const&) = delete;
   TrialProgress& operator=(TrialProgress const&) = delete;
 
-  /// Before the first try: how long all of them may take.
+  /// Call before the first trial: the most that all of them may take.
   void announce(double most_seconds);
-  /// Before each try: the share of the work that is done, and what is tried.
+  /// Call before each trial: the share of the work done, and the name of the trial.
   void show(double share, std::string const& what);
   void clear();
 
@@ -66,7 +76,7 @@ class TrialProgress {
   using Clock = std::chrono::steady_clock;
 
   bool quiet_, lines_, terminal_, drawn_ = false;
-  double most_seconds_ = 0;  // 0: not known
+  double most_seconds_ = 0;  // 0: unknown
   Clock::time_point begin_ = Clock::now(), shown_ = begin_;
 };
 

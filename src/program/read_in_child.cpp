@@ -38,7 +38,7 @@ using Clock = std::chrono::steady_clock;
 
 bool is_child = false;
 
-// The first byte that a child sends. After `failed` comes the message.
+// First byte sent by a child. After `failed` the message follows.
 enum Outcome : char { survived = 's', failed = 'f', out_of_memory = 'm' };
 
 constexpr int faults[] = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGTRAP, SIGSYS, SIGXCPU};
@@ -57,7 +57,7 @@ rlim_t address_space() {
   return pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
 }
 
-// A megabyte may be a gigabyte that was compressed, but not a hundred of them.
+// A megabyte may decompress to a gigabyte, but not to a hundred.
 rlim_t most_seconds(std::filesystem::path const& path) {
   std::error_code error;
   auto const bytes = std::filesystem::file_size(path, error);
@@ -65,7 +65,7 @@ rlim_t most_seconds(std::filesystem::path const& path) {
   return 2 + std::min<rlim_t>(bytes >> 18U, 60) + (bytes >> 26U);
 }
 
-// A fault ends the child at once, in silence; what the terminal sends is left to the parent.
+// Makes a fault end the child at once without output; leaves signals of the terminal to the parent.
 void settle_signals(pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(1);
@@ -79,14 +79,14 @@ void settle_signals(pid_t parent) {
 }
 
 void limit_resources(std::filesystem::path const& path) {
-  std::ofstream("/proc/self/oom_score_adj") << "1000";  // the first to go where memory runs out
+  std::ofstream("/proc/self/oom_score_adj") << "1000";  // killed first when memory runs out
 #ifndef CAYSPIN_SHADOW_MEMORY
   auto const room = static_cast<rlim_t>(io::available_memory()), used = address_space();
   if (room < RLIM_INFINITY - used) lower_limit(RLIMIT_AS, used + room);
 #endif
   lower_limit(RLIMIT_CPU, most_seconds(path), 5);
   lower_limit(RLIMIT_CORE, 0);
-  ::prctl(PR_SET_DUMPABLE, 0);  // not by a program that collects them either
+  ::prctl(PR_SET_DUMPABLE, 0);  // no core dump by a collecting program either
 }
 
 void send(int pipe, std::string const& text) {
@@ -106,7 +106,7 @@ std::string answer(std::function<void()> const& reading) {
     return std::string(1, out_of_memory);
   } catch (std::length_error const&) {
     return std::string(1, out_of_memory);
-  } catch (...) {  // the parent's to meet
+  } catch (...) {  // the parent will get the exception, too
   }
   return std::string(1, survived);
 }
@@ -120,15 +120,16 @@ std::string answer(std::function<void()> const& reading) {
   ::dup2(nowhere, STDERR_FILENO);
   limit_resources(path);
   send(pipe, answer(reading));
-  ::_exit(0);  // without what the parent has to do at its exit
+  ::_exit(0);  // skips the parent's exit handlers
 }
 
-// Far above what a disk or a busy machine takes: only a child that waits for something reaches it.
+// Returns a limit far above what a disk or a busy machine needs: only a child that hangs reaches
+// it.
 std::chrono::seconds longest_reading(std::filesystem::path const& path) {
   return std::chrono::seconds(60 + 10 * most_seconds(path));
 }
 
-// All that a child sends, or what has come by the deadline.
+// All output of a child, up to the deadline.
 struct Received {
   std::string text;
   bool is_late = false;
@@ -151,7 +152,7 @@ Received receive(int pipe, Clock::time_point deadline) {
   }
 }
 
-// Why a child left no answer. A caller that ignores SIGCHLD leaves no status.
+// Returns why a child left no answer. A caller that ignores SIGCHLD leaves no status.
 std::string cause_of(std::optional<int> status, bool is_late) {
   if (is_late) return "reading it takes too long";
   if (!status || !WIFSIGNALED(*status)) return "reading it fails";
@@ -178,7 +179,7 @@ void try_in_child(std::filesystem::path const& path, std::function<void()> const
   pid_t const parent = ::getpid(), child = ::fork();
   if (child == 0) read_as_child(ends[1], parent, path, reading);
   ::close(ends[1]);
-  if (child < 0) {  // where no process is free, the file is read all the same
+  if (child < 0) {  // if no process can be started, the file is read without trial
     ::close(ends[0]);
     return;
   }

@@ -8,11 +8,11 @@
 namespace cayspin::program {
 
 /// Runs `reading` in a forked child. A damaged file can make HDF5 crash, loop, or ask for any
-/// amount of memory, and then only the child suffers. Throws std::runtime_error with one line where
-/// it does, and the child's own where `reading` threw one. A trial for io::set_trial().
+/// amount of memory; then only the child suffers. Throws std::runtime_error with one line if that
+/// happens, and the child's message if `reading` threw. A trial for io::set_trial().
 void try_in_child(std::filesystem::path const& path, std::function<void()> const& reading);
 
-/// The same. A child that does not end within `longest` is killed.
+/// Like the above, but kills a child that does not end within `longest`.
 void try_in_child(std::filesystem::path const& path, std::function<void()> const& reading,
                   std::chrono::milliseconds longest);
 

@@ -7,7 +7,9 @@
 #include "io/notes.hpp"
 #include "io/run_output.hpp"
 #include "progress.hpp"
+#include "run_ensemble.hpp"
 #include "simulation/kokkos_settings.hpp"
+#include "simulation/more_of_sample.hpp"
 #include "simulation/plan.hpp"
 #include "simulation/run_files.hpp"
 #include "simulation/scene_minimizer.hpp"
@@ -30,7 +32,7 @@ namespace {
 
 struct RelaxOptions : DeviceOptions {
   double torque = 1e-6;
-  std::int64_t evaluations = 100000;  // at each field
+  std::int64_t evaluations = 100000;  // for each field
   bool keep_saddles = false, quiet = false;
 };
 
@@ -45,6 +47,10 @@ class Relaxation {
     auto header = run_header(scene, options.precision, chosen_space(options.space),
                              threads_of(exec_), CAYSPIN_GIT_COMMIT);
     header.relaxes = true;
+    auto in_field = scene;
+    in_field.field = io::fields_in_turn(scene).front();
+    header.more = more_scalars(in_field);
+    header.more.shift = false;
     file_.emplace(open_output(output_file(scene, options.output), header,
                               run_output_options(scene, options.overwrite)));
   }
@@ -54,8 +60,8 @@ class Relaxation {
     for (auto const& field : fields) {
       auto in_field = scene_;
       in_field.field = field;
-      auto const found =
-          relax_in(field_of<Spins>(in_field, spins_.lattice(), false).made_for(FieldFor::energy));
+      auto const found = relax_in(
+          in_field, field_of<Spins>(in_field, spins_.lattice(), false).made_for(FieldFor::energy));
       cost_.evaluations += found.evaluations;
       cost_.relaxed->torque = std::max(cost_.relaxed->torque, found.torque * scene_.units.field);
       bool const interrupted = found.end == MinimizeEnd::interrupted;
@@ -75,7 +81,7 @@ class Relaxation {
   }
 
  private:
-  Minimum relax_in(SceneField<Spins> const& field) {
+  Minimum relax_in(io::Scene const& in_field, SceneField<Spins> const& field) {
     Kokkos::Timer const clock;
     auto const found =
         minimizer_.minimize(exec_, scene_, field, spins_,
@@ -91,7 +97,8 @@ class Relaxation {
     auto const scalars = as_scalars(last_, scene_.units);
     auto const numbers = copy_to_host(spins_);
     std::ranges::copy(numbers, file_->template frame<Real>());
-    file_->write_scalars(step.number, step.time, scalars);
+    MoreOfSample<Spins> const more(in_field, spins_.lattice());
+    file_->write_scalars(step.number, step.time, scalars, more(exec_, field, step, spins_));
     file_->write_frame(step.number, step.time, scalars);
     return found;
   }
@@ -130,6 +137,9 @@ int relax(RelaxOptions const& options) {
   if (!(options.torque / scene.units.field >= least) || !std::isfinite(options.torque))
     throw UsageError(fmt::format("--torque {}; accepted: a number of at least {}", options.torque,
                                  least * scene.units.field));
+  if (scene.ensemble.there())
+    return relax_ensemble(
+        scene, options, {options.torque, options.evaluations, options.keep_saddles, options.quiet});
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, options.device);
   auto const plan = make_plan_to_relax(scene, options.precision);
@@ -146,7 +156,7 @@ int relax(RelaxOptions const& options) {
 Command add_relax(CLI::App& program) {
   auto const options = std::make_shared<RelaxOptions>();
   auto* const command = program.add_subcommand(
-      "relax", "Find the state of rest of a scene, or one for each of its fields (HDF5)");
+      "relax", "Find the equilibrium of a scene, or one for each of its fields (HDF5)");
   add_device_options(*command, *options);
   command->add_option("--torque", options->torque, "Largest |m x H| (default: 1e-6)");
   command

@@ -27,7 +27,7 @@ bool has_all_colors() {
   return said == "truecolor" || said == "24bit";
 }
 
-// `ground`: 38 for what is written, 48 for what is behind.
+// `ground`: 38 for the foreground, 48 for the background.
 std::string escape(int ground, Color const& color) {
   if (has_all_colors())
     return fmt::format("\x1b[{};2;{};{};{}m", ground, color[0], color[1], color[2]);
@@ -36,7 +36,8 @@ std::string escape(int ground, Color const& color) {
                      16 + 36 * level(color[0]) + 6 * level(color[1]) + level(color[2]));
 }
 
-// A spin (right, up, normal): hue by its angle in the plane, light along the normal.
+// Returns the colour of a spin (right, up, normal): hue by its angle in the plane, lightness by its
+// normal component.
 Color color_of(std::array<double, 3> const& spin) {
   double const length = std::hypot(spin[0], spin[1], spin[2]);
   if (!(length > 0)) return {255, 255, 255};
@@ -60,7 +61,7 @@ class Plane {
     sites_ = static_cast<std::int64_t>(lattice.basis.size());
     cells_ = lattice.shape;
     cells_[2] /= sites_;
-    // Of equal extents z is the normal.
+    // If extents are equal, z is the normal.
     axes_ = {0, 1, 2};
     for (std::size_t axis : {1, 0})
       if (cells_[axis] < cells_[axes_[2]]) axes_ = {axis == 0 ? 1U : 0U, 2, axis};
@@ -77,7 +78,7 @@ class Plane {
   std::int64_t cells(std::size_t across) const { return cells_[axes_[across]]; }
   char axis(std::size_t which) const { return "xyz"[axes_[which]]; }
 
-  /// Of a point in shares of the plane.
+  /// Returns the colour at a point, given as fractions of the plane.
   Color color(double right, double up) const {
     std::array<std::int64_t, 3> at{};
     at[axes_[0]] = cell(right, 0);
@@ -122,7 +123,8 @@ bool terminal_shows_pictures() {
          (has_all_colors() || terminal.find("256color") != std::string_view::npos);
 }
 
-// Half blocks: two points of a column in a character, the upper one written, the lower behind.
+// Draws half blocks: each character shows two points of a column, the upper one as foreground, the
+// lower one as background.
 std::string terminal_picture(io::Lattice const& lattice, std::vector<double> const& spins) {
   constexpr std::int64_t least = 32, most = 64;
   Plane const plane(lattice, spins);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
 #include "io/notes.hpp"
-#include "simulation/dear_method.hpp"
+#include "io/stages.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
+#include "simulation/multirate_method.hpp"
 #include "simulation/plan.hpp"
 #include "simulation/text.hpp"
 #include "trade/resolved.hpp"
@@ -21,16 +22,16 @@ namespace {
 
 using namespace trade;
 
-/// Of commands that try methods.
+/// Options of commands that try methods.
 struct TryOptions : SceneOptions {
-  std::optional<Precision> precision;  // the only one
+  std::optional<Precision> precision;  // the only one to try
   std::optional<std::string> space;
   std::optional<int> threads;
   bool json = false, quiet = false;
 };
 
 struct TradeOptions : TryOptions {
-  double seconds = 10;  // that a run may take
+  double seconds = 10;  // largest duration of a run
   bool advice = false;
 };
 
@@ -42,7 +43,7 @@ struct AdviseOptions : TryOptions {
 constexpr double errors_compared[] = {1e-2, 1e-4, 1e-6, 1e-8};
 constexpr double least_error_of_trade = 1e-9;
 
-// Of a rung, or of an advice.
+// Returns the steps of a rung, or of an advice.
 template <class Run>
 std::string steps_text(Pilot const& pilot, Candidate const& candidate, Run const& run) {
   auto const& units = pilot.scene().units;
@@ -51,7 +52,7 @@ std::string steps_text(Pilot const& pilot, Candidate const& candidate, Run const
              : fmt::format("dt {:.3e}{}", run.dt * units.time, units.si ? " s" : "");
 }
 
-// 1 on devices.
+// Returns 1 on devices.
 int threads_in(std::string const& space) {
   return in_space(space, Precision::double_precision,
                   []<class, class Space>() { return threads_of(Space()); });
@@ -156,7 +157,7 @@ void print_verdicts(Pilot const& pilot, std::vector<Verdict> const& verdicts) {
   }
 }
 
-// With the space and the threads that the time was measured with, and a file to write where the
+// Returns a command with the space and threads of the measurement, and with an output file if the
 // scene names none.
 std::string command_of(AdviseOptions const& options, io::Scene const& scene,
                        Resolved const& resolved, Precision precision) {
@@ -175,7 +176,7 @@ std::string command_of(AdviseOptions const& options, io::Scene const& scene,
   return command;
 }
 
-// What `run` warns of.
+// Returns the warning that `run` would print.
 std::optional<std::string> warning_of(io::Scene const& scene, Resolved const& resolved,
                                       Precision precision) {
   auto const plan = make_plan(io::with_overrides(scene, resolved.overrides), precision);
@@ -237,10 +238,11 @@ void print_text(AdviseOptions const& options, io::Scene const& scene, Advised co
 io::Scene scene_to_try(std::filesystem::path const& path,
                        std::vector<std::string> const& overrides) {
   auto const scene = io::with_shape_of_start(io::read_scene(path, overrides));
+  io::require_no_stages(scene, "cayspin trade or advise");
   io::check_files(scene);
-  // With one, the scene's own method is of no account.
-  if (!scene.integrator.method->automatic && !has_dear_field(scene))
-    require_dear_field_fits(scene, find_variant(scene));
+  // With several candidates, the scene's own method is ignored.
+  if (!scene.integrator.method->automatic && !has_slow_field(scene))
+    require_slow_field_fits(scene, find_variant(scene));
   return scene;
 }
 
@@ -313,7 +315,7 @@ int advise_on(AdviseOptions const& options) {
 }
 
 void add_try_options(CLI::App& command, TryOptions& options) {
-  add_scene_options(command, options, "double or single alone (default: both)");
+  add_scene_options(command, options, "only double, or only single (default: both)");
   add_space_options(command, options);
   command.add_flag("--quiet", options.quiet, "No progress");
 }

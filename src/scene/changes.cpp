@@ -12,7 +12,7 @@
 namespace cayspin::inline v0_1::io {
 namespace {
 
-// To the round-off of a conversion from SI.
+// Compares up to the round-off of a conversion from SI.
 bool same(double a, double b) {
   return a == b || std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b));
 }
@@ -26,33 +26,36 @@ bool same_spacing(Scene const& before, Scene const& now, std::size_t axis) {
               now.lattice.spacing[axis] * now.units.length);
 }
 
-// Numbers of the cell's sites, which are all 1 where none are typed.
+// Compares numbers of the cell's sites, which are all 1 if none are typed.
 bool same_of_cell(std::vector<double> before, std::vector<double> now, std::size_t sites) {
   if (before.empty()) before.assign(sites, 1);
   if (now.empty()) now.assign(sites, 1);
   return std::ranges::equal(before, now, [](double a, double b) { return same(a, b); });
 }
 
-using OfSites = std::vector<unsigned char> (*)(Scene const&, SiteBox const&);
+template <class Number>
+using OfSites = std::vector<Number> (*)(Scene const&, SiteBox const&);
 
-// `where`: empty stands for sites that all have the value `otherwise`.
-bool same_sites(Scene const& before, Scene const& now, SiteNumbers Lattice::*numbers, OfSites where,
-                unsigned char otherwise) {
+// `of_sites`: if empty, all sites have the value `otherwise`.
+template <class Number>
+bool same_sites(Scene const& before, Scene const& now, SiteNumbers Lattice::*numbers,
+                OfSites<Number> of_sites, Number otherwise) {
   auto const &a = before.lattice.*numbers, &b = now.lattice.*numbers;
   if (!a.there() && !b.there()) return true;
   if (a.there() == b.there() && a.expression == b.expression && a.file == b.file &&
-      !a.given == !b.given)
+      a.image == b.image && a.levels == b.levels && !a.given == !b.given && a.unit == b.unit &&
+      a.of_regions.empty() && b.of_regions.empty())
     return true;
   auto const& [nx, ny, nz] = now.lattice.shape;
-  bool const by_planes = a.file.empty() && !a.given && b.file.empty() && !b.given;
-  auto const at_once = by_planes ? 1 : nz;
+  auto const at_once = planes_to_read(now.lattice.shape, sizeof(double));
   for (std::int64_t plane = 0; plane < nz; plane += at_once) {
-    SiteBox const box{{0, 0, plane}, {nx, ny, at_once}};
-    auto one = where(before, box), other = where(now, box);
-    auto const count = static_cast<std::size_t>(nx * ny * at_once);
+    auto const planes = std::min(at_once, nz - plane);
+    SiteBox const box{{0, 0, plane}, {nx, ny, planes}};
+    auto one = of_sites(before, box), other = of_sites(now, box);
+    auto const count = static_cast<std::size_t>(nx * ny * planes);
     for (auto* const some : {&one, &other})
       if (some->empty()) some->assign(count, otherwise);
-    if (one != other) return false;
+    if (!std::ranges::equal(one, other, [](auto x, auto y) { return same(x, y); })) return false;
   }
   return true;
 }
@@ -120,8 +123,13 @@ std::string changed_lattice_key(Scene const& before, Scene const& now) {
   }
   if (!same_of_cell(a.moments, b.moments, b.basis.size())) return "lattice.moments";
   if (!same_of_cell(a.gyromagnetic, b.gyromagnetic, b.basis.size())) return "lattice.gyromagnetic";
-  if (!same_sites(before, now, &Lattice::occupied, occupied, 1)) return "lattice.occupied";
-  if (!same_sites(before, now, &Lattice::frozen, frozen, 0)) return "lattice.frozen";
+  if (!same_sites<double>(before, now, &Lattice::moments_of_sites, moments_of_sites, 1))
+    return "lattice.moments";
+  if (!same_sites<double>(before, now, &Lattice::gyromagnetic_of_sites, gyromagnetic_of_sites, 1))
+    return "lattice.gyromagnetic";
+  if (!same_sites<unsigned char>(before, now, &Lattice::occupied, occupied, 1))
+    return "lattice.occupied";
+  if (!same_sites<unsigned char>(before, now, &Lattice::frozen, frozen, 0)) return "lattice.frozen";
   return {};
 }
 

@@ -73,7 +73,7 @@ void check_isotropy(Scene const& scene) {
            "\"cayley\"");
 }
 
-// Colours of a checkerboard that closes on itself.
+// Checks that a periodic axis keeps the two colours of the checkerboard.
 void check_two_colours(Scene const& scene) {
   constexpr std::string_view key = "integrator.method";
   auto const method = scene.integrator.method->word;
@@ -109,13 +109,8 @@ void check_tangent(Scene const& scene) {
            "\"cayley\"");
 }
 
-// The keys of [integrator] among each other.
+// Checks combinations of keys within [integrator].
 void check_integrator(Scene const& scene) {
-  if (scene.field.own.nonlocal && scene.field.slab_demag && scene.field.slab_demag->on_host)
-    refuse(scene, "field.slab_demag", "where = \"host\" does not go with a program's own field",
-           "no such key");
-  if (scene.field.own.nonlocal && scene.field.demag)
-    refuse(scene, "field.demag", "does not go with a program's own field", "no such key");
   if (scene.field.own.uniform && scene.field.applied)
     refuse(scene, "field.applied", "the program has a uniform field of its own", "no such key");
   auto const& integrator = scene.integrator;

@@ -13,14 +13,15 @@
 #include <map>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 
 namespace cayspin::inline v0_1::io::detail {
 namespace {
 
 constexpr auto any = std::numeric_limits<std::size_t>::max();
 constexpr std::string_view accepted_couplings =
-    "an array of tables { between, offset, J, D, tensor, biquadratic }, { shells = [J, ..] } or "
-    "{ file = \"NAME.ucf\" }";
+    "an array of tables { between, offset, J, D, tensor, biquadratic }, { shells = [J, ..], pairs = "
+    "[those tables], both_directions = true or false } or { file = \"NAME.ucf\" }";
 
 int small_integer(Item const& item, double least, std::string_view accepted) {
   auto const value = integer(item, {accepted, least});
@@ -54,7 +55,7 @@ std::array<double, 9> read_tensor(Item const& item, Scene& scene) {
   return tensor;
 }
 
-// Bonds past an open end are none: here all of them.
+// Bonds past an open end are omitted; refuses a coupling that loses all of them.
 void refuse_beyond(Item const& item, Lattice const& lattice, std::array<int, 3> const& offset) {
   auto cells = lattice.shape;
   cells[2] /= static_cast<std::int64_t>(lattice.basis.size());
@@ -106,19 +107,91 @@ Coupling read_coupling(Item const& item, Scene& scene) {
   return made;
 }
 
+using Key = std::pair<std::array<int, 2>, std::array<int, 3>>;
+
+Key key_of(Coupling const& bond) { return {bond.between, bond.offset}; }
+Key reversed(Key const& key) {
+  auto const& [between, offset] = key;
+  return {{between[1], between[0]}, {-offset[0], -offset[1], -offset[2]}};
+}
+
+Coupling reversed(Coupling const& bond) {
+  Coupling back = bond;
+  std::tie(back.between, back.offset) = reversed(key_of(bond));
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) back.tensor[3 * i + j] = bond.tensor[3 * j + i];
+  return back;
+}
+
 void refuse_twice(std::vector<Item> const& items, std::vector<Coupling> const& couplings) {
-  std::map<std::tuple<std::array<int, 2>, std::array<int, 3>>, std::size_t> seen;
+  std::map<Key, std::size_t> seen;
   for (std::size_t i = 0; i < couplings.size(); ++i) {
-    auto const& [between, offset, tensor, biquadratic] = couplings[i];
-    std::array<int, 3> const back{-offset[0], -offset[1], -offset[2]};
     auto const refuse = [&](auto const& other, std::string_view how) {
       if (other != seen.end())
-        items[i].fail(fmt::format("is the bond of field.couplings[{}]{}", other->second, how),
-                      "each bond once");
+        items[i].fail(fmt::format("is the bond of {}{}", items[other->second].key, how),
+                      "each bond once, or from both ends with { pairs = [..], both_directions = "
+                      "true }");
     };
-    refuse(seen.find({between, offset}), "");
-    refuse(seen.find({{between[1], between[0]}, back}), ", reversed");
-    seen.emplace(std::tuple(between, offset), i);
+    refuse(seen.find(key_of(couplings[i])), "");
+    refuse(seen.find(reversed(key_of(couplings[i]))), ", reversed");
+    seen.emplace(key_of(couplings[i]), i);
+  }
+}
+
+bool are_close(Coupling const& a, Coupling const& b) {
+  double largest = std::max(std::abs(a.biquadratic), std::abs(b.biquadratic));
+  double difference = std::abs(a.biquadratic - b.biquadratic);
+  for (std::size_t i = 0; i < 9; ++i) {
+    largest = std::max({largest, std::abs(a.tensor[i]), std::abs(b.tensor[i])});
+    difference = std::max(difference, std::abs(a.tensor[i] - b.tensor[i]));
+  }
+  return difference <= 1e-6 * largest;
+}
+
+// Keeps one of the two ends from which each bond is written.
+std::vector<Coupling> one_direction(std::vector<Item> const& items,
+                                    std::vector<Coupling> const& couplings) {
+  constexpr std::string_view accepted = "each bond from both ends, with J, and with -D there";
+  std::map<Key, std::size_t> seen;
+  for (std::size_t i = 0; i < couplings.size(); ++i)
+    if (auto const [at, is_new] = seen.emplace(key_of(couplings[i]), i); !is_new)
+      items[i].fail(fmt::format("is the bond of {}", items[at->second].key), accepted);
+  std::vector<Coupling> once;
+  for (std::size_t i = 0; i < couplings.size(); ++i) {
+    auto const back = seen.find(reversed(key_of(couplings[i])));
+    if (back == seen.end()) items[i].fail("is not written from its other end", accepted);
+    if (!are_close(reversed(couplings[i]), couplings[back->second]))
+      items[i].fail(fmt::format("differs from {}, its other end", items[back->second].key),
+                    accepted);
+    if (i < back->second) once.push_back(couplings[i]);
+  }
+  return once;
+}
+
+std::vector<Coupling> read_pairs(Item const& item, Scene& scene, bool both_directions) {
+  auto const all = entries(item, 1, any, accepted_couplings);
+  std::vector<Coupling> bonds;
+  for (auto const& entry : all) bonds.push_back(read_coupling(entry, scene));
+  if (both_directions) return one_direction(all, bonds);
+  refuse_twice(all, bonds);
+  return bonds;
+}
+
+// Bonds that both have are one, with the sum of what they say.
+void add_bonds(std::vector<Coupling> const& more, std::vector<Coupling>& bonds) {
+  std::map<Key, std::size_t> seen;
+  for (std::size_t i = 0; i < bonds.size(); ++i) seen.emplace(key_of(bonds[i]), i);
+  for (auto const& one : more) {
+    auto at = seen.find(key_of(one));
+    auto const back = at == seen.end() ? seen.find(reversed(key_of(one))) : at;
+    if (back == seen.end()) {
+      bonds.push_back(one);
+      continue;
+    }
+    auto const added = at == seen.end() ? reversed(one) : one;
+    auto& bond = bonds[back->second];
+    for (std::size_t i = 0; i < 9; ++i) bond.tensor[i] += added.tensor[i];
+    bond.biquadratic += added.biquadratic;
   }
 }
 
@@ -151,25 +224,23 @@ std::vector<Coupling> read_shells(Item const& item, Scene& scene) {
 
 void read_couplings(Item const& item, Scene& scene, Field& field) {
   if (item.node->is_array()) {
-    auto const all = entries(item, 1, any, accepted_couplings);
-    for (auto const& entry : all) field.couplings.push_back(read_coupling(entry, scene));
-    refuse_twice(all, field.couplings);
+    field.couplings = read_pairs(item, scene, false);
     return;
   }
   if (!item.node->is_table()) item.wrong_type(accepted_couplings);
   Table const table(item, scene);
-  table.accept_only({"shells", "file", "scale"});
-  auto const shells = table.find("shells");
-  if (shells.has_value() == table.contains("file"))
-    item.fail(shells ? "has shells and a file" : "has no bonds", accepted_couplings);
-  if (auto const scale = table.find("scale")) {
-    if (shells) scale->fail("belongs to a file", "no such key");
-    field.couplings_scale = number(*scale);
-  }
-  if (shells)
-    field.couplings = read_shells(*shells, scene);
-  else
-    field.couplings_file = input_file(table, "file", accepted_unit_cell_file);
+  table.accept_only({"shells", "pairs", "both_directions", "file", "scale"});
+  auto const shells = table.find("shells"), pairs = table.find("pairs"),
+             both = table.find("both_directions"), scale = table.find("scale");
+  bool const has_file = table.contains("file");
+  if ((shells || pairs) && has_file) item.fail("has a file and other bonds", accepted_couplings);
+  if (!shells && !pairs && !has_file) item.fail("has no bonds", accepted_couplings);
+  if (both && !pairs) both->fail("belongs to pairs", "no such key");
+  if (scale && !has_file) scale->fail("belongs to a file", "no such key");
+  if (scale) field.couplings_scale = number(*scale);
+  if (has_file) field.couplings_file = input_file(table, "file", accepted_unit_cell_file);
+  if (shells) field.couplings = read_shells(*shells, scene);
+  if (pairs) add_bonds(read_pairs(*pairs, scene, both && boolean(*both)), field.couplings);
 }
 
 }  // namespace cayspin::inline v0_1::io::detail

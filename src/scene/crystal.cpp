@@ -17,7 +17,7 @@ constexpr Word<Crystal (*)()> crystals[] = {
     {"hcp", Crystal::hcp},       {"honeycomb", Crystal::honeycomb},
     {"kagome", Crystal::kagome}, {"pyrochlore", Crystal::pyrochlore}};
 
-// A unit-cell file says what the cell is, where the scene does not.
+// Returns the cell of a unit-cell file if the scene has none.
 std::optional<Crystal> crystal_of_couplings(Table const& root) {
   auto const field = root.find("field");
   if (!field || !field->node->is_table()) return std::nullopt;
@@ -81,16 +81,20 @@ void read_crystal(Table const& root, Table const& table, Lattice& lattice) {
   if (auto const item = table.find("cell")) read_cell(*item, lattice);
   if (auto const item = table.find("basis")) read_basis(*item, lattice);
   auto const sites = lattice.basis.size();
-  if (auto const item = table.find("moments"))
+  if (auto const item = table.find("moments"); item && !are_numbers_of_sites(*item))
     lattice.moments = read_numbers_of_sites(*item, sites, not_negative);
-  if (auto const item = table.find("gyromagnetic"))
+  if (auto const item = table.find("gyromagnetic"); item && !are_numbers_of_sites(*item))
     lattice.gyromagnetic = read_numbers_of_sites(*item, sites, positive);
+}
+
+bool is_crystal(Lattice const& lattice) {
+  return lattice.basis.size() > 1 || lattice.cell != Lattice{}.cell;
 }
 
 void check_crystal(Scene const& scene) {
   auto const& lattice = scene.lattice;
   auto const& field = scene.field;
-  if (lattice.basis.size() == 1 && lattice.cell == Lattice{}.cell) return;
+  if (!is_crystal(lattice)) return;
   auto const refuse_if = [&](bool there, std::string_view key, std::string_view accepted) {
     if (!there) return;
     auto const needs = lattice.basis.size() > 1 ? "needs one site in a cell"
@@ -100,12 +104,13 @@ void check_crystal(Scene const& scene) {
   bool const si = scene.units.si;
   refuse_if(field.exchange.has_value(), si ? "material.J" : "field.exchange",
             "field.couplings with J");
-  refuse_if(field.dmi || field.bulk_dmi,
-            !si         ? "field.dmi"
-            : field.dmi ? "material.D"
-                        : "material.D_bulk",
+  refuse_if(!field.interlayers.empty(), "field.interlayer", "field.couplings");
+  refuse_if(field.has_dmi(),
+            !si              ? "field.dmi"
+            : field.dmi      ? "material.D"
+            : field.bulk_dmi ? "material.D_bulk"
+                             : "material.D2d",
             "field.couplings with D");
-  refuse_if(field.demag.has_value(), "field.demag", "no such key");
   refuse_if(field.torque.zhang_li.has_value(), "torque.zhang_li", "slonczewski, or no such key");
 }
 

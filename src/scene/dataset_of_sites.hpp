@@ -13,8 +13,8 @@
 
 namespace cayspin::inline v0_1::io::detail {
 
-/// A dataset with `of_site` numbers of each site: (nz, ny, nx), or (site, nz, ny, nx) of a crystal,
-/// and a last extent for several numbers.
+/// A dataset with `of_site` numbers of each site: (nz, ny, nx), or (site, nz, ny, nx) for a
+/// crystal, and a last extent for several numbers.
 class DatasetOfSites {
  public:
   DatasetOfSites(std::filesystem::path const& path, std::string name, Lattice const& lattice,
@@ -31,7 +31,7 @@ class DatasetOfSites {
     dataset_.refuse_extents(accepted);
   }
 
-  /// In the order of a lattice, whose planes are the sites of a cell in turn.
+  /// Reads a box in the order of a lattice, whose planes are the sites of a cell in turn.
   std::vector<double> in(SiteBox const& box) const {
     auto const at_once = sites_ == 1 ? box.extent[2] : 1;
     std::vector<double> numbers;
@@ -45,7 +45,7 @@ class DatasetOfSites {
   }
 
  private:
-  /// Without those that the dataset does not have.
+  /// Returns the extents that the dataset has.
   Extents extents(std::array<std::int64_t, 5> const& all) const {
     return Extents(all.begin() + (sites_ == 1 ? 1 : 0), all.end() - (of_site_ == 1 ? 1 : 0));
   }

@@ -14,7 +14,7 @@
 namespace cayspin::inline v0_1::io {
 namespace {
 
-// muParser would let "x = 3" write into the variable.
+// Returns true for an assignment: muParser would let "x = 3" change the variable.
 bool assigns(std::string_view text) {
   for (std::size_t at = text.find('='); at != text.npos; at = text.find('=', at + 1)) {
     bool const follows_comparison =
@@ -25,7 +25,11 @@ bool assigns(std::string_view text) {
   return false;
 }
 
-// A formula may have line breaks; a message has none.
+// Returns a remainder with the sign of the divisor, so that (i - 1) % 2 is 1 for i = 0.
+double remainder_of(double a, double b) { return a - b * std::floor(a / b); }
+double is_zero(double a) { return a == 0 ? 1 : 0; }
+
+// Joins lines: a formula may have line breaks, a message must not.
 std::string in_one_line(std::string message) {
   std::ranges::replace(message, '\n', ' ');
   std::ranges::replace(message, '\r', ' ');
@@ -43,7 +47,7 @@ struct Expression::Compiled {
     Compiled const* compiled;
   };
   std::vector<Function> functions;
-  bool is_ready = false;  // while the text is compiled, functions have no value yet
+  bool is_ready = false;  // false during compilation, when variables have no values yet
   mu::Parser parser;
 
   static double call(void* called, double a, double b) {
@@ -68,6 +72,8 @@ Expression::Expression(std::string text, std::vector<std::string> variables,
   auto& parser = compiled_->parser;
   try {
     parser.DefineConst("pi", std::numbers::pi);
+    parser.DefineOprt("%", &remainder_of, mu::prMUL_DIV, mu::oaLEFT, true);
+    parser.DefineInfixOprt("!", &is_zero);
     for (std::size_t n = 0; n < compiled_->variables.size(); ++n) {
       parser.DefineVar(compiled_->variables[n], &compiled_->values[n]);
     }

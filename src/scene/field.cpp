@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "free_boundary.hpp"
 #include "io/expression.hpp"
-#include "quantity.hpp"
 #include "sections.hpp"
-
-#include <cayspin/demagnetization/images.hpp>
-#include <cayspin/demagnetization/tensor.hpp>
 
 #include <fmt/format.h>
 
@@ -26,7 +23,7 @@ Term read_term(Item const& item, Scene& scene) {
   return term;
 }
 
-// Such a table, or the number itself where the term has no other key.
+// Reads a table, or a single number if the term has no other key.
 template <class Term>
 Term read_lattice_term(Item const& item, Scene& scene) {
   if constexpr (Term::keys().size() == 1) {
@@ -38,23 +35,30 @@ Term read_lattice_term(Item const& item, Scene& scene) {
   }
 }
 
-// Of an interface, or of the bulk of a chiral crystal. free_boundary is read after all sections.
+// Reads the DMI of an interface, of the bulk of a chiral crystal, or of symmetry D2d. free_boundary
+// is read after all sections.
 void read_dmi(Item const& item, Scene& scene, Field& field) {
   constexpr std::string_view accepted =
-      "{ interfacial = D, normal = [x, y, z] } or { bulk = D }, and free_boundary";
+      "{ interfacial = D, normal = [x, y, z] }, { bulk = D } or { d2d = D }, and free_boundary";
   if (!item.node->is_table()) item.wrong_type(accepted);
   Table const table(item, scene);
-  auto const bulk = table.find("bulk");
-  table.accept_only({"interfacial", "normal", "bulk", "free_boundary"});
-  if (bulk && (table.contains("interfacial") || table.contains("normal")))
-    item.fail("is of an interface and of the bulk", accepted);
+  auto const bulk = table.find("bulk"), d2d = table.find("d2d");
+  table.accept_only({"interfacial", "normal", "bulk", "d2d", "free_boundary"});
+  bool const is_of_interface = table.contains("interfacial") || table.contains("normal");
+  if (bulk && is_of_interface) item.fail("is of an interface and of the bulk", accepted);
+  if (d2d && (bulk || is_of_interface)) item.fail("is of D2d and of another symmetry", accepted);
   if (bulk) {
     field.bulk_dmi = {number_of_sites(*bulk, scene, field.dmi_factors)};
     return;
   }
+  if (d2d) {
+    field.d2d_dmi = {number_of_sites(*d2d, scene, field.dmi_factors)};
+    return;
+  }
   auto const interfacial = table.required("interfacial", Limits().accepted);
   double const constant = number_of_sites(interfacial, scene, field.dmi_factors);
-  field.dmi = {constant, direction(table.required("normal", "three numbers"))};
+  field.dmi = {constant,
+               axis_of_sites(table.required("normal", "three numbers"), scene, field.dmi_normals)};
 }
 
 void read_lattice_terms(Table const& table, Field& field) {
@@ -62,7 +66,7 @@ void read_lattice_terms(Table const& table, Field& field) {
     auto const item = table.find(Term::key);
     if (!item) return;
     if (std::is_same_v<Term, InterfacialDmi>) return read_dmi(*item, table.scene(), field);
-    if (std::is_same_v<Term, BulkDmi>) return;  // read beside it
+    if (std::is_same_v<Term, BulkDmi>) return;  // read next to it
     if (std::is_same_v<Term, Exchange> &&
         read_site_numbers(*item, table.scene(), field.exchange_factors)) {
       field.exchange = {1};
@@ -77,67 +81,64 @@ std::vector<std::string_view> field_keys() {
   for_each_lattice_term(Field{}, [&]<class Term>(std::optional<Term> const&) {
     if (keys.empty() || keys.back() != Term::key) keys.push_back(Term::key);
   });
-  keys.insert(keys.end(), {"couplings", "anisotropy", "applied", "slab_demag", "demag", "mu0"});
+  keys.insert(keys.end(), {"exchange_between", "interlayer", "couplings", "anisotropy", "in_time",
+                           "applied", "sources", "slab_demag", "demag", "dipoles", "mu0"});
   return keys;
 }
 
-// All sites of the cell, or one.
-int read_site(Table const& table) {
-  auto const item = table.find("site");
-  if (!item) return -1;
-  auto const sites = table.scene().lattice.basis.size();
-  auto const accepted = fmt::format("a site of the cell, 0 to {}", sites - 1);
-  auto const site = integer(*item, {accepted, 0});
-  if (site >= static_cast<std::int64_t>(sites))
-    item->fail(fmt::format("the cell has no site {}", site), accepted);
-  return static_cast<int>(site);
+// Reads the bonds between two regions.
+std::array<std::int64_t, 2> read_between(Table const& table) {
+  constexpr std::string_view accepted = "two regions";
+  auto const item = table.required("between", accepted);
+  if (!table.scene().lattice.regions.there())
+    item.fail("stands without lattice.regions, which says the region of each site",
+              "lattice.regions beside it");
+  auto const each = entries(item, 2, 2, accepted);
+  constexpr Limits limits{"a whole number >= 0", 0};
+  return {integer(each[0], limits), integer(each[1], limits)};
 }
 
-CubicAnisotropy read_cubic(Table const& table) {
-  constexpr std::string_view accepted = "two vectors at right angles, to 1e-4";
-  constexpr double most_skew = 1e-4;  // of cayspin::CubicAnisotropy
-  CubicAnisotropy term;
-  for (auto const* const other : {"constant", "axis"})
-    if (auto const item = table.find(other)) item->fail("belongs to a uniaxial one", "no such key");
-  auto const [value, unit] =
-      in_joules_of_atoms(table.required("cubic", "a finite number"), table.scene());
-  term.constant = number(value) * unit;
-  auto const axes = table.required("axes", accepted);
-  std::ranges::transform(entries(axes, 2, 2, accepted), term.axes.begin(), direction);
-  auto const& [a, b] = term.axes;
-  double const skew = std::abs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
-  if (!(skew <= most_skew))
-    axes.fail(fmt::format("the axes are not at right angles, by {:.3g}", skew), accepted);
-  term.site = read_site(table);
-  return term;
-}
-
-void read_anisotropy(Item const& item, Scene& scene, Field& field) {
-  Table const table(item, scene);
-  table.accept_only({"constant", "axis", "cubic", "axes", "site"});
-  if (table.contains("cubic")) {
-    field.cubic_anisotropies.push_back(read_cubic(table));
-    return;
+template <class Between, class Read>
+void read_bonds_between(Item const& item, Scene& scene, std::vector<std::string_view> const& keys,
+                        std::vector<Between>& all, Read const& read) {
+  constexpr std::string_view accepted = "a list of tables with the key between = [region, region]";
+  for (auto const& entry : entries(item, 1, std::numeric_limits<std::size_t>::max(), accepted)) {
+    if (!entry.node->is_table()) entry.wrong_type(accepted);
+    Table const table(entry, scene);
+    table.accept_only(keys);
+    auto& one = all.emplace_back();
+    one.regions = read_between(table);
+    read(table, one);
+    auto const is_pair = [&](Between const& other) {
+      if constexpr (requires { one.range; })
+        if (other.range != one.range) return false;
+      return std::ranges::is_permutation(other.regions, one.regions);
+    };
+    if (std::ranges::count_if(all, is_pair) > 1)
+      entry.fail("says once more what is between these regions", "each pair once");
   }
-  if (auto const axes = table.find("axes")) axes->fail("belongs to a cubic one", "no such key");
-  Anisotropy term;
-  term.constant =
-      constant_of_sites(table.required("constant", "a finite number"), scene, term.factors);
-  term.axis = direction(table.required("axis", "three numbers"));
-  term.site = read_site(table);
-  field.anisotropies.push_back(std::move(term));
 }
 
-void read_anisotropies(Item const& item, Scene& scene, Field& field) {
-  constexpr std::string_view accepted =
-      "{ constant = K, axis = [x, y, z] }, { cubic = Kc, axes = [[..], [..]] }, or an array of "
-      "such tables";
-  if (item.node->is_table()) return read_anisotropy(item, scene, field);
-  for (auto const& entry : entries(item, 1, std::numeric_limits<std::size_t>::max(), accepted))
-    read_anisotropy(entry, scene, field);
+void read_exchange_between(Item const& item, Scene& scene, Field& field) {
+  read_bonds_between(item, scene, {"between", "factor"}, field.exchange_between,
+                     [](Table const& table, ExchangeBetween& one) {
+                       one.factor = number(table.required("factor", "a finite number"));
+                     });
 }
 
-// Three components, or a list of fields of three numbers each.
+void read_interlayers(Item const& item, Scene& scene, Field& field) {
+  constexpr Limits range{"a number of cells without a spin, 0 to 1000", 0, 1000};
+  read_bonds_between(item, scene, {"between", "J", "biquadratic", "range"}, field.interlayers,
+                     [&](Table const& table, Interlayer& one) {
+                       if (auto const J = table.find("J")) one.bilinear = number(*J);
+                       if (auto const B = table.find("biquadratic")) one.biquadratic = number(*B);
+                       if (auto const n = table.find("range")) one.range = integer(*n, range);
+                       if (!table.contains("J") && !table.contains("biquadratic"))
+                         table.item().fail("has no constant", "J, biquadratic");
+                     });
+}
+
+// Reads three components, or a list of fields of three numbers each.
 void read_applied(Item const& item, Field& field) {
   auto const* const array = item.node->as_array();
   if (array != nullptr && !array->empty() && array->front().is_array()) {
@@ -147,6 +148,20 @@ void read_applied(Item const& item, Field& field) {
     return;
   }
   field.applied = three(item, "three numbers or expressions in t", component_in_time);
+}
+
+void read_sources(Item const& item, Scene& scene, Field& field) {
+  constexpr std::string_view accepted =
+      "a list of tables { profile = a vector of sites, time = an expression in t }";
+  for (auto const& entry : entries(item, 1, std::numeric_limits<std::size_t>::max(), accepted)) {
+    if (!entry.node->is_table()) entry.wrong_type(accepted);
+    Table const table(entry, scene);
+    table.accept_only({"profile", "time"});
+    auto& source = field.sources.emplace_back();
+    source.profile =
+        read_site_vectors(table.required("profile", accepted_site_vectors(scene.lattice)), scene);
+    if (auto const time = table.find("time")) source.time = component_in_time(*time);
+  }
 }
 
 bool is_on_host(Table const& table) {
@@ -162,80 +177,69 @@ SlabDemagnetization read_slab_demag(Item const& item, Scene& scene) {
   auto slab = read_term<SlabDemagnetization>(item, scene);
   Table const table(item, scene);
   slab.on_host = is_on_host(table);
-  if (slab.dear && !slab.on_host)
-    table.find("dear")->fail("the field of a slab is of each spin alone, and cheap",
-                             "where = \"host\" beside it, or no such key");
+  if (slab.multirate && !slab.on_host)
+    table.find("multirate")
+        ->fail("the field of a slab depends only on the spin itself, and is cheap",
+               "where = \"host\" beside it, or no such key");
   return slab;
 }
 
-// Along periodic axes of more than one cell the lattice goes on for ever.
-std::array<int, 3> usual_images(Item const& item, Lattice const& lattice) {
-  std::array<int, 3> images{};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (lattice.boundary[axis] == BoundaryKind::periodic && lattice.shape[axis] > 1)
-      images[axis] = infinitely_many_images;
-  if (std::ranges::count(images, 0) == 0)
-    item.fail(
-        "the field of a lattice that is periodic along x, y and z depends on the shape of "
-        "the whole",
-        "demag = { periodic_images = [nx, ny, nz] }, or an open axis");
-  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (images[axis] == 0) continue;
-    double const length = static_cast<double>(lattice.shape[axis]) * lattice.spacing[axis];
-    shortest = std::min(shortest, length);
-    longest = std::max(longest, length);
-  }
-  if (longest > largest_period_ratio * shortest)
-    item.fail(
-        fmt::format("the lengths of the periodic axes differ by {:.3g} : 1", longest / shortest),
-        "up to 1e4 : 1, or demag = { periodic_images = [nx, ny, nz] }");
-  return images;
-}
-
-// `demag = true`, or a table.
-std::optional<Demagnetization> read_demag(Item const& item, Scene& scene) {
-  auto const [shortest, longest] = std::ranges::minmax(scene.lattice.spacing);
-  auto const check_cell = [&, shortest = shortest, longest = longest] {
-    if (longest > largest_edge_ratio * shortest)
-      item.fail(fmt::format("the edges of a cell differ by {:.3g} : 1", longest / shortest),
-                "edges of up to 1e9 : 1");
-  };
-  if (item.node->is_boolean()) {
-    if (!boolean(item)) return std::nullopt;
-    check_cell();
-    Demagnetization demag;
-    demag.periodic_images = usual_images(item, scene.lattice);
-    return demag;
-  }
-  constexpr std::string_view accepted = "true, or { strength, periodic_images, dear }";
-  if (!item.node->is_table()) item.wrong_type(accepted);
-  check_cell();
-  auto demag = read_term<Demagnetization>(item, scene);
-  if (auto const images = Table(item, scene).find("periodic_images")) {
-    constexpr std::string_view of_images = "three numbers of images, 0 to 1000";
-    demag.periodic_images = three(*images, of_images, [&](Item const& each) {
-      auto const count = integer(each, {of_images, 0});
-      if (count > 1000) each.fail(fmt::format("{} images are too many", count), of_images);
-      return static_cast<int>(count);
-    });
-  } else {
-    demag.periodic_images = usual_images(item, scene.lattice);
-  }
-  return demag;
-}
-
-// A material says in SI what these say in reduced units.
+// With a material, these constants are given in SI there.
 void refuse_reduced_keys(Table const& table) {
   constexpr std::pair<std::string_view, std::string_view> replaced[] = {
       {"exchange", "material.A, or material.J of atomistic spins"},
-      {"dmi", "material.D with material.normal, or material.D_bulk"},
+      {"dmi", "material.D with material.normal, material.D_bulk or material.D2d"},
       {"mu0", "no such key: applied is in T"}};
   for (auto const& [key, accepted] : replaced)
     if (auto const item = table.find(key)) item->fail("belongs to reduced units", accepted);
 }
 
 }  // namespace
+
+void use_numbers_of_sites(Scene& scene) {
+  auto& field = scene.field;
+  auto const as_numbers = [](SiteNumbers numbers, double& constant) {
+    if (!numbers.there()) numbers.expression = "1", numbers.unit = std::exchange(constant, 1);
+    return numbers;
+  };
+  if (field.d2d_dmi) field.dmi_factors = as_numbers(field.dmi_factors, field.d2d_dmi->constant);
+  if (field.dmi_normals.there())
+    field.dmi_factors = as_numbers(field.dmi_factors, field.dmi->interfacial);
+  bool const is_of_atoms = scene.material && scene.material->atomistic;
+  if (!field.interlayers.empty() && field.exchange && !is_of_atoms) {
+    double constant = field.exchange->constant;
+    field.exchange_at_faces = as_numbers(field.exchange_factors, constant);
+  }
+  if (field.exchange_between.empty()) return;
+  if (!field.exchange)
+    refuse(scene, "field.exchange_between", "stands without exchange",
+           scene.units.si ? "material.A beside it, or no such key"
+                          : "field.exchange beside it, or no such key");
+  field.exchange_factors = as_numbers(field.exchange_factors, field.exchange->constant);
+}
+
+void check_in_time(Table const& root) {
+  auto const& scene = root.scene();
+  auto const& field = scene.field;
+  auto const& [exchange, anisotropy, dmi] = field.in_time;
+  AppliedComponent const none = 1.0;
+  auto const refuse_if = [&](bool wrong, std::string_view key, std::string_view what,
+                             std::string_view accepted) {
+    if (wrong) refuse(scene, fmt::format("field.in_time.{}", key), what, accepted);
+  };
+  constexpr std::string_view such = "such a term beside it, or no such key";
+  refuse_if(exchange != none && !field.exchange, "exchange", "stands without exchange", such);
+  refuse_if(dmi != none && !field.has_dmi(), "dmi", "stands without DMI", such);
+  refuse_if(anisotropy != none && field.anisotropies.empty() && field.crystal_anisotropies.empty(),
+            "anisotropy", "stands without anisotropy", such);
+  refuse_if(exchange != none && field.exchange_at_faces.there(), "exchange",
+            "does not go with interlayer, whose spins at faces are tied by a constant exchange",
+            "no interlayer, or no such key");
+  if (field.in_time.there() && has_free_boundary(root))
+    refuse(scene, "field.in_time",
+           "does not go with free_boundary, whose anisotropy is of constant DMI and exchange",
+           "free_boundary = false, or no such table");
+}
 
 Field read_field(Table const& root, SystemKind kind) {
   Field field;
@@ -246,15 +250,15 @@ Field read_field(Table const& root, SystemKind kind) {
   table.accept_only(field_keys());
   if (scene.units.si) refuse_reduced_keys(table);
   read_lattice_terms(table, field);
+  if (auto const item = table.find("exchange_between")) read_exchange_between(*item, scene, field);
+  if (auto const item = table.find("interlayer")) read_interlayers(*item, scene, field);
   if (auto const item = table.find("couplings")) read_couplings(*item, scene, field);
   if (auto const item = table.find("anisotropy")) read_anisotropies(*item, scene, field);
+  if (auto const item = table.find("in_time")) field.in_time = read_term<InTime>(*item, scene);
   if (auto const item = table.find("applied")) read_applied(*item, field);
+  if (auto const item = table.find("sources")) read_sources(*item, scene, field);
   if (auto const item = table.find("slab_demag")) field.slab_demag = read_slab_demag(*item, scene);
-  if (auto const item = table.find("demag")) {
-    field.demag = read_demag(*item, scene);
-    if (field.demag && field.slab_demag)
-      item->fail("is the whole demagnetising field, and slab_demag a part of it", "one of the two");
-  }
+  read_demag(table, scene, field);
   if (auto const item = table.find("mu0")) field.mu0 = number(*item);
   return field;
 }
@@ -263,25 +267,31 @@ Field read_field(Table const& root, SystemKind kind) {
 
 namespace cayspin::inline v0_1::io {
 
-bool depends_on_time(Field const& field) {
-  if (field.own.uniform) return true;
+std::string_view key_in_time(Field const& field) {
+  if (field.own.uniform) return "field.applied";
   auto const depends = [](AppliedComponent const& component) {
     auto const* const text = std::get_if<std::string>(&component);
     return text != nullptr && Expression(*text, {"t"}).depends_on("t");
   };
   auto const& [zhang_li, slonczewski] = field.torque;
-  return (field.applied && std::ranges::any_of(*field.applied, depends)) ||
-         (zhang_li && std::ranges::any_of(zhang_li->velocity, depends)) ||
-         (slonczewski && (depends(slonczewski->damping_like) || depends(slonczewski->field_like)));
+  if (field.applied && std::ranges::any_of(*field.applied, depends)) return "field.applied";
+  if (std::ranges::any_of(field.sources, depends, &Source::time)) return "field.sources";
+  if (std::ranges::any_of(field.in_time.components(), depends)) return "field.in_time";
+  if (zhang_li && std::ranges::any_of(zhang_li->velocity, depends)) return "torque.zhang_li";
+  if (slonczewski && (depends(slonczewski->damping_like) || depends(slonczewski->field_like)))
+    return "torque.slonczewski";
+  return {};
 }
 
 Field without_numbers_of_sites(Field field) {
+  field.interlayers.clear();
   if (field.exchange_factors.there()) field.exchange.reset();
   if (field.dmi_factors.there()) {
     field.dmi.reset();
     field.bulk_dmi.reset();
+    field.d2d_dmi.reset();
   }
-  std::erase_if(field.anisotropies, [](Anisotropy const& term) { return term.factors.there(); });
+  std::erase_if(field.anisotropies, &Anisotropy::is_of_sites);
   return field;
 }
 

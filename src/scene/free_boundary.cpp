@@ -14,16 +14,17 @@ namespace {
 
 std::string text_of(std::size_t axis) { return fmt::format("free sides along {}", "xyz"[axis]); }
 
-/// The vector of the bonds along an axis, over D.
+/// Returns the vector of the bonds along an axis, divided by D.
 Triple bond_vector(Field const& field, std::size_t axis) {
   Triple along{};
   along[axis] = 1;
-  return field.bulk_dmi ? along : cayspin::detail::vector_product(field.dmi->normal, along);
+  if (field.dmi) return cayspin::detail::vector_product(field.dmi->normal, along);
+  return field.d2d_dmi && axis == 2 ? Triple{} : along;
 }
 
 double square(Triple const& v) { return cayspin::detail::scalar_product(v, v); }
 
-/// Numbers of sites, or one constant for all.
+/// Returns site-dependent numbers, or one constant for all.
 std::vector<double> constants(Scene const& scene, SiteNumbers const& numbers, double constant,
                               std::string_view key, SiteBox const& box) {
   if (numbers.there()) return numbers_of_sites(scene, numbers, key, box);
@@ -37,7 +38,7 @@ bool has_spin(Lattice const& lattice, std::vector<unsigned char> const& occupied
   return occupied.empty() || occupied[static_cast<std::size_t>(at)];
 }
 
-/// How many of a site's two neighbours along an axis are missing.
+/// Returns how many of a site's two neighbours along an axis are missing.
 int open_sides(Lattice const& lattice, std::vector<unsigned char> const& occupied,
                std::array<std::int64_t, 3> const& site, std::size_t axis) {
   auto const extent = lattice.shape[axis];
@@ -73,8 +74,11 @@ bool has_free_boundary(Table const& root) {
   if (!item || !boolean(*item)) return false;
   if (scene.material && scene.material->atomistic)
     item->fail("belongs to a continuum", "material.Ms, or no such key");
-  if (!scene.field.dmi && !scene.field.bulk_dmi)
-    item->fail("stands without DMI", "material.D or D_bulk, or no such key");
+  if (!scene.field.has_dmi())
+    item->fail("stands without DMI", "material.D, D_bulk or D2d, or no such key");
+  if (scene.field.dmi_normals.there())
+    item->fail("does not go with normals that differ from site to site",
+               "one normal, or no such key");
   return true;
 }
 
@@ -103,7 +107,9 @@ std::optional<std::vector<double>> numbers_at_free_sides(Scene const& scene,
   if (axis == 3) return std::nullopt;
   auto const& field = scene.field;
   auto const D = constants(scene, field.dmi_factors,
-                           field.bulk_dmi ? field.bulk_dmi->constant : field.dmi->interfacial,
+                           field.dmi        ? field.dmi->interfacial
+                           : field.bulk_dmi ? field.bulk_dmi->constant
+                                            : field.d2d_dmi->constant,
                            "field.dmi", box);
   auto const A =
       constants(scene, field.exchange_factors, field.exchange->constant, "field.exchange", box);

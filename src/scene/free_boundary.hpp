@@ -8,16 +8,16 @@
 
 namespace cayspin::inline v0_1::io::detail {
 
-/// Does the scene ask for it? Refuses it without DMI of a continuum.
+/// Returns true if the scene has free_boundary. Refuses it without DMI of a continuum.
 bool has_free_boundary(Table const& root);
 
-/// Adds the anisotropies that DMI with a free boundary comes to. A spin beyond an open side that
+/// Adds the anisotropies that represent DMI with a free boundary. A spin beyond an open side that
 /// obeys dm/dn = (D/2A) m x d, with the continuum's A and the vector d of the bond, acts as a hard
 /// axis of -D^2/(4A) along d: Rohart and Thiaville, Phys. Rev. B 88, 184422 (2013), eq. 8. Here the
 /// exchange constant is 2A. Refuses a scene without exchange.
 void add_free_boundaries(Scene& scene);
 
-/// The constants of such an anisotropy at the sites of a box, or none for numbers of another kind.
+/// Returns the constants of such an anisotropy at the sites of a box; nothing for other numbers.
 std::optional<std::vector<double>> numbers_at_free_sides(Scene const& scene,
                                                          SiteNumbers const& numbers,
                                                          SiteBox const& box);

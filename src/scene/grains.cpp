@@ -15,19 +15,19 @@ namespace {
 
 double square(double x) { return x * x; }
 
-/// The tiles of one size, and the nearest seed of those looked at.
+/// Search among tiles of one size, with the nearest seed so far.
 struct Search {
   std::array<std::int64_t, 3> tiles;
   std::array<Triple, 3> edges;    // of a tile
   std::array<double, 3> heights;  // of a tile, between its faces
   std::array<bool, 3> periodic;
-  std::array<double, 3> point;  // in tiles
+  std::array<double, 3> point;  // in units of tiles
   std::uint64_t seed;
-  double nearest = std::numeric_limits<double>::infinity();  // squared
+  double nearest = std::numeric_limits<double>::infinity();  // squared distance
   std::int64_t grain = 0;
 
-  /// Looks at the tiles of a row, or of a plane, or at all, from the point outwards, as long as
-  /// they reach nearer than the nearest seed.
+  /// Searches the tiles of a row, a plane, or all, from the point outwards, as long as they may
+  /// contain a nearer seed.
   void look(std::size_t axis, std::array<std::int64_t, 3>& tile) {
     if (tiles[axis] == 1) return look_into(axis, tile, 0);
     auto const middle = std::min(static_cast<std::int64_t>(point[axis]), tiles[axis] - 1);

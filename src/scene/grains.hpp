@@ -8,17 +8,18 @@
 
 namespace cayspin::inline v0_1::io::detail {
 
-/// Voronoi grains of a lattice: a point belongs to the nearest of the seeds, of which each tile of
-/// the lattice has one, anywhere in it. They close on themselves where the lattice does. Any part
-/// of the lattice has the same ones.
+/// Voronoi grains of a lattice: a point belongs to the nearest seed. Each tile of the lattice has
+/// one seed at a random position. Grains wrap around where the lattice is periodic. They do not
+/// depend on the part of the lattice that is evaluated.
 class Grains {
  public:
-  /// `length`: of the unit of lattice.spacing, in that of sizes.
+  /// `length`: the unit of lattice.spacing, in the unit of sizes.
   Grains(Lattice const& lattice, double length);
 
-  /// The number 0, 1, .. of the grain at a point, in fractions of the lattice. There are as many
-  /// grains as tiles of about `size` along each axis, one along an axis shorter than 1.5 sizes,
-  /// where they are columns. Throws std::runtime_error for a size or a seed that makes no sense.
+  /// Returns the number 0, 1, .. of the grain at a point, in fractions of the lattice. There are as
+  /// many grains as tiles of about `size` along each axis; along an axis shorter than 1.5 sizes
+  /// there is one, so that grains are columns. Throws std::runtime_error for an invalid size or
+  /// seed.
   double at(std::array<double, 3> const& point, double size, double seed) const;
 
  private:

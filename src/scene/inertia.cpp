@@ -24,7 +24,7 @@ Eigen::Matrix3d inverse(InertiaTensor const& tensor) {
   return symmetric_part(tensor).llt().solve(Eigen::Matrix3d::Identity());
 }
 
-// Dataset /inertia, which has to be (count, 3, 3). Throws std::runtime_error with one line.
+// Opens dataset /inertia, which must be (count, 3, 3). Throws std::runtime_error with one line.
 RealDataset open_inertia(std::filesystem::path const& path, std::int64_t count) {
   RealDataset inertia(path, "/inertia");
   if (inertia.extents() != Extents{static_cast<hsize_t>(count), 3, 3})
@@ -75,6 +75,7 @@ void check_files(Scene const& scene) {
     detail::for_key(scene, "system.inertia.file", [&] {
       try_reading(file->path, [&] { open_inertia(file->path, sites(scene)); });
     });
+  for (auto const& stage : scene.stages) check_files(stage.scene);
 }
 
 std::vector<InertiaTensor> inertia(Scene const& scene) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "initial_state.hpp"
 #include "random_bits.hpp"
 #include "sections.hpp"
 #include "site_expression.hpp"
@@ -35,7 +36,7 @@ RandomStart read_random(Item const& item, Scene& scene) {
 
 GivenStart read_given(Item const& item, Scene const& scene) {
   constexpr std::string_view accepted =
-      "uniform, expression, random or file; a run of such a scene has its start in its file";
+      "uniform, expression, random, file or state; a run of such a scene has its start in its file";
   if (!boolean(item)) item.fail("false has no meaning", "true, or another key");
   if (!scene.given.spins)
     item.fail("stands for spins that a program gives, and none did", accepted);
@@ -45,10 +46,12 @@ GivenStart read_given(Item const& item, Scene const& scene) {
 }  // namespace
 
 Initial read_initial(Table const& root) {
-  constexpr std::string_view accepted = "exactly one of uniform, expression, random, file";
+  constexpr std::string_view accepted = "exactly one of uniform, expression, random, file, state";
   auto const table = root.table("initial", "a table [initial]");
-  // A program writes `given` for its own spins; nobody types it.
-  if (!table.contains("given")) table.accept_only({"uniform", "expression", "random", "file"});
+  if (auto const state = table.find("state")) return read_initial_state(table, *state);
+  // `given` is set by a program for its own spins; users do not type it.
+  if (!table.contains("given"))
+    table.accept_only({"uniform", "expression", "random", "file", "state"});
   if (auto const count = table.item().node->as_table()->size(); count != 1) {
     table.item().fail(fmt::format("has {} keys", count), accepted);
   }
@@ -57,7 +60,7 @@ Initial read_initial(Table const& root) {
     return read_expressions(*item, root.scene().lattice);
   if (auto const item = table.find("random")) return read_random(*item, root.scene());
   if (auto const item = table.find("given")) return read_given(*item, root.scene());
-  return FileStart{input_file(table, "file", "the name of an HDF5 or OVF 2.0 file")};
+  return FileStart{input_file(table, "file", "the name of an HDF5 or OVF file")};
 }
 
 }  // namespace cayspin::inline v0_1::io::detail
@@ -80,14 +83,14 @@ struct Start {
   std::vector<double>& spins;
 
   std::size_t size() const { return spins.size() / 3; }
-  // A site without a spin has the zero vector.
+  // Returns true for a site without a spin, which has the zero vector.
   bool is_vacant(std::size_t site) const { return !occupied.empty() && !occupied[site]; }
   void set(std::size_t site, Triple const& m) const {
     if (is_vacant(site)) return;
     std::copy_n(m.data(), 3, spins.begin() + static_cast<std::ptrdiff_t>(3 * site));
   }
 
-  // The site and its spin go into the message.
+  // Errors name the site and its spin.
   void set_normalised(std::size_t site, Triple const& m, std::string_view key) const {
     if (is_vacant(site)) return;
     if (auto const unit = detail::normalise(m)) {
@@ -125,7 +128,13 @@ struct Start {
     }
   }
 
-  // Uniform on the sphere: z and the azimuth are uniform (Archimedes).
+  void operator()(InitialState const& state) const {
+    for (std::size_t site = 0; site < size(); ++site)
+      set_normalised(site, detail::spin_of_state(state, scene.lattice, site_at(box, site)),
+                     "initial.state");
+  }
+
+  // Draws a spin uniformly on the sphere: z and the azimuth are uniform (Archimedes).
   void operator()(RandomStart const& random) const {
     auto const seed = static_cast<std::uint64_t>(random.seed);
     auto const& shape = scene.lattice.shape;
@@ -156,7 +165,7 @@ struct Start {
     set_all(numbers_in(box, scene.lattice.shape, 3, *start.spins), "initial.given");
   }
 
-  // Zero vectors are sites without a spin: they have to be so in the scene, too.
+  // Zero vectors are sites without a spin: the scene must have no spin there either.
   void require_shape(std::vector<double> const& values, std::string const& name) const {
     if (occupied.empty()) return;
     std::int64_t there = 0, zeros = 0;

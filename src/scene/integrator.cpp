@@ -11,35 +11,15 @@
 namespace cayspin::inline v0_1::io::detail {
 namespace {
 
-// Times are n dt in double, so n itself has to be exact there.
+// Times are n dt in double, so n must be exact there.
 constexpr std::int64_t most_steps = std::int64_t{1} << 53;
-
-// `end` over dt, whole to 1e-9 of a step. Beyond 2e6 steps the rounding of the two decimal numbers
-// and of their quotient (2 eps of it) is larger than that and must not refuse a whole number.
-std::int64_t steps_until(Item const& end, double dt) {
-  auto const time = number(end, not_negative);
-  double const quotient = time / dt;
-  if (!(quotient <= static_cast<double>(most_steps)))
-    end.fail("more than 2^53 steps", "a smaller end or a larger dt");
-  double const whole = std::round(quotient);
-  double const tolerance = std::max(1e-9, 2 * std::numeric_limits<double>::epsilon() * quotient);
-  if (std::abs(quotient - whole) > tolerance) {
-    double const fewer = std::max(1.0, std::floor(quotient));
-    end.fail(fmt::format("{} is {:.12g} steps of dt = {}, not a whole number", time, quotient, dt),
-             fmt::format("dt = {} or {}", time / fewer, time / (fewer + 1)));
-  }
-  if (whole == 0 && time > 0)
-    end.fail(fmt::format("{} is less than a step of dt = {}", time, dt),
-             "a smaller dt, or steps = 0");
-  return static_cast<std::int64_t>(whole);
-}
 
 std::int64_t read_steps(Table const& table, double dt) {
   constexpr std::string_view accepted = "exactly one of end, steps";
   auto const end = table.find("end");
   auto const steps = table.find("steps");
   if (end && steps) end->fail("stands beside integrator.steps", accepted);
-  if (end) return steps_until(*end, dt);
+  if (end) return whole_steps(*end, dt);
   if (!steps) detail::fail(table.item().place, "integrator.end", "is missing", accepted);
   auto const count = integer(*steps, {"a whole number >= 0", 0});
   if (count > most_steps) steps->fail("more than 2^53 steps");
@@ -72,7 +52,7 @@ Method const* read_method(Table const& table) {
   return word_among(words, table.required("method", quoted(words)));
 }
 
-// How the method meets the group: what the baselines do not have.
+// Reads the coordinates on the group, which baselines do not have.
 void read_coordinates(Table const& table, Integrator& integrator) {
   auto const& method = *integrator.method;
   auto const generator = table.find("generator");
@@ -99,10 +79,10 @@ void read_coordinates(Table const& table, Integrator& integrator) {
   }
 }
 
-// What chooses the steps of an adaptive method; the others have none of it.
+// Reads the step control of an adaptive method; other methods refuse it.
 void read_tolerance(Table const& table, Integrator& integrator) {
   if (!integrator.method->adaptive) {
-    bool const takes_max_dt = integrator.method->automatic;  // for what it chooses
+    bool const takes_max_dt = integrator.method->automatic;  // for the method that it chooses
     for (std::string_view const key : {"tolerance", "min_dt", "max_dt"})
       if (auto const item = table.find(key); item && !(key == "max_dt" && takes_max_dt))
         item->fail(fmt::format("method \"{}\" takes steps of dt", integrator.method->word),
@@ -116,7 +96,7 @@ void read_tolerance(Table const& table, Integrator& integrator) {
     tolerance.fail(fmt::format("{} is no tolerance", *integrator.tolerance), accepted);
 }
 
-// What "auto" chooses a method for.
+// Reads the target error for which "auto" chooses a method.
 void read_error(Table const& table, Integrator& integrator) {
   auto const item = table.find("error");
   if (!integrator.method->automatic) {
@@ -130,8 +110,8 @@ void read_error(Table const& table, Integrator& integrator) {
     error.fail(fmt::format("{} is out of reach", *integrator.error), accepted);
 }
 
-// How often a run looks whose method takes steps of its own and that does not say. By a power of
-// two the end stays the same to the last bit.
+// Default number of observations of a run with adaptive steps. With a power of two the end keeps
+// all bits.
 constexpr double usual_looks = 128;
 
 double read_dt(Table const& table, Integrator const& integrator) {
@@ -142,6 +122,25 @@ double read_dt(Table const& table, Integrator const& integrator) {
 }
 
 }  // namespace
+
+// The quotient must be whole to 1e-9 of a step. Beyond 2e6 steps the rounding of both decimal
+// numbers and of their quotient (2 eps of it) exceeds that and must not refuse a whole number.
+std::int64_t whole_steps(Item const& item, double dt) {
+  auto const time = number(item, not_negative);
+  double const quotient = time / dt;
+  if (!(quotient <= static_cast<double>(most_steps)))
+    item.fail("more than 2^53 steps", "a shorter time or a larger dt");
+  double const whole = std::round(quotient);
+  double const tolerance = std::max(1e-9, 2 * std::numeric_limits<double>::epsilon() * quotient);
+  if (std::abs(quotient - whole) > tolerance) {
+    double const fewer = std::max(1.0, std::floor(quotient));
+    item.fail(fmt::format("{} is {:.12g} steps of dt = {}, not a whole number", time, quotient, dt),
+              fmt::format("dt = {} or {}", time / fewer, time / (fewer + 1)));
+  }
+  if (whole == 0 && time > 0)
+    item.fail(fmt::format("{} is less than a step of dt = {}", time, dt), "a smaller dt");
+  return static_cast<std::int64_t>(whole);
+}
 
 Integrator read_integrator(Table const& root, SystemKind kind) {
   auto const table =

@@ -9,10 +9,10 @@
 namespace cayspin::inline v0_1::io::detail {
 namespace {
 
-// Of cayspin::Lattice::validate.
+// Limit of cayspin::Lattice::validate.
 constexpr std::int64_t most_extent = std::numeric_limits<std::int32_t>::max() / 4;
 
-// One entry per axis of the shape, or one value for every axis.
+// Reads one entry per axis of the shape, or one value for every axis.
 template <class Value, class Read>
 void read_per_axis(Item const& item, std::size_t axes, std::array<Value, 3>& values, Read read,
                    std::string_view one) {
@@ -25,9 +25,9 @@ void read_per_axis(Item const& item, std::size_t axes, std::array<Value, 3>& val
   for (std::size_t axis = 0; axis < axes; ++axis) values[axis] = read(items[axis]);
 }
 
-constexpr std::string_view keys_of_spins[] = {"spacing",      "boundary", "crystal",
-                                              "cell",         "basis",    "moments",
-                                              "gyromagnetic", "occupied", "frozen"};
+constexpr std::string_view keys_of_spins[] = {"spacing", "boundary", "crystal",      "cell",
+                                              "basis",   "moments",  "gyromagnetic", "occupied",
+                                              "frozen",  "regions",  "follow"};
 
 }  // namespace
 
@@ -58,7 +58,7 @@ Lattice read_lattice(Table const& root, SystemKind kind) {
     }
   }
   if (root.scene().units.si && !bodies) {
-    // All three, whatever the shape: the volume of a cell is part of the units.
+    // All three, for any shape: the volume of a cell is part of the units.
     constexpr std::string_view cell = "the size of a cell in m: one number, or three";
     auto const item = table.required("spacing", cell);
     if (item.node->is_array())

@@ -18,11 +18,11 @@ double positive_moment(Item const& item, double value) {
 }
 
 struct Keys {
-  std::string_view moment, exchange, anisotropy;
+  std::string_view moment, exchange, anisotropy, anisotropy2;
 };
-constexpr Keys continuum{"Ms", "A", "Ku"}, atomistic{"mu_s", "J", "K"};
+constexpr Keys continuum{"Ms", "A", "Ku", "Ku2"}, atomistic{"mu_s", "J", "K", "K2"};
 
-// Which of the two kinds of material it is.
+// Returns true for an atomistic material, false for a continuum.
 bool is_atomistic(Table const& table) {
   constexpr std::string_view accepted = "exactly one of Ms (A/m), mu_s (J/T)";
   auto const of_atoms = table.find(atomistic.moment);
@@ -30,18 +30,37 @@ bool is_atomistic(Table const& table) {
   if (of_atoms && of_continuum) of_atoms->fail("stands beside material.Ms", accepted);
   if (!of_atoms && !of_continuum)
     detail::fail(table.item().place, "material.Ms", "is missing", accepted);
-  auto const& [moment, exchange, anisotropy] = of_atoms ? continuum : atomistic;
+  auto const& [moment, exchange, anisotropy, anisotropy2] = of_atoms ? continuum : atomistic;
   auto const& mine = of_atoms ? atomistic : continuum;
-  for (auto const& [other, own] :
-       {std::pair{exchange, mine.exchange}, {anisotropy, mine.anisotropy}})
+  for (auto const& [other, own] : {std::pair{exchange, mine.exchange},
+                                   {anisotropy, mine.anisotropy},
+                                   {anisotropy2, mine.anisotropy2}})
     if (auto const item = table.find(other))
       item->fail(fmt::format("does not go with material.{}", mine.moment),
                  fmt::format("material.{}", own));
   return of_atoms.has_value();
 }
 
-// One for all sites of the cell, or one for each.
+// Chooses the moment that counts as 1 if moments are site-dependent: the largest of those of
+// regions. Expressions and files are not evaluated for that: for them it is 1 T over mu0, or a Bohr
+// magneton.
+bool read_moments_of_sites(Item const& item, Scene& scene, Material& material) {
+  if (!are_numbers_of_sites(item)) return false;
+  auto& numbers = material.moment_factors;
+  read_site_numbers(item, scene, numbers);
+  numbers.key = item.key;
+  material.moment = material.atomistic ? units::bohr_magneton : 1 / units::vacuum_permeability;
+  if (numbers.of_regions.empty()) return true;
+  for (double const moment : numbers.of_regions)
+    if (!(moment >= 0)) item.fail(fmt::format("{} is negative", moment), "numbers >= 0");
+  material.moment = std::ranges::max(numbers.of_regions);
+  if (material.moment == 0) item.fail("leaves no spin", "a number > 0 among those of the regions");
+  return true;
+}
+
+// Reads one moment for all sites of the cell, or one for each.
 void read_moments(Item const& item, Scene& scene, Material& material) {
+  if (read_moments_of_sites(item, scene, material)) return;
   auto const sites = scene.lattice.basis.size();
   auto const accepted = sites == 1
                             ? std::string(accepted_moment)
@@ -61,7 +80,7 @@ void read_moments(Item const& item, Scene& scene, Material& material) {
   material.moment = material.moments.front();
 }
 
-// A vector that belongs to another key: both or neither.
+// Reads a vector that belongs to another key: both must be given, or neither.
 Triple direction_with(Table const& table, std::string_view name, std::string_view other,
                       bool present) {
   if (present) return direction(table.required(name, "three numbers"));
@@ -88,14 +107,25 @@ void read_damping(Table const& table, Material& material) {
   material.gilbert = word_among<bool>(forms, *form);
 }
 
+// If site-dependent, the value of the free electron counts as 1.
+void read_gamma(Item const& item, Scene& scene, Material& material) {
+  if (!read_site_numbers(item, scene, material.gamma_factors)) {
+    material.gamma = positive_number(item);
+    return;
+  }
+  material.gamma_factors.key = item.key;
+  if (!scene.lattice.gyromagnetic.empty() || scene.lattice.gyromagnetic_of_sites.there())
+    item.fail("stands beside lattice.gyromagnetic", "one of the two, or one number");
+}
+
 }  // namespace
 
 void read_material(Table const& root, Scene& scene) {
   if (scene.system.kind == SystemKind::rigid_body)
     root.find("units")->fail("\"SI\" has no meaning for kind = \"rigid_body\"", "\"reduced\"");
   auto const table = root.table("material", "a table [material] with Ms in A/m, or mu_s in J/T");
-  table.accept_only({"Ms", "A", "Ku", "mu_s", "J", "K", "axis", "D", "normal", "D_bulk", "alpha",
-                     "free_boundary", "damping_form", "gamma"});
+  table.accept_only({"Ms", "A", "Ku", "Ku2", "mu_s", "J", "K", "K2", "axis", "D", "normal",
+                     "D_bulk", "D2d", "alpha", "free_boundary", "damping_form", "gamma"});
   auto& material = scene.material.emplace();
   material.atomistic = is_atomistic(table);
   auto const& keys = material.atomistic ? atomistic : continuum;
@@ -109,19 +139,31 @@ void read_material(Table const& root, Scene& scene) {
   auto const moment = table.required(keys.moment, "a number > 0");
   if (material.atomistic)
     read_moments(moment, scene, material);
-  else
+  else if (!read_moments_of_sites(moment, scene, material))
     material.moment = positive_number(moment);
   material.exchange = constant(keys.exchange, material.exchange_factors);
   material.anisotropy = constant(keys.anisotropy, material.anisotropy_factors);
-  material.axis = direction_with(table, "axis", keys.anisotropy, material.anisotropy.has_value());
+  material.anisotropy2 = constant(keys.anisotropy2, material.anisotropy2_factors);
+  if (material.anisotropy || material.anisotropy2)
+    material.axis = axis_of_sites(table.required("axis", "three numbers"), scene, material.axes);
+  else
+    direction_with(table, "axis", keys.anisotropy, false);
   material.dmi = constant("D", material.dmi_factors);
-  material.normal = direction_with(table, "normal", "D", material.dmi.has_value());
-  if (auto const bulk = table.find("D_bulk"); bulk && material.dmi)
-    bulk->fail("stands beside material.D", "D with normal, of an interface, or D_bulk");
+  if (material.dmi)
+    material.normal =
+        axis_of_sites(table.required("normal", "three numbers"), scene, material.normals);
+  else
+    direction_with(table, "normal", "D", false);
+  constexpr std::string_view one_dmi = "D with normal, of an interface, D_bulk, or D2d";
+  auto const bulk = table.find("D_bulk"), d2d = table.find("D2d");
+  if (bulk && material.dmi) bulk->fail("stands beside material.D", one_dmi);
+  if (d2d && (bulk || material.dmi))
+    d2d->fail(fmt::format("stands beside material.{}", bulk ? "D_bulk" : "D"), one_dmi);
   material.bulk_dmi = constant("D_bulk", material.dmi_factors);
+  material.d2d_dmi = constant("D2d", material.dmi_factors);
   read_damping(table, material);
   material.gamma = units::electron_gamma;
-  if (auto const item = table.find("gamma")) material.gamma = positive_number(*item);
+  if (auto const item = table.find("gamma")) read_gamma(*item, scene, material);
 }
 
 bool read_is_si(Table const& root) {
@@ -149,8 +191,8 @@ void check_si(Scene const& scene) {
                       "material.mu_s, or no such key");
   auto const& moments = scene.material->moments;
   if (std::ranges::adjacent_find(moments, std::not_equal_to<>()) != moments.end())
-    for (auto const* const key : {"field.slab_demag", "field.demag"})
-      refuse_if_typed(key, "needs moments that are all alike", "one number in material.mu_s");
+    refuse_if_typed("field.slab_demag", "needs moments that are all alike",
+                    "one number in material.mu_s, or field.dipoles");
 }
 
 }  // namespace cayspin::inline v0_1::io::detail

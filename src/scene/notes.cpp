@@ -20,7 +20,7 @@ namespace {
 
 using Cells = std::array<std::int64_t, 3>;
 
-// Sites are counted up to here: beyond, that takes too long.
+// Sites are counted up to this number: more would take too long.
 constexpr std::int64_t most_sites_counted = 10'000'000;
 
 class Notes {
@@ -48,7 +48,7 @@ class Notes {
   bool is_periodic(std::size_t axis) const {
     return scene_.lattice.boundary[axis] == BoundaryKind::periodic;
   }
-  /// True where some axis with neighbours has what is asked for.
+  /// Returns true if some axis with neighbours satisfies `wanted`.
   bool any_axis(auto const& wanted) const {
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (has_neighbours(axis) && wanted(axis)) return true;
@@ -61,7 +61,7 @@ class Notes {
       add("system.precession", "false with damping = 0: no spin moves");
     if (field.mu0 != 1 && !field.applied && field.applied_in_turn.empty() && !field.slab_demag &&
         !field.demag)
-      add("field.mu0", "acts nowhere: there is neither applied, slab_demag nor demag");
+      add("field.mu0", "acts nowhere: there is neither applied, slab_demag, demag nor dipoles");
   }
 
   void of_neighbours() {
@@ -73,6 +73,12 @@ class Notes {
       add(!si ? "field.exchange" : scene_.material->atomistic ? "material.J" : "material.A", alone);
     if (field.bulk_dmi && field.bulk_dmi->constant != 0 && !any_axis(any))
       add(si ? "material.D_bulk" : "field.dmi", alone);
+    if (field.d2d_dmi) {
+      auto const in_plane = [](std::size_t axis) { return axis < 2; };
+      if (!any_axis(in_plane))
+        add(si ? "material.D2d" : "field.dmi",
+            any_axis(any) ? "acts nowhere: cells have neighbours only along z" : alone);
+    }
     if (field.dmi && field.dmi->interfacial != 0) {
       auto const across = [&](std::size_t axis) {
         return std::abs(field.dmi->normal[axis]) < 1 - 1e-12;
@@ -81,30 +87,52 @@ class Notes {
         add(si ? "material.D" : "field.dmi",
             any_axis(any) ? "acts nowhere: cells have neighbours only along the normal" : alone);
     }
+    if (sites(scene_) <= most_sites_counted) of_interlayers();
     if (auto const& current = field.torque.zhang_li) {
       auto const flows = [&](std::size_t axis) {
         auto const* const number = std::get_if<double>(&current->velocity[axis]);
         return number == nullptr || *number != 0;
       };
-      if (!any_axis(flows))
+      bool const is_on = flows(0) || flows(1) || flows(2);  // a stage may switch it off
+      if (is_on && !any_axis(flows))
         add("torque.zhang_li", "acts nowhere: no cell has a neighbour along the current");
     }
   }
 
+  // Notes interlayers that couple across sites without a spin.
+  void of_interlayers() {
+    auto const& shape = scene_.lattice.shape;
+    for (auto const& bond : scene_.field.interlayers) {
+      if (bond.range == 0) continue;
+      auto const acts = [&](std::size_t axis) {
+        auto const pairs = regions_across(scene_, {{0, 0, 0}, shape}, axis, bond.range + 1);
+        return std::ranges::any_of(pairs, [&](auto const& pair) {
+          return std::ranges::is_permutation(pair, bond.regions);
+        });
+      };
+      if (!any_axis(acts))
+        add("field.interlayer",
+            fmt::format("acts nowhere: spins of regions {} and {} are nowhere {} cells without a "
+                        "spin apart",
+                        bond.regions[0], bond.regions[1], bond.range));
+    }
+  }
+
   void of_images() {
-    constexpr std::string_view key = "field.demag.periodic_images";
-    if (!scene_.field.demag || !scene_.places.contains(key)) return;
+    if (!scene_.field.demag) return;
+    auto const& name = scene_.field.demag->key;
+    auto const key = fmt::format("field.{}.periodic_images", name);
+    if (!scene_.places.contains(key)) return;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!has_neighbours(axis)) continue;
       auto const images = scene_.field.demag->periodic_images[axis];
       if (images > 0 && !is_periodic(axis))
-        add(key,
-            fmt::format("images along {}, where lattice.boundary is open: only demag sees them",
-                        "xyz"[axis]));
+        add(key, fmt::format("images along {}, where lattice.boundary is open: only {} sees them",
+                             "xyz"[axis], name));
       if (images == 0 && is_periodic(axis))
-        add(key, fmt::format("no images along {}, where lattice.boundary is periodic: demag sees "
+        add(key, fmt::format("no images along {}, where lattice.boundary is periodic: {} sees "
                              "ends there",
-                             "xyz"[axis]));
+                             "xyz"[axis], name));
     }
   }
 
@@ -208,7 +236,7 @@ class Notes {
       for (auto const& term : *list)
         if (is_empty(term.site))
           add("field.anisotropy", fmt::format(fmt::runtime(nowhere), term.site));
-    for (auto const& term : scene_.field.cubic_anisotropies)
+    for (auto const& term : scene_.field.crystal_anisotropies)
       if (is_empty(term.site))
         add("field.anisotropy", fmt::format(fmt::runtime(nowhere), term.site));
     if (!scene_.places.contains("field.couplings.shells"))
@@ -225,7 +253,7 @@ class Notes {
     return start != nullptr && scene_.lattice.occupied.file == start->path;
   }
 
-  // Spins are taken by their indices, whatever the sizes of cells in the file.
+  // Spins are assigned by index, ignoring the cell sizes in the file.
   void of_mesh() {
     auto const* const start = std::get_if<FileStart>(&scene_.initial);
     if (start == nullptr || !scene_.units.si || !is_ovf(start->path)) return;

@@ -22,22 +22,42 @@ CheckpointPeriod checkpoint_period(Item const& item) {
   return {0, steps};
 }
 
+// Steps between frames or samples.
+std::int64_t period(Item const& item, Table const& root, Integrator const& integrator) {
+  constexpr std::string_view accepted =
+      "a whole number of steps >= 1, or { time = TIME }, a multiple of dt";
+  if (!item.node->is_table()) return integer(item, {accepted, 1});
+  Table const table(item, root.scene());
+  table.accept_only({"time"});
+  auto const time = table.required("time", "a time > 0");
+  if (!(integrator.dt > 0)) time.fail("needs integrator.dt", "a whole number of steps");
+  auto const steps = whole_steps(time, integrator.dt);
+  if (steps < 1) time.fail("is 0", "a time > 0");
+  return steps;
+}
+
 }  // namespace
 
-Output read_output(Table const& root, std::int64_t steps) {
+Output read_output(Table const& root, Integrator const& integrator) {
   Output output;
-  output.every = output.scalars_every = std::max<std::int64_t>(steps, 1);
+  output.every = output.scalars_every = std::max<std::int64_t>(integrator.steps, 1);
   auto const found = root.find("output");
   if (!found) return output;
   Table const table(*found, root.scene());
   table.accept_only(names_of_keys<Output>());
   read_keys(table, output);
-  if (!table.contains("scalars_every")) output.scalars_every = output.every;
+  if (auto const item = table.find("every")) output.every = period(*item, root, integrator);
+  auto const item = table.find("scalars_every");
+  output.scalars_every = item ? period(*item, root, integrator) : output.every;
   if (auto const item = table.find("file")) {
     constexpr std::string_view accepted = "the name of an HDF5 file";
     output.file = string(*item, accepted);
     if (output.file->empty()) item->fail("the file name is empty", accepted);
   }
+  if (output.regions && !root.scene().lattice.regions.there())
+    table.find("regions")->fail(
+        "stands without lattice.regions, which says the region of each site",
+        "lattice.regions beside it");
   if (auto const item = table.find("checkpoint_every"))
     output.checkpoint_every = checkpoint_period(*item);
   return output;

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <charconv>
 #include <optional>
 #include <string_view>
@@ -31,14 +34,28 @@ std::optional<std::size_t> as_index(std::string_view text) {
   return index;
 }
 
-// One value parsed with the override as its source, which is where messages will point.
+// Returns true for a word, or a file name.
+bool is_bare_word(std::string_view value) {
+  auto const is_letter = [](unsigned char c) { return std::isalpha(c) != 0 || c == '_'; };
+  return !value.empty() && is_letter(value[0]) && std::ranges::all_of(value, [&](unsigned char c) {
+    return is_letter(c) || std::isdigit(c) != 0 || c == '-' || c == '.' || c == '/';
+  });
+}
+
+// Parses one value with the override as its source, which messages will name. A shell removes the
+// quotes of strings.
 toml::table parse_value(std::string const& place, std::string_view value) {
   toml::table parsed;
+  value.remove_prefix(std::min(value.find_first_not_of(' '), value.size()));
+  constexpr std::array not_strings{"true", "false", "inf", "nan"};
+  bool const is_string =
+      is_bare_word(value) && std::ranges::find(not_strings, value) == not_strings.end();
   try {
-    parsed = toml::parse(fmt::format("value = {}\n", value), place);
+    parsed = toml::parse(fmt::format("value = {0}{1}{0}\n", is_string ? "\"" : "", value), place);
   } catch (toml::parse_error const& error) {
     fail(place, "", fmt::format("the value is not TOML ({})", error.description()),
-         "key.path=VALUE with a TOML value; a string needs its quotes");
+         "key.path=VALUE with a TOML value; a string that is more than a word needs its "
+         "quotes");
   }
   if (parsed.size() != 1) {
     fail(place, "", "more than one value", "key.path=VALUE with one TOML value");
@@ -46,7 +63,7 @@ toml::table parse_value(std::string const& place, std::string_view value) {
   return parsed;
 }
 
-// Moves, because a copied node forgets its source.
+// Moves the node, because a copy forgets its source.
 void put(toml::node& parent, std::string const& key, toml::node&& value, std::string const& place) {
   std::move(value).visit([&](auto&& typed) {
     if (auto* const table = parent.as_table()) {

@@ -38,9 +38,7 @@ double constant_of_sites(Item const& item, Scene& scene, SiteNumbers& numbers) {
   if (!scene.material || !scene.material->atomistic) return number_of_sites(item, scene, numbers);
   auto const accepted =
       fmt::format("{}, {}", accepted_energy, accepted_site_numbers(scene.lattice));
-  auto const* const table = item.node->as_table();
-  bool const has_unit = table != nullptr && !table->contains("file") && !table->contains("given");
-  if (!has_unit && read_site_numbers(item, scene, numbers)) return 1;
+  if (are_numbers_of_sites(item) && read_site_numbers(item, scene, numbers)) return 1;
   auto const [value, unit] = in_joules(item, scene, accepted);
   return number(value, {accepted}) * unit;
 }

@@ -14,7 +14,7 @@ struct Unit {
   double in_si;
 };
 
-/// What is typed, and what one of it is in SI.
+/// A typed value, and its unit in SI.
 struct InUnit {
   Item value;
   double unit = 1;
@@ -24,15 +24,16 @@ constexpr std::string_view accepted_energy =
     "a number in J, { meV = number }, { eV = number } or { mRy = number }";
 constexpr std::string_view accepted_moment = "a number in J/T, or { bohr_magnetons = number }";
 
-/// The entry of such a table, or the item itself. `accepted`: for messages.
+/// Returns the entry of such a table, or the item itself. `accepted`: for messages.
 InUnit in_joules(Item const& item, Scene& scene, std::string_view accepted = accepted_energy);
 InUnit in_joules_per_tesla(Item const& item, Scene& scene,
                            std::string_view accepted = accepted_moment);
 
-/// A number, with mu_s an energy; or numbers of sites, and then 1.
+/// Reads a number, an energy if the material has mu_s; or site-dependent numbers, and then returns
+/// 1.
 double constant_of_sites(Item const& item, Scene& scene, SiteNumbers& numbers);
 
-/// With mu_s an energy, otherwise the item itself.
+/// Reads an energy if the material has mu_s, otherwise the item itself.
 InUnit in_joules_of_atoms(Item const& item, Scene& scene);
 
 }  // namespace cayspin::inline v0_1::io::detail

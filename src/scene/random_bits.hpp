@@ -7,8 +7,8 @@
 
 namespace cayspin::inline v0_1::io::detail {
 
-/// Value number `counter` of the SplitMix64 sequence (Steele, Lea, Flood 2014, doi
-/// 10.1145/2660193.2660195), reached directly.
+/// Returns value number `counter` of the SplitMix64 sequence (Steele, Lea, Flood 2014, doi
+/// 10.1145/2660193.2660195), in constant time.
 inline std::uint64_t random_bits(std::uint64_t start, std::uint64_t counter) {
   std::uint64_t z = start + (counter + 1) * 0x9e3779b97f4a7c15U;
   z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
@@ -16,12 +16,12 @@ inline std::uint64_t random_bits(std::uint64_t start, std::uint64_t counter) {
   return z ^ (z >> 31U);
 }
 
-/// The same as a number in [0, 1).
+/// Returns that value as a number in [0, 1).
 inline double random_number(std::uint64_t start, std::uint64_t counter) {
   return std::ldexp(static_cast<double>(random_bits(start, counter) >> 11U), -53);
 }
 
-/// The seed of a function of expressions. Throws std::runtime_error.
+/// Returns the seed of a function in an expression. Throws std::runtime_error.
 std::uint64_t whole_seed(double seed, std::string_view function);
 
 }  // namespace cayspin::inline v0_1::io::detail

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "free_boundary.hpp"
 #include "io/relax.hpp"
+#include "io/stages.hpp"
 #include "sections.hpp"
+#include "stage_tables.hpp"
 
 #include <fmt/format.h>
 
@@ -48,9 +50,11 @@ toml::table parse(std::string const& text, std::filesystem::path const& path) {
   }
 }
 
-enum class Purpose { run, relax, any };
+// Part of a scene to read. start: the scene's own tables in a run in stages, without an integrator.
+// rest: a stage that relaxes.
+enum class Purpose { run, relax, any, start, rest };
 
-// For a scene to relax, [integrator] is read where it is there.
+// For `relax`, [integrator] is read if it is there.
 Integrator read_integrator_for(Purpose purpose, detail::Table const& root, SystemKind kind) {
   bool const is_for_bodies = purpose == Purpose::any && kind != SystemKind::llg;
   if (purpose == Purpose::run || is_for_bodies || root.contains("integrator"))
@@ -70,17 +74,17 @@ void check_purpose(Purpose purpose, Scene const& scene) {
     return;
   }
   if (scene.system.kind != SystemKind::llg)
-    detail::refuse(scene, "system.kind", "rigid bodies have no state of rest", "\"llg\"");
+    detail::refuse(scene, "system.kind", "rigid bodies have no equilibrium", "\"llg\"");
   if (has_torque(scene.field))
     detail::refuse(scene, "torque",
-                   "moves spins for ever, and a state of rest needs an energy that falls",
+                   "moves spins for ever, and an equilibrium needs an energy that falls",
                    "no such table");
-  if (depends_on_time(scene.field))
-    detail::refuse(scene, "field.applied", "depends on t, and a state of rest does not", "numbers");
+  if (depends_on_time(scene.field) && purpose != Purpose::rest)
+    detail::refuse(scene, key_in_time(scene.field), "depends on t, and an equilibrium does not",
+                   "numbers");
 }
 
-// Where the cell is that of a unit-cell file, its sites go into the text: who reads that again need
-// not have the file.
+// Writes the cell of a unit-cell file into the text, so that later readers need not have the file.
 bool write_cell(toml::table& document, Scene const& scene) {
   auto const& [lattice, places] = std::tie(scene.lattice, scene.places);
   if (scene.field.couplings_file.empty() || places.contains("lattice.crystal") ||
@@ -97,22 +101,23 @@ bool write_cell(toml::table& document, Scene const& scene) {
   return true;
 }
 
-Scene parse_scene_for(Purpose purpose, std::string text, std::filesystem::path const& path,
-                      std::vector<std::string> const& overrides, Given given) {
-  Scene scene;
-  scene.path = path;
-  scene.given = std::move(given);
-  scene.text = std::move(text);
-  auto document = parse(scene.text, path);
-  for (auto const& assignment : overrides) detail::apply_override(document, assignment);
+std::string text_of(toml::table const& document) {
+  std::ostringstream stream;
+  stream << document << '\n';
+  return stream.str();
+}
 
-  detail::Table const root({&document, "", fmt::format("{}:1", path.string())}, scene);
+// Reads the tables of a document without stages. `place`: for messages about missing tables. May
+// write the cell into the document.
+void read_tables(Purpose purpose, toml::table& document, std::string const& place, Scene& scene) {
+  detail::Table const root({&document, "", place}, scene);
   root.accept_only({"units", "material", "system", "lattice", "field", "torque", "initial",
-                    "integrator", "thermal", "output"});
+                    "integrator", "thermal", "output", "stage", "ensemble"});
   scene.units.si = detail::read_is_si(root);
   scene.system = detail::read_system(root);
   scene.lattice = detail::read_lattice(root, scene.system.kind);
   detail::read_occupied(root, scene);
+  detail::read_follow(root, scene);
   if (scene.units.si) detail::read_material(root, scene);
   detail::read_dampings(root, scene);
   scene.field = detail::read_field(root, scene.system.kind);
@@ -120,20 +125,62 @@ Scene parse_scene_for(Purpose purpose, std::string text, std::filesystem::path c
   scene.initial = detail::read_initial(root);
   scene.integrator = read_integrator_for(purpose, root, scene.system.kind);
   scene.thermal = detail::read_thermal(root, scene.system.kind);
-  scene.output = detail::read_output(root, scene.integrator.steps);
+  scene.output = detail::read_output(root, scene.integrator);
+  scene.ensemble = detail::read_ensemble(root);
   if (scene.units.si) {
     detail::check_si(scene);
     detail::convert_to_reduced(scene);
   }
+  detail::use_numbers_of_sites(scene);
+  detail::check_in_time(root);
   if (detail::has_free_boundary(root)) detail::add_free_boundaries(scene);
-  if (write_cell(document, scene) || !overrides.empty()) {
-    std::ostringstream stream;
-    stream << document << '\n';
-    scene.text = stream.str();
-  }
   detail::check_crystal(scene);
   if (purpose == Purpose::run || has_integrator(scene)) check_combination(scene);
   check_purpose(purpose, scene);
+}
+
+Scene parse_scene_for(Purpose purpose, std::string text, std::filesystem::path const& path,
+                      std::vector<std::string> const& overrides, Given given) {
+  auto const parsed = [&] {
+    auto document = parse(text, path);
+    for (auto const& assignment : overrides) detail::apply_override(document, assignment);
+    auto const* const ensemble = document.get_as<toml::table>("ensemble");
+    if (ensemble && ensemble->empty()) document.erase("ensemble");
+    return document;
+  };
+  auto const first_line = fmt::format("{}:1", path.string());
+  Scene scene;
+  scene.path = path;
+  scene.given = given;
+  auto document = parsed();
+  auto const count = detail::count_stages(document, first_line);
+  if (count > 0)
+    scene.places["stage"] = detail::place_of(document.get("stage")->source(), first_line);
+  auto typed = count > 0 ? document : toml::table();
+  detail::apply_stages(document, 0, first_line);
+  bool const is_start = count > 0 && !document.contains("integrator");
+  read_tables(is_start ? Purpose::start : purpose, document, first_line, scene);
+  bool const has_cell = write_cell(document, scene);
+  if (count > 0) write_cell(typed, scene);
+  scene.text = has_cell || !overrides.empty() ? text_of(count > 0 ? typed : document) : text;
+  for (std::size_t n = 1; n <= count; ++n) {
+    Stage stage;
+    stage.scene.path = path;
+    stage.scene.given = given;
+    auto with_stages = parsed();
+    auto own = detail::apply_stages(with_stages, n, first_line);
+    auto const place = detail::place_of(own.source(), first_line);
+    detail::read_stage({{&own, fmt::format("stage[{}]", n - 1), place}, scene}, stage);
+    read_tables(stage.relax ? Purpose::rest : Purpose::run, with_stages, place, stage.scene);
+    if (stage.relax) stage.scene.integrator.steps = 0;
+    write_cell(with_stages, stage.scene);
+    stage.scene.text = text_of(with_stages);
+    detail::check_stage(scene, stage.scene);
+    scene.stages.push_back(std::move(stage));
+  }
+  if (count > 0) detail::check_stage(scene, scene);
+  if (purpose == Purpose::relax) require_no_stages(scene, "cayspin relax, modes or path");
+  if (scene.ensemble.there()) detail::check_ensemble(scene, !has_integrator(scene));
   return scene;
 }
 
@@ -146,7 +193,12 @@ Scene parse_scene(std::string text, std::filesystem::path const& path,
 
 Scene read_scene_to_relax(std::filesystem::path const& path,
                           std::vector<std::string> const& overrides) {
-  return parse_scene_for(Purpose::relax, read_text(path), path, overrides, {});
+  return parse_scene_to_relax(read_text(path), path, overrides);
+}
+
+Scene parse_scene_to_relax(std::string text, std::filesystem::path const& name,
+                           std::vector<std::string> const& overrides) {
+  return parse_scene_for(Purpose::relax, std::move(text), name, overrides, {});
 }
 
 Scene parse_scene_to_run_or_relax(std::string text, std::filesystem::path const& name,
@@ -162,7 +214,7 @@ Scene read_scene_to_run_or_relax(std::filesystem::path const& path,
 bool has_integrator(Scene const& scene) { return scene.places.contains("integrator"); }
 
 bool is_to_relax(Scene const& scene) {
-  return !has_integrator(scene) || !scene.field.applied_in_turn.empty();
+  return scene.stages.empty() && (!has_integrator(scene) || !scene.field.applied_in_turn.empty());
 }
 
 std::vector<Field> fields_in_turn(Scene const& scene) {
@@ -184,6 +236,24 @@ Scene with_overrides(Scene const& scene, std::vector<std::string> const& overrid
   auto changed = parse_scene(scene.text, scene.path, overrides, scene.given);
   changed.places = scene.places;
   changed.field.own = scene.field.own;
+  return changed;
+}
+
+Scene changed_on_the_way(Scene const& scene, std::vector<std::string> const& overrides,
+                         Given const& given) {
+  toml::table changes;
+  for (auto const& assignment : overrides) detail::apply_override(changes, assignment);
+  auto document = parse(scene.text, scene.path);
+  auto const first_line = fmt::format("{}:1", scene.path.string());
+  detail::apply_stage(document, changes, {}, first_line);
+  Scene changed;
+  changed.path = scene.path;
+  changed.given = scene.given;
+  for (auto const& [key, numbers] : given.numbers) changed.given.numbers[key] = numbers;
+  read_tables(Purpose::any, document, first_line, changed);
+  write_cell(document, changed);
+  changed.text = text_of(document);
+  detail::check_stage(scene, changed);
   return changed;
 }
 

@@ -2,6 +2,7 @@
 #include "reader.hpp"
 
 #include "io/expression.hpp"
+#include "io/words_of_others.hpp"
 
 #include <fmt/ranges.h>
 
@@ -71,6 +72,7 @@ void fail(std::string_view place, std::string_view key, std::string_view what,
 
 std::string did_you_mean(std::string_view word, std::span<std::string_view const> known) {
   if (word.size() > 64) return {};
+  if (auto hint = hint_for_word_of_others(word); !hint.empty()) return hint;
   std::string_view best;
   std::size_t best_distance = 3;
   for (auto const candidate : known) {
@@ -109,7 +111,8 @@ void Table::accept_only(std::vector<std::string_view> const& known) const {
     auto const place = place_of(node.source(), item_.place);
     auto const full =
         item_.key.empty() ? std::string(key.str()) : fmt::format("{}.{}", item_.key, key.str());
-    auto const hint = did_you_mean(key.str(), known);
+    auto hint = did_you_mean(key.str(), known);
+    if (hint.empty()) hint = hint_for_other_table(key.str());
     detail::fail(place, full, "unknown key" + hint, fmt::format("{}", fmt::join(known, ", ")));
   }
 }
@@ -134,7 +137,7 @@ Table Table::table(std::string_view name, std::string_view accepted) const {
   return Table(required(name, accepted), *scene_);
 }
 
-// toml::node::value has none for an integer that a double rounds.
+// toml::node::value returns nothing for an integer that a double would round.
 double value_of(toml::node const& number) {
   auto const* const whole = number.as_integer();
   return whole ? static_cast<double>(whole->get()) : number.as_floating_point()->get();
@@ -146,7 +149,10 @@ double number(Item const& item, Limits const& limits) {
   if (!std::isfinite(value)) item.fail(fmt::format("{} is not finite", value), limits.accepted);
   if (limits.without_least && value <= limits.least)
     item.fail(fmt::format("{} is not positive", value), limits.accepted);
-  if (value < limits.least) item.fail(fmt::format("{} is negative", value), limits.accepted);
+  if (value < limits.least)
+    item.fail(fmt::format("{} is {}", value, limits.least == 0 ? "negative" : "too small"),
+              limits.accepted);
+  if (value > limits.most) item.fail(fmt::format("{} is too large", value), limits.accepted);
   return value;
 }
 

@@ -19,17 +19,17 @@
 
 namespace cayspin::inline v0_1::io::detail {
 
-/// Control characters become '?', so that a name typed in a scene cannot break the line.
+/// Replaces control characters by '?', so that a name typed in a scene cannot break the line.
 std::string one_line(std::string text);
 
-/// `place: key: what; accepted: accepted`; empty parts are left out.
+/// Throws `place: key: what; accepted: accepted`, without empty parts.
 [[noreturn]] void fail(std::string_view place, std::string_view key, std::string_view what,
                        std::string_view accepted = {});
 
-/// `, did you mean "..."?` when one of the known words is within two edits, otherwise empty.
+/// Returns `, did you mean "..."?` if one of the known words is within two edits, otherwise "".
 std::string did_you_mean(std::string_view word, std::span<std::string_view const> known);
 
-/// A value of the scene with its full key and the place it was typed at.
+/// A value of the scene with its full key and the place where it was typed.
 struct Item {
   toml::node const* node;
   std::string key;
@@ -38,14 +38,14 @@ struct Item {
   [[noreturn]] void fail(std::string_view what, std::string_view accepted = {}) const {
     detail::fail(place, key, what, accepted);
   }
-  /// Says what was typed: `"big" is a string`.
+  /// Throws an error that describes the typed value: `"big" is a string`.
   [[noreturn]] void wrong_type(std::string_view accepted) const;
 };
 
-/// "FILE:LINE", or "--set key=value"; `otherwise` for a node that was never typed.
+/// Returns "FILE:LINE", or "--set key=value"; `otherwise` for a node that was never typed.
 std::string place_of(toml::source_region const& source, std::string_view otherwise);
 
-/// A table whose keys are looked up by name. Places go into the scene for later messages.
+/// A table whose keys are read by name. Stores their places in the scene for later messages.
 class Table {
  public:
   Table(Item item, Scene& scene);
@@ -66,34 +66,42 @@ class Table {
   Scene* scene_;
 };
 
-/// That of an integer or a floating-point number, which may be infinite or not a number.
+/// Returns an integer or a floating-point number, which may be infinite or NaN.
 double value_of(toml::node const& number);
 double number(Item const& item, Limits const& limits = {});
 inline double positive_number(Item const& item) { return number(item, positive); }
 std::int64_t integer(Item const& item, Limits const& limits);
 bool boolean(Item const& item);
 std::string string(Item const& item, std::string_view accepted);
-/// What a key of numbers of sites takes in place of one number.
+/// Describes what a key with site-dependent numbers accepts instead of one number.
 std::string accepted_site_numbers(Lattice const& lattice);
-/// False where it is neither an expression nor a table.
+/// Returns true for an expression, a file, numbers of regions, or given numbers; false for a number
+/// with its unit.
+bool are_numbers_of_sites(Item const& item);
+/// Returns false for an item that is neither an expression nor a table.
 bool read_site_numbers(Item const& item, Scene& scene, SiteNumbers& numbers);
-/// Reads numbers of sites, and returns 1; or a number, and returns that.
+/// Reads site-dependent numbers and returns 1; or reads a number and returns that.
 double number_of_sites(Item const& item, Scene& scene, SiteNumbers& numbers);
-/// A number, or an expression in t.
+/// Reads a vector for each site; `accepted_site_vectors`: for messages.
+std::string accepted_site_vectors(Lattice const& lattice);
+SiteVectors read_site_vectors(Item const& item, Scene& scene);
+/// Reads one direction, or site-dependent vectors, and then returns the zero vector.
+Triple axis_of_sites(Item const& item, Scene& scene, SiteVectors& axes);
+/// Reads a number, or an expression in t.
 AppliedComponent component_in_time(Item const& item);
 
-/// The entries of an array of `least` to `most` entries.
+/// Returns the entries of an array of `least` to `most` entries.
 std::vector<Item> entries(Item const& item, std::size_t least, std::size_t most,
                           std::string_view accepted);
-/// Three entries, each of them read by `read`.
+/// Reads three entries with `read`.
 template <class Read>
 auto three(Item const& item, std::string_view accepted, Read const& read) {
   auto const each = entries(item, 3, 3, accepted);
   return std::array{read(each[0]), read(each[1]), read(each[2])};
 }
 Triple triple(Item const& item);
-/// v/|v|; nothing when v is zero or not finite. Scaling by a power of two is exact and keeps |v|^2
-/// from overflowing or underflowing.
+/// Returns v/|v|; nothing when v is zero or not finite. Scaling by a power of two is exact and
+/// keeps |v|^2 from overflowing or underflowing.
 inline std::optional<Triple> normalise(Triple const& v) {
   if (!std::isfinite(v[0]) || !std::isfinite(v[1]) || !std::isfinite(v[2])) return std::nullopt;
   double const largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
@@ -105,14 +113,14 @@ inline std::optional<Triple> normalise(Triple const& v) {
   double const norm = std::sqrt(x * x + y * y + z * z);
   return Triple{x / norm, y / norm, z / norm};
 }
-/// Three numbers, normalised; a zero vector is refused.
+/// Reads three numbers and normalises them; refuses the zero vector.
 Triple direction(Item const& item);
 
-/// A file name relative to the scene file's folder.
+/// Returns a file name relative to the scene file's folder.
 std::filesystem::path input_file(Table const& table, std::string_view name,
                                  std::string_view accepted = "the name of an HDF5 file");
 
-/// The names, each in quotes.
+/// Returns the names, each in quotes.
 template <class Value>
 std::string quoted(std::span<Word<Value> const> words) {
   std::string list;
@@ -130,7 +138,7 @@ std::string all_words() {
                                std::vector<std::string_view> const& known,
                                std::string_view accepted);
 
-/// One of these words; `accepted`: for messages, in place of all of them.
+/// Reads one of these words; `accepted`: for messages, instead of all of them.
 template <class Value>
 Value word_among(std::span<Word<Value> const> words, Item const& item,
                  std::string_view accepted = {}) {
@@ -143,7 +151,7 @@ Value word_among(std::span<Word<Value> const> words, Item const& item,
   }
   unknown_word(item, name, known, all);
 }
-/// A word of the tables in words.hpp.
+/// Reads a word of the tables in words.hpp.
 template <class Value>
 Value word(Item const& item, std::string_view accepted = {}) {
   return word_among(words<Value>(), item, accepted);
@@ -170,7 +178,7 @@ void read_member(Item const& item, Limits const& limits, Member& member) {
     member = number(item, limits);
 }
 
-/// Sets the members that the section's keys() name.
+/// Sets the members named by the section's keys().
 template <class Section>
 void read_keys(Table const& table, Section& section) {
   for (auto const& key : Section::keys()) {

@@ -19,7 +19,12 @@ constexpr std::string_view method_key = "integrator.method",
                            control_key = "integrator.energy_control";
 
 bool has_torque(Scene const& scene) { return io::has_torque(scene.field); }
+bool has_demag(Scene const& scene, std::string_view key) {
+  return scene.field.demag && scene.field.demag->key == key;
+}
+bool has_sources(Scene const& scene) { return !scene.field.sources.empty(); }
 bool depends_on_time(Scene const& scene) { return io::depends_on_time(scene.field); }
+bool changes_in_time(Scene const& scene) { return scene.field.in_time.there(); }
 bool is_nonlinear(Scene const& scene) { return !has_linear_field(scene); }
 bool moves_by_sites(Scene const& scene) {
   return scene.system.dampings.there() || scene.lattice.frozen.there();
@@ -31,10 +36,13 @@ bool all_equal(std::vector<double> const& numbers, double to) {
 }
 bool turns_by_sites(Scene const& scene) {
   auto const& ratios = scene.lattice.gyromagnetic;
-  return !ratios.empty() && !all_equal(ratios, ratios[0]);
+  return scene.lattice.gyromagnetic_of_sites.there() ||
+         (!ratios.empty() && !all_equal(ratios, ratios[0]));
 }
 bool has_moments(Scene const& scene) {
-  return !all_equal(scene.lattice.moments, 1) || !all_equal(scene.lattice.gyromagnetic, 1);
+  auto const& lattice = scene.lattice;
+  return lattice.moments_of_sites.there() || lattice.gyromagnetic_of_sites.there() ||
+         !all_equal(lattice.moments, 1) || !all_equal(lattice.gyromagnetic, 1);
 }
 
 bool by_two_colours(Scene const& scene) { return scene.integrator.method->by_colour; }
@@ -43,9 +51,11 @@ bool by_analytic(Scene const& scene) { return scene.integrator.isotropy == Isotr
 bool by_control(Scene const& scene) { return scene.integrator.energy_control; }
 bool until_torque(Scene const& scene) { return scene.integrator.until_torque.has_value(); }
 
-constexpr std::string_view nonlinear = "cubic axes, biquadratic couplings, torques",
-                           own_numbers = "damping or frozen spins of sites",
-                           moments = "moments and gyromagnetic ratios other than 1";
+constexpr std::string_view
+    nonlinear =
+        "cubic and hexagonal axes, second constants, biquadratic bonds, interlayers, torques",
+    own_numbers = "damping or frozen spins of sites",
+    moments = "moments and gyromagnetic ratios other than 1";
 
 constexpr std::string_view neighbors_alone = "method \"{}\" needs a field of the neighbours alone";
 
@@ -54,18 +64,23 @@ constexpr RefusedPair pairs[] = {
      "no nonlocal field, or another method",
      [](Scene const& scene) { return bool{scene.field.own.nonlocal}; }, by_two_colours},
     {"demag", "red_black2, red_black4", neighbors_alone, "field.demag",
+     "no such key, or another method", [](Scene const& scene) { return has_demag(scene, "demag"); },
+     by_two_colours},
+    {"dipoles", "red_black2, red_black4", neighbors_alone, "field.dipoles",
      "no such key, or another method",
-     [](Scene const& scene) { return scene.field.demag.has_value(); }, by_two_colours},
+     [](Scene const& scene) { return has_demag(scene, "dipoles"); }, by_two_colours},
     {"slab_demag on the host", "red_black2, red_black4", neighbors_alone, "field.slab_demag",
      "no where = \"host\", or another method",
      [](Scene const& scene) { return is_nonlocal(scene.field); }, by_two_colours},
-    {"couplings, cubic axes, torques, vacancies, numbers of sites", "red_black2, red_black4",
+    {"couplings, cubic axes, torques, vacancies, numbers of sites, in_time",
+     "red_black2, red_black4",
      "\"{}\" needs a field of the neighbours alone: it moves spins while their neighbours stay, and "
      "these terms are evaluated for all spins beforehand",
      method_key, another_method, needs_pass, by_two_colours},
     {nonlinear, "series4, series4_paper",
-     "\"{}\" differentiates the field, which cubic axes, biquadratic couplings and torques make "
-     "nonlinear in the spins",
+     "\"{}\" differentiates the field, which cubic and hexagonal axes, second constants of "
+     "axes, biquadratic bonds, "
+     "interlayers and torques make nonlinear in the spins",
      method_key, another_method, is_nonlinear, by_series},
     {own_numbers, "series4, series4_paper",
      "\"{}\" differentiates the motion, with one damping for all spins", method_key, another_method,
@@ -73,13 +88,24 @@ constexpr RefusedPair pairs[] = {
     {"gyromagnetic ratios that differ", "series4, series4_paper",
      "\"{}\" differentiates the field, with one applied field for all spins", method_key,
      another_method, turns_by_sites, by_series},
+    {"sources", "series4, series4_paper",
+     "\"{}\" differentiates the field, with one applied field for all spins", method_key,
+     another_method, has_sources, by_series},
     {"a field that depends on t", "series4, series4_paper",
      "\"{}\" refuses fields that depend on t", method_key,
-     "a method without derivatives, or numbers in field.applied", depends_on_time, by_series},
+     "a method without derivatives, or numbers in place of expressions in t", depends_on_time,
+     by_series},
     {nonlinear, "isotropy analytic",
-     "\"analytic\" does not go with cubic axes, biquadratic couplings and torques: it needs a field "
-     "that is linear in the spins",
+     "\"analytic\" does not go with cubic and hexagonal axes, second constants of axes, biquadratic "
+     "bonds, interlayers and torques: "
+     "it needs a field that is linear in the spins",
      isotropy_key, no_isotropy, is_nonlinear, by_analytic},
+    {"sources", "isotropy analytic",
+     "\"analytic\" does not go with sources: it needs one applied field for all spins",
+     isotropy_key, no_isotropy, has_sources, by_analytic},
+    {"constants that change in time", "isotropy analytic",
+     "\"analytic\" does not go with field.in_time: it needs constant terms", isotropy_key,
+     no_isotropy, changes_in_time, by_analytic},
     {"gyromagnetic ratios that differ", "isotropy analytic",
      "\"analytic\" does not go with gyromagnetic ratios that differ", isotropy_key, no_isotropy,
      turns_by_sites, by_analytic},

@@ -8,7 +8,7 @@ namespace cayspin::inline v0_1::io::detail {
 /// Throws scene_error with what is accepted.
 [[noreturn]] void refuse(Scene const& scene, std::string_view key, std::string_view wrong,
                          std::string_view accepted);
-/// What std::runtime_error says of `work` becomes the scene_error of a key.
+/// Converts a std::runtime_error from `work` into the scene_error of a key.
 template <class Work>
 auto for_key(Scene const& scene, std::string_view key, Work const& work) {
   try {
@@ -18,52 +18,74 @@ auto for_key(Scene const& scene, std::string_view key, Work const& work) {
   }
 }
 
-/// Is it units = "SI"? The sections then hold what is typed until convert_to_reduced.
+/// Returns true for units = "SI". The sections then hold typed values until convert_to_reduced.
 bool read_is_si(Table const& root);
-/// After the lattice; the sections after it are read with the material known.
+/// Reads [material]. Call it after reading the lattice and before the other sections.
 void read_material(Table const& root, Scene& scene);
-/// Refuses what [material] says, and what is of atoms in a continuum.
+/// Refuses values that [material] has already, and atomistic keys in a continuum.
 void check_si(Scene const& scene);
-/// Turns the scene, of which all sections have been read, into reduced units.
+/// Converts a completely read scene to reduced units.
 void convert_to_reduced(Scene& scene);
 
-/// A table that rigid bodies do not have, where it is typed.
+/// Returns a table that is not allowed for rigid bodies, if it is typed.
 std::optional<Table> table_of_spins(Table const& root, std::string_view name, SystemKind kind);
 System read_system(Table const& root);
-/// Where spins are, and where they do not move: after the lattice.
+/// Reads occupied and frozen sites. Call it after reading the lattice.
 void read_occupied(Table const& root, Scene& scene);
-/// Those that differ from site to site: after the lattice.
+/// Reads lattice.follow. Call it after reading the lattice.
+void read_follow(Table const& root, Scene& scene);
+/// Reads site-dependent dampings. Call it after reading the lattice.
 void read_dampings(Table const& root, Scene& scene);
-/// A rigid body takes neither spacing nor boundary, and one extent.
+/// Reads the lattice. For rigid bodies it has neither spacing nor boundary, and one extent.
 Lattice read_lattice(Table const& root, SystemKind kind);
-/// The keys of [lattice] that say what is in a cell. Where the cell is that of a unit-cell file,
-/// this is read.
+/// Reads the keys of [lattice] for the contents of a cell, if necessary from a unit-cell file.
 void read_crystal(Table const& root, Table const& lattice_table, Lattice& lattice);
-/// After the lattice, which the scene has by then.
+/// Reads the field. Call it after reading the lattice into the scene.
 Field read_field(Table const& root, SystemKind kind);
+void read_anisotropies(Item const& item, Scene& scene, Field& field);
 void read_couplings(Item const& item, Scene& scene, Field& field);
+/// Reads demag and dipoles. Call it after reading slab_demag.
+void read_demag(Table const& field_table, Scene& scene, Field& field);
 Torque read_torque(Table const& root, SystemKind kind);
+/// Returns true for an expression in t.
+bool is_in_time(std::string const& text);
 Initial read_initial(Table const& root);
 Integrator read_integrator(Table const& root, SystemKind kind);
 std::optional<Thermal> read_thermal(Table const& root, SystemKind kind);
-/// Opens the files with numbers of sites.
+/// Describes the site of a number in a box.
+std::string site_text(SiteBox const& box, std::size_t number);
+/// Opens the files with site-dependent numbers.
 void check_site_numbers(Scene const& scene);
+void check_site_vectors(Scene const& scene, SiteVectors const& vectors, std::string_view key);
+/// Converts one constant into site-dependent numbers for terms that are only evaluated with these,
+/// and gives bonds between regions the exchange that they need.
+void use_numbers_of_sites(Scene& scene);
+/// Refuses [field.in_time] for a term that the scene does not have, or that is constant.
+void check_in_time(Table const& root);
 /// Refuses a lattice without a spin.
 void require_occupied(Scene const& scene);
-/// Refuses terms that need neighbours along the axes of a lattice in a crystal that has none.
+/// Returns true if a cell has several sites, or vectors other than the spacing along the axes.
+bool is_crystal(Lattice const& lattice);
+/// Refuses terms that need neighbours along the axes if a crystal has none.
 void check_crystal(Scene const& scene);
 /// Refuses the pairs of refused_pairs.hpp.
 void check_pairs(Scene const& scene);
-/// Refuses what does not go with a temperature above 0.
+/// Refuses combinations that do not work at a temperature above 0.
 void check_thermal(Scene const& scene);
-Output read_output(Table const& root, std::int64_t steps);
+Ensemble read_ensemble(Table const& root);
+/// Refuses what does not go with an ensemble, and values of its first and last replica.
+void check_ensemble(Scene const& scene, bool relaxes);
+/// `integrator`: as typed, in the units of the scene.
+Output read_output(Table const& root, Integrator const& integrator);
+/// A time >= 0 over dt. Refuses what is no whole number of steps.
+std::int64_t whole_steps(Item const& time, double dt);
 
-/// Puts "key.path=VALUE" into the table. Missing tables are created; a whole number in the path is
-/// an index into an array. Throws SceneError.
+/// Applies "key.path=VALUE" to the table. Creates missing tables; an integer in the path is an
+/// index into an array. Throws SceneError.
 void apply_override(toml::table& root, std::string const& assignment);
 
-/// Why a tensor is refused, or nothing when it is symmetric to `tolerance` times its largest entry
-/// and positive definite.
+/// Returns why a tensor is refused; nothing if it is symmetric to `tolerance` times its largest
+/// entry and positive definite.
 std::optional<std::string> inertia_fault(InertiaTensor const& tensor, double tolerance);
 
 }  // namespace cayspin::inline v0_1::io::detail

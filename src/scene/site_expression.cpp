@@ -16,7 +16,7 @@ namespace {
 double random_of(double n, double seed, double const*) {
   if (!std::isfinite(n))
     throw std::runtime_error("random of a number that is not finite; accepted: a finite number");
-  // -0 is 0.
+  // Treats -0 as 0.
   return random_number(random_bits(whole_seed(seed, "random"), 1),
                        std::bit_cast<std::uint64_t>(n + 0.0));
 }

@@ -12,12 +12,12 @@
 
 namespace cayspin::inline v0_1::io::detail {
 
-/// What expressions of sites may use: the position, the cell's indices and, of a crystal, the
-/// number in the cell.
+/// Returns the variables of site expressions: the position, the cell's indices and, for a crystal,
+/// the index in the cell.
 std::vector<std::string> site_variables(Lattice const& lattice);
 
-/// Their values at a site of the lattice: plane `site[2]` holds sites of one number. A site at its
-/// cell's corner counts as in the middle, where it is alone there.
+/// Returns their values at a site of the lattice; plane `site[2]` holds sites of one index. A
+/// single site at its cell's corner counts as the middle of the cell.
 inline std::array<double, 7> site_values(Lattice const& lattice,
                                          std::array<std::int64_t, 3> const& site) {
   auto const sites = static_cast<std::int64_t>(lattice.basis.size());
@@ -35,8 +35,8 @@ inline std::array<double, 7> site_values(Lattice const& lattice,
   return values;
 }
 
-/// An expression of these, which may use the functions grain(size, seed) and random(n, seed).
-/// `length`: of the unit of lattice.spacing, in that of sizes. Throws as Expression does.
+/// Compiles an expression of these, which may use the functions grain(size, seed) and random(n,
+/// seed). `length`: the unit of lattice.spacing, in the unit of sizes. Throws like Expression.
 Expression site_expression(std::string text, Lattice const& lattice, double length = 1);
 inline Expression site_expression(std::string text, Scene const& scene) {
   return site_expression(std::move(text), scene.lattice, scene.units.length);

@@ -2,7 +2,10 @@
 #include "dataset_of_sites.hpp"
 #include "free_boundary.hpp"
 #include "hdf5/guarded_reading.hpp"
+#include "image.hpp"
+#include "io/ovf.hpp"
 #include "io/scene.hpp"
+#include "ovf_of_sites.hpp"
 #include "sections.hpp"
 #include "site_expression.hpp"
 #include "start_file.hpp"
@@ -17,13 +20,21 @@
 namespace cayspin::inline v0_1::io {
 namespace {
 
+constexpr std::size_t most_regions = 65536;
+
 detail::DatasetOfSites open_values(std::filesystem::path const& path, Lattice const& lattice) {
   detail::DatasetOfSites values(path, "/values", lattice, 1);
   if (!values.fits()) values.refuse_extents(fmt::format("({})", values.expected()));
   return values;
 }
 
-// Sites are occupied where a file has spins.
+std::vector<double> values_of_file(std::filesystem::path const& path, Lattice const& lattice,
+                                   SiteBox const& box) {
+  if (is_ovf(path)) return detail::read_ovf_of_sites(path, lattice, 1, box);
+  return read_guarded(path, [&] { return open_values(path, lattice).in(box); });
+}
+
+// Returns true for occupied sites given by a file of spins.
 bool is_file_of_spins(SiteNumbers const& numbers, std::string_view key) {
   return key == "lattice.occupied" && detail::holds_spins(numbers.file);
 }
@@ -48,7 +59,23 @@ std::vector<double> values_at_sites(Scene const& scene, std::string const& text,
   return values;
 }
 
-// Before they are multiplied by their unit.
+std::vector<double> numbers_of_regions(Scene const& scene, std::vector<double> const& numbers,
+                                       std::string_view key, SiteBox const& box) {
+  auto const of_sites = regions(scene, box);
+  std::vector<double> values(of_sites.size());
+  for (std::size_t site = 0; site < values.size(); ++site) {
+    auto const region = static_cast<std::size_t>(of_sites[site]);
+    if (region >= numbers.size())
+      throw scene_error(scene, key,
+                        fmt::format("has no number for region {}, that of {}; accepted: one for "
+                                    "each region, from 0 on",
+                                    region, detail::site_text(box, site)));
+    values[site] = numbers[region];
+  }
+  return values;
+}
+
+// Returns the numbers before they are multiplied by their unit.
 std::vector<double> typed_numbers(Scene const& scene, SiteNumbers const& numbers,
                                   std::string_view key, SiteBox const& box) {
   if (numbers.given) {
@@ -59,13 +86,16 @@ std::vector<double> typed_numbers(Scene const& scene, SiteNumbers const& numbers
       throw scene_error(scene, key, "a number that was given is not finite");
     return numbers_in(box, scene.lattice.shape, 1, *numbers.given);
   }
+  if (!numbers.of_regions.empty()) return numbers_of_regions(scene, numbers.of_regions, key, box);
   if (auto at_sides = detail::numbers_at_free_sides(scene, numbers, box)) return *at_sides;
+  if (!numbers.image.empty())
+    return detail::for_key(scene, key,
+                           [&] { return detail::numbers_of_image(numbers, scene.lattice, box); });
   if (numbers.file.empty()) return values_at_sites(scene, numbers.expression, key, box);
   return detail::for_key(scene, key, [&] {
     if (is_file_of_spins(numbers, key))
       return detail::sites_with_spins(numbers.file, scene.lattice, box);
-    auto values = read_guarded(numbers.file,
-                               [&] { return open_values(numbers.file, scene.lattice).in(box); });
+    auto values = values_of_file(numbers.file, scene.lattice, box);
     if (!are_finite(values))
       throw std::runtime_error(numbers.file.string() + ": a value is not finite");
     return values;
@@ -75,26 +105,61 @@ std::vector<double> typed_numbers(Scene const& scene, SiteNumbers const& numbers
 }  // namespace
 
 namespace detail {
+namespace {
+
+void read_numbers_of_regions(Item const& item, Scene& scene, SiteNumbers& numbers) {
+  if (!scene.lattice.regions.there())
+    item.fail("stands without lattice.regions, which says the region of each site",
+              "lattice.regions beside it");
+  for (auto const& entry : entries(item, 1, most_regions, "a list of numbers, one for each region"))
+    numbers.of_regions.push_back(number(entry));
+}
+
+}  // namespace
+
+std::string site_text(SiteBox const& box, std::size_t number) {
+  auto const at = static_cast<std::int64_t>(number);
+  auto const [nx, ny, nz] = box.extent;
+  return fmt::format("site ({}, {}, {})", box.begin[0] + at % nx, box.begin[1] + at / nx % ny,
+                     box.begin[2] + at / (nx * ny));
+}
 
 std::string accepted_site_numbers(Lattice const& lattice) {
-  return fmt::format("an expression in {}, or {{ file = \"NAME.h5\" }}",
-                     fmt::join(site_variables(lattice), ", "));
+  return fmt::format(
+      "an expression in {}, {{ file = \"NAME.h5\" }}, {{ image = \"NAME.png\" }} or {{ regions = [v0, "
+      "v1, ..] }}",
+      fmt::join(site_variables(lattice), ", "));
+}
+
+bool are_numbers_of_sites(Item const& item) {
+  auto const* const table = item.node->as_table();
+  if (table == nullptr) return item.node->is_string();
+  return table->contains("file") || table->contains("image") || table->contains("regions") ||
+         table->contains("given");
 }
 
 bool read_site_numbers(Item const& item, Scene& scene, SiteNumbers& numbers) {
   if (item.node->is_table()) {
     Table const table(item, scene);
+    if (table.contains("image")) {
+      read_image_keys(table, numbers);
+      return true;
+    }
     auto const given = table.find("given");
     // As in [initial].
-    if (!given || item.node->as_table()->size() > 1) table.accept_only({"file"});
-    if (given) {
+    if (!given || item.node->as_table()->size() > 1)
+      table.accept_only({"file", "image", "regions"});
+    if (auto const regions = table.find("regions")) {
+      if (item.node->as_table()->size() > 1) regions->fail("stands beside file", "one of the two");
+      read_numbers_of_regions(*regions, scene, numbers);
+    } else if (given) {
       if (!boolean(*given)) given->fail("false has no meaning", "file");
       auto const found = scene.given.numbers.find(item.key);
       if (found == scene.given.numbers.end())
         given->fail("stands for numbers that a program gives, and none did", "file");
       numbers.given = found->second;
     } else {
-      numbers.file = input_file(table, "file");
+      numbers.file = input_file(table, "file", "the name of an HDF5 or OVF file");
     }
     return true;
   }
@@ -116,22 +181,91 @@ double number_of_sites(Item const& item, Scene& scene, SiteNumbers& numbers) {
 
 void check_site_numbers(Scene const& scene) {
   auto const check = [&](SiteNumbers const& numbers, std::string_view key) {
-    if (numbers.file.empty()) return;
+    if (numbers.file.empty() && numbers.image.empty()) return;
     for_key(scene, numbers.key_or(key), [&] {
+      if (!numbers.image.empty()) return check_image(numbers.image);
       if (is_file_of_spins(numbers, key)) return check_start_file(numbers.file, scene.lattice);
+      if (is_ovf(numbers.file)) return detail::check_ovf_of_sites(numbers.file, scene.lattice, 1);
       try_reading(numbers.file, [&] { open_values(numbers.file, scene.lattice); });
     });
   };
   auto const& field = scene.field;
+  check(scene.lattice.regions, "lattice.regions");
+  check(scene.lattice.moments_of_sites, "lattice.moments");
+  check(scene.lattice.gyromagnetic_of_sites, "lattice.gyromagnetic");
   check(scene.lattice.occupied, "lattice.occupied");
   check(scene.lattice.frozen, "lattice.frozen");
   check(scene.system.dampings, "system.damping");
   check(field.exchange_factors, "field.exchange");
   check(field.dmi_factors, "field.dmi");
-  for (auto const& term : field.anisotropies) check(term.factors, "field.anisotropy");
+  for (auto const& term : field.anisotropies) {
+    check(term.factors, "field.anisotropy");
+    check(term.factors2, "field.anisotropy");
+    check_site_vectors(scene, term.axes, "field.anisotropy");
+  }
+  check_site_vectors(scene, field.dmi_normals, "field.dmi");
+  for (auto const& term : field.crystal_anisotropies) {
+    check(term.factors, "field.anisotropy");
+    check(term.factors2, "field.anisotropy");
+    for (auto const& axes : term.axes_of_sites) check_site_vectors(scene, axes, "field.anisotropy");
+  }
+  for (auto const& source : field.sources)
+    check_site_vectors(scene, source.profile, "field.sources");
+  if (auto const& of = field.torque.slonczewski) {
+    check(of->damping_like_of_sites, "torque.slonczewski.damping_like");
+    check(of->field_like_of_sites, "torque.slonczewski.field_like");
+    check_site_vectors(scene, of->polarizations, "torque.slonczewski.polarization");
+  }
+  if (scene.thermal) check(scene.thermal->of_sites, "thermal.temperature");
 }
 
 }  // namespace detail
+
+std::vector<std::int64_t> regions(Scene const& scene, SiteBox const& box) {
+  auto const values = typed_numbers(scene, scene.lattice.regions, "lattice.regions", box);
+  std::vector<std::int64_t> regions(values.size());
+  for (std::size_t site = 0; site < values.size(); ++site) {
+    double const value = values[site];
+    if (!(value >= 0 && value < most_regions && value == std::floor(value)))
+      throw scene_error(scene, "lattice.regions",
+                        fmt::format("is {} at {}; accepted: whole numbers from 0 to {}", value,
+                                    detail::site_text(box, site), most_regions - 1));
+    regions[site] = static_cast<std::int64_t>(value);
+  }
+  return regions;
+}
+
+std::int64_t region_count(Scene const& scene) {
+  std::int64_t count = 0;
+  for_each_box_of_planes(scene.lattice.shape, sizeof(double), [&](SiteBox const& box) {
+    count = std::max(count, std::ranges::max(regions(scene, box)) + 1);
+  });
+  return count;
+}
+
+std::vector<double> moments_of_sites(Scene const& scene, SiteBox const& box) {
+  auto const& numbers = scene.lattice.moments_of_sites;
+  if (!numbers.there()) return {};
+  auto values = numbers_of_sites(scene, numbers, "lattice.moments", box);
+  for (std::size_t site = 0; site < values.size(); ++site)
+    if (!(values[site] >= 0))
+      throw scene_error(scene, numbers.key_or("lattice.moments"),
+                        fmt::format("is {:.6g} at {}; accepted: numbers >= 0, 0 for no spin",
+                                    values[site] / numbers.unit, detail::site_text(box, site)));
+  return values;
+}
+
+std::vector<double> gyromagnetic_of_sites(Scene const& scene, SiteBox const& box) {
+  auto const& numbers = scene.lattice.gyromagnetic_of_sites;
+  if (!numbers.there()) return {};
+  auto values = numbers_of_sites(scene, numbers, "lattice.gyromagnetic", box);
+  for (std::size_t site = 0; site < values.size(); ++site)
+    if (!(values[site] > 0))
+      throw scene_error(scene, numbers.key_or("lattice.gyromagnetic"),
+                        fmt::format("is {:.6g} at {}; accepted: numbers > 0",
+                                    values[site] / numbers.unit, detail::site_text(box, site)));
+  return values;
+}
 
 std::vector<double> numbers_of_sites(Scene const& scene, SiteNumbers const& numbers,
                                      std::string_view key, SiteBox const& box) {

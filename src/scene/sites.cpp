@@ -5,12 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 namespace cayspin::inline v0_1::io {
 namespace {
 
-// 1 where numbers are not 0; nothing without them.
+// Returns 1 where numbers are not 0; nothing without numbers.
 std::vector<unsigned char> sites_where(Scene const& scene, SiteNumbers const& numbers,
                                        std::string_view key, SiteBox const& box) {
   if (!numbers.there()) return {};
@@ -26,35 +27,57 @@ namespace detail {
 
 void read_occupied(Table const& root, Scene& scene) {
   auto const lattice = root.table("lattice", "a table [lattice]");
-  for (auto const& [name, member] :
-       {std::pair{"occupied", &Lattice::occupied}, {"frozen", &Lattice::frozen}})
+  for (auto const& [name, member] : {std::pair{"regions", &Lattice::regions},
+                                     {"occupied", &Lattice::occupied},
+                                     {"frozen", &Lattice::frozen}})
     if (auto const item = lattice.find(name);
         item && !read_site_numbers(*item, scene, scene.lattice.*member))
       item->wrong_type(accepted_site_numbers(scene.lattice));
+  for (auto const& [name, member] : {std::pair{"moments", &Lattice::moments_of_sites},
+                                     {"gyromagnetic", &Lattice::gyromagnetic_of_sites}})
+    if (auto const item = lattice.find(name); item && are_numbers_of_sites(*item))
+      read_site_numbers(*item, scene, scene.lattice.*member);
 }
 
 void require_occupied(Scene const& scene) {
   auto const& shape = scene.lattice.shape;
   if (!has_vacancies(scene)) return;
-  auto const at_once = scene.lattice.occupied.expression.empty() ? shape[2] : 1;
+  auto const at_once = planes_to_read(shape, sizeof(double));
   for (std::int64_t plane = 0; plane < shape[2]; plane += at_once) {
-    auto const there = occupied(scene, {{0, 0, plane}, {shape[0], shape[1], at_once}});
+    auto const planes = std::min(at_once, shape[2] - plane);
+    auto const there = occupied(scene, {{0, 0, plane}, {shape[0], shape[1], planes}});
     if (std::ranges::find(there, 1) != there.end()) return;
   }
-  refuse(scene, scene.lattice.occupied.there() ? "lattice.occupied" : "lattice.moments",
+  auto const& [occupied_sites, moments] =
+      std::tie(scene.lattice.occupied, scene.lattice.moments_of_sites);
+  refuse(scene, occupied_sites.there() ? "lattice.occupied" : moments.key_or("lattice.moments"),
          "leaves no spin", "numbers that are not 0 somewhere");
 }
 
 }  // namespace detail
 
+bool has_moments_of_sites(Scene const& scene) {
+  auto const& [lattice, demag] = std::tie(scene.lattice, scene.field.demag);
+  return lattice.moments_of_sites.there() || (demag && demag->dipoles && !lattice.moments.empty());
+}
+
 bool has_vacancies(Scene const& scene) {
   auto const& lattice = scene.lattice;
-  return lattice.occupied.there() || std::ranges::find(lattice.moments, 0) != lattice.moments.end();
+  auto const& of_sites = lattice.moments_of_sites;
+  auto const has_zero = [](std::vector<double> const& numbers) {
+    return std::ranges::find(numbers, 0) != numbers.end();
+  };
+  return lattice.occupied.there() || has_zero(lattice.moments) ||
+         (of_sites.there() && (of_sites.of_regions.empty() || has_zero(of_sites.of_regions)));
 }
 
 std::vector<unsigned char> occupied(Scene const& scene, SiteBox const& box) {
   if (!has_vacancies(scene)) return {};
   auto where = sites_where(scene, scene.lattice.occupied, "lattice.occupied", box);
+  auto const of_sites = moments_of_sites(scene, box);
+  if (where.empty() && !of_sites.empty()) where.assign(of_sites.size(), 1);
+  for (std::size_t site = 0; site < of_sites.size(); ++site)
+    if (of_sites[site] == 0) where[site] = 0;
   auto const& moments = scene.lattice.moments;
   auto const in_plane = static_cast<std::size_t>(box.extent[0] * box.extent[1]);
   auto const first = static_cast<std::size_t>(box.begin[2]);
@@ -68,6 +91,23 @@ std::vector<unsigned char> frozen(Scene const& scene, SiteBox const& box) {
   return sites_where(scene, scene.lattice.frozen, "lattice.frozen", box);
 }
 
+std::vector<double> all_moments(Scene const& scene, SiteBox const& box) {
+  auto const& of_cell = scene.lattice.moments;
+  auto const there = occupied(scene, box);
+  auto moments = moments_of_sites(scene, box);
+  if (moments.empty() && of_cell.empty() && there.empty()) return {};
+  auto const in_plane = static_cast<std::size_t>(box.extent[0] * box.extent[1]);
+  auto const first = static_cast<std::size_t>(box.begin[2]);
+  if (moments.empty()) {
+    moments.resize(in_plane * static_cast<std::size_t>(box.extent[2]));
+    for (std::size_t site = 0; site < moments.size(); ++site)
+      moments[site] = of_cell_site(of_cell, (first + site / in_plane) % scene.lattice.basis.size());
+  }
+  for (std::size_t site = 0; site < there.size(); ++site)
+    if (!there[site]) moments[site] = 0;
+  return moments;
+}
+
 double of_cell_site(std::vector<double> const& numbers, std::size_t site) {
   return numbers.empty() ? 1 : numbers[site];
 }
@@ -77,20 +117,14 @@ double over_moment(Lattice const& lattice, std::size_t site, double number) {
   return moment > 0 ? number / moment : 0;
 }
 
-std::vector<double> noise_of_sites(Scene const& scene) {
-  auto const& lattice = scene.lattice;
-  std::vector<double> noise;
-  for (std::size_t site = 0; site < lattice.basis.size(); ++site)
-    noise.push_back(over_moment(lattice, site, of_cell_site(lattice.gyromagnetic, site)));
-  return noise;
-}
-double largest_noise(Scene const& scene) { return std::ranges::max(noise_of_sites(scene)); }
-
 bool has_linear_field(Scene const& scene) {
   auto const& field = scene.field;
-  return field.cubic_anisotropies.empty() && !has_torque(field) && field.couplings_file.empty() &&
+  return field.crystal_anisotropies.empty() && !has_torque(field) && field.couplings_file.empty() &&
          std::ranges::all_of(field.couplings,
-                             [](auto const& bond) { return bond.biquadratic == 0; });
+                             [](auto const& bond) { return bond.biquadratic == 0; }) &&
+         field.interlayers.empty() && std::ranges::all_of(field.anisotropies, [](auto const& term) {
+           return term.constant2 == 0 && !term.factors2.there();
+         });
 }
 
 bool needs_pass(Scene const& scene) {
@@ -99,12 +133,14 @@ bool needs_pass(Scene const& scene) {
   bool const has_sites = scene.system.dampings.there() || field.exchange_factors.there() ||
                          field.dmi_factors.there() ||
                          std::ranges::any_of(field.anisotropies, [](auto const& term) {
-                           return term.site >= 0 || term.factors.there();
+                           return term.site >= 0 || term.is_of_sites();
                          });
   return lattice.basis.size() > 1 || !lattice.moments.empty() || !lattice.gyromagnetic.empty() ||
+         lattice.moments_of_sites.there() || lattice.gyromagnetic_of_sites.there() ||
          lattice.occupied.there() || lattice.frozen.there() || !field.couplings.empty() ||
-         !field.couplings_file.empty() || !field.cubic_anisotropies.empty() || has_sites ||
-         field.torque.zhang_li || field.torque.slonczewski;
+         !field.couplings_file.empty() || !field.crystal_anisotropies.empty() ||
+         field.in_time.there() || has_sites || !field.sources.empty() ||
+         !field.interlayers.empty() || field.torque.zhang_li || field.torque.slonczewski;
 }
 
 }  // namespace cayspin::inline v0_1::io

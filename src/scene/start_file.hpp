@@ -8,19 +8,19 @@
 
 namespace cayspin::inline v0_1::io::detail {
 
-/// Throws std::runtime_error unless an HDF5 or OVF file has spins for a lattice. Only types and
-/// shapes are looked at.
+/// Throws std::runtime_error unless an HDF5 or OVF file has spins for a lattice. Checks only types
+/// and shapes.
 void check_start_file(std::filesystem::path const& path, Lattice const& lattice);
 
-/// The spins of a box as they stand in the file, x fastest. Of one in OVF all is read.
+/// Returns the spins of a box as stored in the file, x fastest. Reads an OVF file completely.
 std::vector<double> read_start_file(std::filesystem::path const& path, Lattice const& lattice,
                                     SiteBox const& box);
 
-/// 0 where that spin is the zero vector, and 1 elsewhere.
+/// Returns 0 where the spin is the zero vector, and 1 elsewhere.
 std::vector<double> sites_with_spins(std::filesystem::path const& path, Lattice const& lattice,
                                      SiteBox const& box);
 
-/// Does a file hold spins, and no numbers of sites?
+/// Returns true for a file with spins, and false for one with site-dependent numbers.
 bool holds_spins(std::filesystem::path const& path);
 
 }  // namespace cayspin::inline v0_1::io::detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The zero vectors of a file as sites without a spin.
+// Treats the zero vectors of a file as sites without a spin.
 #include "io/notes.hpp"
 #include "io/ovf.hpp"
 #include "sections.hpp"
@@ -14,7 +14,7 @@
 namespace cayspin::inline v0_1::io {
 namespace {
 
-/// Of the sites of a file, those with a zero vector.
+/// Counts the sites of a file that have a zero vector.
 std::int64_t count_zeros(FileStart const& start, Lattice const& lattice) {
   auto const& [nx, ny, nz] = lattice.shape;
   constexpr std::int64_t sites_at_once = 4'000'000;
@@ -38,7 +38,7 @@ Scene with_shape_of_start(Scene scene) {
   auto const zeros =
       detail::for_key(scene, "initial.file", [&] { return count_zeros(*start, scene.lattice); });
   if (zeros == 0 || zeros == sites(scene)) return scene;
-  // The text says so, too: trajectory files keep it.
+  // The text must have it, too, because trajectory files store the text.
   auto document = toml::parse(scene.text, scene.path.string());
   auto const typed = document["initial"]["file"].value_or(std::string());
   document["lattice"].as_table()->insert("occupied", toml::table{{"file", typed}});
@@ -48,6 +48,7 @@ Scene with_shape_of_start(Scene scene) {
   scene.lattice.occupied.file = start->path;
   scene.places["lattice.occupied"] = scene.places["initial.file"];
   if (scene.places.contains("integrator")) check_combination(scene);
+  for (auto& stage : scene.stages) stage.scene = with_shape_of_start(std::move(stage.scene));
   return scene;
 }
 

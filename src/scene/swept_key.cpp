@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view accepted = "key.path=VALUE,VALUE,... with TOML values";
 
-// The byte at which a column begins; columns count code points, from 1.
+// Returns the byte at which a column starts; columns count code points, from 1.
 std::size_t byte_of(std::string_view text, std::size_t column) {
   std::size_t byte = 0;
   for (std::size_t passed = 1; passed < column && byte < text.size(); ++passed) {
@@ -39,7 +39,7 @@ SweptKey read_swept_key(std::string const& assignment) {
   std::ranges::copy_if(assignment.substr(0, equals), std::back_inserter(swept.key),
                        [](char c) { return c != ' '; });
 
-  // An array of TOML tells where each value begins.
+  // Parsed as an array of TOML, which gives the start of each value.
   auto const line = "value = [" + assignment.substr(equals + 1);
   toml::table parsed;
   try {

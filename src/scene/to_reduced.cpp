@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// From SI to reduced units.
+// Conversion of scenes from SI to reduced units.
 #include "sections.hpp"
 
 #include <cayspin/units.hpp>
@@ -13,14 +13,14 @@
 namespace cayspin::inline v0_1::io::detail {
 namespace {
 
-// A formula in t, with t in units of `time` and the result in units of `field`.
+// Returns a formula in t, with t in units of `time` and the result in units of `field`.
 std::string scaled_expression(std::string const& text, double time, double field) {
   static std::regex const variable(R"(\bt\b)");
   return fmt::format("({})/{}", std::regex_replace(text, variable, fmt::format("({}*t)", time)),
                      field);
 }
 
-// Of numbers that differ from site to site, the sites take their own part.
+// If the damping is site-dependent, each site applies its own factor.
 units::Damping damping_of(Material const& material) {
   return material.gilbert ? units::gilbert(material.alpha) : units::landau_lifshitz(material.alpha);
 }
@@ -34,7 +34,7 @@ double largest_coupling(std::vector<Coupling> const& couplings) {
   return largest;
 }
 
-// The first of these that is one number; 1 T on a moment where there is none.
+// Returns the first constant that is uniform; 1 T times the moment if there is none.
 double energy_unit(Material const& material, Field const& field) {
   auto const one = [](std::optional<double> const& value, SiteNumbers const& numbers) {
     return numbers.there() ? 0 : std::abs(value.value_or(0));
@@ -42,12 +42,13 @@ double energy_unit(Material const& material, Field const& field) {
   for (double const energy :
        {one(material.exchange, material.exchange_factors), largest_coupling(field.couplings),
         one(material.anisotropy, material.anisotropy_factors),
-        one(material.dmi, material.dmi_factors), one(material.bulk_dmi, material.dmi_factors)})
+        one(material.dmi, material.dmi_factors), one(material.bulk_dmi, material.dmi_factors),
+        one(material.d2d_dmi, material.dmi_factors)})
     if (energy != 0) return energy;
   return material.moment;
 }
 
-// Numbers of sites are in SI: `in_reduced` is what 1 comes to.
+// Site-dependent numbers stay in SI: `in_reduced` converts 1.
 double constant(double typed, SiteNumbers& numbers, auto const& in_reduced) {
   if (!numbers.there()) return in_reduced(typed);
   numbers.unit = in_reduced(1);
@@ -60,19 +61,35 @@ void convert_material(Scene& scene, auto const& units) {
   auto const exchange = [&](double A) { return units.exchange(A); };
   auto const anisotropy = [&](double K) { return units.anisotropy(K); };
   auto const dmi = [&](double D) { return units.dmi(D); };
-  for (auto& term : field.anisotropies)
+  // Ku2 gives H = 4 Ku2 (m.e)^3 e: twice the field of the first constant.
+  auto const anisotropy2 = [&](double K) { return 2 * units.anisotropy(K); };
+  for (auto& term : field.anisotropies) {
     term.constant = constant(term.constant, term.factors, anisotropy);
-  for (auto& term : field.cubic_anisotropies) term.constant = units.cubic_anisotropy(term.constant);
-  if (material.anisotropy) {
-    Anisotropy term{0, material.axis, -1, material.anisotropy_factors};
-    term.constant = constant(*material.anisotropy, term.factors, anisotropy);
+    term.constant2 = constant(term.constant2, term.factors2, anisotropy2);
+  }
+  auto const of_crystal = [&](double K) { return units.cubic_anisotropy(K); };
+  for (auto& term : field.crystal_anisotropies) {
+    term.constant = constant(term.constant, term.factors, of_crystal);
+    term.constant2 = constant(term.constant2, term.factors2, of_crystal);
+  }
+  if (material.anisotropy || material.anisotropy2) {
+    Anisotropy term{.axis = material.axis,
+                    .factors = material.anisotropy_factors,
+                    .factors2 = material.anisotropy2_factors,
+                    .axes = material.axes};
+    term.constant = constant(material.anisotropy.value_or(0), term.factors, anisotropy);
+    term.constant2 = constant(material.anisotropy2.value_or(0), term.factors2, anisotropy2);
     field.anisotropies.insert(field.anisotropies.begin(), term);
   }
   field.exchange_factors = material.exchange_factors;
   if (material.exchange)
     field.exchange = {constant(*material.exchange, field.exchange_factors, exchange)};
   field.dmi_factors = material.dmi_factors;
+  for (auto& [regions, bilinear, biquadratic, range] : field.interlayers)
+    bilinear = units.dmi(bilinear), biquadratic = units.dmi(biquadratic);
   if (material.dmi) field.dmi = {constant(*material.dmi, field.dmi_factors, dmi), material.normal};
+  field.dmi_normals = material.normals;
+  if (material.d2d_dmi) field.d2d_dmi = {constant(*material.d2d_dmi, field.dmi_factors, dmi)};
   if (material.bulk_dmi) field.bulk_dmi = {constant(*material.bulk_dmi, field.dmi_factors, dmi)};
 }
 
@@ -84,8 +101,10 @@ void convert_couplings(Field& field, units::ReducedUnits const& units) {
   field.couplings_scale = units.energy(field.couplings_scale);
 }
 
-// Relative to the first; none where all are alike.
+// Moments relative to the first; empty if all are equal.
 void convert_moments(Scene& scene) {
+  scene.lattice.moments_of_sites = scene.material->moment_factors;
+  scene.lattice.moments_of_sites.unit = 1 / scene.material->moment;
   auto const& moments = scene.material->moments;
   double const first = scene.material->moment;
   if (std::ranges::all_of(moments, [&](double moment) { return moment == first; })) return;
@@ -105,10 +124,13 @@ void convert_torque(Scene& scene, units::ReducedUnits const& units) {
   if (zhang_li)
     for (auto& component : zhang_li->velocity)
       convert_component(component, units, units.velocity_unit());
-  if (slonczewski) {
-    convert_component(slonczewski->damping_like, units, units.field_unit());
-    convert_component(slonczewski->field_like, units, units.field_unit());
-  }
+  if (!slonczewski) return;
+  auto const convert_strength = [&](AppliedComponent& component, SiteNumbers& of_sites) {
+    if (of_sites.there()) of_sites.unit /= units.field_unit();
+    convert_component(component, units, of_sites.there() ? 1 : units.field_unit());
+  };
+  convert_strength(slonczewski->damping_like, slonczewski->damping_like_of_sites);
+  convert_strength(slonczewski->field_like, slonczewski->field_like_of_sites);
 }
 
 void convert_field(Scene& scene, auto const& units) {
@@ -121,6 +143,13 @@ void convert_field(Scene& scene, auto const& units) {
   if (field.demag) field.demag->strength = units.demagnetization(field.demag->strength);
   for (auto& in_turn : field.applied_in_turn)
     for (double& component : in_turn) component = units.applied(component);
+  for (auto& [profile, time] : field.sources) {
+    profile.unit = 1 / units.field_unit();
+    convert_component(time, units, 1);
+  }
+  for (auto* const factor :
+       {&field.in_time.exchange, &field.in_time.anisotropy, &field.in_time.dmi})
+    convert_component(*factor, units, 1);
   scene.applied_in_tesla = field.applied;
   if (!field.applied) return;
   for (auto& component : *field.applied) convert_component(component, units, units.field_unit());
@@ -134,6 +163,17 @@ void convert_integrator(Integrator& integrator, units::ReducedUnits const& units
   if (integrator.until_torque) *integrator.until_torque = units.applied(*integrator.until_torque);
 }
 
+void convert_initial(Initial& initial, units::ReducedUnits const& units) {
+  auto* const state = std::get_if<InitialState>(&initial);
+  if (state == nullptr) return;
+  auto const convert_lengths = [&](auto& of) {
+    if constexpr (requires { of.radius; }) of.radius /= units.length_unit();
+    if constexpr (requires { of.width; }) of.width /= units.length_unit();
+    if constexpr (requires { of.period; }) of.period /= units.length_unit();
+  };
+  std::visit(convert_lengths, *state);
+}
+
 void convert(Scene& scene, auto const& units) {
   scene.units = {true, units.time_unit(), units.length_unit(), units.field_unit(),
                  units.energy_unit()};
@@ -145,17 +185,25 @@ void convert(Scene& scene, auto const& units) {
   scene.system.damping = units.damping();
   scene.system.dampings = scene.material->alpha_factors;
   scene.system.gilbert_of_sites = scene.system.dampings.there() && scene.material->gilbert;
+  if (scene.material->gamma_factors.there()) {
+    scene.lattice.gyromagnetic_of_sites = scene.material->gamma_factors;
+    scene.lattice.gyromagnetic_of_sites.unit = 1 / scene.material->gamma;
+  }
   convert_moments(scene);
   convert_field(scene, units);
+  convert_initial(scene.initial, units);
   convert_integrator(scene.integrator, units);
-  if (scene.thermal) scene.thermal->temperature = units.temperature(scene.thermal->temperature);
+  if (scene.thermal) {
+    scene.thermal->temperature = units.temperature(scene.thermal->temperature);
+    convert_component(scene.thermal->in_time, units, 1);
+  }
   if (!std::isnormal(scene.integrator.dt))
     refuse(scene, "integrator.dt",
            fmt::format("comes to {} units of {} s", scene.integrator.dt, units.time_unit()),
            "a time in s");
 }
 
-// Of the lattice's sites in a cube of the spacing, which the dipolar field of a slab is of.
+// Returns the sites in a cube of the spacing, the volume that a slab's dipolar field refers to.
 double sites_in_cube(Lattice const& lattice) {
   return static_cast<double>(lattice.basis.size()) / crystal(lattice).volume();
 }

@@ -15,11 +15,38 @@ constexpr std::string_view three_components = "three numbers or expressions in t
 
 AppliedComponent times(AppliedComponent const& component, double factor) {
   if (auto const* const number = std::get_if<double>(&component))
-    return factor * *number + 0.0;  // no -0
+    return factor * *number + 0.0;  // avoids -0
   return fmt::format("({})*({})", factor, std::get<std::string>(component));
 }
 
-// A current in A/m^2 in place of the torque itself: of a material with Ms.
+// Reads a number, an expression in t, site-dependent numbers, or a product of these: then
+// `of_sites` is set.
+AppliedComponent strength(Item const& item, Scene& scene, SiteNumbers& of_sites) {
+  of_sites.key = item.key;
+  auto const* const table = item.node->as_table();
+  if (table != nullptr && (table->contains("profile") || table->contains("time"))) {
+    Table const both(item, scene);
+    both.accept_only({"profile", "time"});
+    auto const accepted = accepted_site_numbers(scene.lattice);
+    double const constant = number_of_sites(both.required("profile", accepted), scene, of_sites);
+    return times(component_in_time(both.required("time", "an expression in t")), constant);
+  }
+  auto const* const text = item.node->as_string();
+  bool const is_of_sites = table != nullptr || (text != nullptr && !is_in_time(text->get()));
+  if (!is_of_sites) return component_in_time(item);
+  read_site_numbers(item, scene, of_sites);
+  return 1.0;
+}
+
+// Multiplies a component, or the site-dependent numbers on it, by `factor`.
+void scale(AppliedComponent& component, SiteNumbers& of_sites, double factor) {
+  if (of_sites.there())
+    of_sites.unit *= factor;
+  else
+    component = times(component, factor);
+}
+
+// Finds a current in A/m^2 that replaces the torque, for a material with Ms.
 std::optional<Item> find_current(Table const& table, std::string_view torque,
                                  std::vector<std::string_view> const& with) {
   auto const current = table.find("current_density");
@@ -36,10 +63,14 @@ std::optional<Item> find_current(Table const& table, std::string_view torque,
   if (material->atomistic)
     current->fail("needs the magnetization of a continuum",
                   fmt::format("{}, or material.Ms", torque));
+  if (material->moment_factors.there())
+    current->fail("needs one magnetization for all sites", fmt::format("{}, or one Ms", torque));
+  if (material->gamma_factors.there())
+    current->fail("needs one gamma for all sites", fmt::format("{}, or one gamma", torque));
   return current;
 }
 
-// Velocities in m/s in a scene in SI.
+// In a scene in SI, velocities are in m/s.
 ZhangLi read_zhang_li(Item const& item, Scene& scene) {
   Table const table(item, scene);
   table.accept_only(names_of_keys<ZhangLi>());
@@ -59,24 +90,47 @@ ZhangLi read_zhang_li(Item const& item, Scene& scene) {
   return read;
 }
 
-// Strengths in T in a scene in SI.
+// epsilon' multiplies hbar j / (e Ms thickness) as half an efficiency does.
+void read_current(Item const& current, Table const& table, Slonczewski& read) {
+  auto& scene = table.scene();
+  auto const efficiency = number(table.required("efficiency", "a number"));
+  auto const thickness = positive_number(table.required("thickness", "a number > 0, in m"));
+  auto const of_unit_current = [&](double of_efficiency) {
+    return units::spin_torque({.density = 1,
+                               .efficiency = of_efficiency,
+                               .Ms = scene.material->moment,
+                               .thickness = thickness});
+  };
+  auto const density = strength(current, scene, read.damping_like_of_sites);
+  auto const profile = read.damping_like_of_sites;
+  read.damping_like = density;
+  scale(read.damping_like, read.damping_like_of_sites, of_unit_current(efficiency));
+  auto const second = table.find("epsilon_prime");
+  if (!second) return;
+  if (auto const other = table.find("field_like"))
+    other->fail("stands beside epsilon_prime", "one of the two");
+  read.field_like = density;
+  read.field_like_of_sites = profile;
+  scale(read.field_like, read.field_like_of_sites, of_unit_current(2 * number(*second)));
+}
+
+// In a scene in SI, strengths are in T.
 Slonczewski read_slonczewski(Item const& item, Scene& scene) {
   Table const table(item, scene);
   table.accept_only(names_of_keys<Slonczewski>());
-  auto const current = find_current(table, "damping_like", {"efficiency", "thickness"});
+  auto const current =
+      find_current(table, "damping_like", {"efficiency", "thickness", "epsilon_prime"});
   if (!table.contains("damping_like") && !table.contains("field_like") && !current)
     item.fail("has no strength", "damping_like, field_like");
   Slonczewski read;
   read_keys(table, read);
-  if (current) {
-    auto const efficiency = number(table.required("efficiency", "a number"));
-    auto const thickness = positive_number(table.required("thickness", "a number > 0, in m"));
-    double const of_unit_current = units::spin_torque({.density = 1,
-                                                       .efficiency = efficiency,
-                                                       .Ms = scene.material->moment,
-                                                       .thickness = thickness});
-    read.damping_like = times(component_in_time(*current), of_unit_current);
-  }
+  read.polarization =
+      axis_of_sites(table.required("polarization", "three numbers"), scene, read.polarizations);
+  if (auto const a = table.find("damping_like"))
+    read.damping_like = strength(*a, scene, read.damping_like_of_sites);
+  if (auto const b = table.find("field_like"))
+    read.field_like = strength(*b, scene, read.field_like_of_sites);
+  if (current) read_current(*current, table, read);
   return read;
 }
 

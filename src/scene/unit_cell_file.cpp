@@ -14,15 +14,16 @@
 #include <stdexcept>
 #include <tuple>
 
-// The lengths of the cell's edges, its three vectors in units of these, its atoms, its bilinear
-// interactions and, in some files, biquadratic ones. Vampire counts atoms by their lines, whatever
-// their first number is. E = -sum S.J S' over the bonds, each of which stands there from both ends.
+// The file has the lengths of the cell's edges, its three vectors in units of these, its atoms, its
+// bilinear interactions and, in some files, biquadratic ones. Vampire numbers atoms by line and
+// ignores their first number. E = -sum S.J S' over the bonds, each of which is listed from both
+// ends.
 namespace cayspin::inline v0_1::io::detail {
 namespace {
 
 using Words = std::vector<std::string>;
 
-/// The lines of a file as words, without comments and empty lines.
+/// Lines of a file as words, without comments and empty lines.
 class Lines {
  public:
   explicit Lines(std::filesystem::path const& path) : path_(path), stream_(path) {
@@ -42,7 +43,7 @@ class Lines {
     }
     return std::nullopt;
   }
-  /// `what`: for the message where the file ends.
+  /// `what`: for the message at the end of the file.
   Words required(std::size_t least, std::string_view what) {
     auto words = next();
     if (!words) fail(fmt::format("ends before {}", what));
@@ -117,7 +118,7 @@ void require_sites(Lines const& lines, Crystal const& file, Crystal const& scene
   }
 }
 
-/// How many numbers an interaction of this kind has.
+/// Returns the count of numbers in an interaction of this kind.
 std::size_t numbers_of(Lines const& lines, std::string_view word) {
   constexpr std::string_view normalised = "normalised-";
   auto const kind = word.starts_with(normalised) ? word.substr(normalised.size()) : word;
@@ -176,7 +177,7 @@ Tensors read_interactions(Lines& lines, Words const& head, std::int64_t atoms) {
   return tensors;
 }
 
-/// Of the two ends of each bond one, with the mean of what they say, which differs by rounding.
+/// Keeps one direction of each bond, with the mean over both, which differ by rounding.
 Tensors one_way(Lines const& lines, Tensors const& tensors) {
   double largest = 0;
   for (auto const& [key, tensor] : tensors)

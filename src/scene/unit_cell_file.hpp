@@ -10,19 +10,19 @@
 #include <vector>
 
 // Unit-cell files of Vampire, which other programs write, too. Both functions throw
-// std::runtime_error with one line that names the file's line.
+// std::runtime_error with one line that gives the line of the file.
 namespace cayspin::inline v0_1::io::detail {
 
-/// Sites in a cell.
+/// Largest number of sites in a cell.
 constexpr std::int64_t most_sites = 32767;
 
 constexpr std::string_view accepted_unit_cell_file = "the name of a unit-cell file of Vampire";
 
-/// The cell, its first vector of length 1, and its atoms.
+/// Returns the cell, scaled to a first vector of length 1, with its atoms.
 Crystal read_unit_cell(std::filesystem::path const& path);
 
-/// The bonds, each once, times `scale`. The atoms have to be the sites of `crystal`, and each bond
-/// has to stand there from both ends.
+/// Returns the bonds, each once, times `scale`. The atoms must be the sites of `crystal`, and each
+/// bond must be listed from both ends.
 std::vector<Coupling> read_unit_cell_couplings(std::filesystem::path const& path,
                                                Crystal const& crystal, double scale);
 

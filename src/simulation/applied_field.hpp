@@ -13,7 +13,7 @@
 
 namespace cayspin::simulation {
 
-/// The uniform field mu0 applied(t) of a scene, or another vector that its expressions give.
+/// The uniform field mu0 applied(t) of a scene, or another vector given by expressions.
 class AppliedField {
  public:
   explicit AppliedField(io::Field const& field);
@@ -22,7 +22,7 @@ class AppliedField {
   bool present() const { return present_; }
   bool depends_on_time() const { return depends_on_time_; }
 
-  /// mu0 applied at t. Throws NumbersFailed when a component is not finite there.
+  /// Returns mu0 applied at t. Throws NumbersFailed when a component is not finite there.
   Vec3<double> operator()(double t) const;
 
  private:

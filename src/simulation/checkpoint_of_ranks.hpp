@@ -12,10 +12,10 @@
 
 namespace cayspin::simulation {
 
-/// Takes a part from each rank, and writes them on the first into one checkpoint.
+/// Checkpoint collected from the parts of all ranks, and written by the first rank.
 class CheckpointFromRanks final : public Checkpoint {
  public:
-  /// `writer`: null but on the first rank.
+  /// `writer`: null except on the first rank.
   CheckpointFromRanks(Ranks& ranks, cayspin::Lattice const& local, io::CheckpointWriter* writer)
       : ranks_(ranks), local_(local), writer_(writer) {}
 
@@ -37,7 +37,7 @@ class CheckpointFromRanks final : public Checkpoint {
       on_first([&] { writer_->planes(name, of_site, planes); });
     }
   }
-  /// Throws on all ranks what went wrong on the first.
+  /// Throws the first rank's error on all ranks.
   void commit() {
     on_first([&] { writer_->commit(); });
     ranks_.together([&] {
@@ -46,7 +46,7 @@ class CheckpointFromRanks final : public Checkpoint {
   }
 
  private:
-  // The first rank takes part in what follows also where it cannot write.
+  // The first rank also takes part in later calls if it cannot write.
   template <class Work>
   void on_first(Work const& work) {
     if (!writer_ || error_) return;
@@ -63,7 +63,7 @@ class CheckpointFromRanks final : public Checkpoint {
   std::exception_ptr error_;
 };
 
-/// Gives each rank its part of what a checkpoint holds.
+/// Checkpoint that gives each rank its part.
 class CheckpointForRank final : public Checkpoint {
  public:
   CheckpointForRank(cayspin::Lattice const& local, io::CheckpointReader& of_all)

@@ -12,7 +12,7 @@
 
 namespace cayspin::simulation {
 
-/// When a run stores a checkpoint on its way.
+/// Schedule of a run's checkpoints.
 class CheckpointSchedule {
  public:
   CheckpointSchedule(io::CheckpointPeriod const& period, std::int64_t first)
@@ -24,9 +24,9 @@ class CheckpointSchedule {
     if (step.number == first_ || step.last) return false;
     return period_.steps > 0 ? step.number % period_.steps == 0 : elapsed_ && (*elapsed_)();
   }
-  /// Do others know at which steps?
+  /// Returns true if the steps are known in advance.
   bool is_by_steps() const { return period_.steps > 0; }
-  /// To be called when one is stored.
+  /// Call it when a checkpoint is stored.
   void wait() {
     if (period_.seconds == 0) return;
     std::chrono::duration<double> const period(period_.seconds);
@@ -37,7 +37,7 @@ class CheckpointSchedule {
   using Clock = std::chrono::steady_clock;
   io::CheckpointPeriod period_;
   std::int64_t first_;
-  mutable std::optional<InterruptPoll> elapsed_;  // asked at most some times a second
+  mutable std::optional<InterruptPoll> elapsed_;  // called at most several times a second
 };
 
 }  // namespace cayspin::simulation

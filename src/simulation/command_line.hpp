@@ -15,10 +15,10 @@
 #include <optional>
 #include <stdexcept>
 
-// What the mains of the programs share.
+// Shared code of the programs' mains.
 namespace cayspin::simulation {
 
-/// An exit status when the command line asked for no more than help. Throws UsageError.
+/// Returns an exit status if the command line only asked for help. Throws UsageError.
 inline std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
@@ -29,8 +29,8 @@ inline std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   return std::nullopt;
 }
 
-/// Says what went wrong in one line on standard error: messages about a file begin with its name,
-/// those about the command line with the program's. Returns the exit status.
+/// Prints an error in one line on standard error: messages about a file start with its name, those
+/// about the command line with the program's. Returns the exit status.
 inline int report(std::exception_ptr const& thrown) {
   auto const say = [](std::string const& message) {
     std::fflush(stdout);
@@ -38,7 +38,7 @@ inline int report(std::exception_ptr const& thrown) {
   };
   try {
     std::rethrow_exception(thrown);
-  } catch (OtherRankFailed const&) {  // and says so itself
+  } catch (OtherRankFailed const&) {  // which reports it
   } catch (UsageError const& error) {
     say(fmt::format("cayspin: {}", error.what()));
   } catch (std::bad_alloc const&) {
@@ -49,7 +49,7 @@ inline int report(std::exception_ptr const& thrown) {
   return status_of(thrown);
 }
 
-/// Throws if something of standard output was lost.
+/// Throws if some of standard output could not be written.
 inline void require_output_written() {
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
@@ -57,7 +57,7 @@ inline void require_output_written() {
                                        errno == 0 ? "some of it was lost" : std::strerror(errno)));
 }
 
-/// The exit status of perform(argc, argv), which may throw.
+/// Returns the exit status of perform(argc, argv), which may throw.
 inline int perform_and_report(int (*perform)(int, char**), int argc, char** argv) {
   try {
     int const status = perform(argc, argv);

@@ -13,10 +13,10 @@
 
 #include <limits>
 
-// From a row of the list of methods to its variants: the types that the row's words ask for.
+// Converts a row of the list of methods into its variants: the types that its words ask for.
 namespace cayspin::simulation {
 
-/// What distinguishes the variants of a row when compiled.
+/// Template parameters that distinguish the variants of a row.
 struct VariantKey {
   io::Isotropy isotropy = io::Isotropy::zero;
   bool in_chart = false, compensated = false, of_rigid_bodies = false;
@@ -25,7 +25,7 @@ struct VariantKey {
 template <std::size_t Number>
 inline constexpr io::Method const& method_at = std::get<Number>(method_list);
 
-/// What a bound on dt is known of: a method's own stepper, or another that its family names.
+/// The stepper whose bound on dt is used: the method's own, or another one that its family names.
 template <class Family, class Spins, class Own>
 struct BoundedStepper {
   using type = Own;
@@ -66,7 +66,7 @@ class Compiled {
     else
       return std::type_identity<typename Family::template Stepper<Spins, Isotropy, Rotation>>{};
   }
-  /// Not compensated: what a bound on dt is known of.
+  /// The stepper whose bound on dt is used, without compensation.
   template <class Spins, class Rotation>
   using Plain = typename decltype(plain_stepper<Spins, Rotation>())::type;
 
@@ -89,7 +89,7 @@ class Compiled {
   }
   template <class Work>
   static auto with_rotation(io::Rotation rotation, Work const& work) {
-    // A method with one rotation has it in its stepper.
+    // A method with only one rotation has it in its stepper.
     if constexpr (rotations() == sets::both_rotations) {
       if (rotation == io::Rotation::exponential) return work(Exponential{});
     }
@@ -138,17 +138,17 @@ class Compiled {
       return Stepper<SpinField<Real>, Cayley>::work_fields;
   }
   template <class Real>
-  static std::int64_t work_bytes_of(Lattice const& lattice, bool by_time_alone) {
+  static std::int64_t work_bytes_of(Lattice const& lattice, bool by_time_only) {
     using Of = Stepper<SpinField<Real>, Cayley>;
     if constexpr (requires { Of::work_bytes(lattice, PredictedRun{}); })
       return static_cast<std::int64_t>(
-          Of::work_bytes(lattice, {.threads = expected_threads(), .by_time_alone = by_time_alone}));
+          Of::work_bytes(lattice, {.threads = expected_threads(), .by_time_only = by_time_only}));
     auto const layout = cayspin::RowLayout::of<Real>(lattice);
     return static_cast<std::int64_t>(work_fields<Real>() * layout.allocation(3) * sizeof(Real));
   }
-  static std::int64_t work_bytes(Lattice const& lattice, bool by_time_alone, Precision precision) {
-    return precision == Precision::double_precision ? work_bytes_of<double>(lattice, by_time_alone)
-                                                    : work_bytes_of<float>(lattice, by_time_alone);
+  static std::int64_t work_bytes(Lattice const& lattice, bool by_time_only, Precision precision) {
+    return precision == Precision::double_precision ? work_bytes_of<double>(lattice, by_time_only)
+                                                    : work_bytes_of<float>(lattice, by_time_only);
   }
 
   template <class Simulation, class Rotation>
@@ -162,8 +162,8 @@ class Compiled {
           simulation_.exec, stepper_, generator(simulation_.generator), simulation_.spins,
           simulation_.times, *simulation_.observer);
     }
-    void exchange_memory(Checkpoint& checkpoint) override {
-      cayspin::exchange_memory(stepper_, checkpoint, "method.");
+    void serialize(Checkpoint& checkpoint) override {
+      cayspin::serialize(stepper_, checkpoint, "method.");
     }
 
    private:
@@ -211,7 +211,7 @@ class Compiled {
   }
 };
 
-/// All variants of a row.
+/// Returns all variants of a row.
 template <std::size_t Number>
 std::vector<Variant> compile_method() {
   using enum io::Isotropy;
@@ -243,7 +243,7 @@ std::vector<Variant> compile_method() {
   return all;
 }
 
-/// Rows `Shard`, `Shard` + `Shards`, ...
+/// Returns the variants of rows `Shard`, `Shard` + `Shards`, ...
 template <std::size_t Shard, std::size_t Shards>
 std::vector<Variant> compile_shard() {
   constexpr std::size_t rows = std::tuple_size_v<decltype(method_list)>;

@@ -7,6 +7,7 @@
 #include "interactions_file.hpp"
 
 #include <cayspin/demagnetization/demagnetizing_field.hpp>
+#include <cayspin/demagnetization/dipolar_field.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,9 +22,9 @@ namespace cayspin::simulation {
 #if defined(CAYSPIN_HAS_FFTW)
 namespace {
 
-/// All that the tensors depend on.
+/// Describes everything that the tensors depend on.
 std::string text_of(Lattice const& lattice, DemagnetizationOptions const& options) {
-  // Version 2 of the tensors of cells whose edges differ by more than 1000 : 1.
+  // Tensors of cells whose edges differ by more than 1000 : 1 have version 2.
   auto const [shortest, longest] = std::ranges::minmax(lattice.spacing);
   return fmt::format("cells {}, spacing {:a}, images {}, strength {:a}{}",
                      fmt::join(lattice.shape, " "), fmt::join(lattice.spacing, " "),
@@ -41,11 +42,18 @@ DemagnetizationOptions options_of(io::Demagnetization const& demag, double mu0,
   return options;
 }
 
+DipolarOptions options_of_dipoles(io::Demagnetization const& demag, double mu0) {
+  return {mu0 * demag.strength, demag.periodic_images, demag.demagnetizing_factors};
+}
+
 }  // namespace
 
 template <class Real>
 FieldOnHost<Real> demagnetization_on_host(io::Demagnetization const& demag, double mu0,
                                           Lattice const& lattice) {
+  if (demag.dipoles)
+    return [field = DipolarField<Real>(lattice, *demag.dipoles, options_of_dipoles(demag, mu0))](
+               auto const& spins, auto const& result) { field(spins, result, 0); };
   return [field = DemagnetizingField<Real>(lattice, options_of(demag, mu0, lattice))](
              auto const& spins, auto const& result) { field(spins, result, 0); };
 }
@@ -55,7 +63,7 @@ FieldInPlace<Spins> demagnetization_in_place(io::Demagnetization const& demag, d
                                              Lattice const& lattice) {
   using Memory = typename Spins::memory_space;
   using Exec = typename Memory::execution_space;
-  if (lattice.part != nullptr) return {};
+  if (lattice.part != nullptr || demag.dipoles) return {};
   if constexpr (cayspin::detail::DeviceTransforms<Exec>::exist)
     return [field = DemagnetizingField<typename Spins::value_type, Memory>(
                 lattice, options_of(demag, mu0, lattice))](Exec const& exec, Spins const& spins,
@@ -68,6 +76,8 @@ FieldInPlace<Spins> demagnetization_in_place(io::Demagnetization const& demag, d
 
 template <class Real>
 std::int64_t demagnetization_bytes(io::Demagnetization const& demag, Lattice const& lattice) {
+  if (demag.dipoles)
+    return DipolarField<Real>::work_bytes(lattice, *demag.dipoles, options_of_dipoles(demag, 1));
   return DemagnetizingField<Real>::work_bytes(lattice, options_of(demag, 1, lattice));
 }
 
@@ -75,7 +85,7 @@ void require_demagnetization(io::Scene const&) {}
 #else
 template <class Real>
 FieldOnHost<Real> demagnetization_on_host(io::Demagnetization const&, double, Lattice const&) {
-  throw std::logic_error("a demagnetising field without FFTW");  // require_demagnetization has said
+  throw std::logic_error("a demagnetising field without FFTW");  // require_demagnetization refuses
 }
 
 template <class Spins>
@@ -90,7 +100,7 @@ std::int64_t demagnetization_bytes(io::Demagnetization const&, Lattice const&) {
 
 void require_demagnetization(io::Scene const& scene) {
   if (scene.field.demag)
-    throw io::scene_error(scene, "field.demag",
+    throw io::scene_error(scene, "field." + scene.field.demag->key,
                           "this cayspin was built without FFTW; accepted: no such key");
 }
 #endif

@@ -8,15 +8,15 @@
 #include <cstdint>
 #include <functional>
 
-// A scene's field.demag. Compiled in demagnetization.cpp, which alone knows FFTW.
+// A scene's field.demag. Only demagnetization.cpp includes FFTW.
 namespace cayspin::simulation {
 
-/// Writes H of the spins into a field.
+/// Function that writes H of the spins into a field.
 template <class Real>
 using FieldOnHost = std::function<void(SpinField<Real, Kokkos::HostSpace> const& spins,
                                        SpinField<Real, Kokkos::HostSpace> const& field)>;
 
-/// The same where the spins are.
+/// Function that writes H in the memory space of the spins.
 template <class Spins>
 using FieldInPlace = std::function<void(typename Spins::memory_space::execution_space const& exec,
                                         Spins const& spins, Spins const& field)>;
@@ -26,13 +26,13 @@ template <class Real>
 FieldOnHost<Real> demagnetization_on_host(io::Demagnetization const& demag, double mu0,
                                           Lattice const& lattice);
 
-/// The field of a device's spins; empty for a part of a lattice, and where this build has no
-/// transforms for that device.
+/// Returns the field for a device's spins; empty for dipoles, for a part of a lattice, and if this
+/// build has no transforms for that device.
 template <class Spins>
 FieldInPlace<Spins> demagnetization_in_place(io::Demagnetization const& demag, double mu0,
                                              Lattice const& lattice);
 
-/// What its transforms keep.
+/// Returns the bytes that its transforms need.
 template <class Real>
 std::int64_t demagnetization_bytes(io::Demagnetization const& demag, Lattice const& lattice);
 

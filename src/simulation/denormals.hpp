@@ -9,8 +9,8 @@
 
 namespace cayspin::simulation {
 
-/// While in scope, this thread and those it starts take numbers below the smallest normal one as
-/// zero. A component that decays for long ends there, and arithmetic on it is ten times slower.
+/// While in scope, this thread and those it starts treat denormal numbers as zero. Components that
+/// decay for long become denormal, and arithmetic on these is ten times slower.
 class FlushDenormals {
  public:
   FlushDenormals() : before_(control()) { set_control(before_ | flush_bits); }

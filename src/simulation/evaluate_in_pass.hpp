@@ -9,12 +9,12 @@
 
 namespace cayspin::simulation {
 
-/// Writes H and E of every site.
+/// Functor that writes H and E of every site.
 template <class Real>
 struct EvaluateInPass {
   PassTerms<Real> terms;
   cayspin::SiteArray<Real, 3> spins;
-  cayspin::SiteArray<Real, 1> moves;  // without data: all do
+  cayspin::SiteArray<Real, 1> moves;  // without data: all move
   cayspin::OutputArray<Real, 3> field;
   cayspin::OutputArray<Real, 1> energies;
 
@@ -27,7 +27,7 @@ struct EvaluateInPass {
   }
 };
 
-/// NormDefectOfSites where there is a moment.
+/// NormDefectOfSites at sites with a moment.
 template <class Real>
 struct NormDefectOfMoments {
   cayspin::SiteArray<Real, 3> spins;

@@ -9,26 +9,26 @@ namespace cayspin::simulation {
 /// Exit statuses of the program.
 enum Status { done = 0, wrong_usage = 2, numbers_failed = 3, interrupted = 130 };
 
-/// The numbers of a run failed: exit status 3. what() is one line.
+/// The numbers of a run became invalid: exit status 3. what() is one line.
 class NumbersFailed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The command line asks for what cannot be: exit status 2. what() is one line.
+/// The command line is invalid: exit status 2. what() is one line.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Thrown on the ranks that wait for one that failed, which reports it. `status` is its own.
+/// Thrown on ranks that wait for one that failed, which reports the error. `status` is that rank's.
 struct OtherRankFailed : std::runtime_error {
   explicit OtherRankFailed(int status_of_it)
       : std::runtime_error("another rank failed"), status(status_of_it) {}
   int status;
 };
 
-/// The exit status that belongs to what is being handled.
+/// Returns the exit status for the exception being handled.
 inline int status_of(std::exception_ptr const& error) {
   try {
     std::rethrow_exception(error);

@@ -19,34 +19,42 @@ inline bool energy_must_fall(io::Scene const& scene) {
          scene.integrator.energy_guard && scene.integrator.method->keeps_length;
 }
 
-/// Watches the numbers of a run: all must be finite; a length that is kept must be 1 to 64 epsilon
-/// at the start, and later to 64 epsilon a step, of which there may be a million between two looks,
-/// but at most to 0.01; an energy that can only fall must not rise by more than round-off, 64
-/// epsilon times the sum of its terms' absolute values. Where steps follow a tolerance, which is an
-/// angle of the spins, the energy may rise by as much of that sum.
+/// Check of the state of a run. All numbers must be finite. A length that is conserved must be 1
+/// within 64 epsilon at the start, and later within 64 epsilon per step (up to a million steps may
+/// pass between two checks), but at most 0.01. An energy that can only fall must not rise by more
+/// than round-off: 64 epsilon times the sum of its terms' absolute values. If steps follow a
+/// tolerance, an angle of the spins, the energy may also rise by that fraction of the sum.
 class Guard {
  public:
-  /// `epsilon`: of the run's precision. Few sites are looked at in every step, many in every tenth.
+  /// `epsilon`: of the run's precision. Small lattices are checked after every step, large ones
+  /// after every tenth.
   Guard(io::Scene const& scene, double epsilon)
       : energy_must_fall_(energy_must_fall(scene)),
         keeps_norm_(scene.integrator.method->keeps_length),
         epsilon_(epsilon),
         most_rise_(std::max(64 * epsilon, scene.integrator.tolerance.value_or(0))),
         units_(scene.units),
+        begin_(scene.begin.step),
         period_(period_of(io::sites(scene))) {}
 
   static constexpr std::int64_t period_of(std::int64_t sites) { return sites <= 4096 ? 1 : 10; }
 
-  bool due(Step const& step) const { return step.number % period_ == 0; }
+  bool due(Step const& step) const { return (step.number - begin_) % period_ == 0; }
 
-  /// What is wrong with a state, if anything: one line with step and time.
+  /// Returns what is wrong with a state, if anything: one line with step and time.
   std::optional<std::string> judge(Step const& step, Energy const& energy, double norm_defect);
 
-  /// The step of the last look; -1 before the first one.
+  /// Accounts for replaced spins, which changed the energy by `change`.
+  void add_to_energies(double change) {
+    if (first_) first_->energy += change;
+    if (last_) last_->energy += change;
+  }
+
+  /// Returns the step of the last check; -1 before the first one.
   std::int64_t last_look() const { return last_ ? last_->step : -1; }
   double first_energy() const { return first_->energy; }
 
-  /// For cayspin::exchange_memory.
+  /// For cayspin::serialize.
   template <class Visit>
   void visit_memory(Visit const& visit) {
     bool looked = first_.has_value();
@@ -71,7 +79,7 @@ class Guard {
   bool energy_must_fall_, keeps_norm_;
   double epsilon_, most_rise_;
   io::Units units_;
-  std::int64_t period_;
+  std::int64_t begin_, period_;
   std::optional<Look> first_, last_;
 };
 

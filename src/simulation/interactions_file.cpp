@@ -50,7 +50,7 @@ DemagnetizingTensors InteractionsFile::read_or(std::function<DemagnetizingTensor
   return tensors;
 }
 
-/// Empty where the file does not hold them.
+/// Returns empty tensors if the file does not have these.
 DemagnetizingTensors InteractionsFile::read() const {
   std::error_code error;
   auto const size = fs::file_size(path_, error);
@@ -69,7 +69,7 @@ DemagnetizingTensors InteractionsFile::read() const {
   return tensors;
 }
 
-// Under another name until it is whole: runs that begin together write what is the same.
+// Writes under a temporary name: runs that start together write equal files.
 void InteractionsFile::write(DemagnetizingTensors const& tensors) const {
   auto const partial = fs::path(path_.string() + ".partial" + std::to_string(::getpid()));
   std::error_code error;

@@ -9,15 +9,15 @@
 
 namespace cayspin::simulation {
 
-/// A file that keeps a demagnetising field's tensors where they took long to compute: a line with
-/// what they are of, the numbers, and a checksum.
+/// Cache file for a demagnetising field's tensors, which can take long to compute: a line that
+/// identifies them, the numbers, and a checksum.
 class InteractionsFile {
  public:
-  /// `of`: one line, all that the tensors depend on.
+  /// `of`: one line with everything that the tensors depend on.
   InteractionsFile(std::filesystem::path path, std::string of);
 
-  /// Those of the file; where it is not there, damaged or of others, those of `compute`, which the
-  /// file keeps from now on where they took `least_seconds` and the folder can be written.
+  /// Returns the tensors of the file. If it is missing, damaged or has others, returns those of
+  /// `compute`, and stores them if they took `least_seconds` and the folder is writable.
   DemagnetizingTensors read_or(std::function<DemagnetizingTensors()> const& compute,
                                double least_seconds = 2) const;
 

@@ -8,7 +8,7 @@
 
 namespace cayspin::simulation {
 
-/// Asks a question about twenty times a second, however often it is called. An answer of yes stays.
+/// Rate limit of a question: asks it at most about twenty times a second. A true answer stays.
 class InterruptPoll {
  public:
   explicit InterruptPoll(std::function<bool()> question) : question_(std::move(question)) {}

@@ -12,7 +12,7 @@
 
 namespace cayspin::simulation {
 
-/// The word for an execution space: openmp, serial, cuda, ...
+/// Returns the name of an execution space: openmp, serial, cuda, ...
 template <class Space>
 std::string space_name() {
   std::string name = Space::name();
@@ -20,32 +20,32 @@ std::string space_name() {
   return name;
 }
 
-/// Is this a word for the space? "serial" is the host's space with one thread.
+/// Returns true for a name of the space. "serial" is the host's space with one thread.
 template <class Space>
 bool has_name(std::string const& word) {
   return word == space_name<Space>() ||
          (word == "serial" && cayspin::detail::is_host_execution<Space>);
 }
 
-/// Is it a host's execution space?
+/// Returns true for a host execution space.
 bool is_on_host(std::string const& space);
 
-/// The word asked for, or Kokkos' default. Throws UsageError when it is not compiled in, and for
-/// "serial" where Kokkos already runs with more threads.
+/// Returns the requested name, or Kokkos' default. Throws UsageError if it is not compiled in, and
+/// for "serial" if Kokkos already runs with more threads.
 std::string chosen_space(std::optional<std::string> const& asked);
 
-/// 1 on devices.
+/// Returns the number of threads; 1 on devices.
 template <class Space>
 int threads_of(Space const& exec) {
   return cayspin::detail::is_host_execution<Space> ? exec.concurrency() : 1;
 }
-/// Threads of the default space on hosts: how many there are, or will be by default.
+/// Returns the number of threads of the default host space, now or by default.
 int expected_threads();
 
-/// Kokkos, from here to the end of the scope.
+/// Scope in which Kokkos is initialised.
 class KokkosSession {
  public:
-  /// Throws UsageError for a device that there is not, and for one of a host's space.
+  /// Throws UsageError for a missing device, and for a device with a host space.
   KokkosSession(std::string const& space, std::optional<int> threads, std::optional<int> device);
   ~KokkosSession() { Kokkos::finalize(); }
   KokkosSession(KokkosSession const&) = delete;

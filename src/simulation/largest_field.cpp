@@ -6,28 +6,31 @@
 #include "io/site_box.hpp"
 #include "text.hpp"
 
+#include <cayspin/demagnetization/dipolar_bound.hpp>
 #include <cayspin/field/bonds_of_sites.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace cayspin::simulation {
 namespace {
 
-// The largest length of a vector at 1001 equal times of the run. A pulse that they miss is among
-// the features.
+// Returns the largest length of a vector at 1001 equally spaced times of the run. A pulse between
+// them is among the features.
 double largest(AppliedField const& vector, std::string_view key, io::Scene const& scene,
                Times const& times, TimeFeatures const& features) {
   if (!vector.present()) return 0;
   int const samples = vector.depends_on_time() ? 1000 : 0;
-  double const end = times.at(times.steps);
+  double const begin = times.at(times.first), end = times.at(times.steps);
   double largest = 0;
   for (int i = 0; i <= samples; ++i) {
-    double const t = samples == 0 ? 0 : end * i / samples;
+    double const t = samples == 0 ? 0 : begin + (end - begin) * i / samples;
     try {
       auto const h = vector(t);
       largest = std::max(largest, std::hypot(h.x, h.y, h.z));
@@ -44,55 +47,150 @@ double largest(AppliedField const& vector, std::string_view key, io::Scene const
 struct Range {
   double least = std::numeric_limits<double>::infinity(), largest = -least;
 
+  void include(double value) {
+    least = std::min(least, value);
+    largest = std::max(largest, value);
+  }
   double magnitude() const { return std::max(-least, largest); }
 };
 
-// The range over all sites, by some planes at once: a rank has no room for more than its part.
+// A rank has memory only for its part.
+template <class Work>
+void for_each_box(io::Scene const& scene, Work const& work) {
+  io::for_each_box_of_planes(scene.lattice.shape, sizeof(double), work);
+}
+
 Range range_of_sites(io::Scene const& scene, io::SiteNumbers const& numbers, std::string_view key) {
-  auto const& shape = scene.lattice.shape;
-  auto const at_once = io::planes_to_read(shape, sizeof(double));
   Range range;
-  for (std::int64_t first = 0; first < shape[2]; first += at_once) {
-    auto const planes = std::min(at_once, shape[2] - first);
-    for (double const value :
-         io::numbers_of_sites(scene, numbers, key, {{0, 0, first}, {shape[0], shape[1], planes}}))
-      range = {std::min(range.least, value), std::max(range.largest, value)};
-  }
+  for_each_box(scene, [&](io::SiteBox const& box) {
+    for (double const value : io::numbers_of_sites(scene, numbers, key, box)) range.include(value);
+  });
   return range;
 }
 
-double largest_of_sites(io::Scene const& scene, io::SiteNumbers const& numbers,
-                        std::string_view key) {
-  return range_of_sites(scene, numbers, key).magnitude();
+// Ignores vacant sites.
+Range range_of_moments(io::Scene const& scene) {
+  Range range;
+  for_each_box(scene, [&](io::SiteBox const& box) {
+    auto const occupied = io::occupied(scene, box);
+    auto const moments = io::moments_of_sites(scene, box);
+    for (std::size_t site = 0; site < moments.size(); ++site)
+      if (occupied.empty() || occupied[site]) range.include(moments[site]);
+  });
+  return range;
 }
 
-double largest_exchange(io::Scene const& scene) {
-  constexpr auto key = "field.exchange";
-  auto const range = range_of_sites(scene, scene.field.exchange_factors, key);
-  if (range.least < 0 && range.largest > 0)
-    throw io::scene_error(scene, scene.field.exchange_factors.key_or(key),
-                          "the constants must have one sign, as the harmonic mean of a positive "
-                          "and a negative one is no bond");
+double least_moment(io::Scene const& scene) {
+  return scene.lattice.moments_of_sites.there() ? range_of_moments(scene).least : 1;
+}
+
+// Returns the largest of_bonds(|number|, largest |number|) over the occupied sites, divided by the
+// site's moment if each has its own.
+template <class OfBonds>
+double largest_over_moments(io::Scene const& scene, io::SiteNumbers const& numbers,
+                            std::string_view key, double largest, OfBonds const& of_bonds) {
+  if (!scene.lattice.moments_of_sites.there()) return of_bonds(largest, largest);
+  Range range;
+  for_each_box(scene, [&](io::SiteBox const& box) {
+    auto const occupied = io::occupied(scene, box);
+    auto const moments = io::moments_of_sites(scene, box);
+    auto const values = io::numbers_of_sites(scene, numbers, key, box);
+    for (std::size_t site = 0; site < moments.size(); ++site)
+      if (occupied.empty() || occupied[site])
+        range.include(of_bonds(std::abs(values[site]), largest) / moments[site]);
+  });
   return range.magnitude();
 }
 
-// Of terms whose constants differ from site to site.
-double bound_of_numbers(io::Scene const& scene, Lattice const& lattice) {
+// The harmonic mean of two ends is at most twice the smaller one.
+double largest_exchange(io::Scene const& scene) {
+  constexpr auto key = "field.exchange";
+  auto const& numbers = scene.field.exchange_factors;
+  auto const range = range_of_sites(scene, numbers, key);
+  if (range.least < 0 && range.largest > 0)
+    throw io::scene_error(scene, numbers.key_or(key),
+                          "the constants must have one sign, as the harmonic mean of a positive "
+                          "and a negative one is no bond");
+  double factor = 1;
+  for (auto const& between : scene.field.exchange_between)
+    factor = std::max(factor, std::abs(between.factor));
+  return factor *
+         largest_over_moments(scene, numbers, key, range.magnitude(),
+                              [](double own, double all) { return std::min(2 * own, all); });
+}
+
+double largest_dmi(io::Scene const& scene) {
+  constexpr auto key = "field.dmi";
+  auto const& numbers = scene.field.dmi_factors;
+  return largest_over_moments(scene, numbers, key, range_of_sites(scene, numbers, key).magnitude(),
+                              [](double own, double all) { return (own + all) / 2; });
+}
+
+double largest_constant(io::Scene const& scene, double constant, io::SiteNumbers const& numbers) {
+  constexpr auto key = "field.anisotropy";
+  if (!numbers.there()) return constant == 0 ? 0 : std::abs(constant) / least_moment(scene);
+  return largest_over_moments(scene, numbers, key, range_of_sites(scene, numbers, key).magnitude(),
+                              [](double own, double) { return own; });
+}
+
+double largest_anisotropy(io::Scene const& scene, io::Anisotropy const& term) {
+  return largest_constant(scene, term.constant, term.factors) +
+         3 * largest_constant(scene, term.constant2, term.factors2);
+}
+
+// Both neighbours along each axis; a biquadratic bond turns spins like one of twice its constant.
+double largest_interlayer(io::Scene const& scene, Lattice const& lattice) {
+  double largest = 0, faces = 0;
+  for (auto const& bond : scene.field.interlayers)
+    largest = std::max(largest, std::abs(bond.bilinear) + 4 * std::abs(bond.biquadratic));
+  for (int axis = 0; axis < 3; ++axis)
+    if (lattice.has_neighbors(axis)) faces += 2 / lattice.spacing[axis];
+  return faces * largest / least_moment(scene);
+}
+
+// From the second derivative of E along the sphere.
+double largest_crystal_anisotropy(io::Scene const& scene, io::CrystalAnisotropy const& term) {
+  double const of_first = term.hexagonal ? 36 : 2;
+  return of_first * largest_constant(scene, term.constant, term.factors) +
+         largest_constant(scene, term.constant2, term.factors2);
+}
+
+/// Largest |factors| of [field.in_time].
+struct LargestFactors {
+  double exchange = 1, anisotropy = 1, dmi = 1;
+};
+
+LargestFactors largest_factors(io::Scene const& scene, Times const& times,
+                               TimeFeatures const& features) {
+  auto const of = [&](io::AppliedComponent const& factor, char const* key) {
+    return largest(AppliedField({factor, 0.0, 0.0}, key), key, scene, times, features);
+  };
+  auto const& [exchange, anisotropy, dmi] = scene.field.in_time;
+  return {of(exchange, "field.in_time.exchange"), of(anisotropy, "field.in_time.anisotropy"),
+          of(dmi, "field.in_time.dmi")};
+}
+
+// Bounds the terms with site-dependent constants.
+double bound_of_numbers(io::Scene const& scene, Lattice const& lattice,
+                        LargestFactors const& factors) {
   auto const& field = scene.field;
   double bound = 0;
   if (field.exchange_factors.there())
-    bound += field.exchange->field_bound(lattice) * largest_exchange(scene);
-  if (field.dmi_factors.there())
-    for (int axis = 0; axis < 3; ++axis)
-      if (lattice.has_neighbors(axis))
-        bound +=
-            2 * largest_of_sites(scene, field.dmi_factors, "field.dmi") / lattice.spacing[axis];
+    bound += factors.exchange * field.exchange->field_bound(lattice) * largest_exchange(scene);
+  if (field.dmi_factors.there()) {
+    double const largest = factors.dmi * largest_dmi(scene);
+    for (int axis = 0; axis < (field.d2d_dmi ? 2 : 3); ++axis)
+      if (lattice.has_neighbors(axis)) bound += 2 * largest / lattice.spacing[axis];
+  }
   for (auto const& term : field.anisotropies)
-    if (term.factors.there()) bound += largest_of_sites(scene, term.factors, "field.anisotropy");
+    if (term.is_of_sites()) bound += factors.anisotropy * largest_anisotropy(scene, term);
+  for (auto const& term : field.crystal_anisotropies)
+    if (!term.is_plain()) bound += factors.anisotropy * largest_crystal_anisotropy(scene, term);
+  if (!field.interlayers.empty()) bound += largest_interlayer(scene, lattice);
   return bound;
 }
 
-// Those between sites that have a spin.
+// Returns the couplings between sites that have a spin.
 std::vector<Coupling> couplings_of_spins(io::Scene const& scene) {
   auto couplings = io::couplings(scene);
   std::erase_if(couplings, [&](Coupling const& bond) {
@@ -103,6 +201,15 @@ std::vector<Coupling> couplings_of_spins(io::Scene const& scene) {
   return couplings;
 }
 
+double largest_gyromagnetic_of_sites(io::Scene const& scene) {
+  if (!scene.lattice.gyromagnetic_of_sites.there()) return 1;
+  Range range;
+  for_each_box(scene, [&](io::SiteBox const& box) {
+    for (double const ratio : io::gyromagnetic_of_sites(scene, box)) range.include(ratio);
+  });
+  return range.largest;
+}
+
 double largest_gyromagnetic(io::Lattice const& lattice) {
   double largest = 0;
   for (std::size_t site = 0; site < lattice.basis.size(); ++site)
@@ -111,10 +218,14 @@ double largest_gyromagnetic(io::Lattice const& lattice) {
   return largest;
 }
 
-// Of the terms that have sites of their own: the largest of the sites of a cell.
-double bound_of_sites(io::Scene const& scene, Lattice const& lattice, double of_all) {
+// Evaluates terms that belong to sites of the cell at the site where they are largest. `of_all`:
+// terms of all sites; `of_moments`: fields made by the moments themselves.
+double bound_of_sites(io::Scene const& scene, Lattice const& lattice, double of_all,
+                      double of_moments, LargestFactors const& factors) {
   auto const field = io::without_numbers_of_sites(scene.field);
-  of_all += bound_of_numbers(scene, lattice);
+  bool const has_own_moments = scene.lattice.moments_of_sites.there();
+  auto const moments = has_own_moments ? range_of_moments(scene) : Range{1, 1};
+  double const of_numbers = bound_of_numbers(scene, lattice, factors);
   cayspin::detail::BondLists const bonds(lattice, couplings_of_spins(scene));
   double largest = 0;
   for (std::size_t site = 0; site < bonds.field_bounds.size(); ++site) {
@@ -122,12 +233,50 @@ double bound_of_sites(io::Scene const& scene, Lattice const& lattice, double of_
     auto const add = [&](int of, double constant) {
       if (of < 0 || of == static_cast<int>(site)) bound += std::abs(constant);
     };
-    for (auto const& term : field.anisotropies) add(term.site, term.constant);
-    for (auto const& term : field.cubic_anisotropies) add(term.site, 2 * term.constant);
+    for (auto const& term : field.anisotropies) add(term.site, factors.anisotropy * term.constant);
+    for (auto const& term : field.crystal_anisotropies)
+      if (term.is_plain()) add(term.site, factors.anisotropy * 2 * term.constant);
+    bound = bound / moments.least + of_numbers + of_moments * moments.largest;
     double const turning = bound * io::of_cell_site(scene.lattice.gyromagnetic, site);
     largest = std::max(largest, io::over_moment(scene.lattice, site, turning));
   }
   return largest;
+}
+
+// Returns the largest |profile| of a source.
+double largest_profile(io::Scene const& scene, io::SiteVectors const& profile) {
+  double largest = 0;
+  io::for_each_box_of_planes(scene.lattice.shape, 3 * sizeof(double), [&](io::SiteBox const& box) {
+    auto const vectors = io::vectors_of_sites(scene, profile, "field.sources", box);
+    for (std::size_t i = 0; i < vectors.size(); i += 3)
+      largest = std::max(largest, std::hypot(vectors[i], vectors[i + 1], vectors[i + 2]));
+  });
+  return std::abs(scene.field.mu0) * largest;
+}
+
+double bound_of_sources(io::Scene const& scene, Times const& times, TimeFeatures const& features) {
+  constexpr auto key = "field.sources";
+  double bound = 0;
+  for (auto const& [profile, time] : scene.field.sources)
+    bound += largest_profile(scene, profile) *
+             largest(AppliedField({time, 0.0, 0.0}, key), key, scene, times, features);
+  return bound;
+}
+
+// a is largest where the spin is opposite to p, by lambda^2.
+double slonczewski_bound(io::Scene const& scene, io::Slonczewski const& torque, Times const& times,
+                         TimeFeatures const& features) {
+  constexpr auto key = "torque.slonczewski";
+  auto const largest_of = [&](io::AppliedComponent const& a, io::AppliedComponent const& b) {
+    return largest(AppliedField({a, b, 0.0}, key), key, scene, times, features);
+  };
+  if (!torque.is_of_sites()) return largest_of(torque.damping_like, torque.field_like);
+  auto const of_sites = [&](io::SiteNumbers const& numbers) {
+    return numbers.there() ? range_of_sites(scene, numbers, key).magnitude() : 1;
+  };
+  return torque.lambda * torque.lambda * of_sites(torque.damping_like_of_sites) *
+             largest_of(torque.damping_like, 0.0) +
+         of_sites(torque.field_like_of_sites) * largest_of(0.0, torque.field_like);
 }
 
 double torque_bound(io::Scene const& scene, Lattice const& lattice, Times const& times,
@@ -142,14 +291,24 @@ double torque_bound(io::Scene const& scene, Lattice const& lattice, Times const&
     bound *= std::hypot(1, of->nonadiabaticity);
   }
   if (auto const& of = torque.slonczewski) {
-    constexpr auto key = "torque.slonczewski";
-    bound += largest(AppliedField({of->damping_like, of->field_like, 0.0}, key), key, scene, times,
-                     features);
+    bound += slonczewski_bound(scene, *of, times, features);
   }
   return bound;
 }
 
 }  // namespace
+
+double bound_of_dipoles(io::Scene const& scene, Lattice const& lattice) {
+  auto const& demag = scene.field.demag;
+  if (!demag || !demag->dipoles) return 0;
+  std::vector<double> moments(scene.lattice.basis.size(), 1);
+  for (std::size_t site = 0; site < moments.size(); ++site)
+    moments[site] = io::of_cell_site(scene.lattice.moments, site);
+  if (scene.lattice.moments_of_sites.there())
+    std::ranges::fill(moments, range_of_moments(scene).largest);
+  return std::abs(scene.field.mu0 * demag->strength) *
+         dipolar_bound(lattice, *demag->dipoles, moments);
+}
 
 double largest_damping(io::Scene const& scene) {
   auto const& system = scene.system;
@@ -164,18 +323,26 @@ double largest_damping(io::Scene const& scene) {
 double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& times,
                    TimeFeatures const& features) {
   auto const field = io::without_numbers_of_sites(scene.field);
+  auto const factors = largest_factors(scene, times, features);
   double bound = 0;
-  io::for_each_lattice_term(field, [&](auto const& term) {
-    if (term) bound += term->field_bound(lattice);
+  io::for_each_lattice_term(field, [&]<class Term>(std::optional<Term> const& term) {
+    constexpr bool is_exchange = std::is_same_v<Term, io::Exchange>;
+    if (term) bound += (is_exchange ? factors.exchange : factors.dmi) * term->field_bound(lattice);
   });
-  if (field.slab_demag) bound += std::abs(field.mu0 * field.slab_demag->strength);
-  if (field.demag) bound += std::abs(field.mu0 * field.demag->strength);
-  double const applied = largest(AppliedField(field), "field.applied", scene, times, features);
+  double of_moments = 0;
+  if (field.slab_demag) of_moments += std::abs(field.mu0 * field.slab_demag->strength);
+  if (field.demag && !field.demag->dipoles)
+    of_moments += std::abs(field.mu0 * field.demag->strength);
+  double const applied = largest(AppliedField(field), "field.applied", scene, times, features) +
+                         bound_of_dipoles(scene, lattice);
   if (!io::needs_pass(scene)) {
     for (auto const& term : field.anisotropies) bound += std::abs(term.constant);
-    return bound + applied;
+    return bound + of_moments + applied;
   }
-  return bound_of_sites(scene, lattice, bound) + largest_gyromagnetic(scene.lattice) * applied +
+  return largest_gyromagnetic_of_sites(scene) *
+             (bound_of_sites(scene, lattice, bound, of_moments, factors) +
+              largest_gyromagnetic(scene.lattice) *
+                  (applied + bound_of_sources(scene, times, features))) +
          torque_bound(scene, lattice, times, features);
 }
 

@@ -9,15 +9,19 @@
 
 namespace cayspin::simulation {
 
-/// The largest damping of a site. Throws io::SceneError for a negative one.
+/// Returns the largest damping of a site. Throws io::SceneError for a negative one.
 double largest_damping(io::Scene const& scene);
 
-/// An upper bound of |H| at any site and time of a run, torques included. Throws io::SceneError
-/// where an applied field or a constant of a site cannot be.
+/// Returns an upper bound of |H| at any site and time of a run, torques included. Throws
+/// io::SceneError for an invalid applied field or site-dependent constant.
 double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& times,
                    TimeFeatures const& features);
 
-/// An upper bound of |A|: of rigid bodies the largest row sum of I^-1, where it is in the scene.
+/// Returns the part of the bound due to point dipoles; 0 without them.
+double bound_of_dipoles(io::Scene const& scene, Lattice const& lattice);
+
+/// Returns an upper bound of |A|; for rigid bodies the largest row sum of I^-1, if it is in the
+/// scene.
 double largest_rate(io::Scene const& scene, Lattice const& lattice, Times const& times,
                     TimeFeatures const& features);
 

@@ -9,7 +9,7 @@
 
 namespace cayspin::simulation {
 
-/// Lattice terms for kernels, each asked at run time whether the scene has it.
+/// Lattice terms for kernels, each enabled at run time if the scene has it.
 template <class... Terms>
 struct TermsIfThere {
   template <class Stencil, class Vector>
@@ -50,12 +50,12 @@ struct TermsIfThere<Term, Others...> {
   }
 };
 
-/// All lattice terms of io::Field. The first, the exchange, is evaluated in every scene.
+/// All lattice terms of io::Field. The first one, exchange, is evaluated in every scene.
 template <class First, class... Others>
 struct LatticeTerms {
   First first;
   TermsIfThere<Others...> others;
-  double magnitude;  // of the energy of a site: what round-off is proportional to
+  double magnitude;  // of a site's energy: round-off is proportional to it
 
   template <class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector add_field(Stencil const& stencil, Vector const& h) const {
@@ -72,8 +72,7 @@ struct LatticeTerms {
       return others.add_field(stencil, sum);
     return sum;
   }
-  // Where there are no others the first is returned as it is: g++ copies what has a name through
-  // memory.
+  // Without other terms the first is returned directly: g++ copies named values through memory.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION auto neighbor_field(Stencil const& stencil) const {
     if constexpr (sizeof...(Others) == 0)
@@ -90,8 +89,8 @@ struct LatticeTerms {
   }
 };
 
-/// What kernels hold of a scene's term; a scene without it has one of default numbers. A lattice
-/// term is prepared alike for all spaces, spins and times.
+/// A scene's term for kernels; default values if the scene does not have it. A lattice term is
+/// prepared once for all spaces, spins and times.
 template <class OfScene>
 auto library_term(std::optional<OfScene> const& term, Lattice const& lattice) {
   return term.value_or(OfScene{}).term(lattice).prepare(nullptr, nullptr, 0);
@@ -108,7 +107,7 @@ auto terms_if_there(Lattice const& lattice, std::optional<OfScene> const& term,
   }(rest);
 }
 
-/// Those of a scene's [field].
+/// Returns the lattice terms of a scene's [field].
 inline auto lattice_terms_of(io::Field const& field, Lattice const& lattice) {
   double magnitude = 0;
   io::for_each_lattice_term(field, [&](auto const& term) {

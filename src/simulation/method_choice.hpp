@@ -8,7 +8,7 @@
 
 namespace cayspin::simulation {
 
-/// What integrates a scene, its steps left open: the words of [integrator] that say so.
+/// A method for a scene without its steps: keys of [integrator].
 struct MethodChoice {
   io::Method const* method = nullptr;
   io::Generator generator = io::Generator::standard;
@@ -16,12 +16,12 @@ struct MethodChoice {
   double sigma = 0;
   io::Rotation rotation = io::Rotation::cayley;
   bool compensated = false;
-  std::int64_t substeps = 0;  // between evaluations of a dear field; 0: no field is dear
+  std::int64_t substeps = 0;  // between evaluations of an expensive field; 0: no such field
 
-  /// Puts it into a scene's [integrator].
+  /// Writes the choice into a scene's [integrator].
   void put_into(io::Integrator& integrator) const;
 
-  /// Keys of [integrator], "key=value" with commas between them. Those of defaults are left out.
+  /// Returns keys of [integrator], "key=value" separated by commas, without defaults.
   std::string keys() const;
 };
 

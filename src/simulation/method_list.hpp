@@ -10,11 +10,11 @@
 #include <tuple>
 #include <type_traits>
 
-// The methods of scenes, one row each. From here come the words of scenes and what they refuse,
+// The methods of scenes, one row each. These rows define the words of scenes and what they refuse,
 // `cayspin methods`, the candidates of `cayspin trade`, the tables of extremes, and what is
-// compiled. No Kokkos is needed to read it: steppers are declared alone.
-// A new tableau is a struct in cayspin/stepper/tableau.hpp and a row; a new stepper a declaration
-// and a row.
+// compiled. The file needs no Kokkos, because it only declares steppers.
+// To add a tableau, write a struct in cayspin/stepper/tableau.hpp and a row; to add a stepper, a
+// declaration and a row.
 namespace cayspin::inline v0_1 {
 
 template <class Spins, class Isotropy, class Rotation>
@@ -69,8 +69,8 @@ struct Cayley;
 
 namespace cayspin::simulation {
 
-/// What makes the steppers of a method: Stepper for spins, an isotropy and a rotation, as far as
-/// these are the stepper's choice; Chart where the method takes the generator "tangent".
+/// Families define the steppers of a method: Stepper for spins, an isotropy and a rotation, if the
+/// stepper has a choice of these; Chart if the method accepts the generator "tangent".
 namespace family {
 
 template <template <class> class Of>
@@ -96,14 +96,14 @@ struct OfOrder {
   using Stepper = Of<Spins, Order>;
 };
 
-/// A tableau in space, with which spins leave the sphere unless each step is projected to it.
+/// A tableau in space, where spins leave the sphere unless each step is projected to it.
 template <template <class, class> class Of, class Tableau>
 struct InSpace {
   using tableau_type = Tableau;
   template <class Spins, class, class>
   using Stepper = Of<Spins, Tableau>;
 };
-/// Runge-Kutta-Munthe-Kaas, and the same tableau in the stereographic chart.
+/// Runge-Kutta-Munthe-Kaas, and its tableau in the stereographic chart.
 template <class Tableau>
 struct Group {
   using tableau_type = Tableau;
@@ -113,7 +113,7 @@ struct Group {
   template <class Spins>
   using Chart = StereographicRungeKutta<Spins, Tableau>;
 };
-/// The same by a class of the tableau's own.
+/// A tableau with a dedicated class.
 template <template <class, class, class> class Of, class Tableau>
 struct GroupBy : Group<Tableau> {
   template <class Spins, class Isotropy, class Rotation>
@@ -129,7 +129,8 @@ struct AdaptiveGroup {
   using Chart = AdaptiveStereographic<Spins, Tableau>;
 };
 
-/// The series know spins and rigid bodies as types, and energy as an isotropy of the latter.
+/// The series are separate types for spins and rigid bodies, and have energy as an isotropy of the
+/// latter.
 template <class Of>
 struct Series {
   template <class Spins, class Isotropy, class>
@@ -157,7 +158,7 @@ using enum io::Trial;
 inline constexpr io::SetOf<io::Rotation> both_rotations{cayley, exponential};
 }  // namespace sets
 
-/// A method and what makes its steppers. Order and evaluations of a tableau are its own.
+/// A method and its family of steppers. Order and evaluations are those of the tableau.
 template <class Family>
 struct Row : io::Method {
   using family = Family;
@@ -170,7 +171,8 @@ struct Row : io::Method {
   }
 };
 
-/// A method on the Lie group. Where the row says nothing else it is in Cayley coordinates, and has
+/// A method on the Lie group. By default it uses Cayley coordinates, and has the generators and
+/// isotropies that its steppers have.
 /// the generators and isotropies that its steppers have.
 template <class Family>
 constexpr Row<Family> row(io::Method method) {

@@ -23,6 +23,10 @@ mpi::Depth depth_of_parts(io::Scene const& scene, Plan const& plan) {
     auto const [rows, cells] = bonds.rows_and_cells();
     depth.y = std::max(depth.y, rows);
     depth.z = std::max(depth.z, cells * static_cast<int>(plan.lattice.cell_sites));
+    if (auto const reach = io::reach_of_interlayers(scene); reach > 0) {
+      if (reach < plan.lattice.shape[1]) depth.y = std::max(depth.y, static_cast<int>(reach));
+      if (reach < plan.lattice.shape[2]) depth.z = std::max(depth.z, static_cast<int>(reach));
+    }
   }
   return mpi::in_whole_cells(depth, plan.lattice);
 }

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "crystal_anisotropy_of_sites.hpp"
+#include "interlayer_of_sites.hpp"
 #include "scene_field_now.hpp"
+#include "slonczewski_of_sites.hpp"
 
 #include <cayspin/field/cubic_anisotropy.hpp>
 #include <cayspin/field/field_with_vacancies.hpp>
 #include <cayspin/field/pair_couplings.hpp>
 #include <cayspin/field/site_dependent_exchange.hpp>
-#include <cayspin/field/site_dependent_uniaxial_anisotropy.hpp>
 #include <cayspin/field/slonczewski.hpp>
 #include <cayspin/field/zhang_li.hpp>
 
@@ -15,19 +17,50 @@
 
 namespace cayspin::simulation {
 
-/// What a site of a cell has of its own.
+/// Constants of a site of the cell.
 struct CellSite {
   double moment = 1, per_moment = 1, gyromagnetic = 1;
   QuadraticTerms quadratic;
   std::int32_t first_cubic = 0, last_cubic = 0;
 };
 
-/// An anisotropy whose constant differs from site to site.
+/// H = (K (m.e) + K2 (m.e)^3) e, site-dependent. Without data of axes all sites have the same axis,
+/// and without data of the second constants these are 0.
 template <class Real>
-using AnisotropyOfSites =
-    cayspin::detail::UniaxialAnisotropyOfSites<cayspin::SiteArray<Real, 1>, Vec3<double>>;
+struct AnisotropyOfSites {
+  cayspin::SiteArray<Real, 1> constants;
+  Vec3<double> axis;
+  cayspin::SiteArray<Real, 3> axes = {};
+  cayspin::SiteArray<Real, 1> second = {};
 
-/// The constants of a site's bonds to vacancies, over the spacing squared.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    auto const e = axis_at<Value>(stencil);
+    Value const along = dot(stencil.center(), e);
+    Value h = stencil.site().load(constants) * along;
+    if (second.data) h = h + stencil.site().load(second) * along * (along * along);
+    return h * e;
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    Value const along = dot(stencil.center(), axis_at<Value>(stencil)), square = along * along;
+    Value const first = Value(-0.5) * stencil.site().load(constants) * square;
+    if (!second.data) return first;
+    return first - Value(0.25) * stencil.site().load(second) * square * square;
+  }
+
+ private:
+  template <class Value, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> axis_at(Stencil const& stencil) const {
+    return axes.data ? Vec3<Value>(stencil.site().load(axes)) : as_value<Value>(axis);
+  }
+};
+
+/// Constants of a site's bonds to vacancies, over the spacing squared.
 template <class Real>
 struct FindMissing {
   cayspin::SiteArray<Real, 1> moments;  // 0: a vacancy
@@ -43,7 +76,7 @@ struct FindMissing {
   template <int Axis, class Site>
   KOKKOS_FORCEINLINE_FUNCTION auto along(Site const& site) const {
     using Value = typename Site::value_type;
-    Value const one(1);  // past an open end
+    Value const one(1);  // also past an open end
     Value const back = site.template neighbor<Axis, 0>(moments, one),
                 on = site.template neighbor<Axis, 1>(moments, one);
     auto const bond = as_value<Value>(bonds[Axis]);
@@ -56,9 +89,10 @@ struct FindMissing {
   }
 };
 
-/// Dzyaloshinskii-Moriya interaction whose constant differs from site to site. That of a bond along
-/// the axis e is the mean of its ends': H = sum of D v x m' over next and -D v x m' over previous
-/// neighbours, v = n x e / spacing of an interface, and -e / spacing of the bulk.
+/// Dzyaloshinskii-Moriya interaction with a site-dependent constant. A bond along the axis e has
+/// the mean D of its ends: H = sum of D v x m' over next and -D v x m' over previous neighbours. v
+/// is n x e / spacing for an interface, -e / spacing for the bulk; for D2d symmetry it is x /
+/// spacing and -y / spacing.
 template <class Real>
 struct DmiOfSites {
   cayspin::SiteArray<Real, 1> constants;
@@ -87,7 +121,26 @@ struct DmiOfSites {
   }
 };
 
-/// H and E of terms. E is computed where it is used.
+/// H = sum of factor profile.
+template <class Real>
+struct SourcesNow {
+  static constexpr int most = 8;
+  cayspin::SiteArray<Real, 3> profiles[most];
+  double factors[most];
+  std::int32_t count = 0;
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    auto h = zero<Value>();
+    for (std::int32_t i = 0; i < count; ++i)
+      h = multiply_add(as_value<Value>(factors[i]), stencil.site().load(profiles[i]), h);
+    return h;
+  }
+};
+
+/// H and E of terms. E is computed only if it is used.
 template <class Value>
 struct FieldAndEnergy {
   Vec3<Value> field;
@@ -105,25 +158,43 @@ struct FieldAndEnergy {
     field = field + h;
     energy = energy + Value(-0.5) * dot(stencil.center(), h);
   }
+  /// Adds `factor` times the sum of others.
+  KOKKOS_FORCEINLINE_FUNCTION void add_times(double factor, FieldAndEnergy const& others) {
+    auto const times = as_value<Value>(factor);
+    field = multiply_add(times, others.field, field);
+    energy = energy + times * others.energy;
+  }
 };
 
-/// All terms of a scene at one instant, for one kernel. Which are there is asked at run time.
+/// All terms of a scene at one instant, for one kernel, enabled at run time.
 template <class Real>
 struct PassTerms {
   SceneFieldNow<Real> usual;  // without the applied field
   cayspin::detail::PairField<Real> pairs;
   cayspin::detail::UniformZhangLi zhang_li;
   Slonczewski slonczewski;
+  SlonczewskiOfSites<Real> slonczewski_of_sites;
   Zeeman applied;
   CellSite const* sites;
   CubicAnisotropy const* cubics;
   cayspin::detail::ExchangeOfSites<Real> exchange_of_sites;
-  DmiOfSites<Real> dmi_of_sites;  // without data: none
+  DmiOfSites<Real> dmi_of_sites[3];
+  InterlayerOfSites<Real> interlayer_of_sites;
   AnisotropyOfSites<Real> const* anisotropies_of_sites;
-  std::int32_t anisotropies, cubics_of_cell;
-  cayspin::SiteArray<Real, 1> moments;  // 0 where there is no spin
-  Vec3<double> applied_in_field;  // zero where another adds what it makes of the applied field
-  bool has_usual, has_pairs, has_zhang_li, has_slonczewski, has_vacancies;
+  CrystalAnisotropyOfSites<Real> const* crystals_of_sites;
+  std::int32_t dmis, anisotropies, crystals, cubics_of_cell;
+  std::int32_t anisotropies_in_time;  // number of leading `anisotropies` that have the factor
+  double exchange_factor, anisotropy_factor;  // for site-dependent constants; others include theirs
+  cayspin::SiteArray<Real, 1> moments;        // 0 where there is no spin
+  SourcesNow<Real> sources;
+  cayspin::SiteArray<Real, 1> per_moments;  // without data: moments by the site of the cell
+  cayspin::SiteArray<Real, 1>
+      per_gyromagnetic;                       // of sites whose whole A is scaled; or without data
+  cayspin::detail::StoredField<Real> of_all;  // field that moments see like an applied one
+  Vec3<double>
+      applied_in_field;  // zero if another kernel adds the contribution of the applied field
+  bool has_usual, has_pairs, has_zhang_li, has_slonczewski, has_slonczewski_of_sites;
+  bool has_vacancies, has_of_all;
   bool is_gradient;  // -dE/dm, without moments, gyromagnetic ratios and torques
 
   template <class Stencil>
@@ -137,7 +208,7 @@ struct PassTerms {
     }
     return beside_pairs(stencil, of_pairs);
   }
-  /// The same with what the pairs contribute.
+  /// Computes H, given the contribution of the pairs.
   template <class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION FieldAndEnergy<Value> beside_pairs(
       Stencil const& stencil, FieldAndEnergy<Value> const& of_pairs) const {
@@ -148,55 +219,91 @@ struct PassTerms {
     return found;
   }
 
-  /// In which a vacancy is a missing neighbour.
+  /// Stencil in which a vacancy is a missing neighbour.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION cayspin::detail::StencilAmongVacancies<Stencil, Real> among_spins(
       Stencil const& stencil) const {
     return {stencil, moments};
   }
 
-  KOKKOS_FORCEINLINE_FUNCTION bool has_torques() const { return has_zhang_li || has_slonczewski; }
-  KOKKOS_FORCEINLINE_FUNCTION bool has_bonds_of_sites() const {
-    return exchange_of_sites.any() || dmi_of_sites.constants.data;
+  KOKKOS_FORCEINLINE_FUNCTION bool has_torques() const {
+    return has_zhang_li || has_slonczewski || has_slonczewski_of_sites;
   }
-  bool has_local_of_sites() const { return anisotropies > 0 || cubics_of_cell > 0; }
-  /// Is there nothing but couplings, axes of the cell's sites, and an applied field? In most scenes
-  /// of crystals, which need not ask for the rest at each site.
+  KOKKOS_FORCEINLINE_FUNCTION bool has_bonds_of_sites() const {
+    return exchange_of_sites.any() || dmis > 0 || interlayer_of_sites.any();
+  }
+  bool has_local_of_sites() const { return anisotropies > 0 || crystals > 0 || cubics_of_cell > 0; }
+  /// Returns true if there are only couplings, axes of the cell's sites, and an applied field, as
+  /// in most scenes of crystals. These need not test for the rest at each site.
   bool has_few() const {
     return !has_usual && !has_torques() && !is_gradient && !has_bonds_of_sites() &&
-           !has_local_of_sites();
+           !has_local_of_sites() && !per_moments.data && sources.count == 0 &&
+           anisotropy_factor == 1;
   }
 
   template <class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void add_bonds_of_sites(Stencil const& stencil,
                                                       FieldAndEnergy<Value>& sum) const {
-    if (exchange_of_sites.any()) sum.add(exchange_of_sites, stencil);
-    if (dmi_of_sites.constants.data) sum.add_linear(dmi_of_sites, stencil);
+    if (exchange_of_sites.any()) {
+      if (exchange_factor == 1) [[likely]] {
+        sum.add(exchange_of_sites, stencil);
+      } else {
+        FieldAndEnergy<Value> one{zero<Value>(), Value(0)};
+        one.add(exchange_of_sites, stencil);
+        sum.add_times(exchange_factor, one);
+      }
+    }
+    for (std::int32_t i = 0; i < dmis; ++i) sum.add_linear(dmi_of_sites[i], stencil);
+    if (interlayer_of_sites.any()) sum.add(interlayer_of_sites, stencil);
   }
   template <class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void add_anisotropies_of_sites(Stencil const& stencil,
                                                              FieldAndEnergy<Value>& sum) const {
-    for (std::int32_t i = 0; i < anisotropies; ++i)
-      sum.add_linear(anisotropies_of_sites[i], stencil);
+    for (std::int32_t i = 0; i < anisotropies; ++i) sum.add(anisotropies_of_sites[i], stencil);
   }
   template <class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void add_cubics(Stencil const& stencil, std::int32_t first,
                                               std::int32_t last, FieldAndEnergy<Value>& sum) const {
     for (std::int32_t i = first; i < last; ++i) sum.add(cubics[i], stencil);
   }
-  /// Torques are no derivatives of an energy.
+  template <class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void add_crystals(Stencil const& stencil,
+                                                FieldAndEnergy<Value>& sum) const {
+    for (std::int32_t i = 0; i < crystals; ++i) sum.add(crystals_of_sites[i], stencil);
+  }
+  /// Adds all anisotropies, if they change in time.
+  template <class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void add_anisotropy_in_time(Stencil const& stencil,
+                                                          QuadraticTerms const& quadratic,
+                                                          std::int32_t first, std::int32_t last,
+                                                          FieldAndEnergy<Value>& sum) const {
+    FieldAndEnergy<Value> now{zero<Value>(), Value(0)};
+    for (std::int32_t i = 0; i < anisotropies_in_time; ++i)
+      now.add(anisotropies_of_sites[i], stencil);
+    if (quadratic.present()) {
+      now.field = quadratic.add_field(stencil.center(), now.field);
+      now.energy = now.energy + quadratic.energy(stencil.center());
+    }
+    add_cubics(stencil, first, last, now);
+    add_crystals(stencil, now);
+    sum.add_times(anisotropy_factor, now);
+    for (std::int32_t i = anisotropies_in_time; i < anisotropies; ++i)
+      sum.add(anisotropies_of_sites[i], stencil);
+  }
+  /// Adds torques, which have no energy.
   template <class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> add_torques(Stencil const& stencil, Vec3<Value> h) const {
-    if (has_zhang_li) h = h + zhang_li.field(stencil);
-    if (has_slonczewski) h = h + slonczewski.field(stencil);
-    return h;
+    if (per_gyromagnetic.data)
+      return multiply_add(Value(stencil.site().load(per_gyromagnetic)),
+                          sum_of_torques(stencil, zero<Value>()), h);
+    return sum_of_torques(stencil, h);
   }
 
   KOKKOS_FORCEINLINE_FUNCTION CellSite const& site_of_plane(std::int32_t z) const {
     return sites[pairs.site_of_plane(z)];
   }
 
-  /// H of a site's moment, where `h` is -dE/dm of all but the applied field.
+  /// Returns H of a site's moment, where `h` is -dE/dm without the applied field.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> seen_by_moment(CellSite const& site,
                                                                 Vec3<double> const& applied,
@@ -207,24 +314,60 @@ struct PassTerms {
 
  private:
   template <class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> sum_of_torques(Stencil const& stencil,
+                                                         Vec3<Value> h) const {
+    if (has_zhang_li) h = h + zhang_li.field(stencil);
+    if (has_slonczewski) h = h + slonczewski.field(stencil);
+    if (has_slonczewski_of_sites) h = h + slonczewski_of_sites.field(stencil);
+    return h;
+  }
+  template <class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION FieldAndEnergy<Value> among(
       Stencil const& stencil, FieldAndEnergy<Value> const& of_pairs) const {
     auto const& m = stencil.center();
     auto const& mine = site_of_plane(stencil.site().z());
-    // -dE/dm, of which each moment sees its own part.
+    // -dE/dm, from which each moment gets its H.
     auto sum = of_pairs;
     if (has_usual) sum.add(usual, stencil);
     add_bonds_of_sites(stencil, sum);
-    add_anisotropies_of_sites(stencil, sum);
-    if (mine.quadratic.present()) {
-      sum.field = mine.quadratic.add_field(m, sum.field);
-      sum.energy = sum.energy + mine.quadratic.energy(m);
+    if (anisotropy_factor == 1) [[likely]] {
+      add_anisotropies_of_sites(stencil, sum);
+      if (mine.quadratic.present()) {
+        sum.field = mine.quadratic.add_field(m, sum.field);
+        sum.energy = sum.energy + mine.quadratic.energy(m);
+      }
+      add_cubics(stencil, mine.first_cubic, mine.last_cubic, sum);
+      add_crystals(stencil, sum);
+    } else {
+      add_anisotropy_in_time(stencil, mine.quadratic, mine.first_cubic, mine.last_cubic, sum);
     }
-    add_cubics(stencil, mine.first_cubic, mine.last_cubic, sum);
+    if (per_moments.data || sources.count > 0) return with_fields_of_sites(stencil, mine, sum);
     auto const moment = as_value<Value>(mine.moment);
     sum.energy = sum.energy + moment * applied.energy_density(stencil);
     if (is_gradient) return {multiply_add(moment, applied.field(stencil), sum.field), sum.energy};
     return {add_torques(stencil, seen_by_moment(mine, applied_in_field, sum.field)), sum.energy};
+  }
+  /// Used if each site has its own moment or applied field.
+  template <class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION FieldAndEnergy<Value> with_fields_of_sites(
+      Stencil const& stencil, CellSite const& mine, FieldAndEnergy<Value> sum) const {
+    auto moment = as_value<Value>(mine.moment), per_moment = as_value<Value>(mine.per_moment);
+    if (per_moments.data) {
+      moment = stencil.site().load(moments);
+      per_moment = stencil.site().load(per_moments);
+    }
+    auto seen = sources.field(stencil);
+    sum.energy =
+        sum.energy + moment * (applied.energy_density(stencil) - dot(stencil.center(), seen));
+    seen = seen + (is_gradient ? applied.field(stencil) : as_value<Value>(applied_in_field));
+    if (has_of_all) {
+      seen = seen + of_all.field(stencil);
+      sum.energy = sum.energy + moment * of_all.energy_density(stencil);
+    }
+    if (is_gradient) return {multiply_add(moment, seen, sum.field), sum.energy};
+    return {add_torques(stencil, as_value<Value>(mine.gyromagnetic) *
+                                     multiply_add(per_moment, sum.field, seen)),
+            sum.energy};
   }
 };
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "plan.hpp"
 
-#include "dear_method.hpp"
 #include "demagnetization.hpp"
 #include "files/available_memory.hpp"
 #include "io/ovf.hpp"
 #include "io/trajectory.hpp"
 #include "largest_field.hpp"
+#include "multirate_method.hpp"
 #include "ranks.hpp"
 #include "run_files.hpp"
+#include "single_terms.hpp"
 #include "text.hpp"
 #include "thermal.hpp"
 
@@ -50,31 +51,46 @@ std::int64_t field_bytes(Lattice const& lattice, int components) {
                                    sizeof(Real));
 }
 
+// Returns the bytes that the terms of the field store.
+template <class Real>
+std::int64_t memory_of_field(io::Scene const& scene, Lattice const& lattice) {
+  std::int64_t const spins = field_bytes<Real>(lattice, 3);
+  std::int64_t bytes = 0;
+  if (scene.field.own.nonlocal) bytes += spins;
+  if (io::needs_pass(scene)) {
+    int const of_bonds = scene.field.exchange_factors.there() ? 4 : 0;
+    int const of_vacancies = io::has_vacancies(scene) ? 1 : 0;
+    int const of_moments = io::has_moments_of_sites(scene) ? 1 : 0;
+    bytes += spins + (3 + of_bonds + of_vacancies + of_moments) * field_bytes<Real>(lattice, 1);
+    if (of_moments > 0 && io::is_nonlocal(scene.field)) bytes += spins;
+  }
+  if (auto const& slab = scene.field.slab_demag; slab && (slab->on_host || slab->multirate))
+    bytes += spins;
+  if (scene.field.demag) bytes += spins + demagnetization_bytes<Real>(*scene.field.demag, lattice);
+  return bytes;
+}
+
 template <class Real>
 Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& variant,
                  Precision precision, std::int64_t planes_at_once) {
   Memory memory;
   memory.spins = field_bytes<Real>(lattice, 3);
-  bool const is_far = !io::couplings(scene).empty();
+  bool const is_far = !io::couplings(scene).empty() || io::reach_of_interlayers(scene) > 0;
   memory.work = variant.work_bytes(lattice, !io::is_nonlocal(scene.field) && !is_far, precision);
-  if (scene.field.own.nonlocal) memory.field += memory.spins;
-  if (io::needs_pass(scene)) {
-    int const of_bonds = scene.field.exchange_factors.there() ? 4 : 0;
-    int const of_vacancies = io::has_vacancies(scene) ? 1 : 0;
-    memory.field += memory.spins + (3 + of_bonds + of_vacancies) * field_bytes<Real>(lattice, 1);
-  }
-  if (auto const& slab = scene.field.slab_demag; slab && (slab->on_host || slab->dear))
-    memory.field += memory.spins;
-  if (scene.field.demag)
-    memory.field += memory.spins + demagnetization_bytes<Real>(*scene.field.demag, lattice);
-  if (has_dear_field(scene)) {
-    memory.work += work_fields_of_dear(scene, variant) * memory.spins;
+  memory.field = memory_of_field<Real>(scene, lattice);
+  if (scene.output.terms && scene.system.kind == io::SystemKind::llg)
+    for (auto const& term : single_terms(scene))
+      memory.field += memory_of_field<Real>(term.second, lattice);
+  if (scene.output.regions) memory.field += 2 * field_bytes<Real>(lattice, 1);
+  if (scene.lattice.follow) memory.field += memory.spins + field_bytes<Real>(lattice, 1);
+  if (has_slow_field(scene)) {
+    memory.work += work_fields_of_multirate(scene, variant) * memory.spins;
     memory.field += memory.spins;
   }
-  // The search for a direction down, where the torque is small.
+  // The search for a descent direction, which runs when the torque is small.
   if (scene.integrator.until_torque && lattice.part == nullptr)
     memory.work += (1 + Minimizer<SpinField<double>>::work_fields) * memory.spins;
-  // A rank reads its sites by some planes at once, but OVF whole. The first one writes.
+  // A rank reads its sites some planes at a time, but OVF completely. The first rank writes.
   auto const& all = whole(lattice);
   std::int64_t const numbers = 3 * lattice.sites(), numbers_of_all = 3 * all.sites();
   bool const is_part = lattice.part != nullptr;
@@ -90,14 +106,14 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
     memory.field += field_bytes<Real>(lattice, 6);
     start += 8 * (9 + 6 + 6) * all.sites();
   }
-  // Two frames or pieces of them on their way, and the copies of a chunk that HDF5 makes.
+  // Two queued frames or pieces of them, and the copies of a chunk that HDF5 makes.
   auto const pieces = io::frame_pieces(all.shape, sizeof(Real), storage_of(scene), planes_at_once,
                                        std::ssize(scene.lattice.basis));
   std::int64_t const positions = writes && has_positions(scene.lattice) ? 8 * numbers_of_all : 0;
   std::int64_t const frames =
       (writes ? static_cast<std::int64_t>(2 * pieces.bytes + pieces.copied) : 0) + positions +
       (is_part ? static_cast<std::int64_t>(sizeof(Real)) * numbers : 0);
-  // A field on its way into a checkpoint, in double.
+  // A field being written to a checkpoint, in double.
   bool const stores = !scene.output.checkpoint_every.is_never();
   std::int64_t const of_number = sizeof(Real) == sizeof(double) ? 8 : 12;
   std::int64_t const of_planes =
@@ -107,7 +123,30 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
   return memory;
 }
 
-// What steps of a tolerance have to know of the field beforehand.
+// Returns the largest damping times temperature times gyromagnetic ratio over moment, at 1001
+// equally spaced times of the run.
+double largest_heat(io::Scene const& scene, Times const& times) {
+  TemperatureInTime const temperature(*scene.thermal);
+  double const begin = times.at(times.first), end = times.at(times.steps);
+  double largest = 0;
+  constexpr int samples = 1000;
+  for (int i = 0; i <= (temperature.depends_on_time() ? samples : 0); ++i) {
+    double const t = begin + (end - begin) * i / samples;
+    try {
+      largest = std::max(largest, temperature(t));
+    } catch (NumbersFailed const&) {
+      throw io::scene_error(
+          scene, "thermal.temperature",
+          fmt::format("is negative, or not finite, at t = {}; accepted: numbers >= 0 for all of "
+                      "the run",
+                      time_text(scene.units, t)));
+    }
+  }
+  double const damping = scene.system.dampings.there() ? 1 : scene.system.damping;
+  return io::largest_noise(scene) * damping * largest;
+}
+
+// Gives adaptive steps the features of the field.
 void put_features(io::Scene const& scene, TimeFeatures const& features, StepOptions& steps) {
   auto const& integrator = scene.integrator;
   if (features.unresolved && !std::isfinite(integrator.max_dt))
@@ -128,33 +167,37 @@ void put_features(io::Scene const& scene, TimeFeatures const& features, StepOpti
 
 Plan make_plan(io::Scene const& scene, Precision precision,
                std::shared_ptr<TimeFeatures const> features) {
+  io::require_no_ensemble(scene, "this command");
   require_demagnetization(scene);
+  io::require_alike_where_followed(scene);
   auto const lattice = make_lattice(scene);
   auto const& integrator = scene.integrator;
-  Plan plan{lattice,
-            find_variant(scene),
-            {integrator.rotation, integrator.sigma, integrator.isotropy_cap, {}},
-            {0, integrator.dt, integrator.steps},
-            std::numeric_limits<double>::infinity(),
-            0,
-            {},
-            0,
-            0,
-            features ? std::move(features) : features_of(scene, integrator.tolerance)};
+  auto const& begin = scene.begin;
+  Plan plan{
+      lattice,
+      find_variant(scene),
+      {integrator.rotation, integrator.sigma, integrator.isotropy_cap, {}},
+      {begin.time, integrator.dt, begin.step + integrator.steps, begin.step, false, begin.step},
+      std::numeric_limits<double>::infinity(),
+      0,
+      {},
+      0,
+      0,
+      features ? std::move(features) : features_of(scene, integrator.tolerance)};
   if (is_thermal(scene)) {
     if (plan.variant.remembers)
       throw io::scene_error(scene, "integrator.method",
                             "remembers steps, between which the noise of a temperature turns the "
                             "spins; accepted: a one-step method, such as \"heun\", \"rkmk4\", "
                             "\"red_black2\"");
-    // The variance of each component in half a step; two of three move the spin.
-    double const variance = io::largest_noise(scene) * scene.system.damping *
-                            scene.thermal->temperature * integrator.dt;
-    plan.noise_turn = 2 * std::sqrt(variance);
+    double const heat = largest_heat(scene, plan.times);
+    io::require_moderate_noise(scene, heat);
+    // Each component has this variance in half a step; two of three components move the spin.
+    plan.noise_turn = 2 * std::sqrt(heat * integrator.dt);
   }
   if (integrator.tolerance) {
     plan.options.steps = {*integrator.tolerance, 0, integrator.min_dt, integrator.max_dt,
-                          plan.times.at(integrator.steps)};
+                          plan.times.at(plan.times.steps)};
     double const least = precision == Precision::double_precision
                              ? StepOptions::least_tolerance<double>()
                              : StepOptions::least_tolerance<float>();
@@ -164,7 +207,7 @@ Plan make_plan(io::Scene const& scene, Precision precision,
                                         *integrator.tolerance, to_string(precision), least));
     put_features(scene, *plan.features, plan.options.steps);
   }
-  require_dear_field_fits(scene, plan.variant);
+  require_slow_field_fits(scene, plan.variant);
   auto const substeps = static_cast<double>(integrator.substeps);
   if (scene.system.kind == io::SystemKind::llg) {
     double const bound = field_bound(scene, lattice, plan.times, *plan.features);
@@ -180,16 +223,16 @@ Plan make_plan(io::Scene const& scene, Precision precision,
                           : memory_of<float>(scene, lattice, plan.variant, precision, 0);
   auto const count = [&](std::int64_t every) { return (integrator.steps + every - 1) / every + 1; };
   plan.frames = count(scene.output.every);
-  constexpr double sample_bytes = 8 * 7;
+  constexpr double frame_bytes = 8 * 7;
+  double const sample_bytes = frame_bytes + 8 * static_cast<double>(more_scalars(scene).count());
   auto const frames = static_cast<double>(plan.frames);
   auto const samples = static_cast<double>(count(scene.output.scalars_every));
   auto const numbers = 3 * static_cast<double>(lattice.sites());
-  plan.file_bytes =
-      frames * (numbers * (in_double ? 8 : 4) + sample_bytes) + samples * sample_bytes;
+  plan.file_bytes = frames * (numbers * (in_double ? 8 : 4) + frame_bytes) + samples * sample_bytes;
   if (has_positions(scene.lattice))
     plan.file_bytes += static_cast<double>(position_bytes(scene.lattice)) +
                        24 * frames * static_cast<double>(scene.lattice.basis.size());
-  // What a step has to follow. Its fastest modes are those of exchange: a stable dt guards them.
+  // The field that a step must resolve. Exchange has the fastest modes, which the stable dt covers.
   io::Scene followed = scene;
   if (plan.variant.method->stiff || std::isfinite(plan.stable_dt)) {
     followed.field.exchange.reset();
@@ -206,12 +249,12 @@ Plan make_plan(io::Scene const& scene, Precision precision,
 std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units) {
   double const dt = plan.times.dt;
   auto const text = time_text(units, dt, 6);
-  if (plan.times.steps == 0 || plan.variant.method->adaptive) return std::nullopt;
+  if (plan.times.steps == plan.times.first || plan.variant.method->adaptive) return std::nullopt;
   if (dt > plan.stable_dt && plan.stable_dt > 0)
     return fmt::format("{} is above the stable {}", text, time_text(units, plan.stable_dt, 6));
   if (dt > plan.stable_dt)
     return fmt::format("{} is not stable: at this damping the method amplifies at every dt", text);
-  // Order 8 is stable where it no longer follows.
+  // Order 8 is stable at steps that no longer resolve the motion.
   double const most = std::isfinite(plan.stable_dt) ? 3 : 2;
   if (!(plan.turn <= most))
     return fmt::format("{} turns spins by up to {:.3g} radians a step, too many to follow", text,

@@ -13,10 +13,10 @@
 
 namespace cayspin::simulation {
 
-/// Tells when a run with integrator.until_torque has come to a minimum of the energy. A small
-/// torque is not enough: a maximum and a saddle have none either, and spins leave them slowly. So
-/// the torque must not have grown since the look before, and then the energy must have no direction
-/// down, by the search of `cayspin relax` on a copy of the spins.
+/// Detects when a run with integrator.until_torque has reached a minimum of the energy. A small
+/// torque is not enough, since maxima and saddles have none either, and spins leave them slowly. So
+/// the torque must not have grown since the previous check, and the search of `cayspin relax`, on a
+/// copy of the spins, must find no descent direction.
 template <class Real, class Space>
 class RestSearch {
   using Spins = SpinField<Real, typename Space::memory_space>;
@@ -28,8 +28,8 @@ class RestSearch {
 
   RestSearch(io::Scene const& scene, double bound) : scene_(scene), bound_(bound) {}
 
-  /// `torque`: max |m x H|. `fell`: is the energy below that of the first look? `field`: made for
-  /// energies. With `at_end` a saddle is told in any case.
+  /// `torque`: max |m x H|. `fell`: the energy is below that of the first check. `field`: made for
+  /// energies. With `at_end` a saddle is always reported.
   Found look(Space const& exec, Step const& step, Spins const& spins,
              SceneField<Spins> const& field, double torque, bool fell, bool at_end) {
     bool const grew = torque > last_torque_;
@@ -42,19 +42,19 @@ class RestSearch {
     if (!may_be_at_rest && !at_end) return {};
     bool const at_saddle = is_saddle(exec, step.time, spins, field);
     if (!may_be_at_rest || !at_saddle) return {may_be_at_rest && !at_saddle, at_saddle};
-    // Spins may stay at a saddle for the rest of the run: the next search is ever later.
+    // Spins may stay at a saddle for the rest of the run: intervals between searches grow.
     wait_ = std::max<std::int64_t>(1, 2 * wait_);
     next_ = step.number + wait_;
     return {.at_saddle = true};
   }
 
-  /// For after the spins were replaced.
+  /// Call after the spins were replaced.
   void begin_again() {
     last_torque_ = std::numeric_limits<double>::infinity();
     next_ = wait_ = 0;
   }
 
-  /// For cayspin::exchange_memory.
+  /// For cayspin::serialize.
   template <class Visit>
   void visit_memory(Visit const& visit) {
     visit("last_torque", last_torque_);
@@ -65,14 +65,15 @@ class RestSearch {
  private:
   bool is_saddle(Space const& exec, double time, Spins const& spins,
                  SceneField<Spins> const& field) {
-    // The search works on one rank only.
+    // The search supports one rank only.
     if (spins.lattice().part != nullptr) return false;
     if (!minimizer_) {
       minimizer_.emplace(spins);
       trial_ = Spins("RestSearch::trial", spins.lattice());
     }
-    // The search's own torque may be above the bound, by the moments or gyromagnetic ratios of
-    // sites. Then it would go down from here; only above its bound it looks for a way out.
+    // The search's own torque may exceed the bound, because of site-dependent moments or
+    // gyromagnetic ratios. It would then descend from here; only below its bound it looks for a way
+    // out.
     double bound = bound_;
     for (int attempt = 0; attempt < 30; ++attempt, bound *= 4) {
       Kokkos::deep_copy(exec, trial_.allocation(), spins.allocation());
@@ -88,7 +89,7 @@ class RestSearch {
   io::Scene scene_;  // for messages
   double bound_;
   double last_torque_ = std::numeric_limits<double>::infinity();
-  std::int64_t next_ = 0, wait_ = 0;  // the step of the next search at the earliest
+  std::int64_t next_ = 0, wait_ = 0;  // earliest step of the next search
   std::optional<SceneMinimizer<Real, Space>> minimizer_;
   Spins trial_;
 };

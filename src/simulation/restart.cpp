@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "restart.hpp"
 
-#include "dear_method.hpp"
 #include "failure.hpp"
 #include "io/changes.hpp"
 #include "io/relax.hpp"
+#include "multirate_method.hpp"
 #include "text.hpp"
 
 #include <fmt/format.h>
@@ -22,23 +22,40 @@ namespace {
 std::optional<io::Scene> parsed(std::string const& scene_as_run, io::Scene const& scene) {
   try {
     auto before = io::parse_scene_to_run_or_relax(scene_as_run, scene.path, {}, scene.given);
-    before.field.own = scene.field.own;  // no text has it
+    before.field.own = scene.field.own;  // not part of the text
     return before;
   } catch (io::SceneError const&) {
     return std::nullopt;
   }
 }
 
-// Did the scene run by the same method as the plan's?
+// Returns the stage of a plan as it was in the scene of the file.
+std::optional<io::Scene> same_stage(std::optional<io::Scene> scene, io::StageBegin const& begin) {
+  if (!scene || begin.stage == 0) return scene;
+  if (begin.stage > std::ssize(scene->stages)) return std::nullopt;
+  auto const at = static_cast<std::size_t>(begin.stage - 1);
+  auto stage = std::move(scene->stages[at].scene);
+  stage.field.own = scene->field.own;
+  return stage;
+}
+
+bool remembers(io::Scene const& scene, Variant const& variant) {
+  return variant.remembers || scene.integrator.energy_control ||
+         scene.integrator.until_torque.has_value() || has_slow_field(scene) ||
+         scene.lattice.follow.has_value();
+}
+
+// Returns true if the scene ran with the method of the plan.
 bool ran_alike(io::Scene const& before, io::Scene const& scene, Plan const& plan) {
   return io::has_integrator(before) && !before.integrator.method->automatic &&
          &find_variant(before) == &plan.variant &&
          before.integrator.energy_control == scene.integrator.energy_control &&
          before.integrator.substeps == scene.integrator.substeps &&
-         has_dear_field(before) == has_dear_field(scene);
+         before.lattice.follow.has_value() == scene.lattice.follow.has_value() &&
+         has_slow_field(before) == has_slow_field(scene);
 }
 
-// The key of the lattice that is another in the file; empty where none is, or that cannot be told.
+// Returns the key of the lattice that differs in the file; empty if none does, or if unknown.
 std::string other_lattice_key(io::Scene const& before, io::Scene const& scene) {
   try {
     return io::changed_lattice_key(before, scene);
@@ -47,13 +64,13 @@ std::string other_lattice_key(io::Scene const& before, io::Scene const& scene) {
   }
 }
 
-// What a run that goes on may have for itself: its start, its end and its output.
+// Returns true for keys that may differ in a continued run: its start, end and output.
 bool is_of_one_run(std::string const& key) {
   return key.starts_with("output") || key.starts_with("initial") || key.starts_with("lattice.") ||
-         key == "integrator.steps" || key == "integrator.end";
+         key.starts_with("stage") || key == "integrator.steps" || key == "integrator.end";
 }
 
-// Do steps before mean nothing after a change of this key?
+// Returns true if a change of this key invalidates earlier steps.
 bool changes_motion(std::string const& key) {
   return key == "integrator.dt" || key == "units" ||
          !(key.starts_with("integrator") || key.starts_with("thermal"));
@@ -63,10 +80,7 @@ constexpr auto of_this_lattice = "the scene's lattice";
 
 }  // namespace
 
-bool remembers(io::Scene const& scene, Plan const& plan) {
-  return plan.variant.remembers || scene.integrator.energy_control ||
-         scene.integrator.until_torque.has_value() || has_dear_field(scene);
-}
+bool remembers(io::Scene const& scene, Plan const& plan) { return remembers(scene, plan.variant); }
 
 EarlierRun::EarlierRun(std::filesystem::path of_run) : path(std::move(of_run)) {
   if (io::is_checkpoint(path)) {
@@ -96,6 +110,76 @@ std::string const& EarlierRun::scene_as_run() const {
   return resolved_scene().empty() ? scene_text() : resolved_scene();
 }
 
+// Stages start after the last frame of the previous ones, except the one that the file starts in.
+EarlierRun::State EarlierRun::last_frame(std::vector<io::Stage> stages) const {
+  if (!trajectory || trajectory->frames == 0) return {};
+  auto const frames = static_cast<std::size_t>(trajectory->frames);
+  auto const& steps = trajectory->frame_steps;
+  auto const& of_frames = trajectory->frame_stages;
+  State state{trajectory->header.stage.value_or(io::StageBegin{}), steps.back()};
+  for (std::size_t frame = 0; frame < of_frames.size() && frame < frames; ++frame)
+    while (state.begin.stage < of_frames[frame]) {
+      auto const now = static_cast<std::size_t>(state.begin.stage), next = now + 1;
+      if (next >= stages.size() || frame == 0)
+        throw UsageError(
+            fmt::format("{}: its frame {} is of stage {}; accepted: the scene in as "
+                        "many stages",
+                        path.string(), frame, of_frames[frame]));
+      stages[now].scene.begin = state.begin;
+      state.begin = io::begin_after(stages[now].scene, steps[frame - 1], stages[next].scene);
+    }
+  return state;
+}
+
+io::StageBegin EarlierRun::enter(std::vector<io::Stage> stages) {
+  auto const* const stored = checkpoint ? &checkpoint->header() : nullptr;
+  auto const in_file = trajectory && trajectory->header.stage
+                           ? *trajectory->header.stage
+                           : (stored ? stored->stage : io::StageBegin{});
+  if (stages.size() == 1) {
+    bool const has_left = in_file.stage > 0 || (trajectory && !trajectory->frame_stages.empty() &&
+                                                trajectory->frame_stages.back() > 0);
+    return has_left ? io::StageBegin{} : in_file;
+  }
+  auto state = last_frame(stages);
+  bool const has_frame = state.step >= 0;
+  auto const use_checkpoint = [&] {
+    if (has_frame && stored->stage.stage != state.begin.stage) trajectory->frames = 0;
+    state = {stored->stage, stored->step};
+  };
+  bool from_checkpoint = stored && (!has_frame || std::pair(stored->stage.stage, stored->step) >
+                                                      std::pair(state.begin.stage, state.step));
+  if (from_checkpoint) use_checkpoint();
+  auto const at = [&]() -> io::Stage& {
+    if (state.begin.stage < 0 || state.begin.stage >= std::ssize(stages))
+      throw UsageError(fmt::format("{}: it is in stage {}; accepted: a scene with that stage",
+                                   path.string(), state.begin.stage));
+    auto& stage = stages[static_cast<std::size_t>(state.begin.stage)];
+    stage.scene.begin = state.begin;
+    return stage;
+  };
+  auto const has_ended = [&] {
+    auto const& stage = at();
+    return stage.relax ? !from_checkpoint : state.step >= io::end_of(stage);
+  };
+  bool const ended = has_ended();
+  // The method's memory may be older than the last frame, and belong to an earlier stage.
+  if (!ended && !from_checkpoint && stored && stored->stage.stage < state.begin.stage &&
+      remembers(at().scene, find_variant(at().scene))) {
+    from_checkpoint = true;
+    use_checkpoint();
+  }
+  auto const next = static_cast<std::size_t>(state.begin.stage) + 1;
+  if (ended && next < stages.size()) {
+    at_begin = true;
+    if (!from_checkpoint) checkpoint.reset();
+    return io::begin_after(at().scene, state.step, stages[next].scene);
+  }
+  if (!from_checkpoint && stored && stored->stage.stage != state.begin.stage) checkpoint.reset();
+  at_begin = state.begin.stage > 0 && state.step == state.begin.step;
+  return at().scene.begin;
+}
+
 Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Precision precision,
                  std::int64_t end)
     : from_(std::move(from)) {
@@ -104,16 +188,17 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
   };
   auto const* const checkpoint = from_.checkpoint ? &from_.checkpoint->header() : nullptr;
   auto const* const trajectory = from_.trajectory ? &*from_.trajectory : nullptr;
-  auto const before = parsed(from_.scene_as_run(), scene);
+  auto const ran = parsed(from_.scene_as_run(), scene);
+  auto const before = same_stage(ran, scene.begin);
   std::vector<std::string> changes;
   if (before) {
-    changes = io::changed_keys(from_.scene_as_run(), scene.text);
+    changes = io::changed_keys(before->text, scene.text);
     std::erase_if(changes, is_of_one_run);
   }
-  // A scene that cannot be read counts as the same.
+  // A scene that cannot be read counts as equal.
   bool const alike =
       !before || (ran_alike(*before, scene, plan) && std::ranges::none_of(changes, changes_motion));
-  bool const needs_memory = alike && remembers(scene, plan);
+  bool const needs_memory = alike && !from_.at_begin && remembers(scene, plan);
   bool const has_frame = trajectory && trajectory->frames > 0;
   uses_checkpoint_ = checkpoint && (!has_frame || needs_memory ||
                                     checkpoint->step > trajectory->frame_steps.back());
@@ -137,16 +222,15 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
   if (stored != to_string(precision))
     refuse(fmt::format("its spins are in {} precision", stored),
            fmt::format("--precision {}", stored));
-  // As the file's times were made, so that those of the same scene are equal to the bit.
+  // Computed like the file's times, so that those of the same scene have equal bits.
   double const dt = scene.integrator.dt * units.time;
   auto const is_at = [&](std::int64_t step) {
-    return std::abs(time - static_cast<double>(step) * scene.integrator.dt * units.time) <=
-           1e-9 * dt;
+    return std::abs(time - plan.times.at(step) * units.time) <= 1e-9 * dt;
   };
   if (!is_at(step_)) {
-    // Noise is drawn by the number of the step.
+    // Noise depends on the number of the step.
     auto const step = std::llround(std::min(time / dt, 1e15));
-    if (alike || scene.thermal || !is_at(step))
+    if (alike || scene.begin != io::StageBegin{} || scene.thermal || !is_at(step))
       refuse(
           fmt::format("its step {} is at t = {:.12g}{}, not at that many steps of dt = {:.12g}{}",
                       step_, time, units.si ? " s" : "", dt, units.si ? " s" : ""),
@@ -154,7 +238,7 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
                         : "the dt it was run with, or one of which t is a multiple");
     step_ = step;
   }
-  if (step_ >= end)
+  if (step_ >= end && !from_.at_begin)
     refuse(fmt::format("it ends at step {}, the scene at step {}", step_, end),
            "a scene that goes on");
   if (needs_memory && !uses_checkpoint_)
@@ -162,8 +246,16 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
                io::checkpoint_beside(from_.path).string() + " is not there",
            "a file with its checkpoint, or initial.file in place of a restart: a run that starts "
            "from the last frame");
-  if (uses_checkpoint_ && alike) memory_ = from_.checkpoint.get();
-  if (!before)
+  if (uses_checkpoint_ && alike && !from_.at_begin) memory_ = from_.checkpoint.get();
+  if (ran && ran->lattice.follow && scene.lattice.follow) {
+    double shift = 0;
+    if (uses_checkpoint_)
+      from_.checkpoint->number("follow.shift", shift);
+    else if (!trajectory->frame_shifts.empty())
+      shift = static_cast<double>(trajectory->frame_shifts.back());
+    shift_ = static_cast<std::int64_t>(shift);
+  }
+  if (!ran)
     warning_ = from_.path.string() + ": its scene cannot be read, and is taken for this one";
   else if (!changes.empty())
     warning_ = fmt::format("{}: other than in its scene: {}{}", from_.path.string(),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "io/checkpoint.hpp"
+#include "io/stages.hpp"
 #include "io/trajectory.hpp"
 #include "plan.hpp"
 
@@ -13,48 +14,63 @@
 
 namespace cayspin::simulation {
 
-/// Does a run of this plan need more than its spins to go on with the same bits?
+/// Returns true if a run of this plan needs more than its spins to continue with the same bits.
 bool remembers(io::Scene const& scene, Plan const& plan);
 
-/// What an earlier run left: a trajectory, the checkpoint beside it, or a checkpoint.
+/// Files of an earlier run: a trajectory, the checkpoint next to it, or only a checkpoint.
 struct EarlierRun {
   explicit EarlierRun(std::filesystem::path path);
 
-  /// The scene as it ran, with the method that was chosen where that is "auto".
+  /// Returns the scene as it ran, with the chosen method if its own is "auto".
   std::string const& scene_as_run() const;
-  /// The scene as typed; resolved_scene is empty unless its method is "auto".
+  /// Returns the scene as typed; resolved_scene is empty unless its method is "auto".
   std::string const& scene_text() const;
   std::string const& resolved_scene() const;
+
+  /// Returns where a scene continues: in the current stage of the run, or in the next one if that
+  /// had ended. Discards all other state. Throws UsageError if the scene has no such stage.
+  io::StageBegin enter(std::vector<io::Stage> stages);
 
   std::filesystem::path path;
   std::optional<io::TrajectoryInfo> trajectory;
   std::unique_ptr<io::CheckpointReader> checkpoint;
+  bool at_begin = false;  // of a stage: there is no memory of steps
+
+ private:
+  struct State {
+    io::StageBegin begin;
+    std::int64_t step = -1;
+  };
+  State last_frame(std::vector<io::Stage> stages) const;
 };
 
-/// The state from which a run of a scene goes on with the bits of a run without a break.
+/// The state from which a run of a scene, or of a stage, continues with the bits of an
+/// uninterrupted run.
 class Restart {
  public:
-  /// Throws UsageError when there is no such state: the lattice, the precision or the units are
-  /// others, its time is not that of a step, no step is left before `end`, or the method
-  /// remembers steps that are in no checkpoint.
+  /// Throws UsageError when there is no such state: the lattice, the precision or the units differ,
+  /// its time is not that of a step, no step is left before `end`, or no checkpoint has the steps
+  /// that the method remembers.
   Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Precision precision,
           std::int64_t end);
 
   std::int64_t step() const { return step_; }
-  /// Those of a box, or all, as io::read_spins gives them: bits are kept. Throws UsageError where
-  /// other sites are vacant than in the scene.
+  /// Returns the spins of a box, or all, in the order of io::read_spins: bits are kept. Throws
+  /// UsageError if the vacant sites differ from those of the scene.
   std::vector<double> spins(io::Scene const& scene, io::SiteBox const& box) const;
   std::vector<double> spins(io::Scene const& scene) const;
-  /// What the run remembered, where that is needed.
+  /// Returns the checkpoint with the run's memory of steps, if needed.
   io::CheckpointReader* memory() const { return memory_; }
-  /// One line that names what differs from the scene of the file, beside what may.
+  /// Returns the cells by which the lattice had followed.
+  std::int64_t shift() const { return shift_; }
+  /// Returns one line that names unexpected differences from the scene of the file.
   std::optional<std::string> const& warning() const { return warning_; }
-  /// The files that it reads.
+  /// Returns the files that it reads.
   std::vector<std::filesystem::path> files() const;
 
  private:
   EarlierRun from_;
-  std::int64_t step_ = 0;
+  std::int64_t step_ = 0, shift_ = 0;
   bool uses_checkpoint_ = false;
   io::CheckpointReader* memory_ = nullptr;
   std::optional<std::string> warning_;

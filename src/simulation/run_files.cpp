@@ -2,6 +2,7 @@
 #include "run_files.hpp"
 
 #include "files/file_beside.hpp"
+#include "single_terms.hpp"
 
 #include <cayspin/version.hpp>
 
@@ -34,7 +35,7 @@ void require_free_output(std::filesystem::path const& path, bool overwrite) {
   io::require_free(checkpoint, overwrite || is_whole_checkpoint(checkpoint));
 }
 
-// Site by site of the cell, as the file has them.
+// In the order of the file: site by site of the cell.
 std::vector<double> positions(io::Lattice const& lattice, io::Triple const& spacing) {
   auto const [nx, ny, planes] = lattice.shape;
   auto const nz = planes / std::ssize(lattice.basis);
@@ -78,6 +79,8 @@ io::TrajectoryHeader run_header(io::Scene const& scene, Precision precision,
   header.shape = scene.lattice.shape;
   header.cell_sites = std::ssize(scene.lattice.basis);
   header.units = scene.units;
+  header.more = more_scalars(scene);
+  if (!scene.stages.empty() || scene.begin != io::StageBegin{}) header.stage = scene.begin;
   return header;
 }
 
@@ -91,12 +94,15 @@ io::CheckpointHeader checkpoint_header(io::Scene const& scene, Precision precisi
           .cell_sites = std::ssize(scene.lattice.basis),
           .step = step,
           .time = time,
-          .si = scene.units.si};
+          .si = scene.units.si,
+          .stage = scene.begin};
 }
 
 io::TrajectoryStorage storage_of(io::Scene const& scene) {
   auto const& output = scene.output;
-  auto const frames = (scene.integrator.steps + output.every - 1) / output.every + 1;
+  auto frames = (scene.integrator.steps + output.every - 1) / output.every + 1;
+  for (auto const& [name, relax, of] : scene.stages)
+    frames += (of.integrator.steps + of.output.every - 1) / of.output.every + 1;
   return {output.compression, output.chunk, frames, output.sync};
 }
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include "io/scene.hpp"
+#include "ranks.hpp"
 #include "scene_generator.hpp"
+#include "thermal.hpp"
 
 #include <cayspin/integrate.hpp>
 #include <cayspin/observer/thermal_noise.hpp>
@@ -14,20 +16,21 @@
 
 namespace cayspin::simulation {
 
-/// The thermal noise of a run, and when it takes place: half of it before and half after each step,
-/// in one pass where nothing looks at the spins in between.
+/// The thermal noise of a run: half of it before and half after each step, in one pass if the spins
+/// are not observed in between. Both halves use the temperature of that time.
 template <class Spins>
 class RunNoise {
  public:
   RunNoise(io::Scene const& scene, SceneGenerator<Spins> const& generator, Spins const& like)
-      : noise_(noise(scene, generator, like)) {}
+      : noise_(noise(scene, generator, like)), temperature_(*scene.thermal) {}
 
-  /// After step `step` of a run that goes on from step `first`. Calls look() where that is
-  /// `wanted`; the next step is begun unless look() says to stop, or it is the last.
+  /// Applies noise after step `step` of a run that continues from step `first`. Calls look() in
+  /// between if `wanted`. Starts the next step unless look() returns stop, or it is the last.
   template <class Exec, class Look>
   Next operator()(Exec const& exec, Step const& step, std::int64_t first, Spins const& spins,
                   bool wanted, Look const& look) {
     bool const ends = step.number > first;
+    noise_.set_temperature(temperature_(step.time));
     if (!wanted && !step.last) {
       turn(exec, step, ends, spins);
       return Next::proceed;
@@ -42,31 +45,40 @@ class RunNoise {
     return Next::proceed;
   }
 
-  /// The spins are others now: none has turned at the begin of a step.
+  /// Call when the spins are replaced: no half of the noise has been applied to them.
   void reset() { begun_ = -1; }
-  /// Of the noise since the last call.
+  /// Returns the time spent on noise since the last call.
   double take_seconds() { return std::exchange(seconds_, 0.0); }
 
  private:
+  using Factors = ScalarField<typename Spins::value_type, typename Spins::memory_space>;
   using Half = typename ThermalNoise<Spins>::Half;
 
   static ThermalNoise<Spins> noise(io::Scene const& scene, SceneGenerator<Spins> const& generator,
                                    Spins const& like) {
-    ThermalNoiseOptions options{scene.thermal->temperature,
-                                static_cast<std::uint64_t>(scene.thermal->seed)};
+    ThermalNoiseOptions options{.seed = static_cast<std::uint64_t>(scene.thermal->seed)};
+    double const damping = scene.system.dampings.there() ? 1 : scene.system.damping;
     auto const& pass = generator.landau_lifshitz().field().pass();
-    if (!pass) return {like, scene.system.damping, options};
-    options.cell_sites = io::noise_of_sites(scene);
-    if (pass->moves()) return {like, scene.system.damping, options, *pass->moves()};
-    return {like, scene.system.damping, options};
+    if (io::has_noise_of_sites(scene)) {
+      auto const& lattice = like.lattice();
+      Factors factors("RunNoise::factors", lattice);
+      copy_from_host(io::noise_of_sites(scene, own_sites(lattice)), factors);
+      cayspin::detail::update_ghosts(typename Spins::memory_space::execution_space(), lattice,
+                                     factors);
+      return {like, damping, options, factors};
+    }
+    if (!pass) return {like, damping, options};
+    options.cell_sites = io::noise_of_cell_sites(scene);
+    if (pass->moves()) return {like, damping, options, *pass->moves()};
+    return {like, damping, options};
   }
 
-  // Into the next step, and out of the last one if that `ends`.
+  // Applies noise before the next step, and after the last one if `ends`.
   template <class Exec>
   void turn(Exec const& exec, Step const& step, bool ends, Spins const& spins) {
-    // A step that failed is taken again from spins that have turned.
+    // A step that failed is repeated from spins that already have their noise.
     if (begun_ == step.number) return;
-    // Not waited for: what a device has left to do then counts with the step that follows.
+    // Does not wait: remaining work on a device counts with the step that follows.
     timed([&] {
       if (ends)
         noise_.turn_between_steps(exec, step.number, step.dt, spins);
@@ -84,7 +96,8 @@ class RunNoise {
   }
 
   ThermalNoise<Spins> noise_;
-  std::int64_t begun_ = -1;  // the step after which spins turned last into the next one
+  TemperatureInTime temperature_;
+  std::int64_t begun_ = -1;  // the step after which the next one's noise was applied
   double seconds_ = 0;
 };
 

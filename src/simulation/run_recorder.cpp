@@ -9,7 +9,7 @@
 namespace cayspin::simulation {
 namespace {
 
-constexpr std::int64_t most_steps = 4096;  // from one look at the clock to the next
+constexpr std::int64_t most_steps = 4096;  // between readings of the clock
 
 }  // namespace
 
@@ -53,7 +53,7 @@ void RunRecorder::look(bool last) {
   // run_.sample() is in the scene's units already.
   auto const values = as_scalars(run_.sample(), {});
   if (scalars) {
-    file_.write_scalars(now, run_.time(), values);
+    file_.write_scalars(now, run_.time(), values, run_.more_of_sample());
     sampled_ = now;
   }
   if (frame) {
@@ -62,10 +62,10 @@ void RunRecorder::look(bool last) {
       std::ranges::copy(packed<double>(spins.vectors), file_.frame<double>());
     else
       std::ranges::copy(packed<float>(spins.vectors), file_.frame<float>());
-    file_.write_frame(now, run_.time(), values);
+    file_.write_frame(now, run_.time(), values, {.shift = run_.shift()});
     written_ = now;
   }
-  // What runs between two looks may use HDF5, too.
+  // The caller may use HDF5 between two calls.
   file_.frames();
 }
 
@@ -73,7 +73,7 @@ void RunRecorder::finish(bool as_planned) {
   io::RunCost const cost{run_.evaluations() - evaluations_before_, clock_.seconds(),
                          run_.step_seconds() - seconds_before_};
   as_planned ? file_.finish(cost) : file_.close(cost);
-  // A run whose numbers failed is past its last frame: what was stored before is worth more.
+  // A run whose numbers failed is past its last frame: the earlier checkpoint is worth more.
   if (run_.scene().output.checkpoint_every.is_never() || written_ != run_.steps()) return;
   if (run_.remembers())
     run_.save(checkpoint_);

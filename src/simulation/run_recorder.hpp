@@ -9,26 +9,26 @@
 
 namespace cayspin::simulation {
 
-/// Writes a run, from its present step to another, into a file and those beside it, as `cayspin
-/// run` does:
+/// Recorder of a run, from its current step to another, in a file and its companions, like `cayspin
+/// run`:
 ///   RunRecorder recorder(run, end, "run.h5", false, commit);
 ///   for (recorder.look(); recorder.next() > run.steps(); recorder.look())
 ///     run.advance(recorder.next() - run.steps());
 ///   recorder.finish();
 class RunRecorder {
  public:
-  /// Throws std::runtime_error for a file that cannot be, or exists and `overwrite` is false.
+  /// Throws std::runtime_error for an invalid file, or one that exists if `overwrite` is false.
   RunRecorder(SceneRun& run, std::int64_t end, std::filesystem::path const& path, bool overwrite,
               std::string const& git_commit);
   RunRecorder(RunRecorder const&) = delete;
   RunRecorder& operator=(RunRecorder const&) = delete;
 
-  /// The step at which the file next wants a frame, a sample or a question about the time; the
-  /// present one at the end.
+  /// Returns the step of the next frame, sample or reading of the clock; at the end, the current
+  /// one.
   std::int64_t next() const;
-  /// Writes what is due at the present step; with `last`, a frame in any case.
+  /// Writes what is due at the current step; with `last`, always a frame.
   void look(bool last = false);
-  /// Closes the file: as one of a run that went as planned, or of another.
+  /// Closes the file, and marks whether the run went as planned.
   void finish(bool as_planned = true);
 
  private:

@@ -1,26 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "dear_method.hpp"
+#include "follow.hpp"
 #include "guard.hpp"
+#include "more_of_sample.hpp"
+#include "multirate_method.hpp"
 #include "rest_search.hpp"
 #include "run_noise.hpp"
 #include "simulate.hpp"
 #include "thermal.hpp"
 
-#include <cayspin/exchange_memory.hpp>
 #include <cayspin/observer/energy_control.hpp>
+#include <cayspin/serialize.hpp>
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cayspin::simulation {
 
-/// A scene in memory with its method, the guard of its numbers, and what changes its spins between
-/// steps: the control of its energy, or the noise of its temperature.
+/// A scene in memory with its method, its guard, and what changes its spins between steps: energy
+/// control, thermal noise, or the following of the lattice.
 template <class Real, class Space>
 class RunningScene : public Simulation<Real, Space> {
   using Base = Simulation<Real, Space>;
@@ -29,11 +33,12 @@ class RunningScene : public Simulation<Real, Space> {
   using typename Base::Spins;
   using Looks = RunObserver<Space, Spins>;
 
-  /// What a look came to.
+  /// Result of an observation.
   struct Found {
     Sample sample;
-    std::optional<std::string> failure = {};  // of the guard
-    // By the scene's until_torque. At a saddle of the energy a run goes on; its last look tells.
+    std::optional<std::string> failure = {};  // from the guard
+    // By the scene's until_torque. A run continues at a saddle of the energy; the last observation
+    // reports it.
     bool at_rest = false, at_saddle = false;
   };
 
@@ -49,18 +54,30 @@ class RunningScene : public Simulation<Real, Space> {
     }
     if (scene.integrator.energy_control) control_.emplace(this->spins, this->generator);
     if (is_thermal(scene)) noise_.emplace(scene, this->generator, this->spins);
+    if (scene.lattice.follow) follower_.emplace(scene, plan.lattice);
+    if (scene.output.regions || scene.output.terms) more_.emplace(scene, plan.lattice);
   }
-  RunningScene(RunningScene const&) = delete;  // the method works on this one
+  RunningScene(RunningScene const&) = delete;  // the method refers to this object
   RunningScene& operator=(RunningScene const&) = delete;
 
-  /// Runs to the end of the times, or as far as the numbers or the looks let it. Costs of control
-  /// and noise count with those of the steps.
+  /// Runs to the end of the times, or until a failure or a stop by `looks`. The cost of control and
+  /// noise is included in that of the steps.
   Ending advance(Looks& looks) {
-    if (!control_ && !noise_) return Base::advance(*method_, looks);
+    if (!control_ && !noise_ && !follower_) return Base::advance(*method_, looks);
     Between between(*this, looks);
     std::int64_t const evaluations = control_ ? control_->evaluations_done() : 0;
     if (noise_) noise_->take_seconds();
+    auto times_left = this->times;  // a method with substeps restores those
     auto ending = Base::advance(*method_, between);
+    // With moved spins, a method restarts as in a new run.
+    while (between.moves() && !ending.failure) {
+      times_left.first = between.move();
+      times_left.continues = false;
+      this->times = times_left;
+      auto next = Base::advance(*method_, between);
+      add(next.summary, ending.summary);
+      ending.failure = next.failure;
+    }
     if (control_) ending.summary.evaluations += control_->evaluations_done() - evaluations;
     if (noise_) ending.summary.step_seconds += noise_->take_seconds();
     return ending;
@@ -68,8 +85,21 @@ class RunningScene : public Simulation<Real, Space> {
 
   Guard const& guard() const { return guard_; }
 
-  /// Samples and judges the spins. Rest is looked for where the scene has until_torque, and
-  /// `for_rest` is not false; `at_end` asks for saddles, too.
+  /// Returns the cells by which the lattice has followed.
+  std::int64_t shift() const { return follower_ ? follower_->shift() : 0; }
+  void go_on_from(std::int64_t shift) {
+    if (follower_) follower_->go_on_from(shift);
+  }
+
+  /// Returns the numbers of a sample besides Scalars, in the order of more_scalars().
+  std::vector<double> more(Space const& exec, Step const& step, Spins const& spins) const {
+    auto numbers = more_ ? (*more_)(exec, this->generator, step, spins) : std::vector<double>();
+    if (follower_) numbers.push_back(static_cast<double>(shift()));
+    return numbers;
+  }
+
+  /// Samples and checks the spins. Searches for an equilibrium if the scene has until_torque and
+  /// `for_rest` is true; with `at_end` also reports saddles.
   Found look(Space const& exec, Step const& step, Spins const& spins, bool for_rest = true,
              bool at_end = false) {
     bool const with_torque = torque_ && for_rest;
@@ -87,7 +117,7 @@ class RunningScene : public Simulation<Real, Space> {
     return found;
   }
 
-  /// For after the spins were replaced: forgets what was known of the earlier ones.
+  /// Call after the spins were replaced: forgets the state that belongs to the earlier ones.
   void begin_again(io::Scene const& scene) {
     guard_ = Guard(scene, epsilon);
     if (rest_) rest_->begin_again();
@@ -95,51 +125,102 @@ class RunningScene : public Simulation<Real, Space> {
     if (noise_) noise_->reset();
   }
 
-  /// Stores or restores all that a run needs to go on from a step with the same bits. `continues`:
-  /// does the method go on with what it remembers?
+  /// Stores or restores everything that a run needs to continue from a step with the same bits.
+  /// `continues`: true if the method keeps its memory.
   void exchange(Checkpoint& checkpoint, bool& continues) {
     this->exec.fence("cayspin::RunningScene: exchange");
     cayspin::detail::ExchangeMemory const visit(checkpoint);
     visit("spins", this->spins);
     visit("continues", continues);
-    method_->exchange_memory(checkpoint);
-    exchange_memory(guard_, checkpoint, "guard.");
-    if (rest_) exchange_memory(*rest_, checkpoint, "rest.");
-    if (control_) exchange_memory(*control_, checkpoint, "energy_control.");
+    method_->serialize(checkpoint);
+    serialize(guard_, checkpoint, "guard.");
+    if (rest_) serialize(*rest_, checkpoint, "rest.");
+    if (control_) serialize(*control_, checkpoint, "energy_control.");
+    if (follower_) serialize(*follower_, checkpoint, "follow.");
     if (noise_ && checkpoint.restores()) noise_->reset();
   }
 
  private:
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
 
-  /// The looks, and after or around them what changes the spins.
+  /// Observer that calls the looks, and applies changes to the spins after or around them.
   class Between final : public Looks {
    public:
     Between(RunningScene& scene, Looks& looks) : scene_(scene), looks_(looks) {}
 
-    bool due(Step const&) const override { return true; }
+    bool due(Step const& step) const override {
+      return scene_.control_ || scene_.noise_ || wants(step);
+    }
     Next operator()(Space const& exec, Step const& step, Spins const& spins) override {
-      bool const wanted = looks_.due(step);
+      bool const wanted = wants(step);
+      auto const look = [&] { return this->look(exec, step, spins); };
       if (auto& noise = scene_.noise_)
-        return (*noise)(exec, step, scene_.times.first, spins, wanted,
-                        [&] { return looks_(exec, step, spins); });
-      if (wanted && looks_(exec, step, spins) == Next::stop) return Next::stop;
-      if (!step.last) (*scene_.control_)(exec, step, spins);
+        return (*noise)(exec, step, scene_.times.first, spins, wanted, look);
+      if (wanted && look() == Next::stop) return Next::stop;
+      if (scene_.control_ && !step.last) (*scene_.control_)(exec, step, spins);
       return Next::proceed;
     }
 
+    /// Returns true if the run stopped to move the lattice.
+    bool moves() const { return cells_ != 0; }
+    /// Moves the lattice, and returns the step after which it does.
+    std::int64_t move() {
+      scene_.move(stopped_, std::exchange(cells_, 0));
+      return moved_ = stopped_.number;
+    }
+
    private:
+    // After a step at which the lattice moves, everything was observed before the move.
+    bool wants(Step const& step) const {
+      return step.number != moved_ && (looks_.due(step) || follows(step));
+    }
+    bool follows(Step const& step) const {
+      return scene_.follower_ && !step.last && scene_.follower_->due(step);
+    }
+    Next look(Space const& exec, Step const& step, Spins const& spins) {
+      if (looks_.due(step) && looks_(exec, step, spins) == Next::stop) return Next::stop;
+      if (!follows(step)) return Next::proceed;
+      cells_ = scene_.follower_->cells_off(exec, spins);
+      stopped_ = step;
+      return moves() ? Next::stop : Next::proceed;
+    }
+
     RunningScene& scene_;
     Looks& looks_;
+    Step stopped_;
+    std::int64_t cells_ = 0, moved_ = -1;
   };
+
+  // The energy of the cells that leave at the ends is not a change by the steps.
+  void move(Step const& step, std::int64_t cells) {
+    auto const energy = [&] {
+      return cayspin::energy(this->exec, this->generator, this->spins, step.time).value;
+    };
+    double const before = energy();
+    follower_->move(this->exec, this->spins, cells);
+    guard_.add_to_energies(energy() - before);
+    if (rest_) rest_->begin_again();
+    if (control_) control_->reset();
+  }
+
+  static void add(Summary const& more, Summary& summary) {
+    summary.steps += more.steps;
+    summary.evaluations += more.evaluations;
+    summary.step_seconds += more.step_seconds;
+    summary.stopped = more.stopped;
+    summary.own_steps += more.own_steps;
+    summary.rejected += more.rejected;
+  }
 
   std::unique_ptr<OpenMethod> method_;
   Guard guard_;
-  double last_change_;  // of what depends on t
+  double last_change_;  // of fields and torques that depend on t
   std::optional<SceneGenerator<Spins>> torque_;
   std::optional<RestSearch<Real, Space>> rest_;
   std::optional<EnergyControl<Spins, SceneGenerator<Spins>>> control_;
   std::optional<RunNoise<Spins>> noise_;
+  std::optional<Follower<Spins>> follower_;
+  std::optional<MoreOfSample<Spins>> more_;
 };
 
 }  // namespace cayspin::simulation

@@ -13,7 +13,7 @@
 
 namespace cayspin::simulation {
 
-/// Rigid bodies that share an inertia, or have one each: asked at run time.
+/// Rigid bodies with a common inertia, or one each; selected at run time.
 template <class Many>
 struct SceneBodiesNow : cayspin::detail::BodyGenerator<SceneBodiesNow<Many>> {
   RigidBody one;
@@ -31,8 +31,8 @@ struct SceneBodiesNow : cayspin::detail::BodyGenerator<SceneBodiesNow<Many>> {
   }
 };
 
-/// The same as a generator by itself, for the methods that know rigid bodies; with or without its
-/// part along the spin, asked at run time.
+/// Rigid bodies as a separate generator, for methods that support them; with or without its
+/// component along the spin, selected at run time.
 template <class Bodies>
 struct RigidBodiesNow {
   static constexpr bool is_local = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What a scene has for time_features.hpp to look at.
+// Collects a scene's time-dependent vectors for time_features.hpp.
 #include "applied_field.hpp"
 #include "failure.hpp"
 #include "io/scene.hpp"
@@ -19,8 +19,8 @@ namespace {
 
 using Components = std::array<io::AppliedComponent, 3>;
 
-// The numbers of the expressions, with their sums and differences: times of switching and their
-// like. In SI they are typed in s.
+// Returns the numbers of the expressions, with their sums and differences: they may be switching
+// times or the like. In SI they are typed in s.
 std::vector<double> events_of(Components const& components, double time_unit) {
   static std::regex const number(R"((\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)");
   constexpr std::size_t most_paired = 16;
@@ -62,6 +62,17 @@ std::vector<TimeDependent> vectors_of(io::Scene const& scene) {
   };
   auto const& field = scene.field;
   add(AppliedField(field), "field.applied", field.applied.value_or(Components{}));
+  for (auto const& source : field.sources) {
+    constexpr auto key = "field.sources";
+    Components const time{source.time, 0.0, 0.0};
+    add(AppliedField(time, key), key, time);
+  }
+  for (auto const& [key, factor] : {std::pair{"field.in_time.exchange", field.in_time.exchange},
+                                    {"field.in_time.anisotropy", field.in_time.anisotropy},
+                                    {"field.in_time.dmi", field.in_time.dmi}}) {
+    Components const factors{factor, 0.0, 0.0};
+    add(AppliedField(factors, key), key, factors);
+  }
   if (auto const& of = field.torque.zhang_li) {
     constexpr auto key = "torque.zhang_li.velocity";
     add(AppliedField(of->velocity, key), key, of->velocity);
@@ -86,13 +97,15 @@ std::string text_of(Components const& components) {
 std::string text_of(io::Field const& field) {
   std::string text = fmt::format("{}\n", field.mu0);
   if (field.applied) text += text_of(*field.applied);
+  for (auto const& source : field.sources) text += "s\n" + text_of({source.time, 0.0, 0.0});
+  if (field.in_time.there()) text += "f\n" + text_of(field.in_time.components());
   if (auto const& of = field.torque.zhang_li) text += "u\n" + text_of(of->velocity);
   if (auto const& of = field.torque.slonczewski)
     text += "a b\n" + text_of({of->damping_like, of->field_like, 0.0});
   return text;
 }
 
-// The last few, since a scene is planned more than once.
+// Cache of the last few results, since a scene is planned more than once.
 class Known {
  public:
   std::shared_ptr<TimeFeatures const> find(std::string const& key) {
@@ -113,13 +126,13 @@ class Known {
   std::deque<std::pair<std::string, std::shared_ptr<TimeFeatures const>>> all_;
 };
 
-// What is not finite is refused by the plan.
-bool are_finite(std::vector<TimeDependent> const& vectors, double end) {
+// The plan refuses vectors that are not finite.
+bool are_finite(std::vector<TimeDependent> const& vectors, FeatureSearch const& search) {
   constexpr int times = 100;
   double three[3];
   for (auto const& vector : vectors)
     for (int i = 0; i <= times; ++i) {
-      vector.value(end * i / times, three);
+      vector.value(search.begin + (search.end - search.begin) * i / times, three);
       if (!std::isfinite(three[0] + three[1] + three[2])) return false;
     }
   return true;
@@ -128,8 +141,10 @@ bool are_finite(std::vector<TimeDependent> const& vectors, double end) {
 FeatureSearch search_of(io::Scene const& scene, std::optional<double> error) {
   auto const& integrator = scene.integrator;
   FeatureSearch search;
-  search.end = integrator.dt * static_cast<double>(integrator.steps);
-  // Alike for all but the smallest errors: a run sees what its trial by another tolerance has seen.
+  search.begin = scene.begin.time;
+  search.end = search.begin + integrator.dt * static_cast<double>(integrator.steps);
+  // Equal for all but the smallest errors, so that a run sees the features of its trials at other
+  // tolerances.
   search.angle = std::clamp(0.01 * error.value_or(1e-6), 1e-10, 1e-8);
   if (scene.field.own.uniform) {  // a call may take long
     search.samples = 1 << 12;
@@ -151,11 +166,11 @@ std::shared_ptr<TimeFeatures const> features_of(io::Scene const& scene,
     return std::make_shared<TimeFeatures>();
   auto const search = search_of(scene, error);
   bool const is_own = static_cast<bool>(scene.field.own.uniform);
-  auto const key =
-      fmt::format("{}{} {} {}", text_of(scene.field), search.end, search.angle, search.samples);
+  auto const key = fmt::format("{}{} {} {} {}", text_of(scene.field), search.begin, search.end,
+                               search.angle, search.samples);
   if (auto features = is_own ? nullptr : known.find(key)) return features;
   auto const vectors = vectors_of(scene);
-  if (!are_finite(vectors, search.end)) return std::make_shared<TimeFeatures>();
+  if (!are_finite(vectors, search)) return std::make_shared<TimeFeatures>();
   auto features = std::make_shared<TimeFeatures const>(find_features(vectors, search));
   if (!is_own) known.add(key, features);
   return features;

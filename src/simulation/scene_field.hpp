@@ -7,7 +7,7 @@
 #include "scene_field_now.hpp"
 #include "whole_field.hpp"
 
-#include <cayspin/field/dear.hpp>
+#include <cayspin/field/slow_field.hpp>
 #include <cayspin/generator/rigid_body.hpp>
 #include <cayspin/optional_members.hpp>
 
@@ -25,10 +25,10 @@ class SceneField {
   using Real = typename Spins::value_type;
 
  public:
-  using DearTerm = Dear<Spins, WholeField<Spins>>;
+  using SlowTerm = SlowField<Spins, WholeField<Spins>>;
 
-  /// `has_dear`: is what is computed whole dear?
-  SceneField(io::Field const& field, Lattice const& lattice, bool has_dear,
+  /// `has_slow`: the field of the whole lattice is multirate.
+  SceneField(io::Field const& field, Lattice const& lattice, bool has_slow,
              std::optional<FieldInPass<Spins>> pass)
       : lattice_terms_(lattice_terms_of(field, lattice)), applied_(field), pass_(std::move(pass)) {
     if (!pass_)
@@ -36,13 +36,13 @@ class SceneField {
     if (field.slab_demag) add(*field.slab_demag, field.mu0, lattice);
     if (field.demag) add(*field.demag, field.mu0, lattice);
     if (field.own.nonlocal) stored_.emplace(lattice, HostSolver(field.own.nonlocal));
-    if (has_dear) {
-      dear_.emplace(lattice, *stored_);
+    if (has_slow) {
+      slow_.emplace(lattice, *stored_);
       stored_.reset();
     }
   }
 
-  /// For another purpose than to turn spins.
+  /// Returns the field for another purpose than to turn spins.
   SceneField made_for(FieldFor purpose) const {
     auto other = *this;
     other.purpose_ = purpose;
@@ -50,10 +50,10 @@ class SceneField {
   }
   bool is_affine() const { return !pass_ || pass_->is_affine(); }
 
-  /// None where methods' kernels evaluate the terms themselves.
+  /// Empty if the kernels of methods evaluate the terms themselves.
   std::optional<FieldInPass<Spins>> const& pass() const { return pass_; }
-  /// None where no term is dear.
-  std::optional<DearTerm> const& dear() const { return dear_; }
+  /// Empty if no term is expensive.
+  std::optional<SlowTerm> const& slow() const { return slow_; }
 
   /// Throws NumbersFailed when an applied field is not finite at t.
   template <class Exec>
@@ -69,19 +69,19 @@ class SceneField {
 
   template <class Exec, class Any>
   bool is_stationary(Exec const& exec, Any const& spins) const {
-    return !applied_.depends_on_time() && needs_time_alone(exec, spins);
+    return !applied_.depends_on_time() && needs_only_time(exec, spins);
   }
   template <class Exec, class Any>
-  bool needs_time_alone(Exec const&, Any const&) const {
-    return !stored_ && !dear_ && !pass_;
+  bool needs_only_time(Exec const&, Any const&) const {
+    return !stored_ && !slow_ && !pass_;
   }
 
   template <class Exec, class Any>
-  bool rows_need_time_alone(Exec const&, Any const&) const {
-    return !stored_ && !dear_ && (!pass_ || pass_->rows_need_time_alone());
+  bool rows_need_only_time(Exec const&, Any const&) const {
+    return !stored_ && !slow_ && (!pass_ || pass_->rows_need_only_time());
   }
 
-  /// The same for rates of spins, the applied field's own rate in place of the field.
+  /// Prepares dH/dt for given rates of spins, with the applied field's rate instead of the field.
   template <class Exec>
   SceneFieldNow<Real> prepare_rate(Exec const& exec, Spins const& rates, double t,
                                    double dt) const {
@@ -97,26 +97,31 @@ class SceneField {
   template <class Exec>
   SceneFieldNow<Real> usual_terms(Exec const& exec, Spins const& spins, double t) const {
     SceneFieldNow<Real> now{lattice_terms_,     quadratic_,      {}, {},
-                            applied_.present(), stored_ || dear_};
+                            applied_.present(), stored_ || slow_};
     if (now.has_applied) now.zeeman = {applied_(t)};
     if (stored_) now.stored = cayspin::detail::prepare_term(*stored_, exec, spins, t);
-    if (dear_) now.stored = cayspin::detail::prepare_term(*dear_, exec, spins, t);
+    if (slow_) now.stored = cayspin::detail::prepare_term(*slow_, exec, spins, t);
     return now;
   }
 
+  auto moments_of_sites() const {
+    return pass_ ? pass_->moments_of_sites()
+                 : std::optional<ScalarField<Real, typename Spins::memory_space>>();
+  }
   void add(io::Demagnetization const& demag, double mu0, Lattice const& lattice) {
     if constexpr (!std::is_same_v<typename Spins::memory_space, Kokkos::HostSpace>)
       if (auto field = demagnetization_in_place<Spins>(demag, mu0, lattice)) {
-        stored_.emplace(lattice, std::move(field));
+        stored_.emplace(lattice, std::move(field), moments_of_sites());
         return;
       }
-    stored_.emplace(lattice, HostSolver(demagnetization_on_host<Real>(demag, mu0, lattice)));
+    stored_.emplace(lattice, HostSolver(demagnetization_on_host<Real>(demag, mu0, lattice)),
+                    moments_of_sites());
   }
   void add(io::SlabDemagnetization const& slab, double mu0, Lattice const& lattice) {
     Vec3<double> const normal{slab.normal[0], slab.normal[1], slab.normal[2]};
     double const strength = mu0 * slab.strength;
-    if (slab.on_host || slab.dear) {
-      stored_.emplace(lattice, HostSolver(SlabDemagOnHost(normal, strength)));
+    if (slab.on_host || slab.multirate) {
+      stored_.emplace(lattice, HostSolver(SlabDemagOnHost(normal, strength)), moments_of_sites());
     } else {
       quadratic_.add(-strength, slab.normal);
     }
@@ -126,13 +131,13 @@ class SceneField {
   QuadraticTerms quadratic_;
   AppliedField applied_;
   std::optional<WholeField<Spins>> stored_;
-  std::optional<DearTerm> dear_;
+  std::optional<SlowTerm> slow_;
   std::optional<FieldInPass<Spins>> pass_;
   FieldFor purpose_ = FieldFor::generator;
 };
 
-/// That of a scene. Compiled in scene_generator.cpp.
+/// Returns the field of a scene. Compiled in scene_generator.cpp.
 template <class Spins>
-SceneField<Spins> field_of(io::Scene const& scene, Lattice const& lattice, bool has_dear);
+SceneField<Spins> field_of(io::Scene const& scene, Lattice const& lattice, bool has_slow);
 
 }  // namespace cayspin::simulation

@@ -16,8 +16,8 @@
 
 namespace cayspin::simulation {
 
-/// All terms quadratic in one spin, as one symmetric matrix M: H = M m, E = -m.M m / 2. Any number
-/// of anisotropy axes, and a slab's demagnetising field spin by spin.
+/// All terms quadratic in one spin as one symmetric matrix M: H = M m, E = -m.M m / 2. Includes any
+/// number of anisotropy axes, and a slab's local demagnetising field.
 class QuadraticTerms {
  public:
   void add(double constant, io::Triple const& axis) {
@@ -27,7 +27,7 @@ class QuadraticTerms {
     form_ = along_z && form_ != Form::any ? Form::along_z : Form::any;
   }
 
-  /// Those of both, `factor` times.
+  /// Returns the sum of these terms and `factor` times others.
   QuadraticTerms with(QuadraticTerms const& others, double factor) const {
     QuadraticTerms both;
     both.sum_ = sum_.with(others.sum_, factor);
@@ -89,9 +89,9 @@ class QuadraticTerms {
   Form form_ = Form::none;
 };
 
-/// H along a piece of a row, by a function that is compiled once for all methods; none where
-/// `evaluate` is null. `is_whole`: stages add nothing, or, where it lacks_local, axes and the
-/// applied field.
+/// H along a piece of a row, by a function that is compiled once for all methods; null `evaluate`
+/// if there is none. `is_whole`: stages add nothing, except axes and the applied field if
+/// lacks_local.
 template <class Real>
 struct FieldAlongRows {
   using Fields = cayspin::detail::RowFields<Real>;
@@ -101,8 +101,8 @@ struct FieldAlongRows {
   bool is_whole = false, lacks_local = false;
 };
 
-/// The field of any scene at one instant, for kernels. Which terms are there is asked at run time,
-/// once per pack of spins, so that a kernel is compiled once for all scenes.
+/// The field of any scene at one instant, for kernels. Terms are enabled at run time, once per pack
+/// of spins, so that a kernel is compiled once for all scenes.
 template <class Real>
 struct SceneFieldNow {
   SceneLatticeTerms lattice_terms;
@@ -110,12 +110,12 @@ struct SceneFieldNow {
   Zeeman zeeman;  // zero without an applied field
   cayspin::detail::StoredField<Real> stored;
   bool has_applied, has_stored;
-  cayspin::SiteArray<Real, 1> energies = {};  // of all terms, where one pass has them
+  cayspin::SiteArray<Real, 1> energies = {};  // of all terms, if one pass computes them
   FieldAlongRows<Real> along_rows = {};
 
-  // The row that begin_row was called for.
-  cayspin::detail::RowInput<Real> row = {};  // what was found of H
-  std::ptrdiff_t compiled_sites = 0;         // of packs between the first and the last
+  // The row passed to begin_row.
+  cayspin::detail::RowInput<Real> row = {};  // H found so far
+  std::ptrdiff_t compiled_sites = 0;         // in packs between the first and the last
   bool adds_row = false, adds_more = false;
 
   static constexpr int row_fields = 1;
@@ -129,12 +129,12 @@ struct SceneFieldNow {
     adds_more = has_stored || adds_row;
     if (adds_row) along_rows.evaluate(along_rows.terms, spins, begin, end, fields);
   }
-  /// H at the packs at the ends of a row, with what begin_row found there.
+  /// Computes H at the packs at the ends of a row from the results of begin_row.
   void find_row_ends(cayspin::detail::RowOfSpins<Real> const& spins, std::int32_t begin,
                      std::int32_t end, cayspin::detail::RowFields<Real> const& fields,
                      bool turning_alone) const;
 
-  /// After begin_row and find_row_ends, at sites of their row.
+  /// Returns H at sites of the row, after begin_row and find_row_ends.
   template <bool TurningAlone, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field_along_row(
       Stencil const& stencil) const {
@@ -158,10 +158,10 @@ struct SceneFieldNow {
                                lattice_terms.add_turning_field(stencil, local_field(stencil)));
   }
 
-  /// Does the part of the spin itself depend on the spin?
+  /// Returns true if the on-site part depends on the spin.
   KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return quadratic.present(); }
 
-  /// The linear part: without the applied field.
+  /// Returns the linear part: without the applied field.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
       Stencil const& stencil) const {
@@ -169,7 +169,7 @@ struct SceneFieldNow {
     return add_demagnetization(
         stencil, lattice_terms.add_field(stencil, quadratic.add_field(stencil.center(), none)));
   }
-  /// The part that comes from other spins, and the rest.
+  /// Returns the part due to other spins, and the rest.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> gather(
       cayspin::detail::NeighborField, Stencil const& stencil) const {
@@ -184,7 +184,7 @@ struct SceneFieldNow {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Spin const& spin) const {
     return quadratic.add_field(spin.center(), zeeman.field(spin));
   }
-  /// dH/dt along rates, of what prepare_rate returns.
+  /// Returns dH/dt along rates, from the result of prepare_rate.
   template <class Value, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const&,
                                                      Stencil const& rates) const {
@@ -219,7 +219,7 @@ struct SceneFieldNow {
     constexpr std::ptrdiff_t first = cayspin::detail::host_lanes<Real>;
     return static_cast<std::size_t>(x - first) < static_cast<std::size_t>(compiled_sites);
   }
-  // Vectors are handed on without a name: g++ copies those that have one through memory.
+  // Vectors are passed as temporaries, because g++ copies named ones through memory.
   template <class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector add_lacking(Stencil const& stencil, Vector h) const {
     if (along_rows.lacks_local)
@@ -242,14 +242,14 @@ struct SceneFieldNow {
   }
 };
 
-/// Numbers of sites that change how spins turn in H.
+/// Site-dependent numbers that change how spins turn in H.
 template <class Real>
 struct OwnOfSites {
   cayspin::SiteArray<Real, 1> dampings = {}, rates = {};  // or without data
   bool precession = true;
 
   KOKKOS_FORCEINLINE_FUNCTION bool any() const { return rates.data || dampings.data; }
-  /// A, where `h` is H with all terms.
+  /// Returns A, where `h` is H with all terms.
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> of(Site const& site, Vec3<Value> const& m,
                                              Vec3<Value> const& h) const {

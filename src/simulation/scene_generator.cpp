@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "scene_generator.hpp"
 
-#include "dear_method.hpp"
 #include "io/scene.hpp"
+#include "multirate_method.hpp"
+#include "own_field_beside.hpp"
+#include "sites_of_cell.hpp"
 #include "space.hpp"
 #include "terms_along_row.hpp"
 
@@ -65,14 +67,16 @@ void SceneGeneratorNow<Spins>::find_row_ends(
 }
 
 template <class Spins>
-SceneField<Spins> field_of(io::Scene const& scene, Lattice const& lattice, bool has_dear) {
+SceneField<Spins> field_of(io::Scene const& scene, Lattice const& lattice, bool has_slow) {
   std::optional<FieldInPass<Spins>> pass;
   if (io::needs_pass(scene)) pass.emplace(scene, lattice);
   auto field = io::without_numbers_of_sites(scene.field);
+  if (slab_of_moments(scene)) field.slab_demag.reset();
   std::error_code ignored;
-  if (field.demag && std::filesystem::is_regular_file(scene.path, ignored))
+  if (field.demag && !field.demag->dipoles && std::filesystem::is_regular_file(scene.path, ignored))
     field.demag->kept_in = std::filesystem::path(scene.path).replace_extension(".demag");
-  return SceneField<Spins>(field, lattice, has_dear, std::move(pass));
+  field = with_joined_own_field<typename Spins::value_type>(scene, std::move(field), lattice);
+  return SceneField<Spins>(field, lattice, has_slow, std::move(pass));
 }
 
 template <class Spins>
@@ -84,7 +88,7 @@ SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lat
 template <class Spins>
 SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lattice,
                                       std::vector<SymmetricTensor> const& inverse_inertia)
-    : llg_(field_of<Spins>(scene, lattice, has_dear_field(scene)), scene.system.damping,
+    : llg_(field_of<Spins>(scene, lattice, has_slow_field(scene)), scene.system.damping,
            scene.system.precession || scene.system.dampings.there()),
       is_llg_(scene.system.kind == io::SystemKind::llg),
       orthogonal_(scene.integrator.generator == io::Generator::orthogonal),
@@ -104,7 +108,7 @@ SceneGeneratorNow<Spins> SceneGenerator<Spins>::now(
     LandauLifshitz<SceneFieldNow<typename Spins::value_type>> const& llg,
     SceneBodiesNow<typename SceneBodies<Spins>::Many> const& bodies) const {
   SceneGeneratorNow<Spins> now{llg, bodies, is_llg_, orthogonal_};
-  if (!is_llg_) {  // rows have the A of bodies in place of H
+  if (!is_llg_) {  // for bodies, rows have A instead of H
     auto field = llg.field();
     field.along_rows.is_whole = true;
     now.llg = LandauLifshitz(field, 0);

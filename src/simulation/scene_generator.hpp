@@ -19,15 +19,15 @@ struct Scene;
 
 namespace cayspin::simulation {
 
-/// The A of any scene at one instant, for kernels. One type for all scenes: which system it is, and
-/// whether the part along the spin is removed, is asked at run time.
+/// The A of any scene at one instant, for kernels. One type for all scenes: the system, and whether
+/// the component along the spin is removed, are selected at run time.
 template <class Spins>
 struct SceneGeneratorNow {
   LandauLifshitz<SceneFieldNow<typename Spins::value_type>> llg;
   SceneBodiesNow<typename SceneBodies<Spins>::Many> bodies;
   bool is_llg, orthogonal;
   OwnOfSites<typename Spins::value_type> own = {};
-  bool is_changed = false;  // set by begin_row: A in H is not yet all
+  bool is_changed = false;  // set by begin_row: A in H is not complete
 
   static constexpr int row_fields = cayspin::detail::row_fields<decltype(llg)>;
   void begin_row(cayspin::detail::RowOfSpins<typename Spins::value_type> const& row,
@@ -36,7 +36,7 @@ struct SceneGeneratorNow {
     llg.begin_row(row, begin, end, fields);
     is_changed = orthogonal || own.any();
   }
-  /// The A of bodies it finds whole, in place of H.
+  /// For bodies it finds the complete A, instead of H.
   void find_row_ends(cayspin::detail::RowOfSpins<typename Spins::value_type> const& row,
                      std::int32_t begin, std::int32_t end,
                      cayspin::detail::RowFields<typename Spins::value_type> const& fields,
@@ -69,14 +69,14 @@ struct SceneGeneratorNow {
     return own.of(rates.site(), m, is_llg ? rate_of(llg, m, rates) : rate_of(bodies, m, rates));
   }
 
-  /// With the part along the spin.
+  /// Returns the generator with its component along the spin.
   SceneGeneratorNow bare() const {
     auto other = *this;
     other.orthogonal = false;
     return other;
   }
 
-  // Series of rigid bodies have a generator of their own.
+  // Series of rigid bodies have a separate generator.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> series_source(
       Stencil const& stencil) const {
@@ -115,7 +115,8 @@ struct SceneGeneratorNow {
     }
     return a;
   }
-  /// A by the numbers of sites, and without its part along the spin where that is removed.
+  /// Applies the site-dependent numbers to A, and removes its component along the spin if
+  /// requested.
   template <class Spin, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector changed(Spin const& spin, Vector const& a) const {
     Vector const own_a = own.of(spin.site(), spin.center(), a);
@@ -123,14 +124,14 @@ struct SceneGeneratorNow {
   }
 };
 
-/// The generator that a scene's [system], [field] and integrator.generator describe.
+/// The generator described by a scene's [system], [field] and integrator.generator.
 template <class Spins>
 class SceneGenerator {
  public:
-  /// Throws io::SceneError for an inertia that cannot be.
+  /// Throws io::SceneError for an invalid inertia.
   SceneGenerator(io::Scene const& scene, Lattice const& lattice);
 
-  /// For rigid bodies whose inverse inertia is in memory; the scene's own is not looked at.
+  /// For rigid bodies whose inverse inertia is in memory; ignores the scene's own.
   SceneGenerator(io::Scene const& scene, Lattice const& lattice,
                  std::vector<SymmetricTensor> const& inverse_inertia);
 
@@ -140,12 +141,12 @@ class SceneGenerator {
     return !is_llg_ || llg_.is_stationary(exec, spins);
   }
   template <class Exec>
-  bool needs_time_alone(Exec const& exec, Spins const& spins) const {
-    return !is_llg_ || llg_.needs_time_alone(exec, spins);
+  bool needs_only_time(Exec const& exec, Spins const& spins) const {
+    return !is_llg_ || llg_.needs_only_time(exec, spins);
   }
   template <class Exec>
-  bool rows_need_time_alone(Exec const& exec, Spins const& spins) const {
-    return !is_llg_ || llg_.rows_need_time_alone(exec, spins);
+  bool rows_need_only_time(Exec const& exec, Spins const& spins) const {
+    return !is_llg_ || llg_.rows_need_only_time(exec, spins);
   }
   LandauLifshitz<SceneField<Spins>> const& landau_lifshitz() const { return llg_; }
   RigidBodies<Spins> rigid_bodies() const { return {bodies_, orthogonal_}; }
@@ -153,10 +154,10 @@ class SceneGenerator {
   bool is_affine() const { return llg_.field().is_affine(); }
   bool conserves_energy() const { return !is_llg_ || llg_.conserves_energy(); }
 
-  /// The effective field alone, as the generator of a precession about it.
+  /// Returns the generator of undamped precession about the effective field.
   SceneGenerator precession_alone() const;
 
-  /// Compiled in scene_generator.cpp alone, for the spaces of space.hpp.
+  /// Compiled only in scene_generator.cpp, for the spaces of space.hpp.
   template <class Exec>
   SceneGeneratorNow<Spins> prepare(Exec const& exec, Spins const& spins, double t) const;
   template <class Exec>
@@ -176,8 +177,8 @@ class SceneGenerator {
       SceneBodiesNow<typename SceneBodies<Spins>::Many> const& bodies) const;
 };
 
-/// cayspin::sample, with the magnetization of a scene's own moments, of sites that have a spin.
-/// `of_scene`: its generator or its field, of which the energy is taken.
+/// cayspin::sample with the magnetization of a scene's moments, over sites that have a spin.
+/// `of_scene`: its generator or its field, which gives the energy.
 template <class Exec, class OfScene, class Spins, class... Generators>
 Sample sample_scene(Exec const& exec, OfScene const& of_scene, Step const& step, Spins const& spins,
                     Generators const&... generators) {
@@ -195,7 +196,7 @@ Sample sample_scene(Exec const& exec, OfScene const& of_scene, Step const& step,
   return found;
 }
 
-/// The isotropies that are a number, zero among them: asked at run time.
+/// The isotropies that are a constant, including zero; selected at run time.
 struct SceneIsotropy {
   double sigma = 0;
 

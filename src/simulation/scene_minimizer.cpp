@@ -14,23 +14,28 @@ namespace cayspin::simulation {
 void require_rest(io::Scene const& scene) {
   if (scene.system.kind != io::SystemKind::llg)
     throw io::scene_error(scene, "system.kind",
-                          "rigid bodies have no state of rest; accepted: \"llg\"");
+                          "rigid bodies have no equilibrium; accepted: \"llg\"");
+  if (io::has_torque(scene.field))
+    throw io::scene_error(scene, "torque",
+                          "moves spins for ever, and an equilibrium needs an energy that falls; "
+                          "accepted: no such table");
   if (is_thermal(scene))
     throw io::scene_error(scene, "thermal.temperature",
-                          "a state of rest has no temperature; accepted: temperature = 0");
+                          "an equilibrium has no temperature; accepted: temperature = 0");
 }
 
 Plan make_plan_to_relax(io::Scene const& scene, Precision precision) {
+  io::require_no_ensemble(scene, "this command");
   require_rest(scene);
   auto without_steps = scene;
   without_steps.integrator.steps = 0;
   without_steps.integrator.substeps = 1;
-  // A search evaluates all terms alike.
-  if (auto& slab = without_steps.field.slab_demag; slab && slab->dear) {
-    slab->dear = false;
+  // A search evaluates all terms equally often.
+  if (auto& slab = without_steps.field.slab_demag; slab && slab->multirate) {
+    slab->multirate = false;
     slab->on_host = true;
   }
-  if (auto& demag = without_steps.field.demag) demag->dear = false;
+  if (auto& demag = without_steps.field.demag) demag->multirate = false;
   auto plan = make_plan(without_steps, precision);
   auto const states = static_cast<std::int64_t>(io::fields_in_turn(scene).size());
   plan.frames *= states;

@@ -8,14 +8,14 @@
 
 namespace cayspin::simulation {
 
-/// Throws io::SceneError for what has no state of rest: rigid bodies, and spins at a temperature.
+/// Throws io::SceneError for scenes without equilibria: rigid bodies, and spins at a temperature.
 void require_rest(io::Scene const& scene);
 
-/// The plan of a search for the states of rest of a scene: memory of the search, a frame for each.
-/// Throws as require_rest and make_plan do.
+/// Plans a search for the equilibria of a scene: its memory, and a frame for each. Throws like
+/// require_rest and make_plan.
 Plan make_plan_to_relax(io::Scene const& scene, Precision precision);
 
-/// Finds states of rest of the fields of a scene. Keeps its memory from one to the next.
+/// Search for equilibria of the fields of a scene. Reuses its memory.
 template <class Real, class Space>
 class SceneMinimizer {
  public:
@@ -23,7 +23,8 @@ class SceneMinimizer {
 
   explicit SceneMinimizer(Spins const& like) : minimizer_(like) {}
 
-  /// As cayspin::minimize, in reduced numbers. Throws NumbersFailed for a field that is not finite.
+  /// Calls cayspin::minimize, in reduced units. Throws NumbersFailed for a field that is not
+  /// finite.
   Minimum minimize(Space const& exec, io::Scene const& scene, SceneField<Spins> const& field,
                    Spins& spins, MinimizeOptions const& options);
 

@@ -4,9 +4,12 @@
 #include "io/checkpoint.hpp"
 #include "io/notes.hpp"
 #include "io/relax.hpp"
+#include "io/stages.hpp"
 #include "restart.hpp"
 #include "run_files.hpp"
 #include "scene_run_in_space.hpp"
+#include "single_terms.hpp"
+#include "turn.hpp"
 
 #include <cayspin/minimize.hpp>
 #include <cayspin/spin_field.hpp>
@@ -16,31 +19,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <mutex>
 
 namespace cayspin::simulation {
 namespace {
-
-// One for all runs: a space of Kokkos takes work from one thread at a time.
-class Turn {
- public:
-  Turn() : lock_(mutex()) {
-    if (taken_)
-      throw UsageError("a field or an observer's question may not use a run that is stepping");
-    taken_ = true;
-  }
-  ~Turn() { taken_ = false; }
-  Turn(Turn const&) = delete;
-  Turn& operator=(Turn const&) = delete;
-
- private:
-  static std::recursive_mutex& mutex() {
-    static std::recursive_mutex one;
-    return one;
-  }
-  static inline bool taken_ = false;
-  std::lock_guard<std::recursive_mutex> lock_;
-};
 
 void start_kokkos(std::string const& space, std::optional<int> threads) {
   if (Kokkos::is_initialized()) return;
@@ -63,7 +44,7 @@ Plan plan_of(io::Scene const& scene, Precision precision) {
                           "\"auto\" is chosen by the program; accepted: the method and dt or "
                           "tolerance that `cayspin advise` names");
   auto plan = make_plan(scene, precision);
-  // A scene of no steps has no end. What its field does is seen from step to step alone.
+  // A scene of no steps has no end. The features of its field are only found step by step.
   if (scene.integrator.steps == 0) {
     auto& steps = plan.options.steps;
     steps.end = std::numeric_limits<double>::infinity();
@@ -115,7 +96,7 @@ io::Scene with_reduced_own_field(io::Scene scene) {
   return scene;
 }
 
-// The program gave the vectors by `name`, for which no text has a key.
+// Reports the argument `name`, because vectors passed by a program have no key.
 template <class Error>
 std::vector<double> normalised(io::Scene const& scene, std::string const& name) {
   constexpr std::string_view key = "initial.given: ";
@@ -150,21 +131,25 @@ template std::vector<double> packed(io::HostVectors const&);
 template std::vector<float> packed(io::HostVectors const&);
 
 SceneRun::SceneRun(io::Scene const& scene, Plan const& plan, Precision precision, std::string space)
-    : scene_(scene), plan_(plan), precision_(precision), space_(std::move(space)) {}
+    : scene_(scene), held_plan_(plan), precision_(precision), space_(std::move(space)) {}
 
 std::unique_ptr<SceneRun> SceneRun::open(io::Scene const& typed, RunSettings const& settings) {
   Turn const turn;
+  io::require_no_stages(typed, "a Simulation");
+  io::require_no_ensemble(typed, "a Simulation");
   auto const scene = io::with_shape_of_start(typed);
   io::check_files(scene);
   auto const space = space_of(settings.space);
   if (settings.threads && *settings.threads < 1)
     throw UsageError(fmt::format("{} threads; accepted: a whole number >= 1", *settings.threads));
   start_kokkos(space, settings.threads);
-  auto const own = with_reduced_own_field(scene);
+  auto own = with_reduced_own_field(scene);
+  std::optional<EarlierRun> left;
+  if (settings.restart) own.begin = left.emplace(*settings.restart).enter({{{}, {}, own}});
   auto const plan = plan_of(own, settings.precision);
   std::optional<Restart> restart;
-  if (settings.restart)
-    restart.emplace(EarlierRun(*settings.restart), own, plan, settings.precision,
+  if (left)
+    restart.emplace(std::move(*left), own, plan, settings.precision,
                     std::numeric_limits<std::int64_t>::max());
   auto run = in_space(
       space, settings.precision, [&]<class Real, class Space>() -> std::unique_ptr<SceneRun> {
@@ -172,9 +157,11 @@ std::unique_ptr<SceneRun> SceneRun::open(io::Scene const& typed, RunSettings con
             own, plan, settings.precision, space,
             restart ? restart->spins(own) : normalised<io::SceneError>(own, "initial"));
       });
+  run->typed_own_ = scene.field.own;
   if (!restart) return run;
   run->number_ = restart->step();
   run->restart_warning_ = restart->warning();
+  run->go_on_from(restart->shift());
   if (restart->memory()) run->exchange(*restart->memory());
   return run;
 }
@@ -186,49 +173,77 @@ void SceneRun::save(std::filesystem::path const& checkpoint) {
   file.commit();
 }
 
-bool SceneRun::remembers() const { return simulation::remembers(scene_, plan_); }
+bool SceneRun::remembers() const { return simulation::remembers(scene_, plan()); }
 
 std::optional<std::string> SceneRun::warning() const {
-  auto plan = plan_;
-  if (scene_.integrator.steps == 0) plan.times.steps = 1;  // no end
+  auto plan = *held_plan_;
+  if (scene_.integrator.steps == 0) plan.times.steps = plan.times.first + 1;  // no end
   return dt_warning(scene_, plan);
 }
 
 std::int64_t SceneRun::step_at(double t) const {
   if (!std::isfinite(t)) throw UsageError(fmt::format("t = {}; accepted: a finite time >= 0", t));
-  double const dt = plan_.times.dt * scene_.units.time;
-  double const steps = t / dt, whole = std::round(steps);
+  double const dt = plan().times.dt * scene_.units.time;
+  double const begin = plan().times.begin * scene_.units.time;
+  double const steps = (t - begin) / dt, whole = std::round(steps);
+  auto const origin = static_cast<double>(plan().times.origin);
   if (!(std::abs(steps - whole) <= 1e-9 * std::max(1.0, 1e-6 * whole)) || !(whole >= 0) ||
-      !(whole <= 0x1p53))
+      !(origin + whole <= 0x1p53))
     throw UsageError(
-        fmt::format("t = {} is {:.12g} steps of dt = {}; accepted: a whole number of "
+        fmt::format("t = {} is {:.12g} steps of dt = {}{}; accepted: a whole number of "
                     "steps, such as t = {:.12g}",
-                    t, steps, dt, std::max(0.0, whole) * dt));
-  return static_cast<std::int64_t>(whole);
+                    t, steps, dt, begin > 0 ? fmt::format(" after t = {:.12g}", begin) : "",
+                    begin + std::max(0.0, whole) * dt));
+  return plan().times.origin + static_cast<std::int64_t>(whole);
 }
 
 void SceneRun::require_reachable(std::int64_t count) const {
   if (!io::has_integrator(scene_))
-    throw UsageError("the scene has no table [integrator]; accepted: a search for a state of rest");
+    throw UsageError("the scene has no table [integrator]; accepted: a search for an equilibrium");
   if (count < 0) throw UsageError(fmt::format("{} steps; accepted: a whole number >= 0", count));
   constexpr std::int64_t last = std::int64_t{1} << 53U;  // times beyond it are not exact
   if (count > last - number_)
     throw UsageError(
         fmt::format("{} steps after step {}; accepted: up to step {}", count, steps(), last));
   std::int64_t const target = number_ + count;
-  if (std::isfinite(plan_.options.steps.end) && plan_.variant.method->adaptive &&
-      target > scene_.integrator.steps)
+  if (std::isfinite(plan().options.steps.end) && plan().variant.method->adaptive &&
+      target > last_step())
     throw UsageError(fmt::format(
         "step {} lies beyond step {}, t = {:.9g}, where the scene ends and its adaptive method "
         "stops; accepted: a later integrator.end, or integrator.steps = 0 for a run without end",
-        target, scene_.integrator.steps,
-        plan_.times.at(scene_.integrator.steps) * scene_.units.time));
+        target, last_step(), plan().times.at(last_step()) * scene_.units.time));
 }
 
 Advanced SceneRun::advance(std::int64_t count, Looks const& looks) {
   Turn const turn;
   require_reachable(count);
   return advance_to(number_ + count, looks);
+}
+
+io::Scene SceneRun::typed_scene() const {
+  auto scene = scene_;
+  scene.field.own = typed_own_;
+  scene.begin = {};
+  return scene;
+}
+
+void SceneRun::change(std::vector<std::string> const& overrides, io::Given const& given) {
+  Turn const turn;
+  auto typed = io::changed_on_the_way(scene_, overrides, given);
+  auto own = typed_own_;
+  if (typed.field.applied) own.uniform = nullptr;
+  typed.field.own = own;
+  require_same_terms(scene_, typed);
+  if (io::has_integrator(typed)) io::check_combination(typed);
+  io::check_files(typed);
+  auto reduced = with_reduced_own_field(typed);
+  auto const begin = io::begin_after(scene_, number_, reduced);
+  reduced.begin = {0, begin.step, begin.time};
+  auto const plan = plan_of(reduced, precision_);
+  rebuild(reduced, plan);
+  scene_ = std::move(reduced);
+  held_plan_.emplace(plan);
+  typed_own_ = std::move(own);
 }
 
 Minimum SceneRun::relax(RelaxSettings const& settings) {
@@ -266,6 +281,21 @@ Minimum SceneRun::relax(RelaxSettings const& settings) {
   return found;
 }
 
+FoundModes SceneRun::modes(ModesOptions const& options) {
+  if (options.count < 1 || options.count > ModesOptions::most)
+    throw UsageError(fmt::format("{} modes; accepted: 1 to {}", options.count, ModesOptions::most));
+  if (!(options.tolerance > 0 && options.tolerance < 1))
+    throw UsageError(
+        fmt::format("tolerance {}; accepted: a number between 0 and 1", options.tolerance));
+  Turn const turn;
+  require_rest(scene_);
+  auto now = options;
+  now.time = reduced_time();
+  auto found = modes_of_field(now);
+  evaluations_ += found.evaluations;
+  return found;
+}
+
 LentVectors SceneRun::spins() {
   Turn const turn;
   return lend_spins();
@@ -290,6 +320,11 @@ Sample SceneRun::sample() {
   now.energy.value *= scene_.units.energy;
   now.energy.magnitude *= scene_.units.energy;
   return now;
+}
+
+std::vector<double> SceneRun::more_of_sample() {
+  Turn const turn;
+  return more();
 }
 
 std::vector<std::pair<std::string, double>> SceneRun::energies() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "found_modes.hpp"
 #include "io/own_field.hpp"
 #include "io/scene.hpp"
 #include "plan.hpp"
@@ -24,43 +25,43 @@ namespace cayspin::simulation {
 struct RunSettings {
   Precision precision = Precision::double_precision;
   std::optional<std::string> space = {};  // default: Kokkos' default
-  std::optional<int> threads = {};        // of host spaces; only the first run of a process has it
-  std::optional<std::filesystem::path> restart = {};  // a checkpoint or trajectory to go on from
+  std::optional<int> threads = {};        // of host spaces; only the first run of a process sets it
+  std::optional<std::filesystem::path> restart = {};  // a checkpoint or trajectory to continue from
 };
 
-/// Vectors of all sites in host memory, which stays there and unchanged as long as `owner` does.
+/// Vectors of all sites in host memory, which stays unchanged as long as `owner` exists.
 struct LentVectors {
   io::HostVectors vectors;
   std::shared_ptr<void const> owner;
 };
 
-/// When a run looks at its numbers, and why it may end early.
+/// When a run checks its state, and why it may end early.
 struct Looks {
-  std::int64_t period = 100;               // steps from one look of the guard to the next
-  bool until_torque = false;               // ends where the scene's until_torque says so
-  std::function<bool()> interrupted = {};  // asked between steps, about twenty times a second
+  std::int64_t period = 100;               // steps between checks by the guard
+  bool until_torque = false;               // ends as the scene's until_torque says
+  std::function<bool()> interrupted = {};  // called between steps, about twenty times a second
 };
 
 enum class Advanced { whole, interrupted, at_rest };
 
-/// How far a state of rest is looked for.
+/// Options of a search for an equilibrium.
 struct RelaxSettings {
   double torque = 1e-6;                    // bound on max |m x H|, in the units of the scene
   std::int64_t evaluations = 100000;       // of the field, at most
-  std::optional<io::Triple> applied = {};  // in place of field.applied
-  bool keep_saddles = false;               // a state without torque is enough
-  std::function<bool()> interrupted = {};  // asked about twenty times a second
+  std::optional<io::Triple> applied = {};  // instead of field.applied
+  bool keep_saddles = false;               // accept any state without torque
+  std::function<bool()> interrupted = {};  // called about twenty times a second
 };
 
-/// A run of a scene, its types erased: what other languages hold. Calls of several threads, also on
-/// several runs, take turns; those that count steps and time do not wait. Kokkos starts with the
-/// first run of a process, unless the program has started it, and ends with the process.
+/// A type-erased run of a scene, for other languages. Calls from several threads, also on several
+/// runs, take turns; the counters of steps and time do not wait. Kokkos starts with the first run
+/// of a process, unless the program has started it, and ends with the process.
 ///
-/// N calls of advance(1) give the bits of one advance(N), and those of `cayspin run`.
+/// N calls of advance(1) give the bits of advance(N), and of `cayspin run`.
 class SceneRun {
  public:
-  /// The fields of the program, scene.field.own, are in the scene's units, too.
-  /// Throws io::SceneError, or UsageError for a space that is not compiled in.
+  /// scene.field.own, the fields of the program, are also in the scene's units. Throws
+  /// io::SceneError, or UsageError for a space that is not compiled in.
   static std::unique_ptr<SceneRun> open(io::Scene const& scene, RunSettings const& settings);
 
   virtual ~SceneRun() = default;
@@ -68,81 +69,108 @@ class SceneRun {
   SceneRun& operator=(SceneRun const&) = delete;
 
   io::Scene const& scene() const { return scene_; }
+  /// Returns the scene for another run, with the fields of the program in the scene's units.
+  io::Scene typed_scene() const;
   Precision precision() const { return precision_; }
   std::string const& space() const { return space_; }
   int threads() const { return threads_; }  // 1 on devices
 
-  /// Steps taken, and the time after them. Times, energies and fields are in the scene's units.
+  /// Return the steps taken, and the time after them. Times, energies and fields are in the scene's
+  /// units.
   std::int64_t steps() const { return number_; }
   double time() const { return reduced_time() * scene_.units.time; }
+  /// Returns the last step of the scene, if it has an end.
+  std::int64_t last_step() const { return scene_.begin.step + scene_.integrator.steps; }
   std::int64_t evaluations() const { return evaluations_; }  // of the generator over all sites
-  /// Steps that an adaptive method took, and those that it threw away.
+  /// Return the accepted and the rejected steps of an adaptive method.
   std::int64_t own_steps() const { return own_steps_; }
   std::int64_t rejected_steps() const { return rejected_; }
-  double step_seconds() const { return step_seconds_; }  // stepping alone
+  double step_seconds() const { return step_seconds_; }  // time spent stepping only
 
-  /// Does it need more than its spins to go on with the same bits?
+  /// Returns true if it needs more than its spins to continue with the same bits.
   bool remembers() const;
 
-  /// What `cayspin run` warns of: a dt that is too large. Throws it as io::SceneError where the
-  /// scene refuses to be unstable.
+  /// Returns the warning of `cayspin run` about a dt that is too large. Throws it as io::SceneError
+  /// if the scene sets refuse_unstable.
   std::optional<std::string> warning() const;
-  /// What of the scene differs from that of the file that the run goes on from, in one line.
+  /// Returns how the scene differs from that of the file from which the run continues, in one line.
   std::optional<std::string> const& restart_warning() const { return restart_warning_; }
 
-  /// The step at time t. Throws UsageError when t is no whole number of steps.
+  /// Returns the step at time t. Throws UsageError when t is not a whole number of steps.
   std::int64_t step_at(double t) const;
 
-  /// Throws what advance(count) throws before its first step.
+  /// Throws what advance(count) would throw before its first step.
   void require_reachable(std::int64_t count) const;
 
-  /// Takes `count` more steps, less when it ends early. Throws UsageError when an adaptive method
-  /// would go beyond the scene's end, NumbersFailed when the numbers do, and what a field of the
-  /// program throws. steps() and the spins are then those before the step that failed.
+  /// Takes `count` more steps, fewer when it ends early. Throws UsageError when an adaptive method
+  /// would go beyond the scene's end, NumbersFailed when the numbers become invalid, and any
+  /// exception of a field of the program. steps() and the spins are then those before the step that
+  /// failed.
   Advanced advance(std::int64_t count, Looks const& looks = {});
 
-  /// Moves the spins to a state of rest of the field now. Time and steps stay. Methods that
-  /// remember steps begin again. The result is in the scene's units. Throws UsageError for settings
-  /// that cannot be, io::SceneError for rigid bodies and temperatures, NumbersFailed for a field
-  /// that is not finite, and what a field of the program throws.
+  /// Continues with changed keys, given as for `cayspin run --set`, from the current state. Steps
+  /// and time continue, and the end of [integrator] counts from here. Multistep methods restart.
+  /// Throws io::SceneError, also for keys that cannot change, and then changes nothing. A new
+  /// field.applied replaces a function of the program.
+  void change(std::vector<std::string> const& overrides, io::Given const& given = {});
+
+  /// Moves the spins to an equilibrium of the current field. Time and steps do not change.
+  /// Multistep methods restart. The result is in the scene's units. Throws UsageError for invalid
+  /// settings, io::SceneError for rigid bodies and temperatures, NumbersFailed for a field that is
+  /// not finite, and any exception of a field of the program.
   Minimum relax(RelaxSettings const& settings = {});
 
-  /// The spins. Memory that is still lent when the run goes on is left as it is: the run moves to
-  /// other memory, by one copy.
+  /// Returns the normal modes about the spins, which must be at equilibrium, in the current field.
+  /// Throws UsageError for invalid options, and what relax() throws.
+  FoundModes modes(ModesOptions const& options = {});
+
+  /// Returns the spins. If the memory is still lent when the run continues, it stays unchanged: the
+  /// run moves to other memory, by one copy.
   LentVectors spins();
-  /// Normalised in double like any start. Methods that remember steps begin again. Throws
+  /// Replaces the spins, normalised in double like any start. Multistep methods restart. Throws
   /// UsageError for a zero or non-finite spin, or another shape.
   void set_spins(io::HostVectors const& from);
 
-  /// Stores all that another run needs to go on with the same bits, by RunSettings::restart.
-  /// Throws std::runtime_error when the file cannot be; one that exists is replaced.
+  /// Stores everything that another run needs to continue with the same bits, by
+  /// RunSettings::restart. Replaces an existing file; throws std::runtime_error if the file cannot
+  /// be written.
   void save(std::filesystem::path const& checkpoint);
 
-  /// Energy, norm defect and magnetization now.
+  /// Returns the current energy, norm defect and magnetization.
   Sample sample();
-  /// The energy of each term of the scene, which it names; of rigid bodies "rotation".
+  /// Returns the further numbers of a sample, in the order of more_scalars().
+  std::vector<double> more_of_sample();
+  /// Returns the cells by which the lattice has followed.
+  virtual std::int64_t shift() const = 0;
+  /// Returns name and energy of each term of the scene; for rigid bodies "rotation".
   std::vector<std::pair<std::string, double>> energies();
-  /// The effective field now. Throws UsageError for rigid bodies.
+  /// Returns the current effective field. Throws UsageError for rigid bodies.
   LentVectors field();
 
  protected:
   SceneRun(io::Scene const& scene, Plan const& plan, Precision precision, std::string space);
 
-  double reduced_time() const { return plan_.times.at(number_); }
+  double reduced_time() const { return plan().times.at(number_); }
 
   virtual Advanced advance_to(std::int64_t target, Looks const& looks) = 0;
   virtual Minimum find_rest(io::Field const& field, MinimizeOptions const& options) = 0;
+  virtual FoundModes modes_of_field(ModesOptions const& options) = 0;
   virtual LentVectors lend_spins() = 0;
+  /// Rebuilds everything but the spins.
+  virtual void rebuild(io::Scene const& scene, Plan const& plan) = 0;
   virtual void replace_spins(std::vector<double> const& start) = 0;
   virtual void exchange(Checkpoint& checkpoint) = 0;
+  virtual void go_on_from(std::int64_t shift) = 0;
   virtual Sample look() = 0;
+  virtual std::vector<double> more() = 0;
   virtual std::vector<std::pair<std::string, double>> term_energies() = 0;
   virtual LentVectors evaluated_field() = 0;
 
   io::Scene scene_;
-  Plan plan_;
+  std::optional<Plan> held_plan_;  // always set; a Plan cannot be assigned
+  Plan const& plan() const { return *held_plan_; }
   std::optional<std::string> restart_warning_;
-  // Other threads read them while the run goes on.
+  // Other threads read these while the run advances.
   std::atomic<std::int64_t> number_ = 0, evaluations_ = 0, own_steps_ = 0, rejected_ = 0;
   std::atomic<double> step_seconds_ = 0;
   int threads_ = 1;
@@ -150,6 +178,7 @@ class SceneRun {
  private:
   Precision precision_;
   std::string space_;
+  io::OwnField typed_own_;  // in the scene's units
 };
 
 /// Vectors packed as (nz, ny, nx, 3).

@@ -4,6 +4,7 @@
 #include "interrupt_poll.hpp"
 #include "running_scene.hpp"
 #include "scene_minimizer.hpp"
+#include "scene_modes.hpp"
 #include "scene_run.hpp"
 
 #include <cayspin/evaluate.hpp>
@@ -11,9 +12,6 @@
 #include <limits>
 
 namespace cayspin::simulation {
-
-/// A scene with each term of its field alone, under the names of their keys.
-std::vector<std::pair<std::string, io::Scene>> single_terms(io::Scene const& scene);
 
 /// A SceneRun in one precision and execution space.
 template <class Real, class Space>
@@ -26,9 +24,12 @@ class SceneRunInSpace final
  public:
   SceneRunInSpace(io::Scene const& scene, Plan const& plan, Precision precision,
                   std::string const& space, std::vector<double> const& start)
-      : SceneRun(scene, plan, precision, space), simulation_(scene, plan, plan.times, start) {
-    threads_ = threads_of(simulation_.exec);
+      : SceneRun(scene, plan, precision, space),
+        simulation_(std::make_unique<RunningScene<Real, Space>>(scene, plan, plan.times, start)) {
+    threads_ = threads_of(simulation_->exec);
   }
+
+  std::int64_t shift() const override { return simulation_->shift(); }
 
  private:
   Advanced advance_to(std::int64_t target, Looks const& looks) override {
@@ -39,12 +40,15 @@ class SceneRunInSpace final
     failure_.reset();
     ended_ = Advanced::whole;
     seen_ = number_;
-    simulation_.times = {0, plan_.times.dt, target, number_, continues_};
-    // What throws may have left the method's memory within a step.
+    simulation_->times = plan().times;
+    simulation_->times.steps = target;
+    simulation_->times.first = number_;
+    simulation_->times.continues = continues_;
+    // An exception may have left the method's memory within a step.
     continues_ = false;
     Ending ending;
     try {
-      ending = simulation_.advance(*this);
+      ending = simulation_->advance(*this);
     } catch (...) {
       number_ = seen_;
       throw;
@@ -63,12 +67,12 @@ class SceneRunInSpace final
     return ended_;
   }
 
-  // RunObserver
+  // Implements RunObserver.
   bool due(Step const& step) const override {
     // An adaptive method leaves the spins as they were last due, at most 1000 steps ago.
     bool const is_adaptive = scene_.integrator.tolerance.has_value();
     if (!is_adaptive) seen_ = step.number;
-    // After the last step there is nothing to end: a yes would be lost.
+    // Do not poll after the last step: integrate() ignores a stop there.
     return step.number >= std::min(next_look_, seen_ + most_unseen) ||
            (!step.last && (*interrupt_)());
   }
@@ -84,7 +88,7 @@ class SceneRunInSpace final
     bool const first = looked_ < 0;
     looked_ = step.number;
     next_look_ = step.number + looks_.period;
-    auto const found = simulation_.look(exec, step, spins, looks_.until_torque);
+    auto const found = simulation_->look(exec, step, spins, looks_.until_torque);
     failure_ = found.failure;
     if (failure_) return Next::stop;
     if (first || !found.at_rest) return Next::proceed;
@@ -94,26 +98,41 @@ class SceneRunInSpace final
 
   LentVectors lend_spins() override {
     if constexpr (on_host) {
-      if (!lent_) lent_ = std::make_shared<Spins>(simulation_.spins);
+      if (!lent_) lent_ = std::make_shared<Spins>(simulation_->spins);
       return {host_vectors(*lent_), lent_};
     } else {
-      return lend_copy(simulation_.spins);
+      return lend_copy(simulation_->spins);
     }
   }
   void leave_lent_memory(bool copy_spins) {
     if (lent_.use_count() > 1) {
-      Spins const other("spins", plan_.lattice);
+      Spins const other("spins", plan().lattice);
       if (copy_spins)
-        Kokkos::deep_copy(simulation_.exec, other.allocation(), simulation_.spins.allocation());
-      simulation_.exec.fence("cayspin::SceneRun: spins moved");
-      simulation_.spins = other;
+        Kokkos::deep_copy(simulation_->exec, other.allocation(), simulation_->spins.allocation());
+      simulation_->exec.fence("cayspin::SceneRun: spins moved");
+      simulation_->spins = other;
     }
     lent_.reset();
   }
 
+  void rebuild(io::Scene const& scene, Plan const& plan) override {
+    auto const numbers = copy_to_host(simulation_->spins);
+    std::vector<double> const start(numbers.begin(), numbers.end());
+    auto times = plan.times;
+    times.first = number_;
+    auto const followed = shift();
+    simulation_ = std::make_unique<RunningScene<Real, Space>>(scene, plan, times, start);
+    simulation_->go_on_from(followed);
+    lent_.reset();
+    terms_.reset();
+    continues_ = false;
+    looked_ = -1;
+    next_look_ = number_;
+  }
+
   void replace_spins(std::vector<double> const& start) override {
     leave_lent_memory(false);
-    copy_from_host(start, simulation_.spins);
+    copy_from_host(start, simulation_->spins);
     begin_again();
   }
 
@@ -121,58 +140,62 @@ class SceneRunInSpace final
     leave_lent_memory(true);
     if (!minimizer_) {
       require_memory(scene_, make_plan_to_relax(scene_, precision()));
-      minimizer_.emplace(simulation_.spins);
+      minimizer_.emplace(simulation_->spins);
     }
     auto in_field = scene_;
     in_field.field = field;
-    auto const sought = field_of<Spins>(in_field, plan_.lattice, false).made_for(FieldFor::energy);
-    // What could be refused has been: until here a run goes on as it was.
+    auto const sought = field_of<Spins>(in_field, plan().lattice, false).made_for(FieldFor::energy);
+    // All checks have passed: up to here an exception leaves the run unchanged.
     begin_again();
-    return minimizer_->minimize(simulation_.exec, scene_, sought, simulation_.spins, options);
+    return minimizer_->minimize(simulation_->exec, scene_, sought, simulation_->spins, options);
   }
 
-  // With other spins.
+  FoundModes modes_of_field(ModesOptions const& options) override {
+    require_memory(scene_, make_plan_of_modes(scene_, precision(), options, false));
+    auto const field = field_of<Spins>(scene_, plan().lattice, false).made_for(FieldFor::energy);
+    return find_modes<Real, Space>(simulation_->exec, scene_, field, simulation_->spins, options);
+  }
+
+  // Call after the spins were replaced.
   void begin_again() {
     continues_ = false;
     looked_ = -1;
     next_look_ = number_;
-    simulation_.begin_again(scene_);
+    simulation_->begin_again(scene_);
   }
 
   void exchange(Checkpoint& checkpoint) override {
-    simulation_.exchange(checkpoint, continues_);
+    simulation_->exchange(checkpoint, continues_);
     if (!checkpoint.restores()) return;
-    looked_ = simulation_.guard().last_look();
+    looked_ = simulation_->guard().last_look();
     next_look_ = looked_ < 0 ? steps() : std::numeric_limits<std::int64_t>::max();
   }
 
+  void go_on_from(std::int64_t shift) override { simulation_->go_on_from(shift); }
+
   Sample look() override {
-    return sample_scene(simulation_.exec, simulation_.generator, now(), simulation_.spins);
+    return sample_scene(simulation_->exec, simulation_->generator, now(), simulation_->spins);
   }
 
   std::vector<std::pair<std::string, double>> term_energies() override {
+    if (!terms_) terms_.emplace(scene_, plan().lattice);
+    auto const found = (*terms_)(simulation_->exec, now(), simulation_->spins);
     std::vector<std::pair<std::string, double>> energies;
-    if (scene_.system.kind == io::SystemKind::rigid_body) {
-      energies.emplace_back("rotation", look().energy.value);
-      return energies;
-    }
-    if (terms_.empty())
-      for (auto const& [name, alone] : single_terms(scene_)) {
-        terms_.emplace_back(name, SceneGenerator<Spins>(alone, plan_.lattice));
-      }
-    for (auto const& [name, generator] : terms_)
-      energies.emplace_back(
-          name,
-          cayspin::sample(simulation_.exec, generator, now(), simulation_.spins).energy.value);
+    for (std::size_t term = 0; term < found.size(); ++term)
+      energies.emplace_back(terms_->names()[term], found[term]);
     return energies;
   }
 
+  std::vector<double> more() override {
+    return simulation_->more(simulation_->exec, now(), simulation_->spins);
+  }
+
   LentVectors evaluated_field() override {
-    Vectors const field("field", plan_.lattice);
-    evaluate_field(simulation_.exec,
-                   simulation_.generator.landau_lifshitz().field().made_for(FieldFor::itself),
-                   simulation_.spins, reduced_time(), field);
-    simulation_.exec.fence("cayspin::SceneRun: field evaluated");
+    Vectors const field("field", plan().lattice);
+    evaluate_field(simulation_->exec,
+                   simulation_->generator.landau_lifshitz().field().made_for(FieldFor::itself),
+                   simulation_->spins, reduced_time(), field);
+    simulation_->exec.fence("cayspin::SceneRun: field evaluated");
     if constexpr (on_host)
       return {host_vectors(field), std::make_shared<Vectors>(field)};
     else
@@ -181,7 +204,7 @@ class SceneRunInSpace final
 
   static constexpr bool on_host = cayspin::detail::is_host_execution<Space>;
 
-  // Of vectors on a device.
+  // For vectors on a device.
   template <class Field>
   LentVectors lend_copy(Field const& field) {
     auto const numbers = std::make_shared<std::vector<Real>>(copy_to_host(field));
@@ -191,11 +214,11 @@ class SceneRunInSpace final
         numbers};
   }
 
-  Step now() const { return {number_, reduced_time(), plan_.times.dt, false}; }
+  Step now() const { return {number_, reduced_time(), plan().times.dt, false}; }
 
-  RunningScene<Real, Space> simulation_;
+  std::unique_ptr<RunningScene<Real, Space>> simulation_;
   std::optional<SceneMinimizer<Real, Space>> minimizer_;
-  std::vector<std::pair<std::string, SceneGenerator<Spins>>> terms_;
+  std::optional<TermEnergies<Spins>> terms_;
   std::shared_ptr<Spins> lent_;
 
   Looks looks_;
@@ -203,8 +226,8 @@ class SceneRunInSpace final
   std::optional<std::string> failure_;
   Advanced ended_ = Advanced::whole;
   bool continues_ = false;
-  std::int64_t looked_ = -1, next_look_ = 0;  // steps of the guard's looks
-  mutable std::int64_t seen_ = 0;             // the step whose state the spins have, if one fails
+  std::int64_t looked_ = -1, next_look_ = 0;  // steps of the guard's checks
+  mutable std::int64_t seen_ = 0;             // the step of the spins if a later one fails
   static constexpr std::int64_t most_unseen = 1000;
 };
 

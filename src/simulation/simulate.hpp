@@ -29,13 +29,13 @@ class RunObserver {
   virtual Next operator()(Exec const& exec, Step const& step, Spins const& spins) = 0;
 };
 
-/// How a simulation ended.
+/// Result of a simulation.
 struct Ending {
   Summary summary = {};
   std::optional<std::string> failure = {};  // why its numbers failed, if they did
 };
 
-/// A scene in memory, in one precision and execution space: all that a method needs to run it.
+/// A scene in memory, in one precision and execution space, with everything that a method needs.
 template <class Real, class Space>
 struct Simulation {
   using Exec = Space;
@@ -57,11 +57,12 @@ struct Simulation {
              std::vector<double> const& start)
       : Simulation(lattice, times_of_run, start, SceneGenerator<Spins>(scene, lattice)) {}
 
-  /// Runs to the end of the times, or as far as the numbers or `observed_by` let it.
+  /// Runs to the end of the times, or until a failure or a stop by `observed_by`.
   Ending advance(OpenMethod& method, RunObserver<Exec, Spins>& observed_by);
 };
 
-/// The spaces compiled in, behind a first type that is none.
+/// Lists the spaces compiled in. The first parameter is ignored, so that a macro can write the
+/// others with commas before them.
 template <class, class... Spaces>
 struct SpaceList {
   using AnySimulation = std::variant<Simulation<double, Spaces>*..., Simulation<float, Spaces>*...>;
@@ -79,7 +80,7 @@ using EnabledSpaces = SpaceList<void CAYSPIN_FOR_EACH_SPACE(CAYSPIN_LISTED, )>;
 
 using AnySimulation = EnabledSpaces::AnySimulation;
 
-/// work.template operator()<Real, Space>() for the precision and for the space of that name.
+/// Calls work.template operator()<Real, Space>() for the precision and the space of that name.
 template <class Work>
 auto in_space(std::string const& space, Precision precision, Work const& work) {
   std::optional<decltype(work.template operator()<double, Kokkos::DefaultExecutionSpace>())> result;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "scene_run_in_space.hpp"
+#include "single_terms.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace cayspin::simulation {
 
@@ -13,6 +16,9 @@ std::vector<std::pair<std::string, io::Scene>> single_terms(io::Scene const& sce
     alone.mu0 = field.mu0;
     alone.exchange_factors = field.exchange_factors;
     alone.dmi_factors = field.dmi_factors;
+    alone.dmi_normals = field.dmi_normals;
+    alone.exchange_between = field.exchange_between;
+    alone.in_time = field.in_time;
     return alone;
   };
   std::apply(
@@ -24,28 +30,56 @@ std::vector<std::pair<std::string, io::Scene>> single_terms(io::Scene const& sce
         (add_lattice_term(member), ...);
       },
       io::Field::lattice_terms);
+  if (field.d2d_dmi) add("dmi").d2d_dmi = field.d2d_dmi;
+  if (!field.interlayers.empty()) {
+    auto& alone = add("interlayer");
+    alone.interlayers = field.interlayers;
+    alone.exchange_at_faces = field.exchange_at_faces;
+  }
   if (!field.couplings.empty() || !field.couplings_file.empty()) {
     auto& alone = add("couplings");
     alone.couplings = field.couplings;
     alone.couplings_file = field.couplings_file;
     alone.couplings_scale = field.couplings_scale;
   }
-  if (!field.anisotropies.empty() || !field.cubic_anisotropies.empty()) {
+  if (!field.anisotropies.empty() || !field.crystal_anisotropies.empty()) {
     auto& alone = add("anisotropy");
     alone.anisotropies = field.anisotropies;
-    alone.cubic_anisotropies = field.cubic_anisotropies;
+    alone.crystal_anisotropies = field.crystal_anisotropies;
   }
   if (field.applied) add("applied").applied = field.applied;
+  if (!field.sources.empty()) add("sources").sources = field.sources;
   if (field.own.uniform) add("applied").own.uniform = field.own.uniform;
   if (field.slab_demag) add("slab_demag").slab_demag = field.slab_demag;
-  if (field.demag) add("demag").demag = field.demag;
+  if (field.demag) add(field.demag->key).demag = field.demag;
   if (field.own.nonlocal) add("nonlocal").own.nonlocal = field.own.nonlocal;
   for (auto& [name, alone] : terms) {
     auto& of_alone = alone.field;
-    if (!of_alone.exchange) of_alone.exchange_factors = {};
-    if (!of_alone.dmi && !of_alone.bulk_dmi) of_alone.dmi_factors = {};
+    if (!of_alone.exchange) of_alone.exchange_factors = {}, of_alone.exchange_between.clear();
+    if (!of_alone.has_dmi()) of_alone.dmi_factors = {};
   }
   return terms;
+}
+
+io::MoreScalars more_scalars(io::Scene const& scene) {
+  io::MoreScalars more;
+  if (scene.output.regions) more.regions = io::region_count(scene);
+  if (scene.output.terms && scene.system.kind == io::SystemKind::rigid_body)
+    more.terms = {"rotation"};
+  else if (scene.output.terms)
+    for (auto const& term : single_terms(scene)) more.terms.push_back(term.first);
+  more.shift = scene.lattice.follow.has_value();
+  return more;
+}
+
+void require_same_terms(io::Scene const& first, io::Scene const& scene) {
+  auto const before = more_scalars(first).terms;
+  if (more_scalars(scene).terms == before) return;
+  throw io::scene_error(
+      scene, "field",
+      fmt::format("has other terms than at the begin, and output.terms stores the energy of each; "
+                  "accepted: the terms {}, or output.terms = false",
+                  fmt::join(before, ", ")));
 }
 
 }  // namespace cayspin::simulation

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace cayspin::simulation {
@@ -17,7 +18,7 @@ struct SitesOfCell {
   std::vector<CubicAnisotropy> cubics;
 };
 
-/// What a scene says of each.
+/// Returns a scene's constants for each site of the cell.
 inline SitesOfCell sites_of_cell(io::Scene const& scene) {
   SitesOfCell all;
   auto const& field = scene.field;
@@ -28,14 +29,21 @@ inline SitesOfCell sites_of_cell(io::Scene const& scene) {
     site.per_moment = io::over_moment(scene.lattice, number, 1);
     site.gyromagnetic = io::of_cell_site(scene.lattice.gyromagnetic, number);
     for (auto const& term : field.anisotropies)
-      if (is_here(term.site) && !term.factors.there()) site.quadratic.add(term.constant, term.axis);
+      if (is_here(term.site) && !term.is_of_sites()) site.quadratic.add(term.constant, term.axis);
     site.first_cubic = static_cast<std::int32_t>(all.cubics.size());
-    for (auto const& term : field.cubic_anisotropies)
-      if (is_here(term.site))
+    for (auto const& term : field.crystal_anisotropies)
+      if (is_here(term.site) && term.is_plain())
         all.cubics.emplace_back(term.constant, vector(term.axes[0]), vector(term.axes[1]));
     site.last_cubic = static_cast<std::int32_t>(all.cubics.size());
   }
   return all;
+}
+
+/// Returns a slab's field if it is local and each site has its own moment.
+inline std::optional<io::SlabDemagnetization> slab_of_moments(io::Scene const& scene) {
+  auto const& slab = scene.field.slab_demag;
+  if (!slab || slab->on_host || !scene.lattice.moments_of_sites.there()) return std::nullopt;
+  return slab;
 }
 
 }  // namespace cayspin::simulation

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "moments_along_row.hpp"
 #include "pass_terms.hpp"
 
 #include <cayspin/detail/row_fields.hpp>
@@ -10,19 +11,19 @@
 #include <cstddef>
 #include <cstdint>
 
-// H along a piece of a row, in the memory of the first cache, by loops that are compiled once for
-// all methods.
+// H along a piece of a row, in the first-level cache, by loops that are compiled once for all
+// methods.
 namespace cayspin::simulation {
 
-/// Sites begin .. end - 1 of a row, and where their H goes.
+/// Sites begin .. end - 1 of a row, and the memory for their H.
 template <class Real>
 struct RowPiece {
   cayspin::detail::RowOfSpins<Real> row;
   std::int32_t begin, end;
   cayspin::detail::RowFields<Real> fields;
 
-  /// Calls visit(stencil, i) for the packs of the piece. Those at the ends of the row have a loop
-  /// of their own, so that the others ask nothing.
+  /// Calls visit(stencil, i) for the packs of the piece. Packs at the ends of the row have a
+  /// separate loop, so that the others need no tests.
   template <class Visit>
   KOKKOS_FORCEINLINE_FUNCTION void for_each(Visit const visit) const {
     constexpr std::ptrdiff_t lanes = cayspin::detail::host_lanes<Real>;
@@ -42,7 +43,7 @@ struct RowPiece {
   KOKKOS_FORCEINLINE_FUNCTION void along(Visit const& visit, std::ptrdiff_t from, std::ptrdiff_t to,
                                          std::ptrdiff_t step) const {
     using Site = cayspin::detail::Site<cayspin::detail::Pack<Real>, AtEdge>;
-    // Its own: stores of packs might change what is known by reference.
+    // A copy, because stores of packs might change values known by reference.
     cayspin::detail::Row const of_sites = row.row;
     cayspin::detail::RowStencil<Real> const of_spins = row.spins;
     for (std::ptrdiff_t x = from; x < to; x += step) {
@@ -52,7 +53,7 @@ struct RowPiece {
   }
 };
 
-/// Exchange takes vacancies for neighbours; this adds what it lacks: H = A m for each.
+/// Correction of exchange, which takes vacancies for neighbours: adds the missing H = A m for each.
 template <class Real>
 struct MissingNeighbors {
   cayspin::SiteArray<Real, 1> exchange;
@@ -64,35 +65,43 @@ struct MissingNeighbors {
   }
 };
 
-/// H that a stage adds to the terms that are compiled into it, in scenes without couplings. One
-/// term has a loop of its own; more share one that asks for each.
+/// H that a stage adds to the terms compiled into it, in scenes without couplings. A single term
+/// has its own loop; several share one that tests for each.
 template <class Real>
 struct AddedTerms {
   PassTerms<Real> terms;
   MissingNeighbors<Real> missing;  // without data: none
   double scale = 1;                // of -dE/dm
+  double gyromagnetic = 1;         // of applied fields
 
   bool any() const { return count() > 0; }
 
   void along(RowPiece<Real> const& piece) const {
-    if (count() > 1 || scale != 1) return run(Loop{*this, piece.fields}, piece);
+    bool const changes = terms.exchange_factor != 1 || terms.anisotropy_factor != 1;
+    if (count() > 1 || scale != 1 || gyromagnetic != 1 || changes || terms.per_gyromagnetic.data)
+      return run(Loop{*this, piece.fields}, piece);
     if (missing.exchange.data) return run_alone(missing, piece);
     if (terms.anisotropies > 0) return run_alone(terms.anisotropies_of_sites[0], piece);
     if (terms.cubics_of_cell > 0) return run_alone(terms.cubics[0], piece);
+    if (terms.crystals > 0) return run_alone(terms.crystals_of_sites[0], piece);
     if (terms.has_vacancies) return run(Loop{*this, piece.fields}, piece);
     if (terms.exchange_of_sites.any()) return run_alone(terms.exchange_of_sites, piece);
-    if (terms.dmi_of_sites.constants.data) return run_alone(terms.dmi_of_sites, piece);
+    if (terms.dmis > 0) return run_alone(terms.dmi_of_sites[0], piece);
+    if (terms.interlayer_of_sites.any()) return run_alone(terms.interlayer_of_sites, piece);
     if (terms.has_zhang_li) return run_alone(terms.zhang_li, piece);
     if (terms.has_slonczewski) return run_alone(terms.slonczewski, piece);
+    if (terms.has_slonczewski_of_sites) return run_alone(terms.slonczewski_of_sites, piece);
+    if (terms.sources.count > 0) return run_alone(terms.sources, piece);
     run(Loop{*this, piece.fields}, piece);
   }
 
  private:
   int count() const {
     return int{terms.usual.has_stored} + terms.anisotropies + terms.cubics_of_cell +
-           int{missing.exchange.data != nullptr} + int{terms.exchange_of_sites.any()} +
-           int{terms.dmi_of_sites.constants.data != nullptr} + int{terms.has_zhang_li} +
-           int{terms.has_slonczewski};
+           terms.crystals + int{missing.exchange.data != nullptr} +
+           int{terms.exchange_of_sites.any()} + terms.dmis + int{terms.interlayer_of_sites.any()} +
+           int{terms.has_zhang_li} + int{terms.has_slonczewski} +
+           int{terms.has_slonczewski_of_sites} + terms.sources.count;
   }
 
   struct Loop {
@@ -110,11 +119,23 @@ struct AddedTerms {
         else
           terms.add_bonds_of_sites(stencil, sum);
       }
-      terms.add_anisotropies_of_sites(stencil, sum);
-      terms.add_cubics(stencil, 0, terms.cubics_of_cell, sum);
+      if (terms.anisotropy_factor == 1) [[likely]] {
+        terms.add_anisotropies_of_sites(stencil, sum);
+        terms.add_cubics(stencil, 0, terms.cubics_of_cell, sum);
+        terms.add_crystals(stencil, sum);
+      } else {
+        terms.add_anisotropy_in_time(stencil, {}, 0, terms.cubics_of_cell, sum);
+      }
       if (terms.usual.has_stored) sum.field = sum.field + terms.usual.stored.field(stencil);
       auto h = as_value<Value>(added.scale) * sum.field;
-      if (added.missing.exchange.data) h = h + added.missing.field(stencil);
+      if (terms.sources.count > 0)
+        h = multiply_add(as_value<Value>(added.gyromagnetic), terms.sources.field(stencil), h);
+      if (added.missing.exchange.data) {
+        auto const lacking = added.missing.field(stencil);
+        h = terms.exchange_factor == 1
+                ? h + lacking
+                : multiply_add(as_value<Value>(terms.exchange_factor), lacking, h);
+      }
       if (terms.has_torques()) {
         if (terms.has_vacancies)
           h = terms.add_torques(terms.among_spins(stencil), h);
@@ -145,11 +166,11 @@ struct AddedTerms {
   }
 };
 
-/// The whole H of scenes with couplings, or several sites in a cell.
+/// The whole H of scenes with couplings, or several sites per cell.
 template <class Real>
 struct WholeTerms {
   PassTerms<Real> terms;
-  bool lacks_local = false;  // couplings alone
+  bool lacks_local = false;  // it has only couplings
 
   struct Loop {
     PassTerms<Real> const& terms;
@@ -180,12 +201,28 @@ struct WholeTerms {
     if (terms.has_pairs)
       terms.pairs.evaluate_row(piece.row.row, piece.begin, piece.end, piece.fields);
     if (lacks_local) return;
-    terms.has_pairs&& terms.has_few() ? run_few(piece) : run(piece);
+    if (terms.has_pairs && terms.has_few())
+      run_few(piece);
+    else if (has_few_beside_moments(terms))
+      run_moments(piece);
+    else
+      run(piece);
   }
 
  private:
   CAYSPIN_DETAIL_NOINLINE void run(RowPiece<Real> const& piece) const {
     piece.for_each(Loop{terms, piece.fields});
+  }
+  void run_moments(RowPiece<Real> const& piece) const {
+    if (terms.exchange_of_sites.any())
+      terms.has_vacancies ? run_moments<true, true>(piece) : run_moments<true, false>(piece);
+    else
+      terms.has_vacancies ? run_moments<false, true>(piece) : run_moments<false, false>(piece);
+  }
+  template <bool ExchangeOfSites, bool Vacancies>
+  CAYSPIN_DETAIL_NOINLINE void run_moments(RowPiece<Real> const& piece) const {
+    piece.for_each(LoopOfMoments<Real, ExchangeOfSites, Vacancies>{
+        .terms = terms, .mine = terms.site_of_plane(piece.row.row.z), .fields = piece.fields});
   }
   CAYSPIN_DETAIL_NOINLINE void run_few(RowPiece<Real> const& piece) const {
     piece.for_each(
@@ -193,7 +230,7 @@ struct WholeTerms {
   }
 };
 
-/// For FieldAlongRows.
+/// The function stored in FieldAlongRows.
 template <class Terms, class Real>
 void evaluate_along(void const* terms, cayspin::detail::RowOfSpins<Real> const& row,
                     std::int32_t begin, std::int32_t end,

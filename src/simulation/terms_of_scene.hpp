@@ -5,6 +5,7 @@
 #include "evaluate_in_pass.hpp"
 #include "field_in_pass.hpp"
 #include "io/scene.hpp"
+#include "largest_field.hpp"
 #include "ranks.hpp"
 #include "sites_of_cell.hpp"
 #include "space.hpp"
@@ -22,6 +23,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -29,10 +31,11 @@
 #include <variant>
 #include <vector>
 
-// The terms of FieldInPass as a scene has them. For field_in_pass.cpp.
+// The terms of FieldInPass for a scene. For compile_field_in_pass.hpp.
 namespace cayspin::simulation {
 
-// The largest magnitude in all parts: of doubles >= 0 their words are in the same order.
+// Returns the largest magnitude over all parts: words of doubles >= 0 have the order of the
+// doubles.
 inline double largest_of_parts(Lattice const& lattice, std::vector<double> const& values) {
   double largest = 0;
   for (double const value : values) largest = std::max(largest, std::abs(value));
@@ -42,7 +45,7 @@ inline double largest_of_parts(Lattice const& lattice, std::vector<double> const
   return std::bit_cast<double>(words[0]);
 }
 
-// The site of the cell that each of a part's own planes holds.
+// Returns the site of the cell that each of a part's own planes holds.
 inline std::size_t site_of_cell(Lattice const& lattice, std::size_t number) {
   auto const in_plane = static_cast<std::size_t>(lattice.own(0) * lattice.own(1));
   return number / in_plane % static_cast<std::size_t>(lattice.cell_sites);
@@ -53,7 +56,7 @@ ScalarField<Real, Memory> field_of(char const* name, Lattice const& lattice,
                                    std::vector<double> const& numbers) {
   ScalarField<Real, Memory> made(std::string("FieldInPass::") + name, lattice);
   copy_from_host(numbers, made);
-  // Terms look at the numbers of neighbours, too.
+  // Terms also read the numbers of neighbours.
   cayspin::detail::update_ghosts(typename Memory::execution_space(), lattice, made);
   return made;
 }
@@ -67,29 +70,60 @@ class FieldInPass<Spins>::Terms {
   PassTerms<Real> at(Exec const& exec, SceneFieldNow<Real> const& usual, Spins const& spins,
                      double t, FieldFor purpose) const;
 
-  /// The applied field is the same for all spins, and so H without it is linear in the spins.
+  /// The applied field is equal for all spins, so H without it is linear in the spins.
   bool adds_applied(FieldFor purpose) const {
     return purpose == FieldFor::generator && std::ranges::all_of(cell_, [&](auto const& site) {
              return site.gyromagnetic == cell_[0].gyromagnetic;
            });
   }
 
-  /// Has each site of a cell the same axes, and a moment and a gyromagnetic ratio of 1?
+  /// Returns true if a site has bonds beyond its neighbours.
+  bool reaches_far() const { return has_pairs_ || distant_bonds_.size() > 0; }
+
+  /// Returns true if all sites of a cell have equal axes, and a moment and gyromagnetic ratio of 1.
   bool sites_are_alike() const {
-    return std::ranges::all_of(cell_, [&](auto const& site) {
+    return !per_moments_ && std::ranges::all_of(cell_, [&](auto const& site) {
       return site.gyromagnetic == 1 && site.per_moment == 1 && site.quadratic == cell_[0].quadratic;
     });
   }
 
-  /// The terms that are compiled into stages, from `usual`; none where they load the whole H.
-  std::optional<SceneFieldNow<Real>> in_stages(SceneFieldNow<Real> const& usual) const;
+  /// Returns the terms that are compiled into stages, from `usual`; empty if stages load the whole
+  /// H.
+  std::optional<SceneFieldNow<Real>> in_stages(SceneFieldNow<Real> const& usual, double t) const;
 
  private:
   friend FieldInPass;
 
   void add_numbers_of_sites(io::Scene const& scene, io::SiteBox const& box,
-                            std::vector<double> moves);
+                            std::vector<double> moves, std::vector<double> const& moments);
+  void add_moments_of_sites(std::vector<double> const& moments);
   void add_vacancies(io::Scene const& scene);
+
+  void add_dmi(io::Scene const& scene, io::SiteBox const& box);
+  // In anisotropies_of_scene.hpp.
+  void add_axes(io::Scene const& scene, io::SiteBox const& box, std::vector<double> const& moments);
+  void add_crystal_axes(io::Scene const& scene, io::SiteBox const& box);
+  SiteArray<Real, 1> keep_constants(std::vector<double> const& constants, double of_energy);
+  SiteArray<Real, 3> keep_axes(std::vector<double> const& axes);
+  std::vector<double> constants_of_site(io::Scene const& scene, io::SiteBox const& box,
+                                        double constant, io::SiteNumbers const& numbers,
+                                        int site) const;
+
+  struct Factors {
+    double exchange = 1, anisotropy = 1, dmi = 1;
+  };
+  Factors factors_at(double t) const;
+  SceneLatticeTerms lattice_terms_at(Factors const& factors, double scale) const;
+
+  void add_exchange_at_faces(io::Scene const& scene, io::SiteBox const& box);
+  void add_bonds_between(io::Scene const& scene, io::SiteBox const& box);
+  void add_distant_bonds(io::Scene const& scene, io::SiteBox const& box);
+  void add_sources(io::Scene const& scene, io::SiteBox const& box);
+  void add_torques(io::Scene const& scene, io::SiteBox const& box);
+  SourcesNow<Real> sources_at(double t) const;
+  SlonczewskiOfSites<Real> slonczewski_of_sites(Vec3<double> const& strengths) const;
+  /// Returns the largest |energy| of a site in the applied field and the sources.
+  double applied_magnitude(Vec3<double> const& applied, SourcesNow<Real> const& sources) const;
 
   template <class Element>
   using Table = Kokkos::View<Element*, Memory>;
@@ -98,29 +132,61 @@ class FieldInPass<Spins>::Terms {
     std::optional<AppliedField> velocity, strengths;  // strengths: damping-like, field-like
     double nonadiabaticity = 0;
     Vec3<double> polarization{0, 0, 1};
+    double lambda = 1;
+    bool are_of_sites = false;  // strengths or polarization, or an angular dependence
+    std::optional<ScalarField<Real, Memory>> damping_like, field_like;  // site-dependent; or empty
+    std::optional<SiteField<Real, 3, Memory>> polarizations;            // instead of one; or empty
+  };
+
+  struct Source {
+    SiteField<Real, 3, Memory> profile;
+    AppliedField time;  // along x
+    double largest;     // largest |profile|
   };
 
   Lattice lattice_;
   SceneLatticeTerms none_;
   PairCouplings<Memory> pairs_;
   Torques torques_;
+  std::vector<Source> sources_;
   Table<CellSite> sites_;
   Table<CubicAnisotropy> cubics_;
   bool has_lattice_terms_ = false, has_pairs_, has_vacancies_, is_affine_;
-  std::optional<ScalarField<Real, Memory>> moves_, dampings_, dmi_of_sites_;
-  std::optional<ScalarField<Real, Memory>> rates_;  // moves_ over Gilbert's 1 + damping^2
+  std::optional<ScalarField<Real, Memory>> moves_, dampings_;
+  // moves_ times gyromagnetic ratios, over Gilbert's 1 + damping^2.
+  std::optional<ScalarField<Real, Memory>> rates_;
+  std::optional<ScalarField<Real, Memory>> per_gyromagnetic_;  // besides torques; or empty
   std::optional<SiteDependentExchange<Real, Memory>> exchange_of_sites_;
-  Vec3<double> dmi_vectors_[3] = {};
+  struct Dmi {
+    ScalarField<Real, Memory> constants;
+    std::array<Vec3<double>, 3> vectors;  // of the bonds along each axis
+  };
+  std::vector<Dmi> dmis_of_sites_;
+  std::optional<AppliedField> in_time_;  // factors of exchange, anisotropy, DMI
+  io::Field uniform_;                    // lattice terms only
+  struct Interlayer {
+    std::optional<ScalarField<Real, Memory>> bilinear, biquadratic;  // of bonds to next sites
+  };
+  Interlayer interlayers_[3];
+  std::vector<ScalarField<Real, Memory>> numbers_of_distant_;
+  Table<DistantBonds<Real>> distant_bonds_;
+  double longest_of_distant_ = 0;  // spacing across their faces
+  std::optional<ScalarField<Real, Memory>> exchange_at_faces_;
+  std::int32_t sweeps_of_faces_ = 0;
   std::vector<ScalarField<Real, Memory>> constants_of_axes_;
+  std::vector<SiteField<Real, 3, Memory>> axes_of_sites_;
   Table<AnisotropyOfSites<Real>> anisotropies_;
+  Table<CrystalAnisotropyOfSites<Real>> crystals_;
+  std::int32_t anisotropies_in_time_ = 0;
   bool precession_;
   std::vector<CellSite> cell_;
-  SceneLatticeTerms seen_;  // by the moments of a cell with one site
+  SceneLatticeTerms seen_;  // as seen by the moments of a cell with one site
   std::optional<ScalarField<Real, Memory>> missing_;
   double largest_moment_ = 0;
   Spins field_;
   ScalarField<Real, Memory> energies_, moments_;
-  // The terms of the stages that are being run: those of a sweep are so together.
+  std::optional<ScalarField<Real, Memory>> per_moments_;  // if each site has its own moment
+  // Terms of the running stages; those of a sweep run together.
   mutable std::array<std::variant<std::monostate, AddedTerms<Real>, WholeTerms<Real>>,
                      cayspin::detail::SweepPlan::most_stages>
       along_rows_;
@@ -130,7 +196,7 @@ class FieldInPass<Spins>::Terms {
 template <class Spins>
 FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
     : lattice_(lattice),
-      none_(lattice_terms_of({}, lattice)),
+      none_(lattice_terms_of(io::Field(), lattice)),
       pairs_(lattice, io::couplings(scene)),
       has_pairs_(std::ranges::max(pairs_.field_bounds()) > 0),
       has_vacancies_(io::has_vacancies(scene)),
@@ -139,17 +205,6 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
       seen_(none_),
       field_("FieldInPass::field", lattice),
       energies_("FieldInPass::energies", lattice) {
-  auto const& torque = scene.field.torque;
-  if (auto const& of = torque.zhang_li) {
-    torques_.velocity.emplace(of->velocity, "torque.zhang_li.velocity");
-    torques_.nonadiabaticity = of->nonadiabaticity;
-  }
-  if (auto const& of = torque.slonczewski) {
-    torques_.strengths.emplace(
-        std::array<io::AppliedComponent, 3>{of->damping_like, of->field_like, 0.0},
-        "torque.slonczewski");
-    torques_.polarization = vector(of->polarization);
-  }
   auto const [sites, cubics] = sites_of_cell(scene);
   for (auto const& site : sites) largest_moment_ = std::max(largest_moment_, site.moment);
   cell_ = sites;
@@ -158,24 +213,33 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
     if (term) term->strength() *= sites[0].gyromagnetic * sites[0].per_moment;
   });
   seen_ = lattice_terms_of(seen, lattice);
+  if (scene.field.in_time.there()) {
+    in_time_.emplace(scene.field.in_time.components(), "field.in_time");
+    auto const uniform = io::without_numbers_of_sites(scene.field);
+    uniform_.exchange = uniform.exchange;
+    uniform_.dmi = uniform.dmi;
+    uniform_.bulk_dmi = uniform.bulk_dmi;
+  }
   sites_ = cayspin::detail::table_of<Memory>("cayspin::FieldInPass::sites", sites);
   cubics_ = cayspin::detail::table_of<Memory>("cayspin::FieldInPass::cubics", cubics);
 
   auto const box = own_sites(lattice);
-  auto const occupied = io::occupied(scene, box), frozen = io::frozen(scene, box);
-  std::vector<double> moves(static_cast<std::size_t>(lattice.sites()), 1), moments = moves;
-  for (std::size_t site = 0; site < moves.size(); ++site) {
-    moves[site] = !frozen.empty() && frozen[site] ? 0 : 1;
-    moments[site] =
-        !occupied.empty() && !occupied[site] ? 0 : sites[site_of_cell(lattice, site)].moment;
-  }
+  auto const frozen = io::frozen(scene, box);
+  std::vector<double> moves(static_cast<std::size_t>(box.extent[0] * box.extent[1] * box.extent[2]),
+                            1);
+  auto moments = io::all_moments(scene, box);
+  if (moments.empty()) moments = moves;
+  for (std::size_t site = 0; site < frozen.size(); ++site) moves[site] = frozen[site] ? 0 : 1;
   if (!frozen.empty()) moves_ = field_of<Real, Memory>("moves", lattice, moves);
   moments_ = field_of<Real, Memory>("moments", lattice, moments);
-  if (has_vacancies_) add_vacancies(scene);
+  if (io::has_moments_of_sites(scene)) add_moments_of_sites(moments);
+  if (has_vacancies_ && !per_moments_) add_vacancies(scene);
 
-  add_numbers_of_sites(scene, box, std::move(moves));
+  add_torques(scene, box);
+  add_numbers_of_sites(scene, box, std::move(moves), moments);
+  add_sources(scene, box);
 
-  // The round-off of a site's energy is proportional to this.
+  // Round-off of a site's energy is proportional to this.
   auto const uniform = io::without_numbers_of_sites(scene.field);
   io::for_each_lattice_term(uniform, [&](auto const& term) {
     if (!term) return;
@@ -183,13 +247,56 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
     has_lattice_terms_ = true;
   });
   none_.magnitude += 0.5 * std::ranges::max(pairs_.field_bounds());
+  none_.magnitude += 0.5 * largest_moment_ * bound_of_dipoles(scene, lattice);
   for (auto const& term : scene.field.anisotropies)
     none_.magnitude += 0.5 * std::abs(term.constant);
-  for (auto const& term : scene.field.cubic_anisotropies)
-    none_.magnitude += std::abs(term.constant);
+  for (auto const& term : scene.field.crystal_anisotropies)
+    if (term.is_plain()) none_.magnitude += std::abs(term.constant);
 }
 
-// The exchange of stages takes a vacancy, the zero vector, for a neighbour m': it has A (m' - m).
+// Adds sources; those with equal time factors are summed.
+template <class Spins>
+void FieldInPass<Spins>::Terms::add_sources(io::Scene const& scene, io::SiteBox const& box) {
+  std::vector<std::pair<io::AppliedComponent, std::vector<double>>> profiles;
+  for (auto const& [profile, time] : scene.field.sources) {
+    auto vectors = io::vectors_of_sites(scene, profile, "field.sources", box);
+    for (double& number : vectors) number *= scene.field.mu0;
+    auto const same = std::ranges::find(profiles, time, [](auto const& one) { return one.first; });
+    if (same == profiles.end())
+      profiles.emplace_back(time, std::move(vectors));
+    else
+      std::ranges::transform(vectors, same->second, same->second.begin(), std::plus<>());
+  }
+  constexpr auto most = static_cast<std::size_t>(SourcesNow<Real>::most);
+  if (profiles.size() > most)
+    throw io::scene_error(scene, "field.sources",
+                          "has " + std::to_string(profiles.size()) +
+                              " times that differ; accepted: at most " + std::to_string(most));
+  for (auto const& [time, vectors] : profiles) {
+    std::vector<double> lengths(vectors.size() / 3);
+    for (std::size_t site = 0; site < lengths.size(); ++site)
+      lengths[site] = std::hypot(vectors[3 * site], vectors[3 * site + 1], vectors[3 * site + 2]);
+    SiteField<Real, 3, Memory> profile("FieldInPass::source", lattice_);
+    copy_from_host(vectors, profile);
+    cayspin::detail::update_ghosts(typename Memory::execution_space(), lattice_, profile);
+    sources_.push_back({profile, AppliedField({time, 0.0, 0.0}, "field.sources"),
+                        largest_of_parts(lattice_, lengths)});
+  }
+}
+
+template <class Spins>
+void FieldInPass<Spins>::Terms::add_moments_of_sites(std::vector<double> const& moments) {
+  std::vector<double> per_moments(moments.size()), is_vacant(moments.size());
+  for (std::size_t site = 0; site < moments.size(); ++site) {
+    per_moments[site] = moments[site] > 0 ? 1 / moments[site] : 0;
+    is_vacant[site] = moments[site] > 0 ? 0 : 1;
+  }
+  per_moments_ = field_of<Real, Memory>("per_moments", lattice_, per_moments);
+  has_vacancies_ = largest_of_parts(lattice_, is_vacant) > 0;
+  largest_moment_ = largest_of_parts(lattice_, moments);
+}
+
+// The exchange of stages takes a vacancy, the zero vector, for a neighbour m': it adds A (m' - m).
 template <class Spins>
 void FieldInPass<Spins>::Terms::add_vacancies(io::Scene const& scene) {
   auto const field = io::without_numbers_of_sites(scene.field);
@@ -209,56 +316,110 @@ void FieldInPass<Spins>::Terms::add_vacancies(io::Scene const& scene) {
 
 template <class Spins>
 void FieldInPass<Spins>::Terms::add_numbers_of_sites(io::Scene const& scene, io::SiteBox const& box,
-                                                     std::vector<double> moves) {
+                                                     std::vector<double> moves,
+                                                     std::vector<double> const& moments) {
   auto const& field = scene.field;
-  auto const read = [&](char const* name, io::SiteNumbers const& numbers, std::string_view key,
-                        double bond_energies) {
-    auto const values = io::numbers_of_sites(scene, numbers, key, box);
-    none_.magnitude += bond_energies * largest_of_parts(lattice_, values);
-    return field_of<Real, Memory>(name, lattice_, values);
-  };
-  auto const& spacing = lattice_.spacing;
   if (field.exchange_factors.there()) {
-    double const bonds = field.exchange->energy_magnitude(lattice_);
-    auto const constants = read("exchange", field.exchange_factors, "field.exchange", bonds);
+    auto const constants =
+        io::numbers_of_sites(scene, field.exchange_factors, "field.exchange", box);
+    none_.magnitude +=
+        field.exchange->energy_magnitude(lattice_) * largest_of_parts(lattice_, constants);
     try {
-      exchange_of_sites_.emplace(constants);
+      exchange_of_sites_.emplace(field_of<Real, Memory>("exchange", lattice_, constants));
     } catch (std::invalid_argument const& error) {
       std::string_view const message = error.what();
       throw io::scene_error(scene, field.exchange_factors.key_or("field.exchange"),
                             message.substr(message.find(": ") + 2));
     }
   }
-  if (field.dmi_factors.there()) {
-    dmi_of_sites_ = read("dmi", field.dmi_factors, "field.dmi", 6);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!lattice_.has_neighbors(axis)) continue;
-      Vec3<double> const e{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
-      dmi_vectors_[axis] = (1 / spacing[static_cast<std::size_t>(axis)]) *
-                           (field.bulk_dmi ? -1.0 * e : cross(vector(field.dmi->normal), e));
-    }
-  }
+  add_bonds_between(scene, box);
+  add_distant_bonds(scene, box);
+  add_exchange_at_faces(scene, box);
+  if (field.dmi_factors.there()) add_dmi(scene, box);
   if (scene.system.dampings.there()) {
     auto const dampings = io::numbers_of_sites(scene, scene.system.dampings, "system.damping", box);
     dampings_ = field_of<Real, Memory>("dampings", lattice_, dampings);
     if (scene.system.gilbert_of_sites) {
       for (std::size_t site = 0; site < moves.size(); ++site)
         moves[site] /= 1 + dampings[site] * dampings[site];
-      rates_ = field_of<Real, Memory>("rates", lattice_, moves);
     }
   }
-  std::vector<AnisotropyOfSites<Real>> axes;
-  for (auto const& term : field.anisotropies) {
-    if (!term.factors.there()) continue;
-    auto values = io::numbers_of_sites(scene, term.factors, "field.anisotropy", box);
-    for (std::size_t site = 0; site < values.size(); ++site)
-      if (term.site >= 0 && site_of_cell(lattice_, site) != static_cast<std::size_t>(term.site))
-        values[site] = 0;
-    none_.magnitude += 0.5 * largest_of_parts(lattice_, values);
-    constants_of_axes_.push_back(field_of<Real, Memory>("anisotropy", lattice_, values));
-    axes.push_back({constants_of_axes_.back().array(), vector(term.axis)});
+  auto ratios = io::gyromagnetic_of_sites(scene, box);
+  if (!ratios.empty()) std::ranges::transform(moves, ratios, moves.begin(), std::multiplies<>());
+  if (!ratios.empty() || scene.system.gilbert_of_sites)
+    rates_ = field_of<Real, Memory>("rates", lattice_, moves);
+  if (!ratios.empty() && io::has_torque(field)) {
+    for (double& ratio : ratios) ratio = 1 / ratio;
+    per_gyromagnetic_ = field_of<Real, Memory>("per_gyromagnetic", lattice_, ratios);
   }
-  anisotropies_ = cayspin::detail::table_of<Memory>("cayspin::FieldInPass::anisotropies", axes);
+  add_axes(scene, box, moments);
+  add_crystal_axes(scene, box);
+}
+
+// Site-dependent normals are split into three interfaces, with normals along x, y and z.
+template <class Spins>
+void FieldInPass<Spins>::Terms::add_dmi(io::Scene const& scene, io::SiteBox const& box) {
+  constexpr std::string_view key = "field.dmi";
+  auto const& field = scene.field;
+  auto const constants = io::numbers_of_sites(scene, field.dmi_factors, key, box);
+  none_.magnitude += 6 * largest_of_parts(lattice_, constants);
+  auto const add = [&](std::vector<double> const& of_sites, auto const& vector_along) {
+    auto& dmi = dmis_of_sites_.emplace_back(field_of<Real, Memory>("dmi", lattice_, of_sites));
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!lattice_.has_neighbors(axis)) continue;
+      Vec3<double> const e{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
+      auto const a = static_cast<std::size_t>(axis);
+      dmi.vectors[a] = (1 / lattice_.spacing[a]) * vector_along(e);
+    }
+  };
+  using Vector = Vec3<double>;
+  if (field.bulk_dmi) {
+    add(constants, [](Vector const& e) { return -1.0 * e; });
+  } else if (field.d2d_dmi) {
+    add(constants, [](Vector const& e) { return Vector{e.x, -e.y, 0}; });
+  } else if (!field.dmi_normals.there()) {
+    add(constants, [&](Vector const& e) { return cross(vector(field.dmi->normal), e); });
+  } else {
+    auto const normals = io::directions_of_sites(scene, field.dmi_normals, key, box);
+    for (std::size_t c = 0; c < 3; ++c) {
+      auto along = constants;
+      for (std::size_t site = 0; site < along.size(); ++site) along[site] *= normals[3 * site + c];
+      Vector const n{c == 0 ? 1.0 : 0.0, c == 1 ? 1.0 : 0.0, c == 2 ? 1.0 : 0.0};
+      add(along, [&](Vector const& e) { return cross(n, e); });
+    }
+  }
+}
+
+template <class Spins>
+void FieldInPass<Spins>::Terms::add_torques(io::Scene const& scene, io::SiteBox const& box) {
+  auto const& [zhang_li, slonczewski] = scene.field.torque;
+  if (zhang_li) {
+    torques_.velocity.emplace(zhang_li->velocity, "torque.zhang_li.velocity");
+    torques_.nonadiabaticity = zhang_li->nonadiabaticity;
+  }
+  if (!slonczewski) return;
+  constexpr char const* key = "torque.slonczewski";
+  torques_.strengths.emplace(
+      std::array<io::AppliedComponent, 3>{slonczewski->damping_like, slonczewski->field_like, 0.0},
+      key);
+  if (!slonczewski->polarizations.there())
+    torques_.polarization = vector(slonczewski->polarization);
+  torques_.lambda = slonczewski->lambda;
+  torques_.are_of_sites = slonczewski->is_of_sites();
+  auto const keep = [&](io::SiteNumbers const& numbers,
+                        std::optional<ScalarField<Real, Memory>>& in) {
+    if (numbers.there())
+      in = field_of<Real, Memory>("strengths", lattice_,
+                                  io::numbers_of_sites(scene, numbers, key, box));
+  };
+  keep(slonczewski->damping_like_of_sites, torques_.damping_like);
+  keep(slonczewski->field_like_of_sites, torques_.field_like);
+  if (!slonczewski->polarizations.there()) return;
+  auto& polarizations = torques_.polarizations.emplace("FieldInPass::polarizations", lattice_);
+  copy_from_host(io::directions_of_sites(scene, slonczewski->polarizations,
+                                         "torque.slonczewski.polarization", box),
+                 polarizations);
+  cayspin::detail::update_ghosts(typename Memory::execution_space(), lattice_, polarizations);
 }
 
 }  // namespace cayspin::simulation

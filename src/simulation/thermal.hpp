@@ -1,21 +1,61 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "failure.hpp"
+#include "io/expression.hpp"
 #include "io/scene.hpp"
 
 #include <cayspin/units.hpp>
 
+#include <fmt/format.h>
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
 namespace cayspin::simulation {
 
-/// Is there noise around the steps of a scene?
+/// Returns true if the steps of a scene have thermal noise.
 inline bool is_thermal(io::Scene const& scene) {
   return scene.thermal && scene.thermal->temperature > 0;
 }
 
-/// As typed: reduced, or in kelvin.
+/// Returns the typed temperature: reduced, or in kelvin; without site-dependent numbers and
+/// expressions in t.
 inline double typed_temperature(io::Scene const& scene) {
   double const reduced = scene.thermal->temperature;
   return scene.units.si ? reduced * scene.units.energy / units::boltzmann : reduced;
 }
+
+/// The common temperature of the sites at t. Throws NumbersFailed if it is negative or not finite.
+class TemperatureInTime {
+ public:
+  explicit TemperatureInTime(io::Thermal const& thermal) : temperature_(thermal.temperature) {
+    if (auto const* const text = std::get_if<std::string>(&thermal.in_time))
+      expression_.emplace(*text, std::vector<std::string>{"t"});
+    else
+      temperature_ *= std::get<double>(thermal.in_time);
+  }
+
+  bool depends_on_time() const { return expression_.has_value(); }
+  double operator()(double t) const {
+    if (!expression_) return temperature_;
+    double factor = -1;
+    try {
+      factor = (*expression_)(&t);
+    } catch (std::runtime_error const& error) {
+      throw NumbersFailed(fmt::format("thermal.temperature, t = {}: {}", t, error.what()));
+    }
+    if (!(factor >= 0))
+      throw NumbersFailed(fmt::format("thermal.temperature, t = {}: is negative", t));
+    return factor * temperature_;
+  }
+
+ private:
+  double temperature_;
+  std::optional<io::Expression> expression_;
+};
 
 }  // namespace cayspin::simulation

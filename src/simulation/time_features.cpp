@@ -19,11 +19,12 @@ struct Jump {
   double before, after;
 };
 
-/// The jump between two samples, if the largest change there is not that of a continuous function.
+/// Returns the jump between two samples, if the largest change there is not that of a continuous
+/// function.
 std::optional<Jump> bisect(TimeSamples& samples, std::size_t component, double a, double b) {
   double const end = samples.end();
   double at_a = samples.value(a, component), at_b = samples.value(b, component);
-  int between = 0;  // halvings at which the value in the middle is like neither end
+  int between = 0;  // halvings whose middle value is like neither end
   while (b - a > 2 * epsilon * std::abs(b) + 1e-18 * end) {
     double const middle = a + 0.5 * (b - a);
     if (middle <= a || middle >= b) break;
@@ -38,8 +39,8 @@ std::optional<Jump> bisect(TimeSamples& samples, std::size_t component, double a
   return Jump{a - 2 * epsilon * std::abs(a), b + 2 * epsilon * std::abs(b)};
 }
 
-// Between samples whose values differ by far more than those of samples nearby. None where they are
-// too many.
+// Returns the jumps between samples whose values differ by far more than those of samples nearby;
+// nothing if there are too many.
 std::optional<std::vector<Jump>> find_jumps(TimeSamples& samples, std::int64_t most_evaluations) {
   std::vector<Jump> jumps;
   std::vector<std::pair<double, double>> cells;
@@ -54,7 +55,7 @@ std::optional<std::vector<Jump>> find_jumps(TimeSamples& samples, std::int64_t m
     }
   }
   std::ranges::sort(jumps, {}, &Jump::before);
-  // Several components jump at once, and two jumps may lie too close to step between them.
+  // Several components may jump at once, and two jumps may be too close to step between them.
   std::vector<Jump> apart;
   for (auto const& jump : jumps)
     if (!apart.empty() && jump.before <= apart.back().after)
@@ -64,7 +65,7 @@ std::optional<std::vector<Jump>> find_jumps(TimeSamples& samples, std::int64_t m
   return apart;
 }
 
-/// A polynomial through the values at Chebyshev points, to be compared with other values.
+/// A polynomial through the values at Chebyshev points, to compare with other values.
 class Parts {
  public:
   Parts(TimeSamples& samples, FeatureSearch const& search)
@@ -77,7 +78,7 @@ class Parts {
     }
   }
 
-  /// Appends the bounds of a span without jumps. False where it changes too often.
+  /// Appends the bounds of a time span without jumps. Returns false if it changes too often.
   bool divide(double a, double b, std::vector<StepBound>& bounds) {
     std::vector<std::pair<double, double>> open{{a, b}};
     while (!open.empty()) {
@@ -112,7 +113,7 @@ class Parts {
       bounds.push_back(bound);
   }
 
-  // As what came before, if that is short enough at some places, too.
+  // Uses the previous bound if that is short enough at some places, too.
   bool bound_the_rest(double begin, double end, std::vector<StepBound>& bounds) {
     constexpr int places = 256, halvings = 12;
     if (samples_.evaluations() > 2 * search_.most_evaluations) return false;  // one of many
@@ -159,7 +160,7 @@ class Parts {
           std::max({noise, 1e-6 * (most - least), search_.angle / (end - begin)});
       return !(std::abs(value - interpolated(c, (t - middle) / half)) <= allowed);
     };
-    // Few at first: most spans with features are known by them.
+    // Few samples first: most spans with features show them.
     for (std::size_t const stride : {std::max<std::size_t>(1, (last - first) / 64), std::size_t{1}})
       for (std::size_t i = first; i < last; i += stride)
         if (differs(samples_.time(i), samples_.sample(i, c))) return Found::features;
@@ -197,7 +198,7 @@ TimeFeatures find_features(std::span<TimeDependent const> vectors, FeatureSearch
   if (!samples.are_too_coarse())
     jumps = find_jumps(samples, samples.evaluations() + search.most_evaluations);
   Parts parts(samples, search);
-  double begin = 0;
+  double begin = search.begin;
   bool resolved = jumps.has_value();
   auto const part_until = [&](double end) {
     if (end > begin && resolved) resolved = parts.divide(begin, end, features.bounds);

@@ -19,42 +19,43 @@ struct Scene;
 
 namespace cayspin::simulation {
 
-/// What a scene's fields and currents do between the times that a method evaluates them at.
+/// Features of a scene's fields and currents between the times at which a method evaluates them.
 struct TimeFeatures {
   struct Shortest {
     double length, time;  // of the shortest pulse or half period: its width at half height
     std::string key;      // of the scene
   };
 
-  std::vector<StepBound> bounds;  // by which no step of a method misses a feature
+  std::vector<StepBound> bounds;  // with them no step of a method misses a feature
   std::int64_t jumps = 0;
-  double last_change = 0;  // from then on all is constant
+  double last_change = 0;  // everything is constant from then on
   std::optional<Shortest> shortest;
-  std::vector<std::pair<std::string, double>> largest;  // length of the vector of each key
-  std::optional<std::string> unresolved;  // the key of what changes too fast to be looked at
+  std::vector<std::pair<std::string, double>> largest;  // vector length, for each key
+  std::optional<std::string>
+      unresolved;  // the key of a vector that changes too fast to be resolved
 };
 
-/// A vector that depends on t, and the key that gives it.
+/// A vector that depends on t, and its key.
 struct TimeDependent {
   std::string key;
-  std::function<void(double t, double* three)> value;  // NaN where it is not finite
-  std::vector<double> events;  // where something may happen: numbers in an expression
+  std::function<void(double t, double* three)> value;  // NaN where not finite
+  std::vector<double> events;  // candidate times of events: numbers in an expression
 };
 
 struct FeatureSearch {
-  double end = 0;        // of the run
-  double angle = 1e-10;  // radians: features that turn spins by less are left out
+  double begin = 0, end = 0;  // of the run, or of a stage of it
+  double angle = 1e-10;       // radians: features that turn spins by less are ignored
   std::int64_t samples = std::int64_t{1} << 20;
   std::int64_t most_evaluations = 5'000'000;
 };
 
-/// Looks at the vectors at equal times and near their events, bisects jumps, and divides the time
+/// Samples the vectors at equal times and near their events, bisects jumps, and divides the time
 /// between jumps until polynomials follow the vectors in each part.
 TimeFeatures find_features(std::span<TimeDependent const> vectors, FeatureSearch const& search);
 
-/// The features of a scene's fields and currents up to its end, for adaptive steps that keep to
-/// `error`, or for the scene's equal steps where none is given. Empty where nothing depends on t.
-/// Later calls for the same fields are fast.
+/// Returns the features of a scene's fields and currents up to its end, for adaptive steps with
+/// error `error`, or for the scene's constant steps if it is not given. Empty if nothing depends on
+/// t. Later calls for the same fields are fast.
 std::shared_ptr<TimeFeatures const> features_of(io::Scene const& scene,
                                                 std::optional<double> error);
 

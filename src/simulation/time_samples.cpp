@@ -9,15 +9,17 @@ namespace cayspin::simulation {
 
 TimeSamples::TimeSamples(std::span<TimeDependent const> vectors, FeatureSearch const& search)
     : vectors_(vectors),
+      begin_(search.begin),
       end_(search.end),
-      apart_(search.end / static_cast<double>(search.samples)),
+      apart_((end_ - begin_) / static_cast<double>(search.samples)),
       values_(3 * vectors.size()),
       ranges_(3 * vectors.size()),
       now_(3 * vectors.size()),
       largest_(vectors.size()) {
   std::vector<double> equal(static_cast<std::size_t>(search.samples + 1));
   for (std::size_t i = 0; i < equal.size(); ++i)
-    equal[i] = end_ * (static_cast<double>(i) / static_cast<double>(search.samples));
+    equal[i] =
+        begin_ + (end_ - begin_) * (static_cast<double>(i) / static_cast<double>(search.samples));
   std::ranges::merge(equal, times_near_events(), std::back_inserter(times_));
   times_.erase(std::ranges::unique(times_).begin(), times_.end());
   for (auto& values : values_) values.reserve(times_.size());
@@ -29,16 +31,17 @@ TimeSamples::TimeSamples(std::span<TimeDependent const> vectors, FeatureSearch c
   later_.clear();
 }
 
-// Ever closer to each event, so that nothing that begins, ends or has its middle there is missed.
+// Returns times ever closer to each event, so that nothing that starts, ends or has its middle
+// there is missed.
 std::vector<double> TimeSamples::times_near_events() const {
   constexpr int halvings = 45;
   std::vector<double> times;
   auto const add = [&](double t) {
-    if (t > 0 && t < end_) times.push_back(t);
+    if (t > begin_ && t < end_) times.push_back(t);
   };
   for (auto const& vector : vectors_)
     for (double const event : vector.events) {
-      if (!(event >= 0) || !(event <= end_)) continue;
+      if (!(event >= begin_) || !(event <= end_)) continue;
       add(event);
       for (int i = 0; i < halvings; ++i) {
         add(event - std::ldexp(apart_, -i));

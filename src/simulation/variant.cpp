@@ -37,7 +37,7 @@ Variant const& find_variant(io::Scene const& scene) {
            variant.in_chart == (integrator.generator == io::Generator::tangent) &&
            variant.compensated == integrator.compensated;
   };
-  // Where rigid bodies have a stepper of their own, it is another one than that of spins.
+  // If rigid bodies have a separate stepper, it differs from that of spins.
   bool const bodies = scene.system.kind == io::SystemKind::rigid_body;
   Variant const* found = nullptr;
   for (auto const& variant : variants())

@@ -4,10 +4,13 @@
 #include "demagnetization.hpp"
 #include "io/own_field.hpp"
 
+#include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/field/host_field.hpp>
 #include <cayspin/field/slab_demag_on_host.hpp>
 #include <cayspin/optional_members.hpp>
+#include <cayspin/spin_field.hpp>
 
+#include <optional>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -25,8 +28,8 @@ io::HostVectors host_vectors(HostSpins const& spins) {
           {layout.plane, layout.pitch, 1, array.stride}};
 }
 
-/// A scene's field that is computed on the host: a slab's, the whole demagnetising field, or a
-/// program's own.
+/// A scene's field that is computed on the host: a slab's, the demagnetising field of the whole
+/// lattice, or a program's own.
 class HostSolver {
  public:
   static constexpr int degree = 2;
@@ -51,7 +54,7 @@ class HostSolver {
   std::variant<SlabDemagOnHost, Own, FieldOnHost<double>, FieldOnHost<float>> solver_;
 };
 
-/// The same where the spins are.
+/// The field computed in the memory space of the spins.
 template <class Spins>
 struct SolverInPlace {
   static constexpr int degree = 2;
@@ -63,16 +66,39 @@ struct SolverInPlace {
   }
 };
 
-/// A scene's field that is computed of all spins at once: by the host, or where they are.
+template <class Real>
+struct TimesMoments {
+  cayspin::SiteArray<Real, 3> spins;
+  cayspin::SiteArray<Real, 1> moments;
+  cayspin::OutputArray<Real, 3> sources;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    site.store(site.load(moments) * site.load(spins), sources);
+  }
+};
+
+/// A scene's field that is computed from all spins at once, on the host or in the memory space of
+/// the spins.
 template <class Spins>
 class WholeField {
+  using Real = typename Spins::value_type;
+
  public:
   static constexpr int degree = 2;
+  using Moments = std::optional<ScalarField<Real, typename Spins::memory_space>>;
 
-  WholeField(Lattice const& lattice, HostSolver solver)
-      : term_(HostField<Spins, HostSolver>(lattice, std::move(solver))) {}
-  WholeField(Lattice const& lattice, FieldInPlace<Spins> field)
-      : term_(HostField<Spins, SolverInPlace<Spins>>(lattice, {std::move(field)})) {}
+  /// `moments`: of sites, multiplied with each spin; without them all are 1.
+  WholeField(Lattice const& lattice, HostSolver solver, Moments moments = {})
+      : term_(HostField<Spins, HostSolver>(lattice, std::move(solver))),
+        moments_(std::move(moments)) {
+    make_sources(lattice);
+  }
+  WholeField(Lattice const& lattice, FieldInPlace<Spins> field, Moments moments = {})
+      : term_(HostField<Spins, SolverInPlace<Spins>>(lattice, {std::move(field)})),
+        moments_(std::move(moments)) {
+    make_sources(lattice);
+  }
 
   template <class Others>
   void check_spins(Others const& spins) const {
@@ -80,11 +106,23 @@ class WholeField {
   }
   template <class Exec, class Others>
   auto prepare(Exec const& exec, Others const& spins, double t) const {
-    return std::visit([&](auto const& term) { return term.prepare(exec, spins, t); }, term_);
+    if (moments_) {
+      TimesMoments<Real> const kernel{spins.array(), moments_->array(), sources_->output(false)};
+      cayspin::detail::for_each_site<Real>(exec, "cayspin::WholeField::sources", spins.layout(),
+                                           kernel, spins.layout().own);
+    }
+    auto const& sources = moments_ ? *sources_ : spins;
+    return std::visit([&](auto const& term) { return term.prepare(exec, sources, t); }, term_);
   }
 
  private:
+  void make_sources(Lattice const& lattice) {
+    if (moments_) sources_.emplace("WholeField::sources", lattice);
+  }
+
   std::variant<HostField<Spins, HostSolver>, HostField<Spins, SolverInPlace<Spins>>> term_;
+  Moments moments_;
+  std::optional<Spins> sources_;
 };
 
 }  // namespace cayspin::simulation

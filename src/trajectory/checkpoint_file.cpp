@@ -26,12 +26,12 @@ constexpr std::int64_t checkpoint_version = 1;
 constexpr std::uint64_t checkpoint_overhead_bytes = 64 * 1024;
 constexpr hsize_t most_components = 3;
 
-// Never 0, so that a block of zeros is no field with its checksum.
+// Never 0, so that a block of zeros is not a valid field with its checksum.
 std::int64_t checksum(Fletcher32 const& sum) { return std::int64_t{1} + sum.value(); }
 
 }  // namespace
 
-/// What a checkpoint holds beside the numbers of its fields.
+/// Contents of a checkpoint besides the numbers of its fields.
 struct CheckpointContents {
   CheckpointHeader header;
   std::map<std::string, double> numbers;
@@ -101,6 +101,10 @@ class CheckpointWriter::Implementation {
     attributes.create("time", header.time);
     attributes.create("units", std::string(header.si ? si_units : reduced_units));
     numbers_ = create_group(file_.get(), "numbers", path_);
+    if (header.stage == StageBegin{}) return;
+    number("stage", static_cast<double>(header.stage.stage));
+    number("stage_step", static_cast<double>(header.stage.step));
+    number("stage_time", header.stage.time);
   }
 
   void number(std::string const& name, double value) {
@@ -185,7 +189,7 @@ class CheckpointWriter::Implementation {
   GroupHandle numbers_;
   CheckpointContents contents_;
   bool has_spins_ = false;
-  DatasetHandle field_;  // of which some planes are written, but not all
+  DatasetHandle field_;  // a partly written field
   std::string name_;
   hsize_t written_planes_ = 0;
   Fletcher32 sum_;
@@ -244,9 +248,12 @@ class CheckpointReader::Implementation {
     for (int axis = 0; axis < 3; ++axis)
       header_.shape[axis] = static_cast<std::int64_t>(extents[2 - axis]);
     numbers_ = open_group(file_.get(), "numbers", path_);
-    // Files of earlier versions have none.
+    // Files of earlier versions have no checksum.
     if (attributes.has(sum_mark) && attributes.read_integer(sum_mark) != contents().checksum())
       throw_failure(path_, "cannot read the checkpoint", "its contents are not those written");
+    if (RootAttributes(numbers_.get(), path_).has("stage"))
+      header_.stage = {static_cast<std::int64_t>(number("stage")),
+                       static_cast<std::int64_t>(number("stage_step")), number("stage_time")};
   }
 
   double number(std::string const& name) const {
@@ -256,7 +263,7 @@ class CheckpointReader::Implementation {
   std::vector<double> field(std::string const& name, SiteBox const& box) const {
     auto const dataset = open_dataset(file_.get(), name.c_str(), 4, path_);
     auto const extents = dataset_extents(dataset.get(), path_);
-    // Before memory is taken for them.
+    // Checked before memory is allocated.
     if (!std::equal(header_.shape.rbegin(), header_.shape.rend(), extents.begin()) ||
         extents[3] > most_components)
       throw_failure(path_, "cannot read dataset " + name, "its extents are not those of the spins");

@@ -11,7 +11,7 @@
 namespace cayspin::inline v0_1::io {
 namespace {
 
-// Bits of one sum reach all bits of the result.
+// Spreads the bits of one sum over all bits of the result.
 std::uint64_t mixed(std::uint64_t hash, std::uint32_t sum) {
   hash = (hash ^ sum) * 0x9E3779B97F4A7C15U;
   return hash ^ hash >> 32U;
@@ -21,7 +21,7 @@ std::uint32_t never_zero(std::uint64_t hash) {
   return std::max(static_cast<std::uint32_t>(hash), std::uint32_t{1});
 }
 
-// 56 bytes: step, time, energy, norm_defect, magnetization.
+// Sums 56 bytes: step, time, energy, norm_defect, magnetization.
 std::uint32_t sum_of(Sample const& sample) {
   static_assert(sizeof(Sample) == 56 && std::is_trivially_copyable_v<Sample>);
   return fletcher32(std::as_bytes(std::span(&sample, 1)));
@@ -29,10 +29,10 @@ std::uint32_t sum_of(Sample const& sample) {
 
 }  // namespace
 
-std::uint32_t row_checksum(Sample const& sample, std::span<Vector const> sublattices) {
+std::uint32_t row_checksum(Sample const& sample, std::span<double const> more) {
   auto const row = mixed(0, sum_of(sample));
-  if (sublattices.empty()) return never_zero(row);
-  return never_zero(mixed(row, fletcher32(std::as_bytes(sublattices))));
+  if (more.empty()) return never_zero(row);
+  return never_zero(mixed(row, fletcher32(std::as_bytes(more))));
 }
 
 std::uint32_t spins_checksum(Sample const& sample, std::uint32_t fletcher32) {

@@ -8,15 +8,14 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// The 32 bits that stand for step, time, scalars and, of a frame of a crystal, the means of its
-/// sublattices; never 0.
-std::uint32_t row_checksum(Sample const& sample, std::span<Vector const> sublattices = {});
+/// Returns a 32-bit checksum of step, time, scalars and further numbers of a sample; never 0.
+std::uint32_t row_checksum(Sample const& sample, std::span<double const> more = {});
 
-/// The 32 bits that stand for the spins of a frame, of which `fletcher32` is given, and for the
-/// sample that they belong to; never 0.
+/// Returns a 32-bit checksum of a frame's spins, given as their `fletcher32`, and of their sample;
+/// never 0.
 std::uint32_t spins_checksum(Sample const& sample, std::uint32_t fletcher32);
 
-/// Of the texts of a header.
+/// Returns a checksum of the texts of a header.
 std::uint64_t text_checksum(TrajectoryHeader const& header);
 
 }  // namespace cayspin::inline v0_1::io

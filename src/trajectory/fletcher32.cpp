@@ -6,7 +6,7 @@
 namespace cayspin::inline v0_1::io {
 namespace {
 
-// Modulo 65535, but a sum that is not 0 does not become 0.
+// Folds modulo 65535, but a nonzero sum does not become 0.
 std::uint64_t folded(std::uint64_t sum) {
   while (sum > 0xffff) sum = (sum & 0xffff) + (sum >> 16);
   return sum;

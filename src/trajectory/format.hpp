@@ -14,10 +14,10 @@ namespace cayspin::inline v0_1::io {
 inline constexpr int format_version = 1;
 inline constexpr char const* single_precision = "single";
 inline constexpr char const* double_precision = "double";
-/// Who reads or writes a part of a chunk has all of it in memory. HDF5 allows 4 GiB.
+/// Reading or writing a part of a chunk takes all of it into memory. HDF5 allows 4 GiB.
 inline constexpr std::uint64_t most_chunk_bytes = 256 << 20;
 inline constexpr std::uint64_t file_page_bytes = 4096;
-inline constexpr int most_pending = 512;  // samples that are written at once
+inline constexpr int most_pending = 512;  // samples written at once
 inline constexpr char const* reduced_units = "reduced";
 inline constexpr char const* si_units = "SI";
 
@@ -30,13 +30,14 @@ inline constexpr UnitAttribute unit_attributes[] = {{"time_unit", &Units::time},
                                                     {"field_unit", &Units::field},
                                                     {"energy_unit", &Units::energy}};
 
-/// Chunks of a dataset that HDF5 finds by blocks of at most a page. From the next one on the blocks
-/// have 512 elements of 8 bytes, and a kill can stop the system within one.
+/// Largest number of chunks that HDF5 indexes by blocks of at most a page. Beyond it blocks have
+/// 512 elements of 8 bytes, and a kill can stop the system within one.
 inline constexpr std::int64_t most_chunks = 8180;
 
-/// Frames in a chunk, if each of them takes so many bytes of it. Larger chunks begin on pages of
-/// the file: at most a sixteenth of the pages stays empty. If `chunks` would be planned with a
-/// frame in each, more than `most_chunks`, a chunk holds more frames, as `most_chunk_bytes` allow.
+/// Returns the number of frames per chunk if each takes so many bytes of it. Larger chunks start on
+/// pages of the file: at most a sixteenth of the pages stays empty. If more than `most_chunks`
+/// chunks would be planned with one frame each, a chunk holds more frames, up to
+/// `most_chunk_bytes`.
 inline std::int64_t frames_of_chunk(std::uint64_t bytes, std::int64_t chunks) {
   auto const empty_bytes = [&](std::uint64_t frames) {
     return (file_page_bytes - frames * bytes % file_page_bytes) % file_page_bytes;
@@ -48,9 +49,9 @@ inline std::int64_t frames_of_chunk(std::uint64_t bytes, std::int64_t chunks) {
   return static_cast<std::int64_t>(frames);
 }
 
-/// Extents (1, z, y, x, 3) of what a chunk of /spins holds of a frame for a lattice (nx, ny, nz):
-/// all of it or at most `planes` along z, and where that passes `limit` bytes, the frame cut into
-/// equal slabs along z, then y, then x.
+/// Returns the extents (1, z, y, x, 3) of the part of a frame in a chunk of /spins, for a lattice
+/// (nx, ny, nz): all of it or at most `planes` along z. If that exceeds `limit` bytes, the frame is
+/// cut into equal slabs along z, then y, then x.
 inline std::array<hsize_t, 5> frame_chunk(std::array<std::int64_t, 3> const& shape,
                                           std::uint64_t bytes_per_component,
                                           std::int64_t planes = 0,

@@ -17,10 +17,10 @@ namespace {
 
 using Shape = std::array<std::int64_t, 3>;
 
-// The mean spin of some rows, in double. A zero vector is a site without a spin.
+// Mean spin of some rows, in double. A zero vector is a site without a spin.
 class SublatticeMean {
  public:
-  // Adds one row. Rows are added in the order of the file: the same rows give the same bits.
+  // Adds one row. Rows are added in the order of the file, so that equal rows give equal bits.
   template <class Real>
   void add_row(Real const* spins, std::int64_t sites) {
     std::array<double, 3> row{};
@@ -32,7 +32,7 @@ class SublatticeMean {
     for (std::size_t c = 0; c < 3; ++c) sum_[c] += row[c];
   }
 
-  // Zero where no site has a spin.
+  // Returns zero if no site has a spin.
   std::array<double, 3> value() const {
     if (count_ == 0) return {};
     auto const count = static_cast<double>(count_);
@@ -44,14 +44,14 @@ class SublatticeMean {
   std::int64_t count_ = 0;
 };
 
-// What the file has of a site of a cell in one piece.
+// Returns the contiguous block of one site of a cell in the file.
 Shape block_of(Shape shape, std::int64_t cell_sites) {
   shape[2] /= cell_sites;
   return shape;
 }
 
-// Of such a block. Without HDF5's filters a frame is written alone into its chunk, whose other
-// frames keep their bytes.
+// Returns the chunk of such a block. Without HDF5's filters, a frame is written into its part of a
+// chunk, and the other frames keep their bytes.
 std::array<hsize_t, 5> chunk_of(Shape const& block, std::int64_t cell_sites,
                                 std::size_t number_bytes, TrajectoryStorage const& storage) {
   auto chunk = frame_chunk(block, number_bytes, storage.chunk);
@@ -66,7 +66,7 @@ std::array<hsize_t, 5> chunk_of(Shape const& block, std::int64_t cell_sites,
   return chunk;
 }
 
-// (frame, z, y, x, 3), or with the site of a cell as the second extent.
+// Returns (frame, z, y, x, 3), or with the site of a cell as the second extent.
 Extents with_site(std::array<hsize_t, 5> const& extents, std::int64_t cell_sites, hsize_t sites) {
   Extents all(extents.begin(), extents.end());
   if (cell_sites > 1) all.insert(all.begin() + 1, sites);
@@ -97,7 +97,7 @@ DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header,
                                 with_site(chunk, sites, 1), std::move(properties), path, inner);
 }
 
-// Chunks of whole planes of one frame, as they lie in memory.
+// Returns true for chunks of whole planes of one frame, which are contiguous in memory.
 bool written_raw(Shape const& shape, std::array<hsize_t, 5> const& chunk,
                  TrajectoryStorage const& storage) {
   return std::endian::native == std::endian::little && storage.compression == 0 && chunk[0] == 1 &&
@@ -229,7 +229,7 @@ void FrameWriter::write_part(std::int64_t site, std::int64_t first, std::int64_t
       spins, path_);
 }
 
-// Past HDF5, which would copy it. The chunk has room for all its planes.
+// Bypasses HDF5, which would copy the chunk. The chunk has memory for all its planes.
 void FrameWriter::write_chunk(std::int64_t site, std::int64_t first, std::int64_t planes,
                               std::byte* chunk) {
   auto const chunk_bytes = plane_bytes_ * chunk_[1];

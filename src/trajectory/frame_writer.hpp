@@ -13,30 +13,31 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// Dataset /spins of a trajectory file, to which frames are added by planes along z. Those of a
-/// crystal with several sites in a cell come whole, and lie site by site in the file.
+/// Dataset /spins of a trajectory file, to which frames are added by planes along z. Frames of a
+/// crystal with several sites per cell are added as a whole, and stored site by site.
 class FrameWriter {
  public:
   FrameWriter() = default;
-  /// Creates it.
+  /// Creates the dataset.
   FrameWriter(hid_t file, TrajectoryHeader const& header, TrajectoryStorage const& storage,
               std::filesystem::path path);
 
-  /// Of the file, that a frame may take: the first of a chunk takes all of that.
+  /// Returns the bytes of the file that a frame may take: the first of a chunk takes all of it.
   std::uint64_t frame_bytes() const;
 
-  /// Begins frame number `frame`, also again.
+  /// Starts frame number `frame`, possibly again.
   void begin(std::int64_t frame);
-  /// Adds the next planes; those of whole chunks, or all that are left. Other numbers throw
+  /// Adds the next planes: those of whole chunks, or all that are left. Other numbers throw
   /// std::logic_error.
   void add(std::int64_t planes, void const* spins);
-  /// The same, without a copy where that can be: `spins` is followed by the room of a piece.
+  /// Adds planes without a copy if possible: `spins` is followed by the rest of the memory of a
+  /// piece.
   void add_in_room(std::int64_t planes, std::byte* spins);
 
   std::int64_t planes() const { return planes_; }  ///< of the frame, so far
   bool is_whole() const { return planes_ == shape_[2]; }
   Fletcher32 const& checksum() const { return checksum_; }
-  /// Of a whole frame of a crystal: TrajectoryInfo::frame_sublattices. Otherwise empty.
+  /// Returns TrajectoryInfo::frame_sublattices of a whole frame of a crystal. Otherwise empty.
   std::vector<std::array<double, 3>> const& sublattices() const { return sublattices_; }
 
   void close() { dataset_.close(); }
@@ -59,7 +60,7 @@ class FrameWriter {
   bool raw_ = false;
   std::int64_t frame_ = 0, planes_ = 0;
   Fletcher32 checksum_;
-  std::vector<std::byte> part_;  // of a site: as many planes as a chunk has
+  std::vector<std::byte> part_;  // of a site: as many planes as a chunk
   std::vector<std::array<double, 3>> sublattices_;
 };
 

@@ -36,8 +36,8 @@ void require_folder(fs::path const& path) {
 
 bool is_locked(int file) { return ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; }
 
-// Writing to the old file is only tried, so that one which is protected, or locked by HDF5 in
-// another program, is not replaced behind its back.
+// Tries to write to the old file, so that one which is protected, or locked by HDF5 in another
+// program, is not replaced unnoticed.
 void require_replaceable(fs::path const& path) {
   int const file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (file < 0) throw_failure(path, action, std::strerror(errno));
@@ -46,7 +46,7 @@ void require_replaceable(fs::path const& path) {
   if (locked) throw_failure(path, action, "another program has it open");
 }
 
-// Here as always, HDF5 is not to be the one that finds the disk full.
+// Allocates disk space, so that HDF5 never finds the disk full.
 void create_with_room(fs::path const& written, fs::path const& path) {
   int const file = ::open(written.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (file < 0) throw_failure(path, action, std::strerror(errno));
@@ -61,10 +61,10 @@ void create_with_room(fs::path const& written, fs::path const& path) {
   throw_failure(path, action, std::strerror(error));
 }
 
-// All that HDF5 writes for itself has checksums, and a kill can stop a write between two pages of
-// the system: so blocks of less than a page lie within one. Version 3 of a file's head would have a
-// mark for files that are being written, which a kill leaves behind and others then refuse: so
-// version 2.
+// All metadata of HDF5 has checksums, and a kill can stop a write between two pages of the system:
+// so blocks smaller than a page must lie within one. Version 3 of the superblock has a flag for
+// files being written, which a kill leaves set and which makes others refuse the file: so version
+// 2.
 FileHandle create_file(fs::path const& written, fs::path const& path, SyncedFile* synced) {
   PropertyHandle const creation(H5Pcreate(H5P_FILE_CREATE)), access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_attr_phase_change(creation.get(), 64, 0);
@@ -75,7 +75,7 @@ FileHandle create_file(fs::path const& written, fs::path const& path, SyncedFile
   if (synced) synced->use_in(access.get());
   FileHandle file(H5Fcreate(written.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()));
   if (file.get() < 0) {
-    auto const reason = failure_reason();  // HDF5 forgets it when the properties are closed
+    auto const reason = failure_reason();  // closing the properties would clear it
     ::unlink(written.c_str());
     throw_failure(path, action, reason);
   }
@@ -83,7 +83,7 @@ FileHandle create_file(fs::path const& written, fs::path const& path, SyncedFile
   return file;
 }
 
-// A file that came to be meanwhile stays, where the file system knows how. Returns errno, or 0.
+// Keeps a file that was created meanwhile, if the file system supports it. Returns errno, or 0.
 int put_in_place(fs::path const& from, fs::path const& to, bool replaces) {
   if (!replaces) {
     if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;

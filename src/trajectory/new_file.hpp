@@ -8,21 +8,21 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// An HDF5 file in the making, written as PATH.partial until commit(): at no moment is there a torn
-/// file at PATH. An existing file stays untouched until then; with `shared` it may have readers.
-/// With `synced`, which HDF5 then writes through, neither is there after a power cut.
+/// An HDF5 file being written as PATH.partial until commit(), so that PATH is complete at every
+/// moment. An existing file stays unchanged until then; with `shared` it may have readers. With
+/// `synced`, through which HDF5 then writes, this also holds after a power cut.
 class NewFile {
  public:
   NewFile(std::filesystem::path path, bool overwrite, bool shared = false,
           SyncedFile* synced = nullptr);
-  /// Uncommitted: removes what the constructor created.
+  /// Removes what the constructor created unless committed.
   ~NewFile();
   NewFile(NewFile const&) = delete;
   NewFile& operator=(NewFile const&) = delete;
 
   hid_t get() const { return file_.get(); }
 
-  /// Puts the file, flushed before, under its name and hands it over.
+  /// Gives the flushed file its name and returns it.
   FileHandle commit();
 
  private:

@@ -13,7 +13,7 @@
 namespace cayspin::inline v0_1::io {
 namespace {
 
-// Asked here because passing the limit would raise a signal that ends the program.
+// Checked here because exceeding the limit would raise a signal that ends the program.
 bool passes_size_limit(std::uint64_t size) {
   rlimit limit{};
   return getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&

@@ -9,25 +9,25 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// Takes room on disk for the bytes from `begin` to `end` of a file: 0, or the system's error
-/// number where there is none. A file system that cannot tell counts as one with room.
+/// Allocates disk space for the bytes from `begin` to `end` of a file. Returns 0, or the system's
+/// error number if there is none. A file system that cannot tell counts as having space.
 int take_room(int descriptor, std::uint64_t begin, std::uint64_t end);
 
-/// The room on disk of a file that HDF5 has open for writing.
+/// Disk space of a file that HDF5 has open for writing.
 ///
-/// A disk that fills while HDF5 writes leaves a torn file. So the room is taken beforehand.
+/// A disk that fills up while HDF5 writes leaves a torn file, so space is allocated beforehand.
 class OpenFileSpace {
  public:
   OpenFileSpace() = default;
   OpenFileSpace(hid_t file, std::filesystem::path const& path);
 
-  /// Makes sure of room for `bytes` more, or throws with the file as it was.
+  /// Allocates space for `bytes` more; throws with the file unchanged.
   void reserve(std::uint64_t bytes, std::filesystem::path const& path);
 
-  /// Gives back what was reserved and not used. To be called on a flushed file.
+  /// Frees reserved space that was not used. Call it on a flushed file.
   void trim() const;
 
-  /// Waits until a flushed file is on the disk: 0, or the system's error number.
+  /// Waits until a flushed file is on the disk. Returns 0, or the system's error number.
   int sync() const { return sync_file(descriptor_); }
 
  private:

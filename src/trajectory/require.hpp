@@ -12,13 +12,13 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// Of what a file is to hold: throws std::invalid_argument for what cannot be.
+/// Checks the contents of a file; throws std::invalid_argument for an unknown precision.
 inline void require_precision(std::string const& precision) {
   if (precision != single_precision && precision != double_precision)
     throw std::invalid_argument("precision is '" + precision + "'; accepted are single and double");
 }
 
-/// The bytes of a frame and what goes with it fit into 63 bits.
+/// Requires that the bytes of a frame and its other data fit into 63 bits.
 inline void require_shape(std::array<std::int64_t, 3> const& shape) {
   std::int64_t room = std::numeric_limits<std::int64_t>::max() / 64;
   for (auto const extent : shape) {
@@ -28,7 +28,7 @@ inline void require_shape(std::array<std::int64_t, 3> const& shape) {
   if (room == 0) throw std::invalid_argument("the lattice has more sites than a file can hold");
 }
 
-/// What a writer consists of. Throws std::logic_error where it was moved to another one.
+/// Returns a writer's implementation. Throws std::logic_error if it was moved to another writer.
 template <class Implementation>
 Implementation& not_moved(std::unique_ptr<Implementation> const& writer) {
   if (!writer) throw std::logic_error("the writer of a file was moved away; use the other one");

@@ -67,12 +67,13 @@ class RunOutput::Implementation {
           beside(path, ".xdmf"), path,
           XdmfGrid{header.shape, header.cell_sites, options.spacing, !options.positions.empty()},
           single_, options.overwrite);
-    if (options.table) table_.emplace(beside(path, ".txt"), header.units.si, options.overwrite);
+    if (options.table)
+      table_.emplace(beside(path, ".txt"), header.units.si, options.overwrite, header.more);
     planes_ = header.shape[2];
     pieces_ = frame_pieces(header.shape, single_ ? sizeof(float) : sizeof(double), options.storage,
                            options.most_planes, header.cell_sites);
     for (auto& buffer : buffers_) {
-      // Zeroed: all memory is taken before a run.
+      // Zeroed, so that all memory is allocated before a run.
       buffer = std::make_unique<std::byte[]>(pieces_.bytes);
       free_.push_back(buffer.get());
     }
@@ -82,7 +83,7 @@ class RunOutput::Implementation {
   ~Implementation() {
     try {
       if (!ended_) end({}, false);
-    } catch (std::exception const&) {  // of the writer, which no call is left to throw
+    } catch (std::exception const&) {  // of the writer thread; no further call could throw it
     }
   }
 
@@ -103,15 +104,15 @@ class RunOutput::Implementation {
     hand_over_planes(pieces_.planes, std::nullopt);
   }
 
-  void write_frame(Sample const& sample) {
+  void write_frame(Sample const& sample, FrameNumbers const& numbers) {
     if (next_plane_ + pieces_.planes < planes_)
       throw std::logic_error(path().string() + ": write_frame before the last piece of a frame");
-    hand_over_planes(planes_ - next_plane_, sample);
+    hand_over_planes(planes_ - next_plane_, Frame{sample, numbers});
   }
 
-  void write_scalars(Sample const& sample) {
+  void write_scalars(Sample const& sample, std::vector<double> more) {
     require_open();
-    samples_.push_back(sample);
+    samples_.push_back({sample, std::move(more)});
     if (samples_.size() >= most_samples || Clock::now() - handed_over_ > longest_hold)
       hand_over_samples();
   }
@@ -133,16 +134,20 @@ class RunOutput::Implementation {
   std::filesystem::path const& path() const { return file_->path(); }
 
  private:
-  // What the run hands over at once: samples, and then planes of a frame, and then its end; or some
-  // of these.
+  // Data that the run hands over at once: samples, then planes of a frame, then its end; or some of
+  // these.
+  struct Frame {
+    Sample sample;
+    FrameNumbers numbers;
+  };
   struct Part {
-    std::vector<Sample> samples = {};
+    std::vector<ScalarTable::Line> samples = {};
     std::int64_t planes = 0;
     std::byte* spins = nullptr;
-    std::optional<Sample> frame = {};
+    std::optional<Frame> frame = {};
   };
 
-  void hand_over_planes(std::int64_t planes, std::optional<Sample> const& frame) {
+  void hand_over_planes(std::int64_t planes, std::optional<Frame> const& frame) {
     require_open();
     if (!lent_)
       throw std::logic_error(path().string() + ": spins handed over without a frame() before");
@@ -184,7 +189,7 @@ class RunOutput::Implementation {
     rethrow();
   }
 
-  // The thread: it writes all parts, also those that are left when it is asked to stop.
+  // Runs in the thread: writes all parts, including those left when it is asked to stop.
   void write_parts(std::stop_token const& stop) {
     std::unique_lock lock(mutex_);
     while (changed_.wait(lock, stop, [&] { return !parts_.empty(); })) {
@@ -208,13 +213,13 @@ class RunOutput::Implementation {
   }
 
   void write(Part const& part) {
-    for (auto const& [step, time, scalars] : part.samples)
-      file_->write_scalars(step, time, scalars);
+    for (auto const& [sample, more] : part.samples)
+      file_->write_scalars(sample.step, sample.time, sample.scalars, more);
     if (table_) table_->append(part.samples);
     if (part.spins) file_->write_planes(part.planes, part.spins);
     if (!part.frame) return;
-    auto const& [step, time, scalars] = *part.frame;
-    file_->end_frame(step, time, scalars);
+    auto const& [step, time, scalars] = part.frame->sample;
+    file_->end_frame(step, time, scalars, part.frame->numbers);
     if (xdmf_) xdmf_->add_frame(time);
   }
 
@@ -226,7 +231,7 @@ class RunOutput::Implementation {
   std::optional<XdmfFile> xdmf_;
   std::optional<ScalarTable> table_;
   std::array<std::unique_ptr<std::byte[]>, 2> buffers_;
-  std::vector<Sample> samples_;
+  std::vector<ScalarTable::Line> samples_;
   Clock::time_point handed_over_ = Clock::now();
 
   std::mutex mutex_;
@@ -235,7 +240,7 @@ class RunOutput::Implementation {
   std::deque<Part> parts_;
   bool writing_ = false;
   std::exception_ptr error_;
-  std::jthread thread_;  // last: joined before what it uses is gone
+  std::jthread thread_;  // last member: joined before what it uses is destroyed
 };
 
 RunOutput::RunOutput(std::filesystem::path path, TrajectoryHeader const& header,
@@ -255,12 +260,14 @@ template double* RunOutput::frame<double>();
 
 void RunOutput::write_piece() { not_moved(implementation_).write_piece(); }
 
-void RunOutput::write_frame(std::int64_t step, double time, Scalars const& scalars) {
-  not_moved(implementation_).write_frame({step, time, scalars});
+void RunOutput::write_frame(std::int64_t step, double time, Scalars const& scalars,
+                            FrameNumbers const& numbers) {
+  not_moved(implementation_).write_frame({step, time, scalars}, numbers);
 }
 
-void RunOutput::write_scalars(std::int64_t step, double time, Scalars const& scalars) {
-  not_moved(implementation_).write_scalars({step, time, scalars});
+void RunOutput::write_scalars(std::int64_t step, double time, Scalars const& scalars,
+                              std::vector<double> const& more) {
+  not_moved(implementation_).write_scalars({step, time, scalars}, more);
 }
 
 void RunOutput::finish(RunCost const& cost) { not_moved(implementation_).end(cost, true); }

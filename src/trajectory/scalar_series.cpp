@@ -3,6 +3,7 @@
 
 #include "checksum.hpp"
 #include "column.hpp"
+#include "hdf5/attribute.hpp"
 #include "hdf5/error.hpp"
 
 #include <algorithm>
@@ -16,10 +17,25 @@ namespace cayspin::inline v0_1::io {
 namespace {
 
 constexpr hsize_t samples_per_chunk = 512;
-constexpr char const* sublattices_name = "sublattice_magnetization";
+constexpr char const *sublattices_name = "sublattice_magnetization",
+                     *region_means_name = "region_magnetization",
+                     *region_energies_name = "region_energy", *term_energies_name = "term_energy",
+                     *shift_name = "shift", *stage_name = "stage", *terms_name = "terms";
 
-// Calls use(name, member) for each dataset with one number, or three, of each sample, in the order
-// of the file.
+constexpr hsize_t most_more = 1 << 24;  // numbers per sample in a dataset
+
+Extents extents_of(hsize_t count, Extents const& of_sample) {
+  Extents extents{count};
+  extents.insert(extents.end(), of_sample.begin(), of_sample.end());
+  return extents;
+}
+
+Extents begin_of(hsize_t first, Extents const& of_sample) {
+  return extents_of(first, Extents(of_sample.size(), 0));
+}
+
+// Calls use(name, member) for each dataset with one number, or three, per sample, in the order of
+// the file.
 template <class Use>
 void for_each_column(Use const& use) {
   use("time", [](auto& sample) -> auto& { return sample.time; });
@@ -32,7 +48,7 @@ void for_each_column(Use const& use) {
 }  // namespace
 
 ScalarSeries ScalarSeries::create(hid_t group, std::filesystem::path const& path,
-                                  std::int64_t cell_sites) {
+                                  std::int64_t cell_sites, MoreScalars const& more) {
   ScalarSeries series;
   auto const create = [&](char const* name, hid_t type, Extents const& chunk) {
     return create_growing_dataset(group, name, type, chunk, PropertyHandle(), path);
@@ -42,17 +58,31 @@ ScalarSeries ScalarSeries::create(hid_t group, std::filesystem::path const& path
     series.columns_.push_back(create(name, Stored::type(), Stored::extents(samples_per_chunk)));
   });
   series.checksum_ = create("checksum", H5T_STD_U64LE, {samples_per_chunk});
-  series.cell_sites_ = cell_sites;
-  if (cell_sites == 1) return series;
-  auto const sites = static_cast<hsize_t>(cell_sites);
-  series.sublattices_ = create(sublattices_name, H5T_IEEE_F64LE,
-                               {std::max<hsize_t>(1, samples_per_chunk / sites), sites, 3});
+  auto const add = [&](char const* name, Extents const& of_sample, hid_t type = H5T_IEEE_F64LE) {
+    Extents chunk{std::max<hsize_t>(1, samples_per_chunk / elements(of_sample))};
+    chunk.insert(chunk.end(), of_sample.begin(), of_sample.end());
+    series.more_.push_back({name, of_sample, create(name, type, chunk)});
+  };
+  auto const regions = static_cast<hsize_t>(more.regions);
+  if (cell_sites > 1) add(sublattices_name, {static_cast<hsize_t>(cell_sites), 3});
+  if (regions > 0) add(region_means_name, {regions, 3});
+  if (regions > 0) add(region_energies_name, {regions});
+  if (!more.terms.empty()) {
+    add(term_energies_name, {more.terms.size()});
+    write_names(series.more_.back().dataset.get(), terms_name, more.terms, path);
+  }
+  if (more.shift) add(shift_name, {}, H5T_STD_I64LE);
+  if (more.stage) add(stage_name, {}, H5T_STD_I64LE);
   return series;
 }
 
 ScalarSeries ScalarSeries::open(hid_t group, std::filesystem::path const& path,
                                 std::int64_t cell_sites) {
   ScalarSeries series;
+  auto const has = [&](char const* name) {
+    return check(H5Lexists(group, name, H5P_DEFAULT), path,
+                 std::string("cannot read dataset ") + name) > 0;
+  };
   for_each_column([&](char const* name, auto const& member) {
     using Stored = Column<MemberValue<Sample, decltype(member)>>;
     auto dataset = open_dataset(group, name, Stored::is_triple ? 2 : 1, path);
@@ -60,37 +90,65 @@ ScalarSeries ScalarSeries::open(hid_t group, std::filesystem::path const& path,
       throw_failure(path, std::string("cannot read dataset ") + name, "its second extent is not 3");
     series.columns_.push_back(std::move(dataset));
   });
-  auto const has_checksums =
-      check(H5Lexists(group, "checksum", H5P_DEFAULT), path, "cannot read dataset checksum");
-  if (has_checksums > 0) series.checksum_ = open_dataset(group, "checksum", 1, path);
-  series.cell_sites_ = cell_sites;
-  if (cell_sites == 1) return series;
-  series.sublattices_ = open_dataset(group, sublattices_name, 3, path);
-  auto const extents = dataset_extents(series.sublattices_.get(), path);
-  if (extents[1] != static_cast<hsize_t>(cell_sites) || extents[2] != 3)
+  if (has("checksum")) series.checksum_ = open_dataset(group, "checksum", 1, path);
+  auto const add = [&](char const* name, std::size_t rank) -> Extents {
+    auto dataset = open_dataset(group, name, rank, path);
+    auto extents = dataset_extents(dataset.get(), path);
+    extents.erase(extents.begin());
+    auto const cannot_be = [](hsize_t extent) { return extent == 0 || extent > most_more; };
+    if (std::ranges::any_of(extents, cannot_be) || elements(extents) > most_more)
+      throw_failure(path, std::string("cannot read dataset ") + name,
+                    "its inner extents cannot be");
+    series.more_.push_back({name, extents, std::move(dataset)});
+    return extents;
+  };
+  Extents const sublattices{static_cast<hsize_t>(cell_sites), 3};
+  if (cell_sites > 1 && add(sublattices_name, 3) != sublattices)
     throw_failure(path, std::string("cannot read dataset ") + sublattices_name,
                   "its inner extents are not (" + std::to_string(cell_sites) + ", 3)");
+  if (has(region_means_name)) {
+    auto const means = add(region_means_name, 3), energies = add(region_energies_name, 2);
+    if (means != Extents{energies[0], 3})
+      throw_failure(path, std::string("cannot read dataset ") + region_means_name,
+                    "it is not of the regions of " + std::string(region_energies_name));
+  }
+  if (has(term_energies_name)) add(term_energies_name, 2);
+  if (has(shift_name)) add(shift_name, 1);
+  if (has(stage_name)) add(stage_name, 1);
   return series;
 }
 
-// Without the filter fletcher32: its sum would stand for a chunk of 512 samples that is written in
+// Without the filter fletcher32, whose sum would cover a chunk of 512 samples that is written in
 // pieces.
 void ScalarSeries::append(std::vector<Sample> const& samples, std::filesystem::path const& path,
-                          std::uint32_t spins, std::vector<Vector> const& sublattices) {
+                          std::uint32_t spins, std::vector<double> const& more) {
   if (samples.empty()) return;
-  auto const checksums = values_of(samples, [&](Sample const& sample) {
-    return std::uint64_t{row_checksum(sample, sublattices)} << 32U | spins;
-  });
   hsize_t const count = samples.size();
+  auto const width = more_count();
+  std::vector<std::uint64_t> checksums(count);
+  for (std::size_t i = 0; i < count; ++i)
+    checksums[i] =
+        std::uint64_t{row_checksum(samples[i], std::span(more).subspan(i * width, width))} << 32U |
+        spins;
   auto dataset = columns_.begin();
   for_each_column([&](char const*, auto const& member) {
     using Stored = Column<MemberValue<Sample, decltype(member)>>;
     append_block((dataset++)->get(), Stored::memory_type(), Stored::begin(size_),
                  Stored::extents(count), values_of(samples, member).data(), path);
   });
-  if (sublattices_.get() >= 0)
-    append_block(sublattices_.get(), H5T_NATIVE_DOUBLE, {size_, 0, 0},
-                 {count, static_cast<hsize_t>(cell_sites_), 3}, sublattices.data(), path);
+  std::size_t first = 0;
+  for (auto const& [name, of_sample, dataset] : more_) {
+    auto const numbers = elements(of_sample);
+    std::vector<double> values;
+    values.reserve(count * numbers);
+    for (std::size_t i = 0; i < count; ++i) {
+      auto const from = more.begin() + static_cast<std::ptrdiff_t>(i * width + first);
+      values.insert(values.end(), from, from + static_cast<std::ptrdiff_t>(numbers));
+    }
+    append_block(dataset.get(), H5T_NATIVE_DOUBLE, begin_of(size_, of_sample),
+                 extents_of(count, of_sample), values.data(), path);
+    first += numbers;
+  }
   append_block(checksum_.get(), H5T_NATIVE_UINT64, {size_}, {count}, checksums.data(), path);
   size_ += count;
 }
@@ -102,7 +160,7 @@ std::int64_t ScalarSeries::size(std::filesystem::path const& path) const {
   };
   std::ranges::for_each(columns_, count);
   count(checksum_);
-  count(sublattices_);
+  for (auto const& column : more_) count(column.dataset);
   return static_cast<std::int64_t>(shortest);
 }
 
@@ -142,25 +200,55 @@ std::vector<Sample> ScalarSeries::read(std::int64_t begin, std::int64_t end,
   });
   if (!has_checksums()) return samples;
   auto const checksums = read_checksums(begin, end, path);
-  auto const sublattices = read_sublattices(begin, end, path);
-  auto const of_sample = sublattices.empty() ? 0 : static_cast<std::size_t>(cell_sites_);
+  auto const more = read_more(begin, end, path);
+  auto const width = more_count();
   for (std::size_t i = 0; i < samples.size(); ++i)
-    if (checksums[i] >> 32U !=
-        row_checksum(samples[i], std::span(sublattices).subspan(i * of_sample, of_sample)))
+    if (checksums[i] >> 32U != row_checksum(samples[i], std::span(more).subspan(i * width, width)))
       throw_failure(path, "cannot read the trajectory",
                     "sample " + std::to_string(begin + static_cast<std::int64_t>(i)) +
                         " is damaged: its checksum differs");
   return samples;
 }
 
-std::vector<Vector> ScalarSeries::read_sublattices(std::int64_t begin, std::int64_t end,
-                                                   std::filesystem::path const& path) const {
-  if (sublattices_.get() < 0 || begin == end) return {};
-  std::vector<Vector> means(static_cast<std::size_t>((end - begin) * cell_sites_));
-  read_block(sublattices_.get(), H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(begin), 0, 0},
-             {static_cast<hsize_t>(end - begin), static_cast<hsize_t>(cell_sites_), 3},
-             means.data(), path);
-  return means;
+std::vector<double> ScalarSeries::read_more(std::int64_t begin, std::int64_t end,
+                                            std::filesystem::path const& path) const {
+  auto const count = static_cast<std::size_t>(end - begin);
+  auto const width = more_count();
+  std::vector<double> more(count * width);
+  if (more.empty()) return more;
+  std::size_t first = 0;
+  for (auto const& [name, of_sample, dataset] : more_) {
+    auto const numbers = elements(of_sample);
+    std::vector<double> values(count * numbers);
+    read_block(dataset.get(), H5T_NATIVE_DOUBLE, begin_of(static_cast<hsize_t>(begin), of_sample),
+               extents_of(count, of_sample), values.data(), path);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      more[i / numbers * width + first + i % numbers] = values[i];
+    first += numbers;
+  }
+  return more;
+}
+
+std::size_t ScalarSeries::more_count() const {
+  std::size_t count = 0;
+  for (auto const& column : more_) count += elements(column.of_sample);
+  return count;
+}
+
+MoreScalars ScalarSeries::more_scalars(std::filesystem::path const& path) const {
+  MoreScalars more;
+  for (auto const& [name, of_sample, dataset] : more_) {
+    if (name == region_energies_name) more.regions = static_cast<std::int64_t>(of_sample[0]);
+    if (name == term_energies_name) {
+      more.terms = read_names(dataset.get(), terms_name, path);
+      if (more.terms.size() != of_sample[0])
+        throw_failure(path, std::string("cannot read dataset ") + name,
+                      "it does not have a name for each term");
+    }
+    if (name == shift_name) more.shift = true;
+    if (name == stage_name) more.stage = true;
+  }
+  return more;
 }
 
 std::uint32_t ScalarSeries::spins_checksum(std::int64_t frame,

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "hdf5/dataset.hpp"
 #include "hdf5/handle.hpp"
 #include "io/trajectory.hpp"
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -12,39 +13,40 @@
 
 namespace cayspin::inline v0_1::io {
 
-using Vector = std::array<double, 3>;
-
-/// The datasets time, step, energy, norm_defect, magnetization and checksum of one group, and
-/// sublattice_magnetization of the frames of crystals with several sites in a cell. Files of
-/// earlier versions have no checksums.
+/// The datasets time, step, energy, norm_defect, magnetization and checksum of one group; for the
+/// frames of crystals with several sites per cell also sublattice_magnetization; then those of
+/// MoreScalars. Files of earlier versions have no checksums.
 class ScalarSeries {
  public:
-  /// `cell_sites`: of frames; 1 for samples without them.
+  /// `cell_sites`: for frames; 1 for samples without them.
   static ScalarSeries create(hid_t group, std::filesystem::path const& path,
-                             std::int64_t cell_sites = 1);
+                             std::int64_t cell_sites = 1, MoreScalars const& more = {});
   static ScalarSeries open(hid_t group, std::filesystem::path const& path,
                            std::int64_t cell_sites = 1);
 
-  /// `spins`: the checksum of a frame's spins, and 1 for samples without. `sublattices` of one
-  /// frame, where they are stored.
+  /// `spins`: the checksum of a frame's spins, or 1 for samples without spins. `more`: the further
+  /// numbers of each sample, sample after sample.
   void append(std::vector<Sample> const& samples, std::filesystem::path const& path,
-              std::uint32_t spins = 1, std::vector<Vector> const& sublattices = {});
+              std::uint32_t spins = 1, std::vector<double> const& more = {});
 
-  /// Samples that are whole: the shortest of the datasets counts.
+  /// Returns the number of complete samples: that of the shortest dataset.
   std::int64_t size(std::filesystem::path const& path) const;
-  /// Of these samples, those that can be read. A killed process may have left up to `most_torn`
-  /// that cannot: what it was adding at that moment.
+  /// Returns how many of these samples are readable. A killed process may have left up to
+  /// `most_torn` unreadable ones, which it was adding at that moment.
   std::int64_t readable(std::int64_t most_torn, std::filesystem::path const& path) const;
-  /// Of these samples, those from `begin` to `end`. Throws where one is not as it was written.
+  /// Returns samples `begin` to `end`. Throws if one is not as it was written.
   std::vector<Sample> read(std::int64_t begin, std::int64_t end,
                            std::filesystem::path const& path) const;
 
-  /// Of each sample, one after the other; empty where none are stored.
-  std::vector<Vector> read_sublattices(std::int64_t begin, std::int64_t end,
-                                       std::filesystem::path const& path) const;
+  /// Returns the further numbers of each sample, sample after sample.
+  std::vector<double> read_more(std::int64_t begin, std::int64_t end,
+                                std::filesystem::path const& path) const;
+  /// Returns the count of further numbers per sample.
+  std::size_t more_count() const;
+  MoreScalars more_scalars(std::filesystem::path const& path) const;
 
   bool has_checksums() const { return checksum_.get() >= 0; }
-  /// The checksum of the spins of a frame, which has_checksums() has.
+  /// Returns the checksum of the spins of a frame; requires has_checksums().
   std::uint32_t spins_checksum(std::int64_t frame, std::filesystem::path const& path) const;
 
  private:
@@ -52,9 +54,15 @@ class ScalarSeries {
   std::vector<std::uint64_t> read_checksums(std::int64_t begin, std::int64_t end,
                                             std::filesystem::path const& path) const;
 
-  std::vector<DatasetHandle> columns_;  // with one number, or three, of each sample
-  DatasetHandle checksum_, sublattices_;
-  std::int64_t cell_sites_ = 1;
+  struct MoreColumn {
+    char const* name;
+    Extents of_sample;  // extents of the data of one sample
+    DatasetHandle dataset;
+  };
+
+  std::vector<DatasetHandle> columns_;  // with one number, or three, per sample
+  std::vector<MoreColumn> more_;
+  DatasetHandle checksum_;
   hsize_t size_ = 0;
 };
 

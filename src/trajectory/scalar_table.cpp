@@ -15,11 +15,20 @@
 
 namespace cayspin::inline v0_1::io {
 
-ScalarTable::ScalarTable(std::filesystem::path path, bool in_si, bool overwrite)
+ScalarTable::ScalarTable(std::filesystem::path path, bool in_si, bool overwrite,
+                         MoreScalars const& more)
     : path_(std::move(path)) {
   FileBeside file(path_, overwrite);
-  file.stream() << fmt::format("# t ({})\tmx ()\tmy ()\tmz ()\tE_total ({})\tnorm_defect ()\n",
-                               in_si ? "s" : "", in_si ? "J" : "");
+  auto const joule = in_si ? "J" : "";
+  auto names = fmt::format("# t ({})\tmx ()\tmy ()\tmz ()\tE_total ({})\tnorm_defect ()",
+                           in_si ? "s" : "", joule);
+  for (std::int64_t region = 0; region < more.regions; ++region)
+    for (char const axis : {'x', 'y', 'z'}) names += fmt::format("\tm{}_region{} ()", axis, region);
+  for (std::int64_t region = 0; region < more.regions; ++region)
+    names += fmt::format("\tE_region{} ({})", region, joule);
+  for (auto const& term : more.terms) names += fmt::format("\tE_{} ({})", term, joule);
+  if (more.shift) names += "\tshift (cells)";
+  file.stream() << names << '\n';
   file.commit();
   file_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (file_ < 0)
@@ -31,12 +40,16 @@ ScalarTable::~ScalarTable() {
   if (file_ >= 0) ::close(file_);
 }
 
-void ScalarTable::append(std::vector<Sample> const& samples) {
+void ScalarTable::append(std::vector<Line> const& samples) {
   fmt::memory_buffer lines;
-  for (auto const& [step, time, scalars] : samples) {
+  auto const at_end = std::back_inserter(lines);
+  for (auto const& [sample, more] : samples) {
+    auto const& scalars = sample.scalars;
     auto const& m = scalars.magnetization;
-    fmt::format_to(std::back_inserter(lines), "{}\t{}\t{}\t{}\t{}\t{}\n", time, m[0], m[1], m[2],
-                   scalars.energy, scalars.norm_defect);
+    fmt::format_to(at_end, "{}\t{}\t{}\t{}\t{}\t{}", sample.time, m[0], m[1], m[2], scalars.energy,
+                   scalars.norm_defect);
+    for (double const number : more) fmt::format_to(at_end, "\t{}", number);
+    lines.push_back('\n');
   }
   auto const before = ::lseek(file_, 0, SEEK_END);
   for (std::size_t done = 0; done < lines.size();) {

@@ -9,18 +9,23 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// Samples as a text table in mumax3's style: columns with names and units, separated by tabs, and
-/// digits that give every double back. The file holds whole lines at every moment.
+/// Samples as a text table in mumax3's style: columns with names and units, separated by tabs, with
+/// enough digits to restore every double. The file holds complete lines at every moment.
 class ScalarTable {
  public:
-  /// Creates the file with the line of names. A file that exists is an error unless `overwrite`.
-  ScalarTable(std::filesystem::path path, bool in_si, bool overwrite);
+  struct Line {
+    Sample sample;
+    std::vector<double> more = {};  ///< as in MoreScalars
+  };
+
+  /// Creates the file with its header line. An existing file is an error unless `overwrite`.
+  ScalarTable(std::filesystem::path path, bool in_si, bool overwrite, MoreScalars const& more = {});
   ~ScalarTable();
   ScalarTable(ScalarTable const&) = delete;
   ScalarTable& operator=(ScalarTable const&) = delete;
 
-  /// Throws std::runtime_error, with the lines of these samples taken back.
-  void append(std::vector<Sample> const& samples);
+  /// Appends samples. On failure removes their lines and throws std::runtime_error.
+  void append(std::vector<Line> const& samples);
 
  private:
   std::filesystem::path path_;

@@ -16,7 +16,7 @@
 namespace cayspin::inline v0_1::io {
 namespace {
 
-// Only trajectory files say with which cayspin they were written.
+// Only trajectory files have the version of cayspin that wrote them.
 std::optional<ScalarSeries> open_series(hid_t file, std::int64_t cell_sites,
                                         std::filesystem::path const& path) {
   QuietErrors const quiet;
@@ -35,13 +35,13 @@ hsize_t whole_frames(RealDataset const& spins, std::optional<ScalarSeries> const
   return std::min(stored, static_cast<hsize_t>(series->readable(complete ? 0 : 1, path)));
 }
 
-// As they stand in the file: what was a float is one again.
+// Converts back to the stored type: floats were read as double.
 void add(Fletcher32& sum, std::vector<double> const& spins, bool single) {
   auto const add_bytes = [&](auto const& stored) { sum.add(std::as_bytes(std::span(stored))); };
   single ? add_bytes(std::vector<float>(spins.begin(), spins.end())) : add_bytes(spins);
 }
 
-// Of planes along z of which every `sites`th is of one site of a cell, beginning with `site`.
+// Returns the planes along z that hold one site of a cell: every `sites`th, starting with `site`.
 SiteBox of_site(SiteBox box, std::int64_t site, std::int64_t sites) {
   auto const planes_before = [&](std::int64_t plane) { return (plane + sites - 1 - site) / sites; };
   auto const end = planes_before(box.begin[2] + box.extent[2]);
@@ -110,7 +110,7 @@ std::vector<double> StoredSpins::by_planes(SiteBox const& box, Read const& read)
 std::vector<double> StoredSpins::checked(Extents const& begin, SiteBox const& box) const {
   QuietErrors const quiet;
   auto const axis = frame_.size() - 4;  // z
-  // HDF5 has a chunk whole in memory for any part of it.
+  // HDF5 reads a whole chunk into memory for any part of it.
   auto const of_chunk = static_cast<std::int64_t>(dataset_.chunk()[axis]);
   auto const at_once =
       std::max(of_chunk, planes_to_read(shape_, 3 * sizeof(double)) / of_chunk * of_chunk);

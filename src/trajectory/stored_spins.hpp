@@ -17,18 +17,18 @@ namespace cayspin::inline v0_1::io {
 /// Dataset /spins of any HDF5 file, open for reading.
 class StoredSpins {
  public:
-  /// Throws unless it fits a lattice (nx, ny, nz) with so many sites in a cell, and, where it has
+  /// Throws unless it fits a lattice (nx, ny, nz) with so many sites per cell and, if it has
   /// frames, holds a whole one.
   StoredSpins(std::filesystem::path const& path, std::array<std::int64_t, 3> const& shape,
               std::int64_t cell_sites = any_cell_sites);
 
-  /// The state or the last whole frame, packed as (nz, ny, nx, 3), or of it the sites of a box.
-  /// Throws where a trajectory's frame is not as it was written. What lies site by site in the file
-  /// comes back in the order of TrajectoryHeader::shape.
+  /// Returns the state or the last whole frame, packed as (nz, ny, nx, 3), or a box of it. Throws
+  /// if a trajectory's frame is not as it was written. Data stored site by site is returned in the
+  /// order of TrajectoryHeader::shape.
   std::vector<double> last() const;
   std::vector<double> last(SiteBox const& box) const;
 
-  /// Whole frame number `frame`. Throws also where there is none.
+  /// Returns whole frame number `frame`. Throws also if there is none.
   std::vector<double> frame(std::int64_t frame) const;
 
  private:
@@ -42,7 +42,7 @@ class StoredSpins {
   std::array<std::int64_t, 3> shape_;
   RealDataset dataset_;
   std::optional<ScalarSeries> series_;  // of a trajectory file
-  std::int64_t sites_ = 1;              // of a cell, where they lie one after the other
+  std::int64_t sites_ = 1;              // per cell, if they are stored one after the other
   bool framed_ = false;
   Extents begin_, frame_;
 };

@@ -99,8 +99,8 @@ void copy_run(fs::path const& file, hid_t group, std::string const& name) {
         "cannot copy the run into the sweep");
 }
 
-// Every frame is read and the copy tried: the run's own file is removed afterwards, and HDF5 may
-// crash on a damaged one.
+// Reads every frame and tries the copy, because the run's own file is removed afterwards, and HDF5
+// may crash on a damaged one.
 void require_whole(fs::path const& file) {
   auto const info = read_info(file);
   auto const trial = file.string() + ".trial";
@@ -120,7 +120,7 @@ void require_whole(fs::path const& file) {
   fs::remove(trial);
 }
 
-// Links are relative: the folder and the file can be moved together.
+// Links are relative, so that the folder and the file can be moved together.
 void take_in(hid_t runs, fs::path const& path, std::int64_t run, bool copy) {
   auto const file = swept_run_file(path, run);
   auto const name = swept_run_name(run);

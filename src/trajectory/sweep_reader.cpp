@@ -45,7 +45,7 @@ std::vector<std::string> read_texts(hid_t file, char const* name, Extents const&
   return values;
 }
 
-/// One number, or three, of each run.
+/// Reads one number, or three, per run.
 template <class Value>
 std::vector<Value> read_column(hid_t group, char const* name, std::size_t runs,
                                fs::path const& path) {
@@ -55,7 +55,7 @@ std::vector<Value> read_column(hid_t group, char const* name, std::size_t runs,
   return values;
 }
 
-// The values of each key, in the order in which they come.
+// Returns the values of each key, in order.
 std::vector<SweptKey> read_keys(hid_t file, fs::path const& path) {
   auto const extents = dataset_extents(open_dataset(file, "values", path).get(), path);
   if (extents.size() != 2) throw_failure(path, "cannot read dataset values", "its rank is not 2");
@@ -96,12 +96,12 @@ std::vector<SweptRun> read_results(hid_t file, std::size_t count, fs::path const
   return runs;
 }
 
-// Links to other files are those of runs that are not in the file itself.
+// Returns true for links to other files, which are used for runs that are not in the file itself.
 bool has_external_link(hid_t runs) {
   bool found = false;
   auto const look = [](hid_t, char const*, H5L_info_t const* info, void* data) -> herr_t {
     *static_cast<bool*>(data) = info->type == H5L_TYPE_EXTERNAL;
-    return 1;  // the first one tells
+    return 1;  // stops at the first one
   };
   H5Literate(runs, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, look, &found);
   return found;

@@ -27,14 +27,23 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr auto longest_wait = std::chrono::seconds(1);
 
-// What a frame, or as many samples as may be pending, can take besides the spins: index nodes and a
-// new chunk in each of the scalar datasets.
-constexpr std::uint64_t overhead_bytes = 512 * 1024;
+// Returns the most that a frame, or all pending samples, can take besides the spins: index nodes
+// and a new chunk in each of the scalar datasets.
+std::uint64_t overhead_of(MoreScalars const& more) {
+  constexpr std::uint64_t bytes = 512 * 1024, chunks_and_nodes = 4;
+  return bytes + chunks_and_nodes * most_pending * sizeof(double) * more.count();
+}
 
 void write_units(RootAttributes const& attributes, Units const& units) {
   attributes.create("units", std::string(units.si ? si_units : reduced_units));
   if (!units.si) return;
   for (auto const& [name, member] : unit_attributes) attributes.create(name, units.*member);
+}
+
+void write_stage(RootAttributes const& attributes, StageBegin const& begin) {
+  attributes.create("stage", begin.stage);
+  attributes.create("stage_step", begin.step);
+  attributes.create("stage_time", begin.time);
 }
 
 void write_attributes(hid_t file, TrajectoryHeader const& header,
@@ -50,6 +59,7 @@ void write_attributes(hid_t file, TrajectoryHeader const& header,
   attributes.create("threads", std::int64_t{header.threads});
   attributes.create("precision", header.precision);
   write_units(attributes, header.units);
+  if (header.stage) write_stage(attributes, *header.stage);
   attributes.create("text_checksum", std::bit_cast<std::int64_t>(text_checksum(header)));
   attributes.create("evaluations", std::int64_t{0});
   if (header.relaxes) {
@@ -75,7 +85,7 @@ void require_valid(TrajectoryHeader const& header, TrajectoryStorage const& stor
     throw std::invalid_argument("the positions are not three numbers of each site");
 }
 
-// Checked by HDF5, as nothing else is that lies beside the frames.
+// Checked by HDF5, unlike other data besides the frames.
 void write_positions(hid_t file, TrajectoryHeader const& header,
                      std::vector<double> const& positions, std::filesystem::path const& path) {
   auto block = header.shape;
@@ -101,12 +111,16 @@ class TrajectoryFile::Implementation {
  public:
   Implementation(std::filesystem::path path, TrajectoryHeader const& header, bool overwrite,
                  TrajectoryStorage const& storage, std::vector<double> const& positions)
-      : path_(std::move(path)), single_(header.precision == single_precision) {
+      : path_(std::move(path)),
+        single_(header.precision == single_precision),
+        more_(header.more),
+        has_stages_(header.stage.has_value()),
+        overhead_(overhead_of(header.more)) {
     require_valid(header, storage, positions);
     if (storage.sync) synced_ = std::make_unique<SyncedFile>();
     NewFile file(path_, overwrite, false, synced_.get());
     space_ = OpenFileSpace(file.get(), path_);
-    space_.reserve(overhead_bytes + header.scene_text.size() + header.resolved_scene.size() +
+    space_.reserve(overhead_ + header.scene_text.size() + header.resolved_scene.size() +
                        sizeof(double) * positions.size(),
                    path_);
     write_attributes(file.get(), header, path_);
@@ -130,7 +144,7 @@ class TrajectoryFile::Implementation {
     require_spins(spins);
     begin_frame();
     spins_.add(planes_, spins);
-    end_frame(sample);
+    end_frame(sample, {});
   }
 
   void write_planes(std::int64_t planes, std::byte* spins) {
@@ -141,29 +155,35 @@ class TrajectoryFile::Implementation {
 
   // Readers count a frame once its scalars are there, so those reach the disk after its spins, or
   // both are committed at once.
-  void end_frame(Sample const& sample) {
+  void end_frame(Sample const& sample, FrameNumbers const& numbers) {
     require_open();
     if (!spins_.is_whole())
       throw std::logic_error(path_.string() + ": a frame ends before its last plane");
     if (!synced_) flush();
-    frame_series_.append({sample}, path_, spins_checksum(sample, spins_.checksum().value()),
-                         spins_.sublattices());
+    std::vector<double> more;
+    for (auto const& mean : spins_.sublattices()) more.insert(more.end(), mean.begin(), mean.end());
+    if (more_.shift) more.push_back(static_cast<double>(numbers.shift));
+    if (has_stages_) more.push_back(static_cast<double>(numbers.stage));
+    frame_series_.append({sample}, path_, spins_checksum(sample, spins_.checksum().value()), more);
     flush();
     spins_.begin(++frames_);
   }
 
-  void write_scalars(Sample const& sample) {
+  void write_scalars(Sample const& sample, std::vector<double> const& more) {
     require_open();
+    if (more.size() != more_.count())
+      throw std::logic_error(path_.string() + ": a sample with other numbers than the file's");
     pending_.push_back(sample);
+    pending_more_.insert(pending_more_.end(), more.begin(), more.end());
     if (pending_.size() < most_pending && Clock::now() - flushed_ < longest_wait) return;
-    space_.reserve(overhead_bytes, path_);
+    space_.reserve(overhead_, path_);
     write_pending();
     flush();
   }
 
   void end(RunCost const& cost, bool complete) {
     require_open();
-    if (!pending_.empty()) space_.reserve(overhead_bytes, path_);
+    if (!pending_.empty()) space_.reserve(overhead_, path_);
     write_pending();
     RootAttributes const attributes(file_.get(), path_);
     attributes.replace("evaluations", cost.evaluations);
@@ -189,15 +209,17 @@ class TrajectoryFile::Implementation {
                        TrajectoryStorage const& storage) {
     spins_ = FrameWriter(file, header, storage, path_);
     planes_ = header.shape[2];
-    frame_series_ = ScalarSeries::create(file, path_, header.cell_sites);
+    frame_series_ =
+        ScalarSeries::create(file, path_, header.cell_sites,
+                             {.shift = header.more.shift, .stage = header.stage.has_value()});
     scalars_ = create_group(file, "scalars", path_);
-    sample_series_ = ScalarSeries::create(scalars_.get(), path_);
+    sample_series_ = ScalarSeries::create(scalars_.get(), path_, 1, header.more);
   }
 
   void begin_frame() {
     require_open();
     spins_.begin(frames_);
-    space_.reserve(spins_.frame_bytes() + overhead_bytes, path_);
+    space_.reserve(spins_.frame_bytes() + overhead_, path_);
     write_pending();
   }
 
@@ -210,8 +232,9 @@ class TrajectoryFile::Implementation {
   }
 
   void write_pending() {
-    sample_series_.append(pending_, path_);
+    sample_series_.append(pending_, path_, 1, pending_more_);
     pending_.clear();
+    pending_more_.clear();
   }
 
   void flush() {
@@ -232,6 +255,9 @@ class TrajectoryFile::Implementation {
 
   std::filesystem::path path_;
   bool single_;
+  MoreScalars more_;
+  bool has_stages_;
+  std::uint64_t overhead_;
   std::unique_ptr<SyncedFile> synced_;  // HDF5 writes through it
   FileHandle file_;
   FrameWriter spins_;
@@ -240,6 +266,7 @@ class TrajectoryFile::Implementation {
   ScalarSeries frame_series_, sample_series_;
   OpenFileSpace space_;
   std::vector<Sample> pending_;
+  std::vector<double> pending_more_;
   Clock::time_point flushed_ = Clock::now();
   std::int64_t frames_ = 0;
 };
@@ -273,14 +300,16 @@ void TrajectoryFile::write_planes(std::int64_t planes, std::byte* spins) {
   not_moved(implementation_).write_planes(planes, spins);
 }
 
-void TrajectoryFile::end_frame(std::int64_t step, double time, Scalars const& scalars) {
+void TrajectoryFile::end_frame(std::int64_t step, double time, Scalars const& scalars,
+                               FrameNumbers const& numbers) {
   QuietErrors const quiet;
-  not_moved(implementation_).end_frame({step, time, scalars});
+  not_moved(implementation_).end_frame({step, time, scalars}, numbers);
 }
 
-void TrajectoryFile::write_scalars(std::int64_t step, double time, Scalars const& scalars) {
+void TrajectoryFile::write_scalars(std::int64_t step, double time, Scalars const& scalars,
+                                   std::vector<double> const& more) {
   QuietErrors const quiet;
-  not_moved(implementation_).write_scalars({step, time, scalars});
+  not_moved(implementation_).write_scalars({step, time, scalars}, more);
 }
 
 void TrajectoryFile::finish(RunCost const& cost) {

@@ -25,7 +25,7 @@
 namespace cayspin::inline v0_1::io {
 namespace {
 
-// Files of versions that knew no units are in reduced ones.
+// Files of versions without units are in reduced ones.
 Units read_units(RootAttributes const& attributes) {
   Units units;
   units.si = attributes.has("units") && attributes.read_text("units") == si_units;
@@ -34,7 +34,7 @@ Units read_units(RootAttributes const& attributes) {
   return units;
 }
 
-// Texts lie where HDF5 has no checksums.
+// Texts are stored where HDF5 has no checksums.
 void require_whole_texts(RootAttributes const& attributes, TrajectoryHeader const& header,
                          std::filesystem::path const& path) {
   if (!attributes.has("text_checksum")) return;
@@ -44,7 +44,7 @@ void require_whole_texts(RootAttributes const& attributes, TrajectoryHeader cons
                   "its attributes are damaged: their checksum differs");
 }
 
-// (frame, nz, ny, nx, 3), or (frame, site, nz, ny, nx, 3) of a crystal.
+// Reads (frame, nz, ny, nx, 3), or (frame, site, nz, ny, nx, 3) for a crystal.
 void read_extents(hid_t file, TrajectoryInfo& info, std::filesystem::path const& path) {
   constexpr std::size_t rank = 5;
   auto const spins = open_dataset(file, "spins", path);
@@ -65,7 +65,7 @@ void read_extents(hid_t file, TrajectoryInfo& info, std::filesystem::path const&
   header.shape[2] *= header.cell_sites;
 }
 
-// The scalars are not read, and `frames` are those that have spins.
+// Does not read the scalars; `frames` counts those that have spins.
 TrajectoryInfo read_header(hid_t file, std::filesystem::path const& path) {
   RootAttributes const attributes(file, path);
   TrajectoryInfo info;
@@ -83,6 +83,9 @@ TrajectoryInfo read_header(hid_t file, std::filesystem::path const& path) {
   info.header.precision = attributes.read_text("precision");
   info.header.units = read_units(attributes);
   require_whole_texts(attributes, info.header, path);
+  if (attributes.has("stage"))
+    info.header.stage = {attributes.read_integer("stage"), attributes.read_integer("stage_step"),
+                         attributes.read_real("stage_time")};
   info.cost.evaluations = attributes.read_integer("evaluations");
   info.cost.wall_seconds = attributes.read_real("wall_seconds");
   info.cost.step_seconds = attributes.read_real("step_seconds");
@@ -95,7 +98,7 @@ TrajectoryInfo read_header(hid_t file, std::filesystem::path const& path) {
 
 TrajectoryInfo read_whole_info(std::filesystem::path const& path, Locking locking) {
   auto const file = open_file(path, locking);
-  // `complete` is written last: once it is there, so is all else.
+  // `complete` is written last: once it is set, everything else is there.
   auto info = read_header(file.get(), path);
   auto const series = ScalarSeries::open(file.get(), path, info.header.cell_sites);
   auto const torn_frames = info.complete ? 0 : locking == Locking::on ? 1 : most_pending;
@@ -105,12 +108,27 @@ TrajectoryInfo read_whole_info(std::filesystem::path const& path, Locking lockin
     info.frame_times.push_back(sample.time);
     info.frame_scalars.push_back(sample.scalars);
   }
-  info.frame_sublattices = series.read_sublattices(0, info.frames, path);
+  auto const more = series.read_more(0, info.frames, path);
+  auto const sites = static_cast<std::size_t>(info.header.cell_sites);
+  auto const stored = series.more_scalars(path);
+  for (std::size_t frame = 0; frame < info.frame_steps.size(); ++frame) {
+    auto const* const of_frame = more.data() + frame * series.more_count();
+    for (std::size_t site = 0; sites > 1 && site < sites; ++site)
+      info.frame_sublattices.push_back(
+          {of_frame[3 * site], of_frame[3 * site + 1], of_frame[3 * site + 2]});
+    auto const* last = of_frame + series.more_count();
+    if (stored.stage) info.frame_stages.push_back(static_cast<std::int64_t>(*--last));
+    if (stored.shift) info.frame_shifts.push_back(static_cast<std::int64_t>(*--last));
+  }
   auto const group = open_group(file.get(), "scalars", path);
   auto const samples = ScalarSeries::open(group.get(), path);
   info.samples = samples.readable(info.complete ? 0 : most_pending, path);
-  if (!info.complete && info.samples > 0)
-    info.last_sample = samples.read(info.samples - 1, info.samples, path).front();
+  info.header.more = samples.more_scalars(path);
+  if (info.samples > 0 && (!info.complete || samples.more_count() > 0)) {
+    auto const last = info.samples - 1;
+    info.last_sample = samples.read(last, info.samples, path).front();
+    info.more_of_last_sample = samples.read_more(last, info.samples, path);
+  }
   return info;
 }
 

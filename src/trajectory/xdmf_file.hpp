@@ -9,12 +9,12 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// Where the sites are that an XDMF file describes.
+/// Positions of the sites that an XDMF file describes.
 struct XdmfGrid {
-  std::array<std::int64_t, 3> shape;  ///< as TrajectoryHeader has it
+  std::array<std::int64_t, 3> shape;  ///< as in TrajectoryHeader
   std::int64_t cell_sites = 1;
   std::array<double, 3> spacing = {1, 1, 1};
-  bool has_positions = false;  ///< in the trajectory file, which count in place of the spacing
+  bool has_positions = false;  ///< in the trajectory file; they replace the spacing
 };
 
 /// Describes /spins of a trajectory file to viewers such as ParaView: an XDMF time series of a
@@ -22,14 +22,14 @@ struct XdmfGrid {
 /// that it is valid at every moment.
 class XdmfFile {
  public:
-  /// Creates the file, without frames. One that exists is an error unless `overwrite`.
+  /// Creates the file, without frames. An existing file is an error unless `overwrite`.
   XdmfFile(std::filesystem::path path, std::filesystem::path const& trajectory,
            XdmfGrid const& grid, bool single, bool overwrite);
 
-  /// Adds the next frame. Of more than a thousand, those of about a second are written together.
+  /// Adds the next frame. Beyond a thousand, those of about a second are written together.
   void add_frame(double time);
 
-  /// Writes what add_frame left for later.
+  /// Writes the frames that add_frame has postponed.
   void finish();
 
  private:

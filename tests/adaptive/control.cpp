@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Steps chosen by the tolerance: what error they lead to, and what they do where a field jumps,
-// numbers fail and a run ends.
+// Steps chosen by the tolerance: the resulting error, and the behaviour at jumps of a field, on
+// failure and at the end of a run.
 #include "../backends/equal_bits.hpp"
 #include "../order/chain.hpp"
 #include "../support/backends.hpp"
@@ -42,8 +42,8 @@ template <class Type>
 struct AdaptiveOn : ::testing::Test {};
 TYPED_TEST_SUITE(AdaptiveOn, Backends, BackendName);
 
-// The same dt, so the same bits; frames at times that are no ends of steps. A device has the bits
-// of its run before.
+// Equal dt give equal bits; frames are at times between ends of steps. A device reproduces the bits
+// of its previous run.
 TYPED_TEST(AdaptiveOn, HasTheBitsOfSerial) {
   using Field = typename TypeParam::Spins;
   using Exec = typename TypeParam::Exec;
@@ -82,8 +82,8 @@ TEST(AdaptiveTolerance, HoldsAcrossAFieldSwitchedOnInMidStep) {
   }
 }
 
-// The steps of a spin at rest are long when its field comes, and turn it by so much that all
-// solutions are near half a turn.
+// A spin at equilibrium has long steps when its field is switched on, and then turns by so much
+// that all solutions are near half a turn.
 TEST(AdaptiveTolerance, HoldsWhereAFieldIsSwitchedOnAtRest) {
   double const tolerance = 1e-4;
   auto const start = [] {
@@ -98,7 +98,7 @@ TEST(AdaptiveTolerance, HoldsWhereAFieldIsSwitchedOnAtRest) {
   expect_below("error after the jump", largest_distance(spins, exact), 30 * tolerance);
 }
 
-/// A field for a short time, seen by no step at rest that is long.
+/// A short pulse, which a long step at equilibrium would miss.
 struct Pulse {
   static constexpr bool depends_on_time = true;
   double begin, end;
@@ -109,7 +109,7 @@ struct Pulse {
   }
 };
 
-// What all methods with steps of their own do alike.
+// Behaviour common to all methods with adaptive steps.
 template <class Stepper>
 struct EveryAdaptive : ::testing::Test {};
 using AllAdaptive =
@@ -129,7 +129,7 @@ TYPED_TEST(EveryAdaptive, NumbersThatAreNotFiniteAreRefusedAndTheSpinsKept) {
   EXPECT_NE(copy_to_host(spins), start);
 }
 
-// What tries of a step have left is not taken for the step before.
+// The leftovers of failed attempts are not taken for the previous step.
 TYPED_TEST(EveryAdaptive, AfterAFailureStepsBeginAnew) {
   auto spins = chain_start();
   FieldThatJumps const failing{0.5, {1, 0, 1}, {std::nan(""), 0, 1}};
@@ -156,7 +156,7 @@ TYPED_TEST(EveryAdaptive, AskingOftenDoesNotChangeTheSteps) {
   EXPECT_EQ(copy_to_host(seldom), copy_to_host(often));
 }
 
-/// Wants looks at a few steps that it knows beforehand, and now and then at once.
+/// An observer due at a few known steps, and sometimes on demand.
 struct LooksNowAndThen {
   int calls_to_a_sudden_one;
   std::map<std::int64_t, std::vector<double>> seen = {};
@@ -292,7 +292,7 @@ TYPED_TEST(EveryAdaptive, WhatCannotBeIsRefused) {
                std::invalid_argument);
 }
 
-// Rates whose square overflows, and times that no such step moves on from.
+// Rates whose square overflows, and times at which t + dt rounds to t.
 TEST(AdaptiveFailure, FieldsTooStrongForTimeAreRefused) {
   for (double const field : {1e30, 1e200}) {
     auto spins = chain_start();
@@ -318,7 +318,7 @@ TEST(AdaptiveFailure, AStepBelowTheLeastAllowed) {
   EXPECT_THROW(stepper.step(Space(), coupled_chain(0.1).natural(), spins, 0, 1), StepTooSmall);
 }
 
-/// Nothing there beyond the end.
+/// A field that is undefined after the end.
 struct EndingField {
   static constexpr bool depends_on_time = true;
   double end;
@@ -344,7 +344,7 @@ TEST(AdaptiveAtRest, NothingMovesAndStepsGrow) {
   Tsit5 stepper(spins, {.tolerance = 1e-6});
   stepper.step(Space(), LandauLifshitz(EffectiveField(Zeeman{{0, 0, 1}}), 0.1), spins, 0, 1e3);
   EXPECT_EQ(copy_to_host(spins), start);
-  // Devices fuse other products and sums: there the error is round-off, and not zero.
+  // Devices fuse different products and sums: there the error is round-off, not zero.
   EXPECT_LT(stepper.accepted_steps(), detail::is_host_execution<Space> ? 20 : 30);
 }
 

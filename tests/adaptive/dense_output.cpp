@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The spins within a step: their order, and that they join the spins at both of its ends. All on a
-// coupled chain whose torques do not commute.
+// The spins within a step: their order, and that they are continuous at both ends, on a coupled
+// chain whose torques do not commute.
 #include "../order/chain.hpp"
 #include "../support/backends.hpp"
 
@@ -16,7 +16,7 @@ class WithinAStep {
  public:
   explicit WithinAStep(double damping) : slab_(coupled_chain(damping)) {}
 
-  /// At fraction s of the first step, which has the length dt.
+  /// Returns the spins at fraction s of the first step, which has the length dt.
   Spins at(double s, double dt) const {
     auto spins = chain_start();
     Stepper stepper(spins, {.tolerance = 1, .first_dt = dt, .min_dt = dt, .max_dt = dt});
@@ -25,7 +25,7 @@ class WithinAStep {
     return spins;
   }
 
-  /// The distance from the solution, for the longest step and its halves.
+  /// Expects the order from the distance to the solution, for the longest step and its halves.
   void expect_order(char const* name, int dense_order, double longest, double tolerance) const {
     for (double const s : {0.35, 0.8}) {
       SCOPED_TRACE(s);
@@ -38,7 +38,7 @@ class WithinAStep {
     }
   }
 
-  /// Spins and their rates are those of the step's ends.
+  /// Expects spins and their rates to equal those at the step's ends.
   void expect_joined(char const* name, double dt, double tolerance) const {
     double const near = 1e-5;
     auto const start = chain_start();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The controller of steps against numbers worked out by hand, and the order that each embedded
-// tableau gives it. Hairer and Wanner, Solving ODEs II, IV.2.
+// The step controller against numbers computed by hand, and the order that each embedded tableau
+// gives it. Hairer and Wanner, Solving ODEs II, IV.2.
 #include "../order/chain.hpp"
 
 using namespace cayspin;
@@ -14,12 +14,12 @@ StepController controller(StepOptions const& options, int error_order = 5) {
   return StepController(options, error_order, 1e-14, "test");
 }
 
-/// With errors of order 5, whose step tolerance is tolerance / 12.
+/// A controller for errors of order 5, whose step tolerance is tolerance / 12.
 class FifthOrder : public ::testing::Test {
  protected:
   StepController control = controller({.tolerance = 12e-6});
 
-  /// The next dt over the last one, for an error of so many step tolerances.
+  /// Returns the ratio of the next dt to the last one, for an error in units of the step tolerance.
   double factor(double ratio) { return control.next_dt(0.25, ratio * 1e-6) / 0.25; }
 };
 
@@ -46,7 +46,7 @@ TEST_F(FifthOrder, ARejectedStepShrinksByTheFifthRoot) {
 TEST_F(FifthOrder, TheStepAfterARejectedOneDoesNotGrow) {
   factor(0x1p5);
   EXPECT_NEAR(factor(0x1p-10), 1, 1e-12);
-  // The rejected error is not the one before.
+  // The rejected error does not count as the previous one.
   EXPECT_NEAR(factor(1), 0.9 * 0.5743491774985175, 1e-12);  // 2^(-10 * 0.08)
   EXPECT_GT(factor(0x1p-10), 1);
   factor(0x1p5);
@@ -110,8 +110,8 @@ TEST(StepControl, NoStepIsAboveTheLargest) {
   EXPECT_EQ(free.next_dt(9e99, 0), 1e100);
 }
 
-// A spin that turns by 1 per unit of time. The tableau's order shows in the first step, and in how
-// a step shrinks.
+// A spin that turns by 1 per unit of time. The tableau's order shows in the first step, and in the
+// factor by which a step shrinks.
 template <class Stepper>
 void expect_error_order(char const* name, int order, double divisor) {
   SCOPED_TRACE(name);

@@ -28,8 +28,8 @@ inline std::string name_of(Lattice const& lattice) {
   return name;
 }
 
-/// Odd extents, rows shorter and longer than a pack and than a task, systems small enough for the
-/// calling thread and larger ones, open and periodic.
+/// Lattices with odd extents, rows shorter and longer than a pack and than a task, small ones for
+/// the calling thread and larger ones, open and periodic.
 inline std::vector<Lattice> odd_lattices() {
   std::vector<Lattice> lattices;
   std::array<std::int64_t, 3> const shapes[] = {
@@ -53,7 +53,7 @@ inline Slab every_term(Lattice const& lattice) {
 
 constexpr auto natural = [](Slab const& slab) { return slab.natural(); };
 
-/// Coefficients that differ from site to site, and vacancies.
+/// Site-dependent coefficients, and vacancies.
 template <class Field>
 auto site_dependent(Slab const& slab) {
   auto const numbers = [&](auto const& value) { return numbers_on<Field>(slab.lattice, value); };
@@ -122,7 +122,7 @@ void expect_same_on_host_spaces_of(Choose const& choose, std::vector<Lattice> co
   }
 }
 
-/// Serial and the threaded space, step by step and scalar by scalar.
+/// Compares Serial and the threaded space, step by step and scalar by scalar.
 template <class... Steppers, class Choose>
 void expect_same_on_host_spaces(Choose const& choose,
                                 std::vector<Lattice> const& lattices = odd_lattices()) {

@@ -31,7 +31,7 @@ TYPED_TEST(HostSpacesOfSigma, StepAlike) {
       natural);
 }
 
-// On lattices that have a checkerboard.
+// On lattices with a checkerboard.
 TYPED_TEST(HostSpacesOfSigma, RedBlack) {
   auto checkerboards = odd_lattices();
   for (Lattice& lattice : checkerboards)

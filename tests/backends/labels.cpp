@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What profilers see: every kernel, allocation and fence bears the library's prefix, and a step
+// Events seen by profilers: every kernel, allocation and fence has the library's prefix, and a step
 // neither allocates nor copies nor waits.
 #include "../support/landau_lifshitz.hpp"
 
@@ -32,7 +32,7 @@ void allocate(Kokkos_Profiling_SpaceHandle, char const* label, void const*, std:
 }
 void begin_fence(char const* name, std::uint32_t, std::uint64_t*) {
   std::string const fence = name;
-  if (!fence.starts_with("Kokkos::Tools::")) events.fences.push_back(fence);  // a listener's own
+  if (!fence.starts_with("Kokkos::Tools::")) events.fences.push_back(fence);  // not those of tools
 }
 void begin_copy(Kokkos_Profiling_SpaceHandle, char const* to, void const*,
                 Kokkos_Profiling_SpaceHandle, char const*, void const*, std::uint64_t) {
@@ -40,7 +40,7 @@ void begin_copy(Kokkos_Profiling_SpaceHandle, char const* to, void const*,
 }
 void push_region(char const* name) { events.regions.emplace_back(name); }
 
-/// The events of a call.
+/// Returns the events of a call.
 template <class Call>
 Events events_of(Call const& call) {
   Kokkos::fence();
@@ -73,7 +73,7 @@ Slab const slab{.lattice = Lattice::cubic(9, 7, 5),
                 .applied = {0.1, 0.2, 0.3},
                 .damping = 0.1};
 
-/// Ten steps of the kernels `stages`, after as many as the stepper takes to have all it keeps.
+/// Expects ten steps of the kernels `stages`, after as many steps for initial allocations.
 template <class Stepper>
 void expect_quiet_step(std::string const& name, std::vector<std::string> const& stages) {
   Exec const exec;
@@ -164,7 +164,7 @@ TEST(Labels, IterationsAndEnergies) {
   EXPECT_EQ(seen.regions.front(), "cayspin::ImplicitLieEuler");
 }
 
-/// The allocations of a stepper bear its name and take what it says.
+/// Expects a stepper's allocations to have its name and the stated size.
 template <class Stepper, class... Options>
 void expect_work_memory(std::string const& name, std::size_t fields, Options const&... options) {
   Field const spins("spins", slab.lattice);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Stores past the caches, which steppers choose for large fields, write what plain stores write.
+// Streaming stores, which steppers choose for large fields, give the results of plain stores.
 #include "equal_bits.hpp"
 
 #include <limits>
@@ -31,7 +31,7 @@ TYPED_TEST(Streaming, StoresEveryLane) {
   EXPECT_EQ(streamed[packs * lanes - 1], TypeParam(1) / TypeParam(packs * lanes));
 }
 
-/// Turns every spin, into an output that is streamed or not.
+/// Functor that turns every spin, with streaming or plain stores.
 template <class Real>
 struct Turn {
   SiteArray<Real, 3> from;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Strips that wait for their neighbours alone: every step sees what the steps before it wrote, with
-// any number of threads.
+// Strips that wait only for their neighbours: every step sees the results of the steps before it,
+// with any number of threads.
 #include <cayspin/detail/strip_crew.hpp>
 
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::int64_t steps = 300;
 
-/// Each step adds the neighbours' numbers of the step before, kept in two places in turn. The
-/// numbers are not atomic: what orders them is the crew.
+/// Each step adds the neighbours' numbers of the previous step, double buffered. The numbers are
+/// not atomic: only the crew orders access to them.
 struct Neighbours {
   std::vector<std::uint64_t> numbers[2];
 
@@ -42,8 +42,8 @@ std::vector<std::uint64_t> expected(std::int32_t strips) {
   return neighbours.numbers[steps % 2];
 }
 
-/// So many threads, each of which starts strips one after the other. `late`: one begins late, and
-/// one strip takes long at some steps.
+/// Runs so many threads, each of which starts strips one after the other. `late`: one starts late,
+/// and one strip is slow at some steps.
 std::vector<std::uint64_t> by_crew(std::int32_t strips, int threads, bool late) {
   Neighbours neighbours(strips);
   std::vector<StripProgress> progress(static_cast<std::size_t>(strips) + 1);
@@ -75,7 +75,7 @@ TEST(StripCrew, OutlastsLateThreads) {
   for (int const threads : {2, 5}) EXPECT_EQ(by_crew(5, threads, true), expected(5));
 }
 
-// One thread comes to all strips in turn, and has to do those of others first.
+// A single thread starts with each strip in turn, and must do those of others first.
 TEST(StripCrew, NeedsNoSecondThread) { EXPECT_EQ(by_crew(9, 1, false), expected(9)); }
 
 }  // namespace

@@ -79,7 +79,7 @@ TYPED_TEST(Sweep, Compensated) {
   expect_same_on_both_paths<Compensated<Rkmk4<typename TestFixture::Field>>>(turning);
 }
 
-// Coefficients and vacancies are read where the lattice has them, not where the buffers are.
+// Coefficients and vacancies are read from the lattice, not from the buffers.
 TYPED_TEST(Sweep, SiteDependentCoefficients) {
   using Field = typename TestFixture::Field;
   expect_same_on_both_paths<LieHeun<Field>>(site_dependent<Field>);
@@ -96,7 +96,7 @@ void expect_memory(std::size_t fields_of_sweep, std::size_t fields_of_pass) {
   std::size_t const field = typename Stepper::spins_type("spins", lattice).bytes();
   PredictedRun run{.threads = Threaded().concurrency()};
   EXPECT_LT(Stepper::work_bytes(lattice, run), fields_of_sweep * field);
-  run.by_time_alone = false;
+  run.by_time_only = false;
   EXPECT_EQ(Stepper::work_bytes(lattice, run), fields_of_pass * field);
 }
 
@@ -106,7 +106,7 @@ TYPED_TEST(Sweep, ChosenAndPredictedBySize) {
   expect_memory<Compensated<Rkmk4<Field>>>(3, 5);
 }
 
-// Wide lattices of few rows: the buffers of twelve stages would exceed all fields of passes.
+// Wide lattices of few rows, where the buffers of twelve stages would exceed all fields of passes.
 TYPED_TEST(Sweep, IsLeftWhereItsBuffersExceedFields) {
   using Field = typename TestFixture::Field;
   auto const expect_bounded = [](std::size_t (*work_bytes)(Lattice const&, PredictedRun const&)) {
@@ -114,8 +114,7 @@ TYPED_TEST(Sweep, IsLeftWhereItsBuffersExceedFields) {
          {std::array<std::int64_t, 3>{2003, 41, 3}, {3001, 53, 2}, {4000, 64, 64}, {256, 256, 256}})
       for (int const threads : {1, 2, 8, 64}) {
         Lattice const lattice{shape, {1, 1, 1}, {}};
-        std::size_t const passes =
-            work_bytes(lattice, {.threads = threads, .by_time_alone = false});
+        std::size_t const passes = work_bytes(lattice, {.threads = threads, .by_time_only = false});
         std::size_t const field = RowLayout::of<typename Field::value_type>(lattice).allocation(3) *
                                   sizeof(typename Field::value_type);
         std::size_t const sweep = work_bytes(lattice, {.threads = threads});
@@ -126,7 +125,7 @@ TYPED_TEST(Sweep, IsLeftWhereItsBuffersExceedFields) {
   expect_bounded(&Rkmk<Field, tableau::DormandPrince8>::work_bytes);
 }
 
-// Steps that batch does not take would be read from memory that a sweep does not have.
+// Steps that batch refuses would read memory that a sweep does not have.
 TYPED_TEST(Sweep, RefusesBatches) {
   typename TestFixture::Field spins("spins", Lattice::cubic(8, 8, 8));
   Rkmk4 stepper(spins);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// An adaptive method that sweeps takes the steps of one that goes by passes, to the bit: those that
-// it rejects, those that end where it is asked, and those that end later.
+// An adaptive method takes steps with equal bits by sweeps and by passes: rejected steps, steps
+// that end at a requested time, and steps that end later.
 #include "sweeping.hpp"
 
 using namespace cayspin;
@@ -12,10 +12,10 @@ template <class Real>
 using AdaptiveSweep = InHostMemory<Real>;
 TYPED_TEST_SUITE(AdaptiveSweep, Precisions, PrecisionName);
 
-/// The first step is too long, and the last one ends where the run does.
+/// The first step is too long, and the last one ends with the run.
 StepOptions const options{.tolerance = 3e-3, .first_dt = 1.5, .end = 0.9};
 
-/// What a stepper says and leaves at several times.
+/// The counts and states of a stepper at several times.
 template <class Real>
 struct Run {
   std::vector<std::vector<Real>> spins;
@@ -94,7 +94,7 @@ TYPED_TEST(AdaptiveSweep, ChosenAndPredictedBySize) {
   using Stepper = AdaptiveRkmk<typename TestFixture::Field>;
   expect_chosen_and_predicted<Stepper>(120, options);
   auto const lattice = Lattice::cubic(120, 120, 120);
-  PredictedRun const run{.threads = Threaded().concurrency(), .by_time_alone = false};
+  PredictedRun const run{.threads = Threaded().concurrency(), .by_time_only = false};
   EXPECT_EQ(Stepper::work_bytes(lattice, run),
             11 * typename TestFixture::Field("spins", lattice).bytes() +
                 ScalarField<TypeParam>("square", lattice).bytes());

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What a step leaves for the next one outlasts a change from sweeps to passes and back, also where
-// another stepper goes on with it: the bits of passes without a break.
+// The memory of a step survives switches between sweeps and passes, also when another stepper
+// continues: bits are those of uninterrupted passes.
 #include "sweeping.hpp"
 
-#include <cayspin/exchange_memory.hpp>
 #include <cayspin/integrate.hpp>
+#include <cayspin/serialize.hpp>
 
 #include <algorithm>
 #include <cstdlib>
@@ -48,8 +48,8 @@ class Draws {
   std::mt19937_64 engine_;
 };
 
-/// Steps under one generator, then under the other. `cut`: there a second stepper goes on; -1:
-/// never.
+/// Takes steps under one generator, then under the other. `cut`: step at which a second stepper
+/// continues; -1: never.
 template <class Stepper, class First, class Second>
 auto end_of(First const& first, Second const& second, typename Stepper::spins_type const& start,
             std::int64_t change, std::int64_t cut, std::array<Path, 2> const& paths) {
@@ -64,10 +64,10 @@ auto end_of(First const& first, Second const& second, typename Stepper::spins_ty
   for (std::int64_t n = 0; n < steps; ++n) {
     if (n == cut) {
       CheckpointInMemory checkpoint;
-      exchange_memory(*stepper, checkpoint);
+      serialize(*stepper, checkpoint);
       checkpoint.close();
       stepper = &steppers[1];
-      exchange_memory(*stepper, checkpoint);
+      serialize(*stepper, checkpoint);
     }
     double const t = static_cast<double>(n) * dt;
     if (n < change)

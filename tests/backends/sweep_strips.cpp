@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A sweep among many threads: how much is computed twice, whether all threads have work, and that a
-// late thread costs nothing but time.
+// slow thread changes no result.
 #include "equal_bits.hpp"
 
 #include <cayspin/detail/sweep_plan.hpp>
@@ -19,7 +19,7 @@ template <class Real>
 using SweepStrips = InHostMemory<Real>;
 TYPED_TEST_SUITE(SweepStrips, Precisions, PrecisionName);
 
-/// No field.
+/// A field of zero.
 struct NoField {
   static constexpr int degree = 1;
 
@@ -29,7 +29,7 @@ struct NoField {
   }
 };
 
-/// Counts how often it is asked for it, once for each pack of a row.
+/// A field that counts its evaluations, once for each pack of a row.
 struct CountedCalls : NoField {
   std::int64_t* calls;
 
@@ -40,7 +40,7 @@ struct CountedCalls : NoField {
   }
 };
 
-/// Evaluations of a swept step over those that the step needs.
+/// Returns the ratio of evaluations in a swept step to those that the step needs.
 template <class Stepper>
 double repeated(Lattice const& lattice) {
   using Field = typename Stepper::spins_type;
@@ -101,7 +101,7 @@ TYPED_TEST(SweepStrips, CutFewThreadsIntoPartsAlone) {
   EXPECT_GT(plan_for<TypeParam>(Lattice::cubic(128, 128, 128), 64).strips, 1);
 }
 
-/// Takes long to find at a few sites.
+/// A field that is slow at a few sites.
 struct SlowRows : NoField {
   template <class Stencil>
   KOKKOS_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const& stencil) const {

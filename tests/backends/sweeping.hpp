@@ -9,7 +9,7 @@
 
 namespace cayspin::test {
 
-/// Odd ones, and such with long rows, which a sweep cuts into many blocks.
+/// Lattices with odd extents, also with long rows, which a sweep cuts into many blocks.
 inline std::vector<Lattice> swept_lattices() {
   auto lattices = odd_lattices();
   std::array<std::int64_t, 3> const wide[] = {{2003, 41, 3}, {3001, 53, 1}, {1003, 17, 13}};
@@ -23,7 +23,7 @@ inline std::vector<Lattice> swept_lattices() {
   return lattices;
 }
 
-/// Those that methods of many stages can take in a test.
+/// Smaller ones, for tests of methods with many stages.
 inline std::vector<Lattice> smaller_swept_lattices() {
   auto lattices = swept_lattices();
   std::erase_if(lattices, [](Lattice const& lattice) { return lattice.sites() > 60000; });
@@ -35,7 +35,7 @@ inline bool can_sweep(Lattice const& lattice, int stages) {
   return lattice.boundary[1] == Boundary::open || rows == 1 || rows >= stages;
 }
 
-/// Every term, and a field that turns.
+/// Every term, and a rotating field.
 inline auto turning(Slab const& slab) {
   return LandauLifshitz(EffectiveField(Exchange(slab.lattice, slab.exchange),
                                        UniaxialAnisotropy(slab.anisotropy, slab.axis),
@@ -45,7 +45,7 @@ inline auto turning(Slab const& slab) {
                         slab.damping);
 }
 
-/// A field made of all spins of a stage cannot be had in the midst of a sweep.
+/// Expects no sweep for a field that needs all spins of a stage.
 template <class Stepper, class... Options>
 void expect_passes_under_a_nonlocal_field(double dt, Options const&... options) {
   using Field = typename Stepper::spins_type;
@@ -63,7 +63,7 @@ void expect_passes_under_a_nonlocal_field(double dt, Options const&... options) 
   expect_equal_bits(copy_to_host(one), copy_to_host(other), "nonlocal");
 }
 
-/// Large lattices of n^3 sites are swept, and the memory is what was said before.
+/// Expects large lattices of n^3 sites to be swept, and memory to be as predicted.
 template <class Stepper, class... Options>
 void expect_chosen_and_predicted(std::int64_t n, Options const&... options) {
   int const threads = Threaded().concurrency();

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# cmake -D CMAKE_NM=NM -P StartsNoProcess.cmake LIBRARY...: none of them calls what starts a process
-# or waits for one.
+# cmake -D CMAKE_NM=NM -P StartsNoProcess.cmake LIBRARY...: checks that none of them calls a
+# function that starts a process or waits for one.
 set(calls
     fork
     vfork

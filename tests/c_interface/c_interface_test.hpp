@@ -11,7 +11,7 @@
 
 namespace cayspin::test {
 
-/// Two free spins that precess about z, with one turn in a time 2 pi. `more` comes before
+/// Returns a scene of two free spins that precess about z, with period 2 pi. `more` comes before
 /// [initial].
 inline std::string scene_text(std::string const& more = {}, std::string const& end = "steps = 10") {
   return "[system]\nkind = \"llg\"\ndamping = 0.0\n[lattice]\nshape = [2]\n"
@@ -41,7 +41,7 @@ inline Simulation open(std::string const& text, cayspin_precision precision = CA
   return Simulation(simulation);
 }
 
-/// The call failed with this status, and its line has these words.
+/// Expects a call to fail with this status, and with these words in its message.
 inline void expect_failure(cayspin_status is, cayspin_status expected, std::string const& words) {
   EXPECT_EQ(is, expected);
   EXPECT_NE(std::string(cayspin_last_error()).find(words), std::string::npos)

@@ -57,7 +57,7 @@ TYPED_TEST(CInterface, StepsAndLendsSpins) {
 TYPED_TEST(CInterface, TakesSpinsOfItsOwnStrides) {
   auto* const simulation = this->simulation.get();
   ASSERT_EQ(cayspin_step(simulation, 3), CAYSPIN_OK);
-  // A component after the other, backwards along x, of any length.
+  // Components one after another, backwards along x, of any length.
   TypeParam const numbers[] = {0, 3, 2, 0, 0, 4};
   cayspin_array const mine{&numbers[1], this->precision, {1, 1, 2, 3}, {0, 0, -1, 2}};
   ASSERT_EQ(cayspin_set_spins(simulation, &mine), CAYSPIN_OK) << cayspin_last_error();
@@ -72,8 +72,8 @@ TYPED_TEST(CInterface, TakesSpinsOfItsOwnStrides) {
   EXPECT_NEAR(energy, -0.8, 2 * this->epsilon);
 }
 
-// Borrowed memory is used in place, also after steps: an even number of them ends where it began.
-// On hosts without a copy.
+// Borrowed memory is used in place, also after steps: an even number of them ends in the original
+// memory. On hosts without a copy.
 TYPED_TEST(CInterface, LendsAndTakesBack) {
   auto* const simulation = this->simulation.get();
   cayspin_array first{}, second{}, later{};
@@ -91,7 +91,7 @@ TYPED_TEST(CInterface, LendsAndTakesBack) {
   EXPECT_NEAR(m[1], std::sin(0.02), 1e-10 + 8 * this->epsilon);
 }
 
-// Easy axis z, a field along x below that of saturation: m_x = h / K at rest, H = (h, 0, K m_z).
+// Easy axis z, a field along x below saturation: at equilibrium m_x = h / K, H = (h, 0, K m_z).
 TYPED_TEST(CInterface, RelaxesAndLendsTheField) {
   std::string text = scene_text("anisotropy = { constant = 2.0, axis = [0, 0, 1] }\n");
   text.replace(text.find("[0.0, 0.0, 1.0]"), 15, "[1.0, 0.0, 0.0]");
@@ -123,7 +123,7 @@ TYPED_TEST(CInterface, RelaxesAndLendsTheField) {
   cayspin_array field{};
   ASSERT_EQ(cayspin_borrow_field(simulation, &field), CAYSPIN_OK) << cayspin_last_error();
   for (int x = 0; x < 2; ++x) {
-    EXPECT_EQ(this->number(field, x, 0), 1);  // of the scene
+    EXPECT_EQ(this->number(field, x, 0), 1);  // from the scene
     EXPECT_EQ(this->number(field, x, 1), 0);
     EXPECT_NEAR(this->number(field, x, 2), 2 * 0.6, 2 * limit);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Every way in which a call fails: its status, its line, and what it leaves as it was.
+// Every way in which a call fails: its status, its message, and the state that it preserves.
 #include "c_interface_test.hpp"
 
 #include <cmath>
@@ -58,7 +58,7 @@ TEST(CInterfaceErrors, NullPointers) {
   EXPECT_EQ(cayspin_close(nullptr), CAYSPIN_OK);
 }
 
-/// What is given is kept where a call fails.
+/// A failed call does not change the targets of its pointers.
 TEST(CInterfaceErrors, LeaveWhatPointersPointTo) {
   auto* const before = reinterpret_cast<cayspin_simulation*>(&expect_failure);
   auto* simulation = before;
@@ -147,7 +147,7 @@ TEST(CInterfaceErrors, WrongSpins) {
     }
   refuses({numbers, CAYSPIN_DOUBLE, {2, 1, 1, 3}, {3, 3, 3, 1}}, "(2, 1, 1, 3)");
   refuses({numbers, static_cast<cayspin_precision>(0), {1, 1, 2, 3}, {6, 6, 3, 1}}, "precision 0");
-  // The line begins with what the caller gave, and names no line of a text.
+  // The message starts with the caller's argument, and names no line of a text.
   auto const refuses_second = [&] {
     refuses({numbers, CAYSPIN_DOUBLE, {1, 1, 2, 3}, {6, 6, 3, 1}},
             "spins: the spin of site (1, 0, 0)");
@@ -161,7 +161,7 @@ TEST(CInterfaceErrors, WrongSpins) {
   EXPECT_EQ(m[0], 1);
 }
 
-TEST(CInterfaceErrors, StatesOfRest) {
+TEST(CInterfaceErrors, Equilibria) {
   auto text = scene_text();
   auto const simulation = open(text);
   cayspin_minimum found{7, 7, 7, 7};
@@ -204,7 +204,7 @@ TEST(CInterfaceErrors, RunsAndFiles) {
   std::filesystem::remove_all(folder);
 }
 
-// Classical Euler doubles lengths: the guard says so, and the state before is kept.
+// Classical Euler doubles lengths: the guard reports it, and the state before is kept.
 TEST(CInterfaceErrors, NumbersThatFail) {
   auto text = scene_text();
   text.replace(text.find("rkmk4"), 5, "classical_euler");
@@ -212,7 +212,7 @@ TEST(CInterfaceErrors, NumbersThatFail) {
   auto const simulation = open(text);
   expect_failure(cayspin_step(simulation.get(), 200), CAYSPIN_NUMBERS_FAILED, "step");
 
-  // All other calls work on, and new spins begin a new run.
+  // All other calls still work, and new spins start a new run.
   auto* const failed = simulation.get();
   double time = -1, energy = -1, m[3] = {};
   int64_t steps = -1;
@@ -232,13 +232,13 @@ TEST(CInterfaceErrors, NumbersThatFail) {
   EXPECT_EQ(energy, -2);  // along the field, where nothing turns
 }
 
-// As strerror's texts are: each thread has a line of its own.
+// Like the texts of strerror: each thread has its own message.
 TEST(CInterfaceErrors, BelongToTheirThread) {
   expect_failure(cayspin_step(nullptr, 1), CAYSPIN_WRONG_USAGE, "simulation is NULL");
   std::string there = "unset";
   std::thread([&] { there = cayspin_last_error(); }).join();
   EXPECT_EQ(there, "");
-  auto const simulation = open(scene_text());  // a call that does not fail keeps the line
+  auto const simulation = open(scene_text());  // a successful call keeps the message
 
   EXPECT_EQ(std::string(cayspin_last_error()).find("simulation is NULL"), 0u);
 }

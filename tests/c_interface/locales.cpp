@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A program that has set a locale with a decimal comma gets the same numbers, files and messages.
+// A locale with a decimal comma does not change numbers, files and messages.
 #include "../program/program_test.hpp"
 #include "../support/decimal_comma.hpp"
 #include "../support/file_bytes.hpp"
@@ -46,7 +46,7 @@ std::string film(std::string const& start) {
          "[output]\nevery = 5\nscalars_every = 1\ntable = true\nxdmf = true\n";
 }
 
-/// What all that reads or writes numbers as text made, by name.
+/// Results of all functions that read or write numbers as text, by name.
 using Results = std::map<std::string, std::string>;
 
 std::string said(auto const& call) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Two threads open scenes, run them, write files and read them, all at the same time.
-// CAYSPIN_ROUNDS: how often.
+// CAYSPIN_ROUNDS: number of repetitions.
 #include "../program/program_test.hpp"
 #include "../support/watchdog.hpp"
 #include "c_interface_test.hpp"
@@ -51,8 +51,8 @@ struct Course {
   std::string file, scene, from_file;
   std::array<std::vector<double>, 2> expected = {};  // of a round without another thread
 
-  /// The spins at the end of a run that writes the file, and those of a scene that begins with it,
-  /// which are the same but for the rounding of a normalisation.
+  /// Returns the spins at the end of a run that writes the file, and those of a scene that starts
+  /// from it; they are equal except for the rounding of a normalisation.
   std::array<std::vector<double>, 2> round() const {
     auto const simulation = open(scene, precision);
     EXPECT_EQ(cayspin_run(simulation.get(), file.c_str(), 1), CAYSPIN_OK) << cayspin_last_error();

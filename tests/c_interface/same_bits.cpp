@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What C and Fortran compute has the bits of the program's run.
+// Programs in C and Fortran give the bits of the program's run.
 #include "../program/program_test.hpp"
 #include "c_interface_test.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Calls of several threads on one simulation take turns, and those that say how far it is do not
-// wait. -fsanitize=thread sees what these tests do, too.
+// Calls from several threads on one simulation take turns, and calls for its progress do not wait.
+// Run this test with -fsanitize=thread, too.
 #include "../program/program_test.hpp"
 #include "c_interface_test.hpp"
 
@@ -41,7 +41,7 @@ TEST_F(Threads, StepBorrowSetAndLook) {
       cayspin_array spins{};
       expect(cayspin_borrow_spins(simulation, &spins) == CAYSPIN_OK && spins.data != nullptr);
     }));
-  // Spins along the field, which the steps leave alone.
+  // Spins along the field, which steps do not change.
   others.push_back(until_done([&] {
     double const up[6] = {0, 0, 2, 0, 0, 3};
     cayspin_array const start{up, CAYSPIN_DOUBLE, {1, 1, 2, 3}, {6, 6, 3, 1}};
@@ -65,7 +65,7 @@ TEST_F(Threads, StepBorrowSetAndLook) {
   EXPECT_EQ(steps_of(simulation), count);
 }
 
-// A run is one turn, also between its frames.
+// A run holds the lock, also between its frames.
 TEST_F(Threads, NoCallInTheMiddleOfARun) {
   auto const text = scene_text({}, "steps = 20000\n[output]\nevery = 20");
   auto const alone = open(text), disturbed = open(text);

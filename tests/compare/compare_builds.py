@@ -85,7 +85,7 @@ def listed_combinations(program):
 
 
 def other_combinations(listed):
-    """What the same words can be put together to besides, most of it refused."""
+    """Returns further combinations of these words, most of which are refused."""
     adaptive = {combination.method: combination.adaptive for combination in listed}
     known = set(listed)
     for method, compensated, *choice in itertools.product(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What the library ships keeps its own contracts, and the contracts tell right from wrong.
+// The library's own types satisfy its contracts, and the contracts distinguish right from wrong.
 // Compiled, not run.
 #include <cayspin/cayspin.hpp>
 
@@ -51,7 +51,7 @@ inline constexpr bool generators_of_cayspin =
 static_assert(generators_of_cayspin<float> && generators_of_cayspin<double>);
 static_assert(!Generator<EffectiveField<Zeeman>> && !Generator<int>);
 
-// Optional members reach through wrappers.
+// Optional members are forwarded by wrappers.
 static_assert(detail::depends_on_time<Orthogonal<Llg<double>>>);
 static_assert(!detail::depends_on_time<LandauLifshitz<EffectiveField<Exchange>>>);
 static_assert(detail::is_local<EffectiveField<Zeeman, UniaxialAnisotropy>>);
@@ -87,7 +87,7 @@ static_assert(!Stepper<F64> && !Stepper<int>);
 static_assert(evaluations_per_step<Rkmk4<F64>>() == 4 && evaluations_per_step<LieHeun<F64>>() == 2);
 static_assert(!evaluations_per_step<ImplicitMidpoint<F64>>() && !evaluations_per_step<Adaptive>());
 
-// What stands beside a number is given by name.
+// Options next to a number are named.
 template <class Options>
 concept OptionsOfStableStep =
     requires(Options options) { largest_stable_step<Rkmk4<F64>>(1.0, 0.1, options); };
@@ -101,14 +101,14 @@ static_assert(!Observer<Zeeman> && !Observer<int>);
 static_assert(detail::changes_spins<Every<Every<Normalize>>> && detail::changes_spins<Control> &&
               !detail::changes_spins<Every<Record<Zeeman>>>);
 
-// Types are deduced, from spins and without any.
+// Types are deduced, with and without spins.
 using OnHost = SlabDemagOnHost;
 static_assert(std::is_same_v<decltype(HostField(std::declval<Spins<float>>(), OnHost({0, 0, 1}))),
                              HostField<Spins<float>, OnHost>>);
 static_assert(std::is_same_v<decltype(HostField(Lattice(), OnHost({0, 0, 1}))),
                              HostField<SpinField<double>, OnHost>>);
 
-/// Numbers of any type times vectors of any value, and both neighbours without `template`.
+/// Numbers of any type times vectors of any value type, and both neighbours without `template`.
 struct Operators {
   template <class Stencil>
   KOKKOS_FUNCTION auto field(Stencil const& stencil) const {

@@ -3,8 +3,8 @@
 // library's sentences. CMakeLists.txt takes the name of a mistake from its #if, and the sentence, a
 // regular expression, from the next line.
 #include <cayspin/cayspin.hpp>
-#include <cayspin/field/dear.hpp>
 #include <cayspin/field/field_of_moments.hpp>
+#include <cayspin/field/slow_field.hpp>
 #include <cayspin/observer/thermal_noise.hpp>
 #include <cayspin/stepper/multirate.hpp>
 
@@ -221,16 +221,16 @@ inline void refused() {
   RungeKutta<Spins, tableau::Heun, update::Stereographic, isotropy::Analytic>("chart", spins)
       .step(exec, body, spins, 0, 0.1);
 #endif
-#if MISTAKE(32)  // multistep_between_dear_fields
+#if MISTAKE(32)  // multistep_between_slow_fields
   // Multirate needs a method that remembers no steps
   {
-    Dear const dear(spins, SlabDemag({1, 0, 0}));
-    Multirate multirate(spins, LieAdamsBashforth2<Spins>(spins), dear);
+    SlowField const slow(spins, SlabDemag({1, 0, 0}));
+    Multirate multirate(spins, LieAdamsBashforth2<Spins>(spins), slow);
   }
 #endif
-#if MISTAKE(33)  // dear_term_of_unknown_degree
-  // Dear needs a term with a static constexpr int degree
-  with(Dear(spins, Term()));
+#if MISTAKE(33)  // slow_term_of_unknown_degree
+  // SlowField needs a term with a static constexpr int degree
+  with(SlowField(spins, Term()));
 #endif
 #if MISTAKE(34)  // minimum_under_a_torque
   // This needs a field that is the derivative of an energy, without terms that
@@ -252,19 +252,19 @@ inline void refused() {
     FieldWithVacancies const field(of_moments, occupation);
   }
 #endif
-#if MISTAKE(38)  // dear_couplings_with_vacancies
+#if MISTAKE(38)  // slow_couplings_with_vacancies
   // PairCouplings read the spins of vacant sites
   {
     ScalarField<double, Kokkos::HostSpace> const occupation("occupation", Lattice::chain(3));
     PairCouplings<Kokkos::HostSpace> const couplings(Lattice::chain(3), {});
-    FieldWithVacancies const field(EffectiveField(Dear(spins, couplings)), occupation);
+    FieldWithVacancies const field(EffectiveField(SlowField(spins, couplings)), occupation);
   }
 #endif
-#if MISTAKE(44)  // dear_exchange_with_vacancies
-  // Dear evaluates its term for the spins of vacant sites, too
+#if MISTAKE(44)  // slow_exchange_with_vacancies
+  // SlowField evaluates its term for the spins of vacant sites, too
   {
     ScalarField<double, Kokkos::HostSpace> const occupation("occupation", Lattice::chain(3));
-    FieldWithVacancies const field(Dear(spins, Exchange(Lattice::chain(3), 1)), occupation);
+    FieldWithVacancies const field(SlowField(spins, Exchange(Lattice::chain(3), 1)), occupation);
   }
 #endif
 #if MISTAKE(41)  // stop_after_the_noise_of_the_next_step

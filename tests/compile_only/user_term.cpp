@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What a user may write: terms and generators as plain structs, observers of either kind. Compiled,
-// not run.
+// Valid user code: terms and generators as plain structs, observers of either kind. Compiled, not
+// run.
 #include <cayspin/cayspin.hpp>
 
 namespace cayspin::test {
 
 #if !defined(__CUDA_ARCH__) && !defined(__HIP_DEVICE_COMPILE__) && !defined(__SYCL_DEVICE_ONLY__)
-// Host loops work on whole registers, also where the default execution space, which Kokkos' own
-// choice of a pack follows, is a device.
+// Host loops use whole registers even if the default execution space, which Kokkos' own choice of a
+// pack follows, is a device.
 #if defined(KOKKOS_ARCH_AVX512XEON)
 static_assert(sizeof(detail::Pack<double>) == 64 && sizeof(detail::Pack<float>) == 64);
 #elif defined(KOKKOS_ARCH_AVX2)
@@ -34,7 +34,7 @@ struct Quartic {
   }
 };
 
-/// A term that is made ready on the host, for each stage.
+/// A term that is prepared on the host for each stage.
 struct Growing {
   template <class Exec, class Spins>
   Quartic prepare(Exec const&, Spins const&, double t) const {
@@ -42,7 +42,7 @@ struct Growing {
   }
 };
 
-/// A generator with nothing but its A.
+/// A generator with only its A.
 struct Spinning {
   template <class Stencil>
   KOKKOS_FUNCTION auto operator()(Stencil const& stencil) const {

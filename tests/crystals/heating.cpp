@@ -17,8 +17,8 @@
 namespace cayspin::test {
 namespace {
 
-/// Crystals of extent^3 cells that do not see each other: sites 2 c and 2 c + 1 of a cell are of
-/// crystal c.
+/// Crystals of extent^3 cells that are not coupled to each other: sites 2 c and 2 c + 1 of a cell
+/// belong to crystal c.
 template <class Spins>
 class Crystals {
  public:
@@ -33,7 +33,8 @@ class Crystals {
     std::int64_t steps_per_look, settling, looks;
     std::uint64_t seed;
   };
-  /// Calls look(crystal, energy, sum of spins) for each crystal, after as many looks as settle.
+  /// Calls look(crystal, energy, sum of spins) for each crystal, after an equal number of samples
+  /// for equilibration.
   template <class Exec, class Look>
   void heat(Exec const& exec, Run const& run, Look const& look) const {
     double const damping = 1;
@@ -93,8 +94,8 @@ template <class Backend>
 class HeatedCrystal : public ::testing::Test {};
 TYPED_TEST_SUITE(HeatedCrystal, Backends, BackendName);
 
-// The series in K = 1 / T: a way from one end of the bond to the other along n bonds adds the n-th
-// power of coth K - 1 / K. There is the bond itself, and there are 12 and 222 ways along 3 and 5.
+// The series in K = 1 / T: a path of n bonds between both ends of the bond adds the n-th power of
+// coth K - 1 / K. There is the bond itself, and there are 12 and 222 paths of 3 and 5 bonds.
 TYPED_TEST(HeatedCrystal, HasTheEnergyOfTheHighTemperatureSeries) {
   Crystals<typename TypeParam::Spins> const crystals(16);
   double const temperature = 8, of_bond = 1 / std::tanh(1 / temperature) - temperature;
@@ -115,8 +116,8 @@ TYPED_TEST(HeatedCrystal, HasTheEnergyOfTheHighTemperatureSeries) {
   EXPECT_NEAR(mean, expected, 4 * error);
 }
 
-/// Binder's cumulant at both ends of a range of temperatures: sums over the crystals, weighted anew
-/// from the temperature between.
+/// Binder's cumulant at both ends of a temperature range: sums over the crystals, reweighted from
+/// the temperature in between.
 class Cumulants {
  public:
   static constexpr double width = 0.02;
@@ -148,7 +149,7 @@ class Cumulants {
 
   std::size_t crystals() const { return sums_.size(); }
 
-  /// Without one of the crystals, if there is that one.
+  /// Leaves out one of the crystals, if it exists.
   Ends without(std::size_t left_out) const {
     Ends ends{};
     for (std::size_t end = 0; end < 2; ++end) {
@@ -165,10 +166,10 @@ class Cumulants {
   std::vector<std::array<std::array<double, 3>, 2>> sums_;
 };
 
-/// Where the cumulants of 8^3 and 16^3 cells cross, and the standard error.
+/// Returns where the cumulants of 8^3 and 16^3 cells cross, and the standard error.
 std::pair<double, double> crossing(double temperature, double dt, std::int64_t steps_per_look,
                                    std::int64_t looks, std::uint64_t seed) {
-  // Rows of whole packs are the fast ones.
+  // Rows of whole packs are fastest.
   auto const small = Cumulants::found<double>(8, temperature, dt, steps_per_look, looks, seed);
   auto const large = Cumulants::found<float>(16, temperature, dt, steps_per_look, looks, seed + 1);
   auto const at = [&](std::size_t of_small, std::size_t of_large) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Spin waves of crystals whose frequencies are known. Cones of any opening turn rigidly where all
-// sublattices have the same amplitude, so these are exact beyond small amplitudes.
+// Spin waves of crystals with known frequencies. If all sublattices have equal amplitude, cones of
+// any opening turn rigidly, so that these are exact beyond small amplitudes.
 #include "../support/antiferromagnet.hpp"
 #include "../support/evaluate.hpp"
 
@@ -34,7 +34,7 @@ class Magnons : public ::testing::Test {
   static constexpr bool is_double = std::is_same_v<Real, double>;
   typename Backend::Exec exec;
 
-  /// The spins at time `end`.
+  /// Returns the spins at time `end`.
   template <class Field>
   std::vector<double> run(Lattice const& lattice, Field const& field,
                           std::vector<double> const& start, double end, int steps) {
@@ -44,7 +44,7 @@ class Magnons : public ::testing::Test {
     return numbers_of(spins);
   }
 
-  /// Starts with the transverse part wave(cell, site) of each spin, and looks for it turned by
+  /// Starts with the transverse part wave(cell, site) of each spin, and expects it to turn by
   /// frequency * end. Spins of the site `down` of a cell have m_z < 0.
   template <class Field>
   void expect_turns(Crystal const& crystal, Cells const& cells, Field const& field,
@@ -77,7 +77,7 @@ class Magnons : public ::testing::Test {
 };
 TYPED_TEST_SUITE(Magnons, Backends, BackendName);
 
-/// Bonds of one site with the nearest of another, by their offsets.
+/// Returns bonds of one site with the nearest sites of another, by their offsets.
 std::vector<Coupling> bonds(std::array<int, 2> between,
                             std::vector<std::array<int, 3>> const& offsets, double exchange,
                             std::array<double, 3> const& D = {}) {
@@ -145,8 +145,8 @@ TYPED_TEST(Magnons, OfAHoneycomb) {
     }
 }
 
-// At the corner K of its zone a sublattice moves alone; D between second neighbours, along z and
-// with the sense of the hexagons, parts the two by 6 sqrt(3) D.
+// At the corner K of its zone a sublattice moves by itself; D between second neighbours, along z
+// and with the sense of the hexagons, splits the two by 6 sqrt(3) D.
 TYPED_TEST(Magnons, OfAHoneycombWithAGap) {
   Cells const cells{12, 12, 1};
   constexpr double D = 0.04;
@@ -174,7 +174,8 @@ TYPED_TEST(Magnons, OfAHoneycombWithAGap) {
   EXPECT_NEAR(std::abs(found[0] - found[1]), 6 * std::sqrt(3.0) * D * std::cos(opening), 1e-14);
 }
 
-// The flat band of a kagome: 6 J, at any k; here with the three sites a third of a turn apart.
+// The flat band of a kagome lattice: 6 J, at any k; here with the three sites a third of a turn
+// apart.
 TYPED_TEST(Magnons, OfAKagome) {
   Cells const cells{9, 8, 1};
   auto const crystal = Crystal::kagome();
@@ -223,7 +224,7 @@ TYPED_TEST(Magnons, OfAnAntiferromagnet) {
   }
 }
 
-// Two sublattices turn about L = sum of (mu / g) m, which stays, at 8 J g g' |L| / (mu mu').
+// Two sublattices turn about the constant L = sum of (mu / g) m, at 8 J g g' |L| / (mu mu').
 TYPED_TEST(Magnons, OfAFerrimagnet) {
   Cells const cells{9, 4, 3};
   auto const crystal = Crystal::bcc();

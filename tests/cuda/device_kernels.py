@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""What the tests of the compilers for devices have in common."""
+"""Shared code of the tests of device compilers."""
 
 import argparse
 import collections
@@ -17,7 +17,7 @@ ENTRY = re.compile(
 
 
 def parser_of(description):
-    """Of a script that compiles a source once more, into another file."""
+    """Returns the parser of a script that recompiles a source into another file."""
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("commands", type=pathlib.Path, metavar="compile_commands.json")
     parser.add_argument("source")
@@ -33,7 +33,7 @@ def compile_entry(arguments):
 
 
 def output_of(command, directory):
-    """What a command prints. Ends the script where it fails."""
+    """Returns the output of a command. Ends the script if it fails."""
     done = subprocess.run(command, cwd=directory, text=True, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT)
     if done.returncode != 0:
@@ -53,14 +53,14 @@ def device_command(words, output):
 
 
 def kernels_of_log(text):
-    """What ptxas says of the kernels of cayspin."""
+    """Yields the statistics of ptxas for cayspin's kernels."""
     for symbol, *numbers in ENTRY.findall(text):
         if "cayspin" in symbol:
             yield Kernel(symbol, *map(int, numbers))
 
 
 def short_names(symbols):
-    """What a kernel does and to which precision, without Kokkos' wrapping."""
+    """Yields the names and precisions of kernels, without Kokkos' wrapping."""
     names = subprocess.run(["c++filt"], input="\n".join(symbols), check=True, text=True,
                            stdout=subprocess.PIPE).stdout.splitlines()
     for name in names:

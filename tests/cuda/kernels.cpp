@@ -14,7 +14,7 @@ namespace cayspin::test {
 using Exec = Kokkos::DefaultExecutionSpace;
 using MemorySpace = Exec::memory_space;
 
-/// A step of each of the steppers.
+/// Takes a step of each of the steppers.
 template <class Generator, class Spins, class... Steppers>
 void step_each(Generator const& generator, Spins& spins, std::tuple<Steppers...>& steppers) {
   std::apply([&](auto&... stepper) { (stepper.step(Exec(), generator, spins, 0, 0.1), ...); },
@@ -64,8 +64,8 @@ struct Generators {
                                  SiteDependentUniaxialAnisotropy<Numbers, Vectors>>;
   using Prepared =
       EffectiveField<TimeDependentZeeman<Vec3<double> (*)(double)>, HostField<S, SlabDemagOnHost>>;
-  using DearTerm = Dear<S, HostField<S, SlabDemagOnHost>>;
-  using WithDear = EffectiveField<Exchange, DearTerm>;
+  using SlowTerm = SlowField<S, HostField<S, SlabDemagOnHost>>;
+  using WithSlow = EffectiveField<Exchange, SlowTerm>;
 
   std::tuple<LandauLifshitz<Slab>, Orthogonal<LandauLifshitz<Slab>>,
              LandauLifshitz<PerSite, Numbers>, LandauLifshitz<Prepared>,
@@ -73,7 +73,7 @@ struct Generators {
              RigidBodyEnsemble<Real, MemorySpace>>
       generators;
 
-  void use(Multirate<Rkmk4<S>, DearTerm>& stepper, LandauLifshitz<WithDear> const& generator,
+  void use(Multirate<Rkmk4<S>, SlowTerm>& stepper, LandauLifshitz<WithSlow> const& generator,
            S& spins) const {
     stepper.step(Exec(), generator, spins, 0, 0.1);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Structs that kernels take, whose sizes on the host and on the device the test `cuda_layouts`
-// compares. Nothing is run.
+// Structs that kernels take; the test `cuda_layouts` compares their sizes on host and device.
+// Nothing is run.
 #include <cayspin/cayspin.hpp>
 
 #include <cstddef>
@@ -10,7 +10,7 @@ namespace cayspin::test {
 template <class Argument>
 __global__ void takes(Argument) {}
 
-/// Its symbol has the size.
+/// A function whose symbol contains the size.
 template <class Argument, std::size_t OnHost>
 void has_size() {}
 

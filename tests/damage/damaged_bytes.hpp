@@ -17,18 +17,18 @@ inline long number_from(char const* variable, long otherwise) {
   return text ? std::atol(text) : otherwise;
 }
 
-/// The same on every platform, unlike the distributions of the standard library.
+/// Random numbers equal on every platform, unlike the distributions of the standard library.
 class Chance {
  public:
   explicit Chance(std::uint64_t seed) : engine_(seed) {}
-  /// From 0 to `end` - 1.
+  /// Returns a number from 0 to `end` - 1.
   std::size_t below(std::size_t end) { return end == 0 ? 0 : engine_() % end; }
 
  private:
   std::mt19937_64 engine_;
 };
 
-/// How often each outcome came, of all that was tried.
+/// Counts of each outcome.
 using OutcomeCounts = std::map<std::string, std::map<std::string, long>>;
 
 inline void print(OutcomeCounts const& tried) {
@@ -39,8 +39,8 @@ inline void print(OutcomeCounts const& tried) {
   }
 }
 
-/// Bytes after one of: bits flipped, bytes replaced, the end cut off, a block zeroed, two blocks
-/// swapped, a block repeated elsewhere. Half of the damage lies in the first 4 KiB.
+/// Returns the bytes after one of: bits flipped, bytes replaced, the end cut off, a block zeroed,
+/// two blocks swapped, a block repeated elsewhere. Half of the damage is in the first 4 KiB.
 inline std::string damaged(std::string bytes, Chance& chance) {
   auto const place = [&] {
     return chance.below(chance.below(2) ? bytes.size() : std::min<std::size_t>(bytes.size(), 4096));

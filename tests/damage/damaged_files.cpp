@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Random damage of HDF5 files: each reading ends with one line or with what was written.
-// CAYSPIN_DAMAGED_FILES and CAYSPIN_SEED: how many, and which.
+// Random damage of HDF5 files: each reading ends with a one-line error or with what was written.
+// CAYSPIN_DAMAGED_FILES and CAYSPIN_SEED: their number and the seed.
 #include "damaged_bytes.hpp"
 #include "inertia_file.hpp"
 #include "io/scene.hpp"
@@ -24,7 +24,7 @@ dt = 0.1
 steps = 10
 )";
 
-// Everything that the readers of a trajectory say about it, as text that can be compared.
+// Returns everything that the readers of a trajectory report about it, as text to compare.
 std::string all_of(TrajectoryInfo const& info) {
   auto const& header = info.header;
   std::string text =
@@ -166,7 +166,7 @@ TEST_F(Damage, TrajectoriesAreRefusedOrReadAsTheyWere) {
   cayspin::test::print(counts_);
 }
 
-// Without checksums what it reads may be wrong, but nothing crashes.
+// Without checksums the values may be wrong, but nothing crashes.
 TEST_F(Damage, InertiaOfAnotherMakerNeverCrashes) {
   auto const path = folder_ / "inertia.h5";
   cayspin::test::write_inertia(path, 24);

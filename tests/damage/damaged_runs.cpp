@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The program, started on damaged files: it takes them for what they were, or refuses them with one
-// line. CAYSPIN_DAMAGED_RUNS and CAYSPIN_SEED: how many, and which.
+// The program on damaged files: it reads the original content, or refuses them with one line.
+// CAYSPIN_DAMAGED_RUNS and CAYSPIN_SEED: their number and the seed.
 #include "damaged_bytes.hpp"
 #include "inertia_file.hpp"
 #include "program/program_test.hpp"
@@ -42,17 +42,17 @@ class DamagedRuns : public ProgramTest {
                 more);
   }
 
-  /// Ends with 0, or with another status and one line. A loop ends with a signal.
+  /// Expects status 0, or another status with one line. An endless loop ends with a signal.
   Outcome started(Arguments const& arguments) const {
     return start(arguments, {.seconds_limit = 20});
   }
 
-  // A command that reads damaged.h5, or damaged.checkpoint.h5 with it.
+  // A command that reads damaged.h5, or also damaged.checkpoint.h5.
   struct Use {
     char const* name;
     Arguments arguments;
     char const* output;      ///< the file whose last spins are compared; nullptr: standard output
-    bool is_checked = true;  ///< has checksums: what is not refused is as it was
+    bool is_checked = true;  ///< has checksums: unless refused, the content is the original one
   };
 
   std::string result(Use const& use, Outcome const& outcome) const {

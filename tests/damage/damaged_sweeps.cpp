@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A sweep takes in a damaged file of a run: it is refused with one line, or all of it arrives.
-// CAYSPIN_DAMAGED_SWEEPS and CAYSPIN_SEED: how many, and which.
+// A sweep reads a damaged file of a run: it refuses the file with one line, or copies it
+// completely. CAYSPIN_DAMAGED_SWEEPS and CAYSPIN_SEED: their number and the seed.
 #include "damaged_bytes.hpp"
 #include "hdf5/real_dataset.hpp"
 #include "io/sweep.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A process that is killed before any one of its writes to a trajectory file, or at any page in the
-// middle of it, leaves every frame that was reported as written.
+// A process that is killed before any of its writes to a trajectory file, or at any page within
+// one, leaves every frame that was reported as written.
 #include "known_run.hpp"
 
 #include <sys/mman.h>
@@ -11,12 +11,13 @@
 
 namespace {
 
-// Before the kill; -1: there is none. Before a write is one, each page that ends in it another.
+// Moments before the kill; -1: no kill. Before a write is one moment, each page that ends in it
+// another.
 long moments_left = -1;
 
 }  // namespace
 
-// HDF5's writes come here. A kill can stop the system between two pages, not within one.
+// Intercepts HDF5's writes. A kill can stop the system between two pages, not within one.
 extern "C" ssize_t pwrite(int file, void const* data, size_t bytes, off_t offset) {
   constexpr size_t page = 4096;
   if (moments_left >= 0) {
@@ -52,7 +53,7 @@ class Killed : public TrajectoryTest {
   }
   ~Killed() override { ::munmap(told_, sizeof(Told)); }
 
-  // False when the run ended before that moment.
+  // Returns false when the run ended before that moment.
   bool run_to(Course const& course, long moment) {
     *told_ = {};
     std::filesystem::remove_all(folder_);
@@ -73,7 +74,7 @@ class Killed : public TrajectoryTest {
     ::_exit(0);
   }
 
-  // The file of a process that was killed, or that ended.
+  // Checks the file of a process that was killed, or that ended.
   void expect_whole(Course const& course) {
     if (std::filesystem::exists(path()))
       require_known(path(), course, *told_);
@@ -99,7 +100,7 @@ class Killed : public TrajectoryTest {
     std::cout << "killed " << kills << " times\n";
   }
 
-  Told* told_ = nullptr;  // outlives the process that was told
+  Told* told_ = nullptr;  // survives the process that writes it
 };
 
 int stride(int ordinary) { return std::getenv("CAYSPIN_ALL_KILLS") ? 1 : ordinary; }
@@ -108,7 +109,7 @@ TEST_F(Killed, FromTheCreationToTheEnd) { kill_at_every_write(course(0, 4), stri
 
 TEST_F(Killed, InACrystal) { kill_at_every_write(course(0, 4, 2), stride(5)); }
 
-// Index blocks are added here, and by other layouts nodes are split.
+// Index blocks are added here, and in other layouts nodes are split.
 TEST_F(Killed, AfterSomeFrames) { kill_at_every_write(course(60, 70), stride(15)); }
 
 // The scalars' chunks of 512 are full: samples at frame 256, frames at 512.

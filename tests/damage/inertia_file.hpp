@@ -9,7 +9,7 @@
 
 namespace cayspin::test {
 
-/// Tensors of inertia as h5py writes them: in the oldest format, without checksums.
+/// Writes inertia tensors as h5py does: in the oldest format, without checksums.
 inline void write_inertia(std::filesystem::path const& path, std::size_t bodies) {
   std::vector<double> values(bodies * 9, 0.0);
   for (std::size_t body = 0; body < bodies; ++body)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// `cayspin run`, killed at random times, out of disk, or with its file cut. CAYSPIN_KILLS and
-// CAYSPIN_SEED: how many of each kind, and which.
+// `cayspin run`, killed at random times, without disk space, or with its file cut. CAYSPIN_KILLS
+// and CAYSPIN_SEED: the number of each kind, and the seed.
 #include "damaged_bytes.hpp"
 #include "program/program_test.hpp"
 
@@ -18,7 +18,7 @@ using cayspin::test::Chance;
 using cayspin::test::number_from;
 namespace fs = std::filesystem;
 
-// Frames as fast as they can be written.
+// Writes frames as fast as possible.
 std::string const scene = R"([system]
 kind = "llg"
 damping = 0.1
@@ -50,16 +50,16 @@ class Kills : public ProgramTest {
 
   std::string fresh_name() { return "run_" + std::to_string(number_++) + ".h5"; }
 
-  // What another process finds in the file while it is written.
+  // Returns what another process reads from the file while it is written.
   io::TrajectoryInfo visible(fs::path const& path) const {
     try {
       return io::read_info_while_written(path);
-    } catch (std::runtime_error const&) {  // half written, or not there yet
+    } catch (std::runtime_error const&) {  // half written, or missing
       return {};
     }
   }
 
-  // Every step that was seen is there with its spins, and the run can go on.
+  // Expects every step that was seen to be there with its spins, and the run to be continued.
   void expect_nothing_lost(std::string const& name, io::TrajectoryInfo const& seen) {
     auto const path = in_folder(name);
     if (!fs::exists(path)) {
@@ -72,7 +72,7 @@ class Kills : public ProgramTest {
     auto const file = io::read_info(path);
     EXPECT_FALSE(file.complete);
     ASSERT_EQ(file.frame_steps.size(), static_cast<std::size_t>(file.frames));
-    // Samples and frames: a sample of a frame's step is in the file before the frame.
+    // A sample of a frame's step is in the file before the frame.
     auto const last_seen = seen.last_sample ? seen.last_sample->step : 0;
     EXPECT_GE(file.samples, seen.samples);
     EXPECT_GE(file.frames, seen.frames);
@@ -109,14 +109,14 @@ class Kills : public ProgramTest {
     return " kept as " + kept.string();
   }
 
-  // The files of a test, through another build of HDF5.
+  // Reads the files of a test with another build of HDF5.
   void expect_h5py_opens_all() const {
     auto const command = std::string(CAYSPIN_PYTHON) + " -B " + CAYSPIN_OPEN_ALL + " " +
                          folder_.string() + "/run_*.h5";
     EXPECT_EQ(std::system(command.c_str()), 0);
   }
 
-  // How long a run takes to its first frame: a build with checks is many times slower.
+  // Returns the time to a run's first frame: a build with checks is many times slower.
   std::chrono::microseconds time_to_first_frame() {
     auto const name = "first.h5";
     auto const begun = std::chrono::steady_clock::now();
@@ -162,7 +162,7 @@ TEST_F(Kills, SigkillLosesNoFrameThatWasSeen) {
   print_summary("SIGKILL");
 }
 
-// The file that `cayspin info` leaves is whole without its journal.
+// After `cayspin info` the file is complete without its journal.
 TEST_F(Kills, SigkillWithSyncLosesNoFrameThatWasSeen) {
   kill_with(SIGKILL, kills_, {"--set", "output.sync=true"});
   for (auto const& entry : fs::directory_iterator(folder_))

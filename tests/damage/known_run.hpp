@@ -8,7 +8,7 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// A run whose every number is known, and what it goes on from.
+/// A run with known numbers, and its start.
 struct KnownRun {
   TrajectoryHeader header = small_header();
   TrajectoryStorage storage = {};
@@ -19,7 +19,7 @@ struct KnownRun {
   bool replaces = false;
 };
 
-/// What its writer has been told to be in the file.
+/// Counts that were reported as written.
 struct Told {
   bool created = false, finished = false;
   std::int64_t frames = 0, samples = 0;
@@ -75,7 +75,7 @@ inline bool equal(Scalars const& a, Scalars const& b) {
          a.magnetization == b.magnetization;
 }
 
-/// The spins as a reader returns them.
+/// Returns the spins in the order of a reader.
 inline std::vector<double> read_back_at(TrajectoryHeader const& header, std::int64_t step) {
   if (header.precision != "single") return spins_at<double>(header, step);
   auto const given = spins_at<float>(header, step);
@@ -96,7 +96,7 @@ inline void require_known_samples(std::filesystem::path const& path, KnownRun co
   }
 }
 
-/// Throws unless all that was told is in the file, and what is there is as it was given.
+/// Throws unless everything reported is in the file, and the file's content is correct.
 inline void require_known(std::filesystem::path const& path, KnownRun const& run,
                           Told const& told) {
   auto const info = read_info(path);
@@ -128,7 +128,7 @@ inline void require_known(std::filesystem::path const& path, KnownRun const& run
   }
 }
 
-/// A whole file that a run may replace.
+/// Writes a complete file that a run may replace.
 inline void write_older_file(std::filesystem::path const& path, bool sync) {
   auto const header = small_header();
   TrajectoryFile file(path, header, false, {.sync = sync});

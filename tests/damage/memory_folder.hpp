@@ -9,7 +9,7 @@
 
 namespace cayspin::test {
 
-/// A new folder, in memory where the system has a place for such.
+/// A new folder, in memory if the system has a memory file system.
 class MemoryFolder {
  public:
   explicit MemoryFolder(std::string const& name) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Shipped scenes with tokens deleted, swapped or replaced: each is read, or refused with one line.
-// CAYSPIN_MUTATED_SCENES and CAYSPIN_SEED: how many, and which.
+// CAYSPIN_MUTATED_SCENES and CAYSPIN_SEED: their number and the seed.
 #include "damaged_bytes.hpp"
 #include "io/expression.hpp"
 #include "io/scene.hpp"
@@ -54,7 +54,12 @@ TEST(MutatedScenes, AreReadOrRefusedWithOneLine) {
   for (auto const& entry : std::filesystem::directory_iterator(CAYSPIN_SCENES))
     if (entry.path().extension() == ".toml") paths.push_back(entry.path());
   std::ranges::sort(paths);
-  for (auto const& path : paths) scenes.push_back(tokens_of(cayspin::test::read_bytes(path)));
+  for (auto const& path : paths)
+    for (std::string const stages :
+         {"",
+          "[[stage]]\nname = \"a\"\nrelax = true\nfield.applied = [1, 0, 0]\n[[stage]]\n"
+          "system.damping = 0.2\n[stage.integrator]\nsteps = 3\n"})
+      scenes.push_back(tokens_of(cayspin::test::read_bytes(path) + stages));
   ASSERT_FALSE(scenes.empty());
   Chance chance(static_cast<std::uint64_t>(number_from("CAYSPIN_SEED", 1)));
   int read = 0, refused = 0;

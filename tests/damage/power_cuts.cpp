@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Files with sync, after a power cut at a random moment: what was written since the last
-// synchronisation is there in part, in any order. CAYSPIN_POWER_CUTS and CAYSPIN_SEED: how many,
-// and which.
+// Files with sync, after a power cut at a random moment: data written since the last
+// synchronisation are there in part, in any order. CAYSPIN_POWER_CUTS and CAYSPIN_SEED: their
+// number and the seed.
 #include "damaged_bytes.hpp"
 #include "hdf5/guarded_reading.hpp"
 #include "known_run.hpp"
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 struct Recording {
   KnownRun run = {};
   std::vector<DiskEvent> events = {};
-  std::vector<Told> told = {};  // by the numbers that were noted
+  std::vector<Told> told = {};  // by the numbers noted
   std::size_t first_cut = 0;    // before it there is an older file to write
 
   Told told_before(std::size_t cut) const {
@@ -82,7 +82,7 @@ class PowerCuts : public testing::Test {
     }
   }
 
-  // A run that goes on from the file, in its place.
+  // Continues the run in its file.
   void expect_to_go_on(KnownRun run) const {
     auto const info = read_info(path());
     if (info.frames == 0 || info.header.shape != run.header.shape) return;
@@ -116,7 +116,7 @@ class PowerCuts : public testing::Test {
     }
   }
 
-  // The power goes again, while a reader completes the file.
+  // Cuts the power again, while a reader completes the file.
   void cut_while_completing(DiskState const& state, Choose const& there, Choose const& any) {
     record_disk(folder_ / "cut", state);
     auto const first = note_told(0);
@@ -150,7 +150,7 @@ TrajectoryHeader header_of(std::array<std::int64_t, 3> const& shape, char const*
 }
 
 // Frames that share a chunk, that fill several, compressed ones; beyond the first blocks of HDF5's
-// index; samples beyond a chunk of theirs; a file that replaces another.
+// index; more samples than a chunk holds; a file that replaces another.
 TEST_F(PowerCuts, LoseAtMostTheFrameBeingWritten) {
   std::vector<KnownRun> const runs{
       {.header = header_of({4, 3, 2}, "double"), .frames = 12, .samples = 3},
@@ -175,7 +175,7 @@ TEST_F(PowerCuts, LoseAtMostTheFrameBeingWritten) {
             << " cut again while completed\n";
 }
 
-// All choices one after the other.
+// Enumerates all choices.
 class AllChoices {
  public:
   std::size_t operator()(std::size_t end) {
@@ -197,7 +197,7 @@ class AllChoices {
   std::size_t next_ = 0;
 };
 
-// In the order of the writes, wherever little is open.
+// In the order of the writes, if few choices are open.
 TEST_F(PowerCuts, LoseNothingWhateverOfFewWritesIsThere) {
   auto const recording = record(
       {.header = header_of({2, 1, 1}, "double"), .frames = 2, .samples = 1, .replaces = true});

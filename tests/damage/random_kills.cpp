@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Writers of files in memory, killed at random times. CAYSPIN_RANDOM_KILLS and CAYSPIN_SEED: how
-// many, and which.
+// Writers of files in memory, killed at random times. CAYSPIN_RANDOM_KILLS and CAYSPIN_SEED: their
+// number and the seed.
 #include "damaged_bytes.hpp"
 #include "hdf5/guarded_reading.hpp"
 #include "known_run.hpp"
@@ -25,7 +25,7 @@ using cayspin::test::Chance;
 using cayspin::test::number_from;
 namespace fs = std::filesystem;
 
-// What a process has been told, which outlives it.
+// Reports of a process, which survive it.
 struct Reported {
   std::atomic<bool> begun, created, finished;
   std::atomic<std::int64_t> frames, samples;
@@ -83,7 +83,7 @@ class RandomKills : public testing::Test {
     return course;
   }
 
-  // Goes on from the last frame of a file that a kill has left, as a restart does.
+  // Continues from the last frame of a file that a kill has left, like a restart.
   void restart_from_last(Course& course) {
     if (!last_ || chance_.below(4) != 0) return;
     auto const info = read_info(*last_);
@@ -130,7 +130,7 @@ class RandomKills : public testing::Test {
     }
   }
 
-  // Through another build of HDF5.
+  // Reads with another build of HDF5.
   void expect_h5py_opens_all() {
     auto const command = std::string(CAYSPIN_PYTHON) + " -B " + CAYSPIN_OPEN_ALL + " " +
                          folder_.string() + "/*.h5 > " + (folder_ / "opened").string();

@@ -32,7 +32,7 @@ bool is_recorded(fs::path const& path) {
   return recording && fs::absolute(path).parent_path() == recorded_folder;
 }
 
-// A file's creation shows when something is first done to it.
+// A file's creation is recorded with its first operation.
 DiskEvent* add_event(DiskEvent::Kind kind, int file) {
   auto const name = recording ? name_of(file) : "";
   if (name.empty() || !is_recorded(name)) return nullptr;
@@ -50,7 +50,7 @@ DiskEvent* add_event(DiskEvent::Kind kind, int file) {
   return &recorded.back();
 }
 
-// The number of an inode is used again once its file is gone.
+// An inode's number is reused once its file is removed.
 void forget(char const* path) {
   struct stat status {};
   if (::stat(path, &status) == 0) numbers.erase(status.st_ino);
@@ -93,7 +93,7 @@ std::vector<DiskEvent> stop_recording() {
 
 }  // namespace cayspin::test
 
-// The calls of the library come here.
+// Intercepts calls of the library.
 namespace test = cayspin::test;
 using test::DiskEvent;
 
@@ -119,7 +119,7 @@ extern "C" int fallocate(int file, int mode, off_t offset, off_t bytes) {
 
 extern "C" int fdatasync(int file) {
   test::add_event(DiskEvent::sync, file);
-  return 0;  // the disk of the test is the record
+  return 0;  // the test's disk is the record
 }
 
 extern "C" int fsync(int file) {

@@ -11,7 +11,7 @@
 
 namespace cayspin::test {
 
-/// What a program did to the files of a folder, in order. Files have numbers.
+/// An operation of a program on a file of a folder, in order. Files are numbered.
 struct DiskEvent {
   enum Kind { write, resize, sync, create, rename, unlink, sync_folder, told } kind;
   std::size_t file = 0;
@@ -20,21 +20,20 @@ struct DiskEvent {
   std::string name = {}, new_name = {};
 };
 
-/// Names of files, and what they hold.
+/// Names of files, and their contents.
 using DiskState = std::map<std::string, std::string>;
 
 /// Records the calls of this process from here on, for files in `folder`, which holds `state`.
 void record_disk(std::filesystem::path const& folder, DiskState const& state = {});
-/// Notes a number that the caller knows the meaning of. Returns how many events are before a cut
-/// after it.
+/// Records a number whose meaning the caller knows. Returns how many events precede a cut after it.
 std::size_t note_told(std::uint64_t number);
 std::vector<DiskEvent> stop_recording();
 
-/// A number from 0 to `end` - 1.
+/// A function that returns a number from 0 to `end` - 1.
 using Choose = std::function<std::size_t(std::size_t end)>;
 
-/// What a power cut before event number `cut` may leave. What was synchronised is there. Of all
-/// else `choose` says for each sector of each write, each size and each name whether it is.
+/// Returns what a power cut before event number `cut` may leave. Synchronised data are there. For
+/// each other sector of a write, size and name, `choose` decides whether it is there.
 DiskState after_power_cut(std::vector<DiskEvent> const& events, std::size_t cut,
                           Choose const& choose, Choose const& choose_order);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The demagnetising field as devices compute it, against that of the host: on host spaces, too,
-// where FFTW plays the device's transforms.
+// The demagnetising field as devices compute it, against that of the host: also on host spaces,
+// where FFTW emulates the device's transforms.
 #include "films.hpp"
 
 #include <gtest/gtest.h>
@@ -46,14 +46,14 @@ TYPED_TEST(DemagnetizingFieldOnDevices, IsThatOfTheHost) {
                                static_cast<std::int64_t>(sizeof(Real));
     for (std::int64_t const bytes : {std::int64_t(32) << 20, 2 * plane, std::int64_t(0)}) {
       detail::DeviceConvolution<Real, Exec> const convolution(lattice, interactions, bytes);
-      // Work memory is as the first call left it in the second one.
+      // The second call uses work memory left by the first one.
       for (int again = 0; again < 2; ++again) convolution(Exec(), spins, field);
       expect_near<Real>(numbers_of(field), expected, film);
     }
   }
 }
 
-// One spelling for hosts and devices; a device copies no spin.
+// One spelling works for hosts and devices; a device copies no spins.
 TYPED_TEST(DemagnetizingFieldOnDevices, IsATerm) {
   Film const& film = films.front();
   auto const directions = random_directions(film.lattice().sites(), 3);

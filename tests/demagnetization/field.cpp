@@ -17,7 +17,7 @@ namespace {
 template <class Real>
 using HostSpins = SpinField<Real, Kokkos::HostSpace>;
 
-/// Distances along an axis at which a cell sees another one, and the weight of each.
+/// Returns the distances along an axis at which a cell sees another one, and the weight of each.
 std::vector<std::pair<double, double>> seen(Film const& film, std::size_t axis,
                                             std::int64_t apart) {
   int const n = static_cast<int>(film.shape[axis]), images = film.images[axis];
@@ -91,7 +91,7 @@ std::vector<double> along_z(Lattice const& lattice) {
   return directions;
 }
 
-// A third of each cell's own field and all others' is that of the whole cube.
+// A third of each cell's own field, plus that of all others, is that of the whole cube.
 TYPED_TEST(DemagnetizingFields, OfAUniformCubeHaveItsMean) {
   using Real = TypeParam;
   auto const lattice = Lattice::cubic(20, 20, 20);
@@ -102,7 +102,7 @@ TYPED_TEST(DemagnetizingFields, OfAUniformCubeHaveItsMean) {
               64 * std::numeric_limits<Real>::epsilon());
 }
 
-// Periodic along both axes, a film uniform along its normal has H = -m, less what lies beyond the
+// Periodic along both axes, a film uniform along its normal has H = -m, minus the part beyond the
 // images.
 TEST(DemagnetizingField, OfAPeriodicFilmIsThatOfASheet) {
   Film const film{{4, 4, 1}, {30, 30, 0}, {1, 1, 1}};

@@ -35,8 +35,8 @@ inline std::vector<Film> const films = {
     {{2, 3, 1}, {1, 1, 1}, {1, 2, 1}},
 };
 
-/// The field of spins along `directions`, on the host. Work memory is as the first evaluation left
-/// it in the second one.
+/// Returns the field of spins along `directions`, on the host. The second evaluation uses work
+/// memory left by the first one.
 template <class Real>
 SpinField<Real, Kokkos::HostSpace> field_on_host(Lattice const& lattice,
                                                  std::vector<double> const& directions,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The demagnetising field of lattices that go on for ever along one or two axes, against closed
-// forms and against itself on several periods.
+// The demagnetising field of infinite lattices along one or two axes, against closed forms and
+// against itself on several periods.
 #include "../support/wrong_call.hpp"
 #include "films.hpp"
 
@@ -23,7 +23,7 @@ class InfiniteImages : public ::testing::Test {};
 using Precisions = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(InfiniteImages, Precisions);
 
-/// Of the sums over images, and of the transforms.
+/// Errors of the sums over images, and of the transforms.
 template <class Real>
 constexpr double limit = 1e-10 + 80 * std::numeric_limits<Real>::epsilon();
 
@@ -45,7 +45,7 @@ void expect_uniform(Field const& field, std::array<double, 3> const& h, double e
   }
 }
 
-// A film has N = 1 along its normal and 0 in its plane, whatever the normal.
+// A film has N = 1 along its normal and 0 in its plane, for any normal.
 TYPED_TEST(InfiniteImages, OfAFilmHaveATraceAlongItsNormal) {
   using Real = TypeParam;
   for (auto const& film : {Film{{20, 20, 1}, {all, all, 0}, {1, 1, 1}},
@@ -64,8 +64,8 @@ TYPED_TEST(InfiniteImages, OfAFilmHaveATraceAlongItsNormal) {
   }
 }
 
-/// N along the edge a of an infinite bar of edges a and b: Aharoni, J. Appl. Phys. 83, 3432 (1998),
-/// eq. 1 where the third edge is infinite.
+/// Returns N along the edge a of an infinite bar of edges a and b: Aharoni, J. Appl. Phys. 83, 3432
+/// (1998), eq. 1 with the third edge infinite.
 double of_bar(double a, double b) {
   double const p = a / b;
   return ((1 - p * p) / (2 * p) * std::log1p(p * p) + p * std::log(p) + 2 * std::atan(1 / p)) /
@@ -98,8 +98,8 @@ TYPED_TEST(InfiniteImages, OfABarHaveItsMean) {
   }
 }
 
-// Stripes of width a, up and down in turn, of a film of thickness d: N along the normal is the sum
-// over odd n of 8/(n pi)^2 (1 - exp(-k d))/(k d), k = n pi/a.
+// Stripes of width a, alternately up and down, in a film of thickness d: N along the normal is the
+// sum over odd n of 8/(n pi)^2 (1 - exp(-k d))/(k d), k = n pi/a.
 TYPED_TEST(InfiniteImages, OfStripesAreTheirFourierSeries) {
   using Real = TypeParam;
   for (double const thickness : {0.1, 1.0, 5.0}) {
@@ -119,7 +119,7 @@ TYPED_TEST(InfiniteImages, OfStripesAreTheirFourierSeries) {
   }
 }
 
-// Spins that repeat have the same field on several periods.
+// Repeated spins have an equal field on several periods.
 TYPED_TEST(InfiniteImages, AreThoseOfSeveralPeriods) {
   using Real = TypeParam;
   struct Case {

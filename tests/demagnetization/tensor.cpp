@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The demagnetising tensor against a table from 160 digits, and what any such tensor obeys.
+// The demagnetising tensor against a table from 160 digits, and its general properties.
 #include <cayspin/demagnetization/tensor.hpp>
 
 #include <gtest/gtest.h>
@@ -53,12 +53,13 @@ double largest_difference(Entries const& a, Entries const& b) {
 
 double longest(Lengths const& cell) { return std::max({cell[0], cell[1], cell[2]}); }
 
-/// Distance in longest edges.
+/// Returns the distance in longest edges.
 double distance(TensorEntry const& one) {
   return std::hypot(one.position[0], one.position[1], one.position[2]) / longest(one.cell);
 }
 
-/// Largest error for positions from `begin` to `end` longest edges, in largest entries there.
+/// Returns the largest error for positions from `begin` to `end` longest edges, in largest entries
+/// there.
 double error_between(double begin, double end) {
   double worst = 0;
   for (TensorEntry const& one : tensor_table)
@@ -71,7 +72,7 @@ double error_between(double begin, double end) {
 
 TEST(DemagnetizingTensor, IsThatOfTheTableNearby) { EXPECT_LE(error_between(0, 4), 1e-11); }
 
-// With its order less by 2, each of these series exceeds the bound.
+// With an order lower by 2, each of these series exceeds the bound.
 TEST(DemagnetizingTensor, IsThatOfTheTableFarAway) {
   EXPECT_LE(error_between(4, 8), 1e-12);
   EXPECT_LE(error_between(8, 50), 1e-12);

@@ -102,7 +102,7 @@ def missing_files_of_sources(root, sources):
 
 
 def wrong_commands(root, lines):
-    """Of `lines`, each (file, line number, line)."""
+    """Checks `lines`, each (file, line number, line)."""
     usage = re.search(r"bootstrap\.sh ([\w-]+(?:\|[\w-]+)+)", read(root, "cmake/bootstrap.sh"))
     verbs = set(usage.group(1).split("|"))
     presets = {preset["name"]

@@ -29,7 +29,7 @@ FILES = {
 
 class CheckDocs(unittest.TestCase):
     def faults(self, page, more=()):
-        """What is found in a project with this page, docs/guide/page.md."""
+        """Returns the faults of a project with this page, docs/guide/page.md."""
         with tempfile.TemporaryDirectory() as root:
             for path, text in {**FILES, "docs/guide/page.md": page, **dict(more)}.items():
                 full = os.path.join(root, path)

@@ -13,7 +13,7 @@ REQUIRED = re.compile(r"Compound cayspin[^ <]* is not documented|\(function\) of
 
 
 def warnings(doxygen, root, settings):
-    """What Doxygen prints with docs/Doxyfile and these settings."""
+    """Returns the output of Doxygen with docs/Doxyfile and these settings."""
     with open(f"{root}/docs/Doxyfile", encoding="utf-8") as file:
         text = file.read() + "\n" + "\n".join(settings) + "\n"
     run = subprocess.run([doxygen, "-"], input=text, cwd=root, text=True, capture_output=True,

@@ -13,7 +13,7 @@ import urllib.parse
 
 
 class PageOfSite(html.parser.HTMLParser):
-    """What a page of the site refers to, and what others may refer to."""
+    """Links of a page of the site, and its anchors."""
 
     def __init__(self, path):
         super().__init__()

@@ -68,7 +68,7 @@ class Page:
                 for match in INLINE_CODE.finditer(line)]
 
     def anchors(self):
-        """The anchors that GitHub gives to the headings."""
+        """Returns the anchors that GitHub gives to the headings."""
         seen, anchors = {}, set()
         for _, line in self.of_kind("heading"):
             text = INLINE_CODE.sub(lambda code: code.group(0).strip("`"), line.lstrip("#").strip())

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Runs the examples of the guide and of three pages of the reference, each page in its own folder.
+"""Runs the examples of the README, the guide and three pages of the reference, each in its folder.
 
 Usage: page_examples.py PROGRAM, with the package cayspin on PYTHONPATH
 Blocks of `cayspin` and `python3` commands are run, and a block of output after them is compared.
-Blocks of Python are run as one script: `print(...)  # text` has to print the text. Scenes are
-checked; keys alone are set in the scene before. Other pages name a program of examples/ that is
-built and tested.
+In a block of `console` the lines after `$ ` are run, may fail, and have to print the others, where
+`...` is any text.
+Blocks of Python are run as one script after the commands: `print(...)  # text` has to print the
+text, and a block of output after one is compared. Scenes are checked; keys alone are set in the
+scene before. Other pages name a program of examples/ that is built and tested; blocks of C++ in a
+tutorial are parts of those that it names.
 """
 import glob
 import pathlib
@@ -23,12 +26,15 @@ BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 PRINTED = re.compile(r"^ *print\(.*\)  # ([^;:\n]+)", re.MULTILINE)
 KEY = re.compile(r"^(\w+) = (.*?)\s*(?:# .*)?$", re.MULTILINE)
 TESTED = re.compile(r"examples/(?:\d\d_\w+\.cpp|c_and_fortran|ranks/main\.cpp)\)")
+PROGRAM = re.compile(r"examples/\d\d_\w+\.cpp")
 REFERENCE = ("conventions", "field_terms", "methods")
 
 
 def pages():
-    guide = glob.glob(str(ROOT / "docs/guide/*.md"))
-    return sorted(map(pathlib.Path, guide)) + [
+    """Pages of pictures are those of gallery_test.py."""
+    guide = sorted(map(pathlib.Path, glob.glob(str(ROOT / "docs/guide/*.md"))))
+    return [ROOT / "README.md"] + [
+        page for page in guide if page.name != "what_a_scene_can_hold.md"] + [
         ROOT / f"docs/reference/{name}.md" for name in REFERENCE]
 
 
@@ -49,15 +55,26 @@ class Examples(unittest.TestCase):
             overrides = "".join(f" --set '{key}={value}'" for key, value in KEY.findall(block))
         return gallery.run(f"cayspin check scene.toml{overrides}", folder, environment)
 
-    def run_python(self, blocks, folder, environment):
+    def run_console(self, block, folder, environment):
+        lines = block.splitlines()
+        commands = [line.removeprefix("$ ") for line in lines if line.startswith("$ ")]
+        output = "".join(gallery.run(f"{{ {command}; }} 2>&1; true", folder, environment)
+                         for command in commands)
+        for line in lines:
+            if not line.startswith("$ "):
+                self.assertRegex(output, re.escape(line).replace(r"\.\.\.", ".+"))
+        return len(commands)
+
+    def run_python(self, blocks, expected, folder, environment):
         script = "\n".join(blocks)
         (folder / "page.py").write_text(script, encoding="utf-8")
         printed = gallery.run("python3 page.py", folder, environment).splitlines()
-        for text in PRINTED.findall(script):
-            self.assertIn(text.strip(), printed)
+        for text in [*PRINTED.findall(script), *expected]:
+            self.assertIn(text.strip(), map(str.strip, printed))
 
     def examples_run(self, page, program):
         text, count, output, scripts = page.read_text(encoding="utf-8"), 0, "", []
+        before, expected = "", []  # the language of the block before; what Python has to print
         with gallery.workspace(program) as (folder, environment):
             for language, block in BLOCK.findall(text):
                 if language == "sh":
@@ -65,6 +82,10 @@ class Examples(unittest.TestCase):
                     output = "".join(gallery.run(f"{command} 2>&1", folder, environment)
                                      for command in commands)
                     count += len(commands)
+                elif language == "console":
+                    count += self.run_console(block, folder, environment)
+                elif language == "" and before == "python":
+                    expected += block.splitlines()
                 elif language == "" and output:
                     for line in block.splitlines():
                         self.assertIn(line, output)
@@ -73,9 +94,20 @@ class Examples(unittest.TestCase):
                     count += 1
                 elif language == "python":
                     scripts.append(block)
+                before = language
             if scripts:
-                self.run_python(scripts, folder, environment)
+                self.run_python(scripts, expected, folder, environment)
         return count + len(scripts)
+
+    def test_code_of_tutorials_is_that_of_examples(self):
+        for page in ROOT.glob("docs/guide/tutorial_*.md"):
+            text = page.read_text(encoding="utf-8")
+            programs = [" ".join((ROOT / name).read_text(encoding="utf-8").split())
+                        for name in set(PROGRAM.findall(text))]
+            for language, block in BLOCK.findall(text):
+                code = " ".join(block.split())
+                if language == "cpp" and not any(code in program for program in programs):
+                    self.fail(f"{page.name}: not in an example that it names:\n{block}")
 
     def test_every_page_has_one_that_runs(self):
         for page in pages():

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Lagged energy control: what it does to one state, how much of the drift it takes away, orders and
-// lengths it leaves alone, bits, and what it refuses.
+// Lagged energy control: its effect on one state, the drift that it removes, unchanged orders and
+// lengths, bits, and refusals.
 #include "../backends/equal_bits.hpp"
 #include "../support/backends.hpp"
 #include "../support/evaluate.hpp"
@@ -29,7 +29,7 @@ Lattice periodic_cube() {
   return cube;
 }
 
-/// Largest |E - E_0| per spin and | |m| - 1 | at the ends of steps, before the control's turn.
+/// Records the largest |E - E_0| per spin and | |m| - 1 | at the ends of steps, before the control.
 template <class Source>
 struct Drift {
   Source source;
@@ -66,7 +66,7 @@ Drift<Generator> drift(std::int64_t period, double time = 200) {
   return seen;
 }
 
-/// The numbers of a row of the table in docs/reference/methods.md.
+/// Returns the numbers of a row of the table in docs/reference/methods.md.
 std::vector<double> row_of_page(std::string const& name) {
   std::ifstream file(CAYSPIN_METHODS_PAGE);
   std::string const begin = "| " + name + " |";
@@ -89,7 +89,7 @@ void expect_less_drift(std::string const& method, std::string const& row) {
   EXPECT_LT(with.energy, 0.01 * without.energy) << method;
   EXPECT_LT(tenth.energy, 0.05 * without.energy) << method;
   expect_below(method + ", norm", with.norm, 1e-13);
-  // The runs are chaotic: round-off of other processors moves their largest drifts. The page's are
+  // The runs are chaotic: round-off on other processors changes their largest drifts. The page has
   // those of hosts.
   if constexpr (!detail::is_host_execution<Space>) return;
   double const found[] = {without.energy, with.energy, tenth.energy};
@@ -105,7 +105,7 @@ TEST(EnergyControl, TakesDriftAway) {
   expect_less_drift<ProjectedRk4<Spins>>("projected rk4", "RK4 + renormalise");
 }
 
-// The energy of spins in single precision is held as far as these numbers can say.
+// The energy of spins in single precision is held to the accuracy of these numbers.
 TEST(EnergyControl, TakesDriftAwayInSinglePrecision) {
   using Stepper = Rkmk4<SpinField<float, Space::memory_space>>;
   auto const without = drift<Stepper>(0), with = drift<Stepper>(1);
@@ -139,7 +139,7 @@ struct OneCall : ::testing::Test {
 };
 TYPED_TEST_SUITE(OneCall, Precisions, PrecisionName);
 
-/// The control's turn towards an energy `higher` than that of the spins.
+/// Makes the control turn spins towards an energy `higher` than theirs.
 template <class Source, class Field>
 Field turned(Source const& source, Field const& start, double higher,
              EnergyControlOptions options = {}, double dt = 10) {
@@ -183,7 +183,7 @@ TYPED_TEST(OneCall, TurnsSpinsByOneNumber) {
               random_spins<Field>(Lattice::chain(37), 3));
 }
 
-// Newton's method: what is left is of the second order in what is asked for.
+// Newton's method: the remaining error is of second order in the correction.
 TEST(EnergyControl, ReachesTheEnergy) {
   Spins const start = random_spins(slab.lattice, 3);
   double const before = energy(Space{}, slab.field(), start).value;
@@ -196,8 +196,8 @@ TEST(EnergyControl, ReachesTheEnergy) {
   expect_order("left of the energy", fitted_order(asked, left), 2, 0.1);
 }
 
-// However far the energy is, spins move by a fraction of what a step moves them; at rest not at
-// all.
+// However far away the energy is, spins move by at most a fraction of their motion in a step; at
+// equilibrium they do not move.
 TYPED_TEST(OneCall, IsBounded) {
   using Field = typename TestFixture::Field;
   Field const start = random_spins<Field>(slab.lattice, 3);
@@ -238,7 +238,7 @@ TEST(EnergyControl, HoldsTheEnergyOfTheFirstCall) {
     return energy(Space{}, slab.natural(), spins).value;
   };
   EnergyControl control(start, slab.natural(), {.period = 5});
-  EXPECT_TRUE(control.due(Step{3}));  // a run may begin anywhere
+  EXPECT_TRUE(control.due(Step{3}));  // a run may start anywhere
   control(Space{}, Step{3, 0, 0.1}, start);
   EXPECT_EQ(*control.energy(), energy_of(start));
   for (int const number : {4, 6, 9}) EXPECT_FALSE(control.due(Step{number}));
@@ -248,12 +248,12 @@ TEST(EnergyControl, HoldsTheEnergyOfTheFirstCall) {
   control(Space{}, Step{5, 0, 0.1}, other);
   EXPECT_EQ(*control.energy(), energy_of(random_spins(slab.lattice, 4)));
 
-  // A checkpoint from before the first call holds none.
+  // A checkpoint from before the first call stores no energy.
   CheckpointInMemory checkpoint;
   EnergyControl before(start, slab.natural());
-  exchange_memory(before, checkpoint);
+  serialize(before, checkpoint);
   checkpoint.close();
-  exchange_memory(control, checkpoint);
+  serialize(control, checkpoint);
   EXPECT_FALSE(control.energy());
 }
 

@@ -10,10 +10,10 @@
 
 namespace cayspin::extremes {
 
-/// The start's components across and along the field.
+/// Components of the start normal to and along the field.
 inline constexpr double across = 0.6, along = 0.8;
 
-/// How often the exact solution turns, in radians, between 0 and `time`.
+/// Returns the angle of the exact solution, in radians, between 0 and `time`.
 inline long double exact_angle(Setting const& setting, bool body, long double time) {
   if (setting.switched_on_at > 0) time = std::fmax(time - setting.switched_on_at, 0.0L);
   return (body ? -along : 1.0L) * setting.field * time;

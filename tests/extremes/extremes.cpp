@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The tables are those of docs/reports/extremes.md, and every run keeps its promise.
+// The tables equal those of docs/reports/extremes.md, and every run keeps its promise.
 #include "io/method.hpp"
 #include "page.hpp"
 
@@ -27,7 +27,7 @@ std::string page() {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// All runs, by "section: situation".
+/// Returns all runs, by "section: situation".
 std::map<std::string, std::vector<Table::Run>> const& runs() {
   static auto const all = [] {
     std::map<std::string, std::vector<Table::Run>> by_situation;
@@ -65,7 +65,7 @@ void for_each_run(std::string const& situation, Expect const& expect) {
   }
 }
 
-/// The methods that choose their steps, or all others.
+/// Returns the names of methods with adaptive steps, or of all others.
 std::vector<std::string> words_of_methods(bool adaptive) {
   std::vector<std::string> all;
   for (auto const* const method : io::methods())
@@ -89,7 +89,7 @@ TEST(Extremes, RunsKeepTheirPromises) {
     }
 }
 
-// The promises once more, from the numbers alone.
+// Checks the promises again, from the numbers only.
 TEST(Extremes, FatesAgreeWithTheNumbers) {
   for (auto const& entry : runs())
     for_each_run(entry.first, [](Table::Run const& run) {
@@ -109,7 +109,7 @@ TEST(Extremes, FatesAgreeWithTheNumbers) {
 TEST(Extremes, TablesHaveEveryMethod) {
   for (auto const& table : tables()) {
     auto const& title = table.section().title;
-    if (title == "Temperatures" || title == "Dear fields" || title == "States of rest") continue;
+    if (title == "Temperatures" || title == "Expensive fields" || title == "Equilibria") continue;
     for (auto const& word : words_of_methods(title == "Adaptive steps")) {
       auto const is_of_method = [&](Table::Run const& run) {
         return run.integrator->method->word == word;
@@ -117,7 +117,7 @@ TEST(Extremes, TablesHaveEveryMethod) {
       EXPECT_TRUE(std::ranges::any_of(table.runs(), is_of_method)) << title << ": " << word;
     }
   }
-  for (auto const* situation : {"Temperatures: NaN", "Dear fields: NaN"}) {
+  for (auto const* situation : {"Temperatures: NaN", "Expensive fields: NaN"}) {
     std::set<std::string> tried;
     for_each_run(situation, [&](Table::Run const& run) { tried.insert(run.integrator->name()); });
     for (auto const* method : {"euler", "heun", "rkmk4", "rkmk5", "rkmk8", "cf4", "projected_rk4"})
@@ -138,17 +138,17 @@ TEST(Extremes, RunsFareAsTheirSituationAllows) {
                                        {"Adaptive steps: damping 1e12, min_dt 1e-3", detected},
                                        {"Adaptive steps: min_dt 3", detected},
                                        {"Adaptive steps: tolerance 1e-300", refused},
-                                       {"States of rest: no field", exact},
-                                       {"States of rest: field 1e-300", exact},
-                                       {"States of rest: m along H", exact},
-                                       {"States of rest: m against H", bounded},
-                                       {"States of rest: one spin", bounded},
-                                       {"States of rest: exchange 1e6", bounded},
-                                       {"States of rest: exchange 1e300", detected},
-                                       {"States of rest: field 1e30, bound 1e24", bounded},
-                                       {"States of rest: field 1e300", detected},
-                                       {"States of rest: bound 1e-200", refused},
-                                       {"States of rest: NaN", detected}})
+                                       {"Equilibria: no field", exact},
+                                       {"Equilibria: field 1e-300", exact},
+                                       {"Equilibria: m along H", exact},
+                                       {"Equilibria: m against H", bounded},
+                                       {"Equilibria: one spin", bounded},
+                                       {"Equilibria: exchange 1e6", bounded},
+                                       {"Equilibria: exchange 1e300", detected},
+                                       {"Equilibria: field 1e30, bound 1e24", bounded},
+                                       {"Equilibria: field 1e300", detected},
+                                       {"Equilibria: bound 1e-200", refused},
+                                       {"Equilibria: NaN", detected}})
     for_each_run(expected.first,
                  [&](Table::Run const& run) { EXPECT_EQ(run.outcome.fate, expected.second); });
   for (auto const& expected :
@@ -159,12 +159,12 @@ TEST(Extremes, RunsFareAsTheirSituationAllows) {
                                        {"Temperatures: T 1e300", refused},
                                        {"Temperatures: field 1e-300", bounded},
                                        {"Temperatures: NaN", detected},
-                                       {"Dear fields: dt 1e-300", exact},
-                                       {"Dear fields: dt 1e-3", bounded},
-                                       {"Dear fields: dt 1e8", warned},
-                                       {"Dear fields: 1000 substeps", bounded},
-                                       {"Dear fields: strength 1e-300", exact},
-                                       {"Dear fields: NaN", detected}})
+                                       {"Expensive fields: dt 1e-300", exact},
+                                       {"Expensive fields: dt 1e-3", bounded},
+                                       {"Expensive fields: dt 1e8", warned},
+                                       {"Expensive fields: 1000 substeps", bounded},
+                                       {"Expensive fields: strength 1e-300", exact},
+                                       {"Expensive fields: NaN", detected}})
     for_each_run(expected.first, [&](Table::Run const& run) {
       auto const fate = run.outcome.fate;
       EXPECT_TRUE(fate == expected.second || (is_classical(run) && fate == drifts));
@@ -184,7 +184,7 @@ TEST(Extremes, ErrorsAreBounded) {
       bool const fine = situation == "on within a step";
       EXPECT_LE(run.outcome.error * epsilon(run), 30 * (fine ? 1e-5 : 1e-4));
     });
-  // The field's jump in the middle of a step: half a step's turn, at most.
+  // The field jumps in the middle of a step: half a step's turn, at most.
   for_each_run("Fields: on within a step", [](Table::Run const& run) {
     if (run.outcome.fate != bounded || run.integrator->of_rigid_bodies) return;
     EXPECT_LE(run.outcome.error * epsilon(run), 1. / 128);
@@ -192,10 +192,10 @@ TEST(Extremes, ErrorsAreBounded) {
 }
 
 TEST(Extremes, FaultsAreDetectedAtOnce) {
-  // Of such angles round-off decides, and with them whether an implicit step is solved.
+  // At such angles round-off decides the result, and whether an implicit step is solved.
   for_each_run("Turns: 1e160", [](Table::Run const& run) {
     if (run.outcome.message.find("is not solved") != std::string::npos) return;
-    EXPECT_LE(run.outcome.step, 1);  // -1 where nothing overflows
+    EXPECT_LE(run.outcome.step, 1);  // -1 if nothing overflows
   });
   for (auto const* situation : {"Starts: 1 + 1e-3", "Adaptive steps: 1 + 1e-3"})
     for_each_run(situation, [](Table::Run const& run) {

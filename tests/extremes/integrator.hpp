@@ -11,24 +11,25 @@ namespace cayspin::extremes {
 
 using namespace simulation;
 
-/// One integrator as a scene can ask for it.
+/// An integrator that a scene can ask for.
 struct Integrator : MethodChoice {
   bool of_rigid_bodies = false;
-  bool relaxes = false;  // to a state of rest, by no method
+  bool relaxes = false;  // minimises instead of using a method
 
-  /// The method with its isotropy, and with its chart.
+  /// Returns the method with its isotropy, and with its chart.
   std::string name() const;
-  /// Generator and rotation, where the method takes some.
+  /// Returns generator and rotation, if the method accepts some.
   std::string variant() const;
 };
 
-/// Every method of the program that takes steps of dt, with every generator and rotation it takes.
+/// Returns every method of the program with constant steps, with every generator and rotation that
+/// it accepts.
 std::vector<Integrator> with_equal_steps();
 
-/// The same of those that choose their steps.
+/// Returns every method with adaptive steps.
 std::vector<Integrator> with_adaptive_steps();
 
-/// `cayspin relax`.
+/// Returns `cayspin relax`.
 Integrator relaxation();
 
 }  // namespace cayspin::extremes

@@ -27,7 +27,7 @@ A program of your own has neither the warnings nor the guard. Where a table says
 detected, call `largest_stable_step` before the run, and `energy` and `norm_defect` during it.
 )";
 
-// Those that the many steps can be had of in minutes.
+// Methods fast enough to take the many steps in minutes.
 std::vector<Integrator> simplest() {
   std::vector<Integrator> few;
   for (auto const& one : with_equal_steps())
@@ -35,7 +35,7 @@ std::vector<Integrator> simplest() {
   return few;
 }
 
-// Whose scenes are not refused.
+// Those whose scenes are not refused.
 std::vector<Integrator> those_that_take(Setting const& setting) {
   Situation const situation{"", setting, setting};
   std::vector<Integrator> some;
@@ -50,8 +50,8 @@ std::vector<Table> all_tables() {
   for (auto const& section : sections()) all.emplace_back(section, with_equal_steps());
   all.emplace_back(adaptive_steps(), with_adaptive_steps());
   all.emplace_back(temperatures(), those_that_take({.damping = 0.1, .temperature = 1}));
-  all.emplace_back(dear_fields(), those_that_take({.damping = 0.1, .dear = 0.5}));
-  all.emplace_back(states_of_rest(), std::vector{relaxation()});
+  all.emplace_back(expensive_fields(), those_that_take({.damping = 0.1, .multirate = 0.5}));
+  all.emplace_back(equilibria(), std::vector{relaxation()});
   return all;
 }
 

@@ -8,13 +8,13 @@
 
 namespace cayspin::extremes {
 
-/// All tables of docs/reports/extremes.md but the last. They are computed once.
+/// Returns all tables of docs/reports/extremes.md but the last. They are computed once.
 std::vector<Table> const& tables();
 
-/// The last one, in minutes.
+/// Returns the last table; takes minutes.
 Table table_of_longest_runs();
 
-/// The page up to the last table.
+/// Returns the page up to the last table.
 std::string page_of_tables();
 
 }  // namespace cayspin::extremes

@@ -46,7 +46,7 @@ Outcome relax(Setting const& setting, Against against, io::Scene const& scene, P
     off = std::max(off, std::abs(length - 1));
     error = std::max(error, std::hypot(x / length, y / length, z / length - 1));
   }
-  // A torque below the bound leaves each spin about that near to the field.
+  // A torque below the bound leaves each spin within about that angle of the field.
   bool const rests = against == Against::solution && error <= 2 * setting.torque / setting.field;
   Fate const fate = off > 4 * eps  ? Fate::drifts
                     : end == start ? Fate::exact
@@ -67,9 +67,9 @@ Outcome try_to_relax(Integrator const& integrator, Situation const& situation,
                    : relax<float>(setting, situation.against, scene, plan);
 }
 
-Section states_of_rest() {
+Section equilibria() {
   using enum Fate;
-  Section section{"States of rest",
+  Section section{"Equilibria",
                   R"(
 `cayspin relax` of random spins in a field of 1 with exchange 1, to the bound 1e-6 on the torque.
 Exact: all stay to the bit. Bounded: all end along the field.)",

@@ -15,7 +15,7 @@
 namespace cayspin::extremes {
 namespace {
 
-// With every digit, and infinity in TOML's word.
+// Returns a number with every digit, and infinity in TOML's spelling.
 std::string decimal(double number) {
   return std::isfinite(number) ? fmt::format("{:.17e}", number) : "inf";
 }
@@ -40,10 +40,10 @@ std::string scene_text(Integrator const& integrator, Setting const& setting) {
   auto field = body ? std::string()
                     : fmt::format("[field]\nexchange = {}\napplied = [0, 0, {}]\n",
                                   decimal(setting.exchange), strength);
-  if (setting.dear)
+  if (setting.multirate)
     field += fmt::format(
-        "{}slab_demag = {{ normal = [0, 0, 1], where = \"host\", dear = true, strength = {} }}\n",
-        body ? "[field]\n" : "", decimal(*setting.dear));
+        "{}slab_demag = {{ normal = [0, 0, 1], where = \"host\", multirate = true, strength = {} }}\n",
+        body ? "[field]\n" : "", decimal(*setting.multirate));
   auto const initial = setting.initial.empty()
                            ? fmt::format("uniform = [{}, 0, {}]", setting.along_field ? 0 : across,
                                          setting.along_field ? 1 : along)

@@ -6,7 +6,8 @@
 
 namespace cayspin::extremes {
 
-/// The scene of a setting, typed into a file and read like any other. Throws io::SceneError.
+/// Returns the scene of a setting, written to a file and read like any other. Throws
+/// io::SceneError.
 io::Scene scene_of(Integrator const& integrator, Setting const& setting);
 
 }  // namespace cayspin::extremes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// For methods that not all scenes or not all steps go with.
+// Situations for methods that do not accept all scenes or steps.
 #include "situation.hpp"
 
 namespace cayspin::extremes {
@@ -56,15 +56,15 @@ warns where noise turns spins by half a radian a step.)",
   return section;
 }
 
-Section dear_fields() {
-  Section section{"Dear fields",
+Section expensive_fields() {
+  Section section{"Expensive fields",
                   R"(
-Methods that take one; damping 0.1, field 1, and a slab's field of 0.5 that is dear.)",
+Methods that take one; damping 0.1, field 1, and a slab's field of 0.5 that is expensive.)",
                   {exact, bounded, warned, detected},
                   {exact, drifts, warned, detected}};
   auto const add = [&](char const* name, Setting setting, double strength,
                        Against against = nothing, std::int64_t detected_by = 6) {
-    setting.dear = strength;
+    setting.multirate = strength;
     section.add(name, setting, against, detected_by);
   };
   add("dt 1e-300", {.damping = 0.1, .dt = 1e-300}, 0.5, solution);

@@ -8,7 +8,7 @@
 
 namespace cayspin::extremes {
 
-/// What became of every integrator in the situations of a section, in both precisions.
+/// Results of every integrator in the situations of a section, in both precisions.
 class Table {
  public:
   Table(Section section, std::vector<Integrator> integrators);
@@ -23,11 +23,11 @@ class Table {
   };
 
   Section const& section() const { return section_; }
-  /// Integrator by integrator, situation by situation, double before single.
+  /// Returns the runs by integrator and situation, double before single.
   std::vector<Run> const& runs() const { return runs_; }
-  /// Is it as the section promises?
+  /// Returns true if the run keeps the section's promise.
   bool is_kept(Run const& run) const;
-  /// The promise, and one row for all integrators that fare alike.
+  /// Returns the promise, and one row for all integrators with equal results.
   std::string to_markdown() const;
 
  private:

@@ -3,8 +3,8 @@
 
 #include "exact.hpp"
 #include "setting_scene.hpp"
-#include "simulation/dear_method.hpp"
 #include "simulation/guard.hpp"
+#include "simulation/multirate_method.hpp"
 #include "simulation/run_noise.hpp"
 #include "simulation/simulate.hpp"
 
@@ -25,7 +25,7 @@ template <class Real>
 constexpr auto plan_precision =
     sizeof(Real) == 8 ? Precision::double_precision : Precision::single_precision;
 
-/// The guard of a run, and what is done to it on its way.
+/// The guard of a run, and changes made to the run.
 template <class Spins>
 class Look : public RunObserver<HostSpace, Spins> {
   using Real = typename Spins::value_type;
@@ -39,7 +39,7 @@ class Look : public RunObserver<HostSpace, Spins> {
     if (is_thermal(scene)) noise_.emplace(scene, generator, spins);
   }
 
-  // Long runs are looked at in between.
+  // Long runs are checked in between.
   bool due(Step const& step) const override {
     std::int64_t const every = setting_.normalized ? setting_.normalized : 1000;
     return setting_.steps < 1000 || step.last || step.number % every == 0;
@@ -91,7 +91,7 @@ std::pair<double, double> distances(Spins const& spins, Vec3<double> const& exac
   return {off, error};
 }
 
-/// A scene of one precision, before and after it ran.
+/// A scene in one precision, before and after its run.
 template <class Real>
 struct Run {
   using Spins = typename Simulation<Real, HostSpace>::Spins;
@@ -119,7 +119,7 @@ struct Run {
   }
 };
 
-/// Largest difference of any spin from that of a lattice of one.
+/// Returns the largest difference of any spin from that of a lattice of one site.
 double largest_difference(auto const& spins, auto const& one) {
   auto const numbers = copy_to_host(spins), expected = copy_to_host(one);
   double largest = 0;
@@ -151,7 +151,7 @@ Outcome try_out(Integrator const& integrator, Situation const& situation, Settin
                                    ? setting.normalized
                                    : std::max(setting.steps * setting.substeps, run.own_steps);
   auto const steps = static_cast<double>(counted);
-  // Round-off, and what is not known of an angle that large.
+  // Round-off, and the uncertainty of an angle that large.
   double const angle = std::fabs(static_cast<double>(exact_angle(setting, body, time)));
   double const tolerance = std::fmin(eps * (8 * (steps + 1) + 4 * angle), 1e-4);
   bool exact = situation.against == Against::solution && error <= tolerance;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Sums, precision of the energy, and what terms refuse.
+// Sums, precision of the energy, and refusals of terms.
 #include "../support/wrong_call.hpp"
 #include "terms.hpp"
 
@@ -39,7 +39,7 @@ TYPED_TEST(Fields, NoTermsNoField) {
   EXPECT_EQ(energy(this->exec, EffectiveField<>(), spins).value, 0);
 }
 
-/// What steppers that need A x m alone ask a field for.
+/// Functor that uses a field like steppers that need only A x m.
 template <class Prepared>
 struct TurningField {
   Prepared field_of;

@@ -5,26 +5,27 @@
 
 namespace cayspin::test {
 
-// Rows across a pack, a periodic pair, a rest of a pack; spacings of their own.
+// Rows longer than a pack, a periodic pair, rows shorter than a pack; different spacings.
 inline std::vector<Lattice> const lattices{
     {{9, 3, 2}, {0.5, 0.8, 1.25}, {Boundary::open, Boundary::open, Boundary::open}},
     {{9, 3, 2}, {0.5, 0.8, 1.25}, {Boundary::periodic, Boundary::open, Boundary::periodic}},
     {{2, 1, 19}, {0.7, 1, 0.9}, {Boundary::periodic, Boundary::periodic, Boundary::open}}};
 
-/// H = -dE/dm of a term by differences of its total energy, and both against formulas by hand.
+/// Check of H = -dE/dm of a term by differences of its total energy, and both against formulas by
+/// hand.
 template <class Backend>
 class GradientTest : public ::testing::Test {
  protected:
   using Real = typename Backend::Real;
   using Spins = typename Backend::Spins;
 
-  /// `term`: a field term or EffectiveField. Lengths are not kept: E and H hold for all numbers.
-  /// `precision`: epsilon of the energy, which a field or bonds stored in float limit.
+  /// `term`: a field term or EffectiveField. Lengths are arbitrary: E and H hold for all vectors.
+  /// `precision`: epsilon of the energy, limited by a field or bonds stored in float.
   template <class Term>
   static void check(std::string const& what, Lattice const& lattice, Term const& term,
                     ByHand const& by_hand, double t = 0, double precision = epsilon<double>) {
     typename Backend::Exec const exec;
-    // Rounded to the field's precision, so that both sides start from the same numbers.
+    // Rounded to the field's precision, so that both sides start from equal numbers.
     auto const m = numbers_of(spins_of<Spins>(lattice, random_directions(lattice.sites(), 11)));
     auto const spins = spins_of<Spins>(lattice, m);
     Spins const result("result", lattice);
@@ -36,7 +37,7 @@ class GradientTest : public ::testing::Test {
     double const field_size = 64, energy_size = total.magnitude + 1;
     EXPECT_NEAR(total.value, by_hand.energy(m), 16 * precision * energy_size) << what;
 
-    // E is of degree 4 at most, so that this difference has no error but rounding, at any step.
+    // E is of degree 4 at most, so that this difference has only rounding errors, at any step.
     double const step = 0.5;
     for (std::int64_t site = 0; site < lattice.sites(); ++site) {
       Vec3<double> const h = at(field, site), expected = by_hand.field(m, site);

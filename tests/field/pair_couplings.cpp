@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Couplings of pairs on crystals against sums over bonds by hand, on rows with several packs and
-// with a rest, past open ends and round periodic ones.
+// Couplings of pairs on crystals against sums over bonds by hand, on rows of several packs and of
+// partial packs, past open ends and around periodic ones.
 #include "gradient.hpp"
 
 #include <cayspin/crystal.hpp>
@@ -144,7 +144,7 @@ TYPED_TEST(Pairs, OfNeighboursAreTheExchange) {
     EXPECT_NEAR(pairs[i], exchange[i], 32 * epsilon<typename TypeParam::Real>);
 }
 
-/// The same couplings spin by spin: rows are not asked for.
+/// The couplings spin by spin, not by rows.
 template <class Term>
 struct BySite {
   Term term;
@@ -210,14 +210,14 @@ TYPED_TEST(Pairs, ThatCannotBe) {
     EXPECT_THROW(Term(lattice, {bond}), std::invalid_argument);
   EXPECT_THROW(Term(Lattice::chain(0, 1, Boundary::periodic), {Coupling::of({0, 0}, {1, 0, 0}, 1)}),
                std::invalid_argument);
-  // isotropy::Analytic would leave the biquadratic part out.
+  // isotropy::Analytic would omit the biquadratic part.
   auto spins = spins_of<typename TypeParam::Spins>(Lattice::chain(4), random_directions(4, 3));
   LieEuler<typename TypeParam::Spins, isotropy::Analytic> stepper(spins);
   LandauLifshitz const generator(Term(spins.lattice(), {Coupling{{0, 0}, {1, 0, 0}, {}, 0.5}}),
                                  0.1);
   typename TypeParam::Exec const exec;
   EXPECT_THROW(stepper.step(exec, generator, spins, 0, 0.1), std::invalid_argument);
-  // So would Series4, of whichever part they are.
+  // Series4 would, too, for either part.
   Series4<typename TypeParam::Spins> series(spins);
   EXPECT_THROW(series.step(exec, generator, spins, 0, 0.1), std::invalid_argument);
   EXPECT_THROW(series.step(exec,
@@ -230,8 +230,8 @@ TYPED_TEST(Pairs, ThatCannotBe) {
   EXPECT_NO_THROW(series.step(exec, linear, spins, 0, 0.1));
 }
 
-// The curvature at rest is that of the whole field: without the biquadratic bonds a saddle, with
-// them a minimum.
+// The curvature at equilibrium includes biquadratic bonds: without them a saddle, with them a
+// minimum.
 TYPED_TEST(Pairs, MinimumWithBiquadraticBonds) {
   using Term = PairCouplings<typename TypeParam::MemorySpace>;
   auto const lattice = Lattice::chain(12, 1, Boundary::periodic);

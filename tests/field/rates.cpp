@@ -11,7 +11,8 @@ template <class Backend>
 class FieldRates : public ::testing::Test {};
 TYPED_TEST_SUITE(FieldRates, Backends, BackendName);
 
-/// What steppers ask a prepared term for, at spins of its own and rates in the stencil's array.
+/// Evaluates a prepared term like steppers do, for given spins and with rates in the stencil's
+/// array.
 template <class Term, class Real>
 struct RateOfField {
   Term term;
@@ -54,7 +55,7 @@ TYPED_TEST(FieldRates, AreDerivativesOfTheField) {
                                          UniaxialAnisotropy(0.7, {1, 1, 1}), Zeeman{{1, 2, 3}}));
 }
 
-// A step of no time asks for the rate of an applied field, too.
+// A step of zero length also needs the rate of an applied field.
 TYPED_TEST(FieldRates, OverNoTimeLeaveSpinsAsTheyAre) {
   using Spins = typename TypeParam::Spins;
   auto spins = spins_of<Spins>(Lattice::chain(5), random_directions(5, 3));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Terms with coefficients of each site: H = -dE/dm, formulas by hand, equal coefficients against
-// the terms with one, conserved energy, and what they refuse.
+// Terms with site-dependent coefficients: H = -dE/dm, formulas by hand, equal coefficients against
+// uniform terms, conserved energy, and refusals.
 #include "../support/coefficients.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
@@ -77,8 +77,8 @@ TYPED_TEST(SiteDependent, AnisotropyOfConstantAxisOrBoth) {
               anisotropy_by_hand(std::vector(k.size(), 1.75), e));
 }
 
-// Exactly, so that they stay at rest: by one constant, and by random ones with zeros among them, at
-// every place of a pack that a row can end at.
+// Exactly, so that they stay in equilibrium: with one constant, and with random ones including
+// zeros, at every place of a pack at which a row can end.
 TYPED_TEST(SiteDependent, UniformStatesHaveNoExchange) {
   using Spins = typename TypeParam::Spins;
   for (std::int64_t nx = 1; nx <= 34; ++nx)
@@ -97,7 +97,7 @@ TYPED_TEST(SiteDependent, UniformStatesHaveNoExchange) {
     }
 }
 
-// What is not symmetric over a bond, or not -dE/dm, gains or loses energy at any dt.
+// A term that is not symmetric over a bond, or not -dE/dm, gains or loses energy at any dt.
 TEST(SiteDependentCoefficients, ConserveEnergyToTheMethodsOrder) {
   Space const exec;
   Lattice const lattice{
@@ -118,7 +118,7 @@ TEST(SiteDependentCoefficients, ConserveEnergyToTheMethodsOrder) {
   expect_order("order of the energy error", fitted_order(dts, errors), 5, 0.4);
 }
 
-// Spins without exchange, each with a damping of its own, against runs with one damping.
+// Spins without exchange, with different dampings, against runs with one damping.
 TYPED_TEST(SiteDependent, DampingActsSiteBySite) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::cubic(19, 3, 2);

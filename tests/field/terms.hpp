@@ -19,7 +19,7 @@ struct ByHand {
   std::function<double(std::vector<double> const&)> energy;
 };
 
-/// The pairs of neighbours along an axis; a periodic axis of extent 2 has its pair twice.
+/// A pair of neighbours along an axis; a periodic axis of extent 2 has its pair twice.
 struct Bond {
   std::int64_t from, to;
   double spacing;
@@ -42,7 +42,7 @@ inline std::vector<Bond> bonds(Lattice const& lattice) {
   return all;
 }
 
-/// Terms that act site by site: H(m) and E(m).
+/// Returns a term that acts site by site: H(m) and E(m).
 inline ByHand each_site(std::function<Vec3<double>(Vec3<double> const&)> field,
                         std::function<double(Vec3<double> const&)> energy) {
   return {[field](auto const& m, std::int64_t site) { return field(at(m, site)); },
@@ -53,9 +53,9 @@ inline ByHand each_site(std::function<Vec3<double>(Vec3<double> const&)> field,
           }};
 }
 
-/// Terms that are sums over bonds from one site to another. A bond adds field(bond, m, other, sign)
-/// to H at its end with the spin m, with sign = 1 where it begins and -1 where it ends, and
-/// energy(bond, first, second) to E.
+/// Returns a term that is a sum over bonds. A bond adds field(bond, m, other, sign) to H at its end
+/// with the spin m, with sign = 1 at its start and -1 at its end, and energy(bond, first, second)
+/// to E.
 template <class AnyBond, class Field, class Energy>
 ByHand each_bond(std::vector<AnyBond> const& bonds, Field const& field, Energy const& energy) {
   return {[=](std::vector<double> const& m, std::int64_t site) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Torques as fields: what they make of the Landau-Lifshitz equation, motions in closed form, and
-// the chirality of bulk DMI.
+// Torques as fields: their effect in the Landau-Lifshitz equation, motions in closed form, and the
+// chirality of bulk DMI.
 #include "../support/biquadratic_bonds.hpp"
 #include "gradient.hpp"
 
@@ -19,7 +19,7 @@ class Torques : public ::testing::Test {
   using Method = Rkmk4<Spins, isotropy::Zero, Exponential>;
   typename Backend::Exec exec;
 
-  /// m' is t + damping m x t at every site.
+  /// Expects m' = t + damping m x t at every site.
   template <class Term, class Torque>
   void check(Lattice const& lattice, Term const& term, Torque const& torque) const {
     auto const spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 11));
@@ -37,7 +37,7 @@ class Torques : public ::testing::Test {
     EXPECT_EQ(energy(exec, EffectiveField(term), spins).magnitude, 0);
   }
 
-  /// The spins after a time.
+  /// Returns the spins after a time.
   template <class Term>
   std::vector<double> moved(Lattice const& lattice, Term const& term, double damping,
                             std::vector<double> const& start, double time, int steps) const {
@@ -73,7 +73,7 @@ TYPED_TEST(Torques, ZhangLiIsItsFormula) {
                     if (bond.from == site) gradient += rate * (at(numbers, bond.to) - m);
                     if (bond.to == site) gradient -= rate * (at(numbers, bond.from) - m);
                   }
-                  // Across m: chords of a sphere are not in its tangent plane.
+                  // Projected normal to m: chords of a sphere are not in its tangent plane.
                   auto const across = gradient - dot(gradient, m) * m;
                   return xi * cross(m, across) - across;
                 });
@@ -121,7 +121,7 @@ TYPED_TEST(Torques, AHelixUnderZhangLi) {
     Vec3<double> const velocity{axis == 0 ? u : 3, axis == 1 ? u : 3, axis == 2 ? u : 3};
     for (double const damping : {0.0, 0.1})
       for (double const xi : {0.0, 0.3}) {
-        // In its plane it turns rigidly, and so a step is exact.
+        // In its plane it turns rigidly, so a step is exact.
         int const steps = damping == xi ? 2 : 400;
         auto const found = this->moved(lattice, ZhangLi(lattice, velocity, xi), damping,
                                        helix(n, q, 0, 0), time, steps);
@@ -132,7 +132,7 @@ TYPED_TEST(Torques, AHelixUnderZhangLi) {
   }
 }
 
-// Methods that split the field or differentiate it move spins as Runge-Kutta does.
+// Methods that split or differentiate the field move spins like Runge-Kutta methods.
 TYPED_TEST(Torques, EveryKindOfMethodTakesTheNewTerms) {
   using Spins = typename TypeParam::Spins;
   double const bound = 1e-7 + 400 * epsilon<typename TypeParam::Real>;

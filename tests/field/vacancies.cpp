@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Vacant sites: no field, no energy, no motion, and to their neighbours as an open end.
+// Vacant sites: no field, no energy, no motion; for their neighbours they are an open end.
 #include "../support/biquadratic_bonds.hpp"
 #include "../support/coefficients.hpp"
 #include "gradient.hpp"
@@ -22,7 +22,7 @@ auto every_term(Lattice const& lattice) {
                         TimeDependentZeeman(turning_field));
 }
 
-/// Those without a derivative among them.
+/// Includes terms without a derivative.
 auto bonds_and_torques(Lattice const& lattice) {
   return EffectiveField(
       BiquadraticBonds{0.6}, BulkDmi(lattice, 0.4), ZhangLi(lattice, {0.5, -0.3, 0.2}, 0.3),
@@ -30,7 +30,7 @@ auto bonds_and_torques(Lattice const& lattice) {
       Slonczewski({.damping_like = 0.2, .field_like = 0.1, .polarization = {1, 0, 1}}));
 }
 
-/// A box of sites, and the sites beside it, which are vacant; all others are occupied.
+/// A box of sites, surrounded by vacant sites; all others are occupied.
 struct Box {
   Lattice lattice;
   std::array<std::int64_t, 3> begin, shape;
@@ -48,7 +48,7 @@ struct Box {
   }
   bool is_vacant(std::int64_t site) const { return holds(site, 1) && !holds(site); }
 
-  /// Of numbers (sites, 3) on the lattice, those in the box.
+  /// Returns the numbers of the box out of numbers (sites, 3) on the lattice.
   std::vector<double> part(std::vector<double> const& numbers) const {
     std::vector<double> found;
     for (std::int64_t site = 0; site < lattice.sites(); ++site)
@@ -100,7 +100,7 @@ class Vacancies : public GradientTest<Backend> {
 };
 TYPED_TEST_SUITE(Vacancies, Backends, BackendName);
 
-// To the bit: the spins around a box of vacancies do not reach into it.
+// To the bit: the spins outside a box of vacancies do not affect it.
 TYPED_TEST(Vacancies, CutAClusterOff) {
   using Spins = typename TypeParam::Spins;
   this->template expect_cut_off<Rkmk4<Spins>>(every_term);
@@ -155,7 +155,7 @@ TYPED_TEST(Vacancies, WithoutAnyNothingChanges) {
   EXPECT_EQ(energy(this->exec, same, spins).magnitude, energy(this->exec, field, spins).magnitude);
 }
 
-// Of two sublattices that are coupled along x and to each other, one has a moment of 0.
+// Two sublattices are coupled along x and to each other; one has a moment of 0.
 TYPED_TEST(Vacancies, AMomentOfZeroIsNoSpin) {
   using Spins = typename TypeParam::Spins;
   using Memory = typename TypeParam::MemorySpace;

@@ -30,7 +30,7 @@ void expect_arithmetic() {
   for (auto const& twice :
        {2.0 * v, v * 2.0, 2.0f * v, v * 2.0f, 2 * v, v * 2, Value(Real(2)) * v, v * Value(Real(2))})
     expect_equal(twice, {2, -4, 1});
-  // A number takes the precision of the vector, not the vector that of the number.
+  // A number is converted to the precision of the vector, not the vector to that of the number.
   double const third = static_cast<Real>(1.0 / 3);
   expect_equal((1.0 / 3) * as_value<Value>(Vec3<double>{1, 2, 4}), {third, 2 * third, 4 * third});
   static_assert(std::is_same_v<decltype(0.1 * v), Vec3<Value>>);

@@ -13,7 +13,7 @@
 
 namespace cayspin::fuzz {
 
-/// Calls `reading`. It may throw std::runtime_error with one line, and nothing else.
+/// Calls `reading`. It may throw only std::runtime_error with one line.
 template <class Reading>
 void refuse_or_read(Reading const& reading) {
   try {
@@ -24,7 +24,7 @@ void refuse_or_read(Reading const& reading) {
   }
 }
 
-/// A file in memory with these bytes, replaced at each call.
+/// Returns a file in memory with these bytes, replaced at each call.
 inline std::filesystem::path file_with(std::uint8_t const* data, std::size_t bytes,
                                        char const* extension) {
   static auto const path = "/dev/shm/cayspin_fuzz_" + std::to_string(::getpid()) + extension;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The text of a scene, and what it comes to: expressions are evaluated, small lattices started.
+// The text of a scene: expressions are evaluated, small lattices started.
 #include "io/scene.hpp"
 
 #include "fuzz.hpp"

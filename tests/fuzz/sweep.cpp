@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The file of a sweep, with the child that every reading is tried in.
+// The file of a sweep, with each reading tried in a child.
 #include "io/sweep.hpp"
 
 #include "../support/reads_in_child.hpp"

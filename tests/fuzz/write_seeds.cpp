@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// write_seeds FOLDER: small HDF5 files for the fuzzers to begin with, and empty folders for what
-// they find.
+// write_seeds FOLDER: writes small HDF5 files as initial inputs of the fuzzers, and empty folders
+// for their findings.
 #include "io/sweep.hpp"
 #include "io/trajectory.hpp"
 

@@ -15,7 +15,7 @@ class LandauLifshitzGenerator : public ::testing::Test {
  protected:
   using Real = typename Backend::Real;
   using Spins = typename Backend::Spins;
-  static constexpr double bound = 64 * epsilon<Real>;  // of numbers up to about 10
+  static constexpr double bound = 64 * epsilon<Real>;  // for numbers up to about 10
 
   Lattice lattice = Lattice::cubic(9, 2, 3, 0.7);
   Spins spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 31));
@@ -25,7 +25,7 @@ class LandauLifshitzGenerator : public ::testing::Test {
 };
 TYPED_TEST_SUITE(LandauLifshitzGenerator, Backends, BackendName);
 
-// A x m is what the equation says, damping turning m towards H.
+// A x m as in the equation, with damping turning m towards H.
 TYPED_TEST(LandauLifshitzGenerator, MovesSpinsByTheEquation) {
   auto const h = evaluated(this->exec, this->field, this->spins);
   for (bool const precession : {true, false})

@@ -22,7 +22,7 @@ Vec3<double> times(SymmetricTensor const& b, Vec3<double> const& m) {
   return {out[0], out[1], out[2]};
 }
 
-// Exact in float too.
+// Exact in float, too.
 SymmetricTensor body_tensor(std::int64_t body) {
   double const b = static_cast<double>(body);
   return {1 + b / 16, 2 - b / 32, 0.5 + b / 8, 0.25 - b / 64, -0.125 + b / 128, 0.375 - b / 16};
@@ -58,7 +58,7 @@ class RigidBodies : public ::testing::Test {
                 64 * epsilon<double> * bodies);
   }
 
-  /// The first numbers of each body's tensor: all six, or the three of a diagonal.
+  /// Stores the first numbers of each body's tensor: all six, or the three of a diagonal.
   template <int Components = 6, class TensorOf>
   static auto ensemble(TensorOf const& tensor_of) {
     std::vector<double> numbers;
@@ -72,7 +72,7 @@ class RigidBodies : public ::testing::Test {
     return RigidBodyEnsemble(field);
   }
 
-  /// Both turn the bodies alike, to the bit.
+  /// Expects both to turn the bodies with equal bits.
   template <class One, class Other>
   void expect_same_step(One const& one, Other const& other) const {
     auto const after = [&](auto const& generator) {
@@ -98,7 +98,7 @@ TYPED_TEST(RigidBodies, EachBodyItsOwnTensor) {
   this->check(this->ensemble(body_tensor), body_tensor);
 }
 
-// Three numbers per body in place of six, three of them zero: the same motion.
+// Three numbers per body against six, three of them zero: equal motion.
 TYPED_TEST(RigidBodies, EachBodyItsOwnMoments) {
   auto const diagonal_part = [](std::int64_t body) {
     auto const b = body_tensor(body);
@@ -109,7 +109,7 @@ TYPED_TEST(RigidBodies, EachBodyItsOwnMoments) {
   this->expect_same_step(of_moments, this->ensemble(diagonal_part));
 }
 
-// An ensemble of equal bodies steps as the uniform generator does.
+// An ensemble of equal bodies steps like the uniform generator.
 TYPED_TEST(RigidBodies, EqualBodiesStepAlike) {
   this->expect_same_step(RigidBody(body_tensor(3)),
                          this->ensemble([](std::int64_t) { return body_tensor(3); }));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A generator of one's own around another: Forwarding brings everything that is done before
+// A user's generator around another one: Forwarding supplies everything that is done before
 // kernels.
 #include "../support/backends.hpp"
 
@@ -39,7 +39,8 @@ class Wrapping : public ::testing::Test {
   Lattice lattice = Lattice::square(13, 4);
   Spins spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 17));
 
-  /// A step of the wrapped generator is one of twice the length; the field's time goes on as fast.
+  /// Expects a step of the wrapped generator to equal one of twice the length; the field's time
+  /// advances as fast.
   template <class Field>
   void expect_doubled(Field const& field) const {
     LandauLifshitz const generator(field, 0.2);
@@ -66,7 +67,7 @@ TYPED_TEST(Wrapping, SaysWhenItMayBePrepared) {
   auto const says = [&](auto const& field, bool stationary, bool by_time) {
     Doubled const generator(LandauLifshitz(field, 0.2));
     EXPECT_EQ(detail::is_stationary(generator, this->exec, this->spins), stationary);
-    EXPECT_EQ(detail::needs_time_alone(generator, this->exec, this->spins), by_time);
+    EXPECT_EQ(detail::needs_only_time(generator, this->exec, this->spins), by_time);
     EXPECT_EQ(detail::is_stationary(orthogonal(generator), this->exec, this->spins), stationary);
   };
   says(EffectiveField(Exchange(this->lattice, 1), Zeeman{{0, 1, 2}}), true, true);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What the guard of a run lets pass, and what it does not: numbers just below and just above.
+// States that the guard of a run accepts and refuses: numbers just below and just above its limits.
 #include "simulation/guard.hpp"
 
 #include "io/scene.hpp"
@@ -41,7 +41,7 @@ class GuardIn : public ::testing::Test {
 using Precisions = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(GuardIn, Precisions);
 
-// 64 epsilon at the start, 64 epsilon a step later, as if after a million at least; never 0.01.
+// 64 epsilon at the start, 64 epsilon per step later, up to a million steps; never 0.01.
 TYPED_TEST(GuardIn, LengthsMayBeOffByRoundOff) {
   double const of_a_step = 64 * std::numeric_limits<TypeParam>::epsilon();
   this->expect_limit_of_length(0, of_a_step);
@@ -63,7 +63,7 @@ TYPED_TEST(GuardIn, EnergiesMayRiseByRoundOff) {
   EXPECT_NE(failure->find("from 0 at step 2"), std::string::npos) << *failure;
 }
 
-// The limit is that of the look's own magnitude, and no rise counts against the first energy.
+// The limit follows the current magnitude, and rises are measured from the first energy.
 TYPED_TEST(GuardIn, SmallRisesDoNotAddUp) {
   double const rise = 60 * std::numeric_limits<TypeParam>::epsilon();
   double energy = 1;
@@ -72,7 +72,7 @@ TYPED_TEST(GuardIn, SmallRisesDoNotAddUp) {
   EXPECT_TRUE(this->damped.judge(at(20), {energy, 0.5}, 0));
 }
 
-// Steps by a tolerance are as exact as that, and at rest their energy goes up and down by it.
+// Steps by a tolerance have that accuracy, and at equilibrium their energy fluctuates by it.
 TYPED_TEST(GuardIn, EnergiesMayRiseByTheToleranceOfTheSteps) {
   double const rise = 5 * 0.0078125;
   Guard guard(scene(0.5, "tsit5", "tolerance = 0.0078125\n"),
@@ -116,9 +116,9 @@ TEST(Guard, EnergiesAreHeldWhereDampingLetsThemOnlyFall) {
       "[system]\nkind = \"rigid_body\"\ninertia = [1, 2, 3]\n[lattice]\nshape = [4]\n[initial]\n"
       "uniform = [1, 0, 0]\n[integrator]\nmethod = \"rkmk4\"\ndt = 0.125\nsteps = 8\n",
       "scene.toml")));
-  // At a temperature it may rise.
+  // At a temperature the energy may rise.
   auto warm = scene(0.5);
-  warm.thermal = io::Thermal{0.1, 0};
+  warm.thermal = io::Thermal{.temperature = 0.1};
   EXPECT_FALSE(energy_must_fall(warm));
   warm.thermal->temperature = 0;
   EXPECT_TRUE(energy_must_fall(warm));

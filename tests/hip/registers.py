@@ -16,7 +16,7 @@ REMARK = re.compile(r"remark:\s+(Function Name|VGPRs|AGPRs|ScratchSize|SGPRs Spi
 
 
 def kernels(output):
-    """What the compiler says of each kernel, a dictionary for each."""
+    """Returns the compiler's statistics of each kernel, as dictionaries."""
     found = []
     for name, value in REMARK.findall(output):
         if name == "Function Name":

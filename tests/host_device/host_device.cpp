@@ -28,7 +28,7 @@ std::recursive_mutex& device_mutex() {
   return mutex;
 }
 
-/// All of the device's memory: one range of addresses, closed to everybody but its kernels.
+/// All of the device's memory: one range of addresses, accessible only to its kernels.
 class Arena {
  public:
   static Arena& the() {
@@ -57,7 +57,7 @@ class Arena {
     auto const taken = taken_.find(static_cast<std::size_t>(static_cast<char*>(address) - base_));
     auto [begin, size] = *taken;
     taken_.erase(taken);
-    // What is read after it was given back is not what was there.
+    // Memory read after it was freed must not have its old content.
     madvise(base_ + begin, size, MADV_DONTNEED);
     auto const after = gaps_.find(begin + size);
     if (after != gaps_.end()) {
@@ -104,7 +104,7 @@ class Arena {
   char* base_ = nullptr;
   std::size_t used_ = 0;
   std::atomic<int> open_ = 0;
-  std::map<std::size_t, std::size_t> gaps_, taken_;  // begin, bytes
+  std::map<std::size_t, std::size_t> gaps_, taken_;  // start, bytes
 };
 
 }  // namespace
@@ -148,7 +148,7 @@ void run_blocks(std::int64_t count, std::int64_t block, void const* body,
   using Policy =
       Kokkos::RangePolicy<Kokkos::DefaultHostExecutionSpace, Kokkos::IndexType<std::int64_t>>;
   Blocks const blocks{count, block, body, run};
-  // Without the events of a kernel, which this is a part of.
+  // Without profiling events of a kernel, since this is part of one.
   Kokkos::Impl::ParallelFor<Blocks, Policy>(blocks, Policy(0, (count + block - 1) / block))
       .execute();
 }
@@ -180,7 +180,7 @@ class HostDeviceQueue {
     for (HostDeviceQueue* const queue : all()) queue->run();
     release();
   }
-  /// Frees memory once nothing waits that may work there. So the end of a View is no fence.
+  /// Frees memory once no queued work may use it, so that destroying a View is not a fence.
   static void free_later(void* address, std::size_t bytes) {
     std::lock_guard const lock(device_mutex());
     to_free().push_back(address);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A device made of the host's threads, for tests where there is no other. It is as strict as a
-// device may be: kernels and copies wait in a queue until a fence, and its memory can be read and
-// written by kernels and copies alone, so that a host dereference ends the program.
+// A device emulated by the host's threads, for tests without a real one. It is as strict as a
+// device may be: kernels and copies wait in a queue until a fence, and only kernels and copies can
+// access its memory, so that a host dereference ends the program.
 #pragma once
 
 #include <Kokkos_Concepts.hpp>
@@ -24,7 +24,7 @@
 
 namespace cayspin::test {
 
-/// What an instance was given to do and has not done.
+/// Queued work of an instance.
 class HostDeviceQueue;
 
 class HostDeviceMemory {
@@ -50,7 +50,8 @@ class HostDeviceMemory {
   static constexpr char const* name() { return "HostDeviceMemory"; }
 };
 
-/// An instance of its own has a queue of its own; default-constructed ones share one.
+/// An execution space. A separate instance has a separate queue; default-constructed ones share
+/// one.
 class HostDevice {
  public:
   using execution_space = HostDevice;
@@ -64,12 +65,12 @@ class HostDevice {
   static HostDevice with_own_queue();
 
   void fence(std::string const& name = "HostDevice::fence: unnamed") const;
-  /// Does `task` after what this instance was given before, at the next fence.
+  /// Queues `task` after this instance's earlier work; it runs at the next fence.
   void enqueue(std::function<void()> task) const;
   int concurrency() const;
   std::uint32_t impl_instance_id() const noexcept;
   void print_configuration(std::ostream& out, bool verbose = false) const;
-  /// In lower case the word of --space.
+  /// In lower case the name for --space.
   static char const* name() { return "Host_Device"; }
 
   static void impl_static_fence(std::string const& name);
@@ -84,7 +85,7 @@ class HostDevice {
   std::shared_ptr<HostDeviceQueue> queue_;
 };
 
-/// Kernels and copies that are on their way may touch the device's memory as long as one lives.
+/// Permits access to the device's memory while one exists, for kernels and copies.
 class HostDeviceAccess {
  public:
   HostDeviceAccess();
@@ -93,7 +94,7 @@ class HostDeviceAccess {
   HostDeviceAccess& operator=(HostDeviceAccess const&) = delete;
 };
 
-/// Ends the program with this sentence, unless a kernel or copy is on its way.
+/// Ends the program with this message unless a kernel or copy is running.
 void require_kernel(char const* message);
 
 /// Copies between the device and the host, or within the device.
@@ -109,8 +110,7 @@ void copy_in_order(Exec const& exec, void* to, void const* from, std::size_t byt
   }
 }
 
-/// Calls run(body, begin, end) for blocks of 0 .. count - 1, on the threads of the host where that
-/// pays.
+/// Calls run(body, begin, end) for blocks of 0 .. count - 1, on host threads if that is faster.
 void run_blocks(std::int64_t count, std::int64_t block, void const* body,
                 void (*run)(void const* body, std::int64_t begin, std::int64_t end));
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Kernels on the device of host_device.hpp: each waits in the queue of its instance. Loops are
-// compiled without Kokkos' own for the host's threads, so that a kernel takes little to compile.
+// Kernels on the device of host_device.hpp: each waits in the queue of its instance. Loops do not
+// use Kokkos' loops for host threads, so that a kernel compiles fast.
 #pragma once
 
 #include "host_device.hpp"
@@ -25,7 +25,7 @@ struct LoopOverRange {
   }
 };
 
-/// A part of the sum for each block, whatever the threads: sums are the same in each call.
+/// Reduction that sums each block separately, so that sums do not depend on the threads.
 template <class FunctorReducer, class Tag, class Index>
 struct ReductionOfBlocks {
   using Functor = typename FunctorReducer::functor_type;
@@ -99,7 +99,7 @@ class ParallelFor<Functor, MDRangePolicy<Traits...>, cayspin::test::HostDevice> 
   Tiles const tiles_;
 };
 
-/// Results on the host alone, as in every reduction to a number: they are there on return.
+/// Results only in host memory, as in every reduction to a number: available on return.
 template <class FunctorReducer, class... Traits>
 class ParallelReduce<FunctorReducer, RangePolicy<Traits...>, cayspin::test::HostDevice> {
  public:

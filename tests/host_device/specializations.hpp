@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What Kokkos asks of an execution space and a memory space, for those of host_device.hpp.
+// Traits that Kokkos needs of an execution space and a memory space, for host_device.hpp.
 #pragma once
 
 #include "host_device.hpp"
@@ -44,7 +44,7 @@ std::vector<cayspin::test::HostDevice> impl_partition_space(cayspin::test::HostD
 
 namespace Impl {
 
-// Views ask before each access whether "the host" may reach their memory: it may, in a kernel.
+// Before each access, Views ask whether the host may reach their memory: it may, in a kernel.
 template <class, class, bool>
 struct RuntimeCheckBasicViewMemoryAccessViolation;
 template <>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The device that host threads play catches what a real one would, and often later: host code that
-// reads its memory, and results that are read before a fence.
+// The emulated device catches errors like a real one, or more often: host code that reads its
+// memory, and results that are read before a fence.
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -67,7 +67,7 @@ TYPED_TEST(Strictness, NothingIsThereBeforeAFence) {
   EXPECT_NEAR(here(2, 2), 0.995, 1e-3);
 }
 
-// Asked of another instance, which does not wait for the work of this one.
+// On another instance, which does not wait for the work of this one.
 TYPED_TEST(Strictness, IntegrateWaitsForItsObserversAndItsEnd) {
   using Spins = typename TestFixture::Spins;
   HostDevice const exec;

@@ -44,7 +44,7 @@ TEST(SumsOnADevice, CancelWithoutRoundOff) {
     size += std::abs(number);
   }
   double const expected = exact.rounded(), n = static_cast<double>(numbers.size());
-  // A plain sum errs by 1e4 here.
+  // The error of a plain sum is 1e4 here.
   double const bound = n * n * epsilon<double> * epsilon<double> * size;
   ASSERT_LT(bound, 1e-3 * expected);
   EXPECT_NEAR(sum_and_largest(numbers)[0], expected, bound + epsilon<double> * expected);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# A copy of cayspin that calls itself another version, and counts the sites of a lattice otherwise.
+# A copy of cayspin with another version number, which counts the sites of a lattice differently.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK})
 file(COPY ${CAYSPIN_SOURCE}/include DESTINATION ${WORK}/other)

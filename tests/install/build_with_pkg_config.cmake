@@ -28,7 +28,7 @@ ask(compiler cayspin --variable=cxx)
 ask(flags cayspin --cflags --libs)
 run(${compiler} ${own} -O1 ${SOURCES}/main.cpp ${flags} -o ${WORK}/program)
 run(${WORK}/program)
-# The installed program finds the library of the same prefix, where it was moved to.
+# The installed program finds the library of its prefix after the move.
 file(GLOB libraries ${WORK}/prefix/lib*/libcayspin_simulation.so*)
 if(libraries)
   set(program ${WORK}/prefix/bin/cayspin)
@@ -40,7 +40,7 @@ if(libraries)
     message(FATAL_ERROR "${program} does not take ${libraries}; it misses: ${missing}")
   endif()
 endif()
-# Beside the flags of Kokkos: none, and the one for equal bits.
+# Besides the flags of Kokkos: none, and the one for equal bits.
 ask(flags cayspin --cflags)
 ask(with_same_bits cayspin_same_bits --cflags)
 list(REMOVE_ITEM with_same_bits -ffp-contract=off)

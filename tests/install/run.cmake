@@ -11,8 +11,8 @@ function(configure_and_build source build)
   run(${CMAKE_COMMAND} --build ${build})
 endfunction()
 
-# configure_warns(<TRUE|FALSE> <source> <build> <option>...) configures without a build type of its
-# own and stops the script unless the warning about optimisation is there, or is not.
+# configure_warns(<TRUE|FALSE> <source> <build> <option>...) configures without a build type, and
+# stops the script unless the warning about optimisation is there, or is not.
 function(configure_warns expected source build)
   execute_process(
     COMMAND ${CMAKE_COMMAND} --fresh -G ${GENERATOR} -S ${source} -B ${build}

@@ -11,7 +11,7 @@ SITES = 1024  # of the lattice in steps.cpp
 
 
 def dumps_of(program, *options):
-    """What callgrind writes of each kernel, by its name."""
+    """Returns callgrind's output for each kernel, by name."""
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run(
             ["valgrind", "--tool=callgrind", "--collect-atstart=no",

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-// Steppers without the Kokkos library, which may hold instructions that valgrind does not know, and
-// for a processor that does not depend on the machine.
+// Steppers without the Kokkos library, which may contain instructions unknown to valgrind, and for
+// a processor that does not depend on the machine.
 #include <Kokkos_Macros.hpp>
 
 #undef KOKKOS_ARCH_AVX512XEON
@@ -21,7 +21,7 @@ namespace cayspin::instructions {
 
 struct Memory;
 
-/// Runs kernels on the spot; what they execute is counted.
+/// Space that runs kernels immediately; callgrind counts their instructions.
 struct Here {
   using execution_space = Here;
   using memory_space = Kokkos::HostSpace;
@@ -43,7 +43,7 @@ struct Kokkos::SpaceAccessibility<cayspin::instructions::Here, cayspin::instruct
   static constexpr bool accessible = true;
 };
 
-/// All that is asked of a View.
+/// Minimal replacement of a View.
 template <class Real>
 class Kokkos::View<Real*, cayspin::instructions::Memory> {
  public:
@@ -63,7 +63,7 @@ class Kokkos::View<Real*, cayspin::instructions::Memory> {
 
 namespace cayspin::inline v0_1::detail {
 
-// In place of the launch; seen by all headers that follow.
+// Replaces the launch in all headers that follow.
 template <class Body>
 void for_each_task(instructions::Here const&, std::string const&, std::int64_t count, std::int64_t,
                    Body const& body) {
@@ -74,7 +74,7 @@ void for_each_task(instructions::Here const&, std::string const&, std::int64_t c
 
 }  // namespace cayspin::inline v0_1::detail
 
-// Regions are all that a step asks of the library.
+// Profiling regions are the only library functions that a step calls.
 void Kokkos::Tools::pushRegion(std::string const&) {}
 void Kokkos::Tools::popRegion() {}
 

@@ -98,7 +98,7 @@ def table(name, executed, texts, offset):
         sys.exit(f"{name}: {unknown} of {sum(executed.values())} instructions are not the program's")
     for address, count in executed.items():
         text = texts.get(address - offset, "")
-        # What every pack executes is the loop; a few packs leave it for another way.
+        # Code that every pack executes is the loop; a few packs leave it for another path.
         of_loop = count if count >= packs / 2 else 0
         inside[kind_of(text)] += of_loop
         outside[kind_of(text)] += count - of_loop

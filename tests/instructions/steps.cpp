@@ -14,7 +14,7 @@
 namespace cayspin::instructions {
 namespace {
 
-Lattice const lattice = Lattice::cubic(64, 4, 4);  // its sites are known to callgrind.py
+Lattice const lattice = Lattice::cubic(64, 4, 4);  // callgrind.py uses its number of sites
 LandauLifshitz const generator(EffectiveField(Exchange(lattice, 1),
                                               UniaxialAnisotropy(0.5, {0, 0, 1}),
                                               Zeeman{{0, 0, 0.3}}),

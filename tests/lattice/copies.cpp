@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Numbers in and out of fields, and where they lie.
+// Copies of numbers into and out of fields, and their memory layout.
 #include "../support/backends.hpp"
 
 #include <cstdint>
@@ -37,7 +37,7 @@ TYPED_TEST(Copies, FromHostAndBack) {
   }
 }
 
-// Another instance waits for nobody.
+// Another instance waits for none.
 TYPED_TEST(Copies, FromHostIsOverWhenItReturns) {
   using Real = typename TypeParam::Real;
   auto const numbers = random_directions(33, 8);

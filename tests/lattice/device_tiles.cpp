@@ -45,7 +45,7 @@ std::size_t number_of(std::array<std::int32_t, 3> const& shape, std::int32_t x, 
   return static_cast<std::size_t>((std::int64_t(z) * shape[1] + y) * shape[0] + x);
 }
 
-/// How often each of nx * ny * nz sites is met, for rows inside.
+/// Returns how often each of nx * ny * nz sites is visited, for rows inside.
 std::vector<int> visits(std::array<std::int32_t, 3> const& shape, RowRange const& rows) {
   std::vector<int> count(number_of(shape, 0, 0, shape[2]));
   detail::DeviceTiles const tiles(shape[0], rows);
@@ -85,7 +85,7 @@ TEST(DeviceTiles, EachSiteOfARangeOnce) {
   }
 }
 
-/// The neighbour of a site by its definition, as an offset.
+/// Returns the offset of a site's neighbour, by definition.
 std::int64_t beside(RowLayout const& layout, std::array<std::int32_t, 3> at, int axis, int step) {
   auto const along = static_cast<std::size_t>(axis);
   std::int32_t const extent = std::array{layout.nx, layout.ny, layout.nz}[along];
@@ -145,7 +145,7 @@ TEST(DeviceSites, NeighborsAtAllEnds) {
     }
 }
 
-/// A field of nz planes of 2^20 numbers that nobody has allocated.
+/// Returns a layout of nz planes of 2^20 numbers, never allocated.
 RowLayout large_layout(std::int32_t nz) {
   RowLayout layout;
   layout.nx = layout.ny = 1 << 10;
@@ -156,7 +156,7 @@ RowLayout large_layout(std::int32_t nz) {
 }
 
 TEST(DeviceSites, LongIndicesWhereNumbersNeedThem) {
-  std::int32_t const most = (1 << 11) - 2;  // one plane more would wrap, and a step leaves a plane
+  std::int32_t const most = (1 << 11) - 2;  // one more plane would wrap, and a step leaves a plane
   using Short = detail::DeviceLayout<std::int32_t>;
   auto const fits = large_layout(most), beyond = large_layout(most + 1);
   EXPECT_TRUE(Short::reaches(fits, 1));
@@ -182,7 +182,7 @@ TEST(DeviceTiles, NoThreadsWithoutSites) {
 }
 
 TEST(DeviceTiles, ManyThreadsOfALongChain) {
-  // Of 2^28 sites along z each has 128 threads, most of which have no site.
+  // For 2^28 sites along z each tile has 128 threads, most of which have no site.
   detail::DeviceTiles const tiles(1, {0, 1, 0, 1 << 28});
   EXPECT_GT(tiles.thread_count(), std::numeric_limits<std::int32_t>::max());
   std::int64_t met = 0;
@@ -195,7 +195,7 @@ TEST(DeviceTiles, ManyThreadsOfALongChain) {
   EXPECT_EQ(met, 8);
 }
 
-/// Only the upper bits of 1 / b, as a device gives them.
+/// Returns only the upper bits of 1 / b, as a device gives them.
 template <class Real, class Bits>
 Real rough_inverse(Real b, int bits) {
   Bits const dropped = (Bits(1) << (std::numeric_limits<Real>::digits - 1 - bits)) - 1;

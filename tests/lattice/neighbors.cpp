@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What a stencil sees, against an index calculation, for every row length around whole packs.
+// Neighbours in a stencil against an index calculation, for every row length around whole packs.
 #include "../support/evaluate.hpp"
 
 #include <cayspin/detail/unrolled.hpp>
@@ -18,7 +18,7 @@ struct Neighbor {
   }
 };
 
-/// A generator that returns what a field of numbers holds before the site, on it and after it.
+/// A generator that returns the numbers of a field before the site, on it and after it.
 template <int Axis, class Real>
 struct Numbers {
   SiteArray<Real, 1> numbers;
@@ -47,7 +47,7 @@ struct Index {
 
 namespace {
 
-/// Index numbers that float holds, none of them like another: x + 1, -(y + 1), 1000 + z.
+/// Returns distinct numbers that float holds exactly: x + 1, -(y + 1), 1000 + z.
 std::vector<double> numbered(Lattice const& lattice) {
   std::vector<double> numbers;
   for (std::int64_t z = 0; z < lattice.shape[2]; ++z)
@@ -58,7 +58,7 @@ std::vector<double> numbered(Lattice const& lattice) {
   return numbers;
 }
 
-/// The site one step along an axis; itself where there is none.
+/// Returns the site one step along an axis, or the site itself if there is none.
 std::int64_t neighbor(Lattice const& lattice, std::int64_t site, int axis, int step) {
   auto const& n = lattice.shape;
   std::array<std::int64_t, 3> index{site % n[0], site / n[0] % n[1], site / (n[0] * n[1])};
@@ -147,7 +147,7 @@ TYPED_TEST(Neighbors, OfFieldsOfNumbers) {
     }
 }
 
-// Rows that are shared out to several tasks, cut at a pack, in the middle of a pack, at the end.
+// Rows divided among several tasks, cut at a pack, inside a pack, at the end.
 TYPED_TEST(Neighbors, LongRows) {
   std::int64_t const task = detail::sites_per_task;
   for (std::int64_t const nx : {2 * task, 2 * task + 1, 3 * task - 1, 3 * task + 13})

@@ -24,17 +24,18 @@ LIBRARY = [
     ("stages", ["stage/"]),
     ("stability", ["stability.hpp"]),
     ("steppers", ["stepper/"]),
-    ("time", ["integrate.hpp", "exchange_memory.hpp"]),
+    ("time", ["integrate.hpp", "serialize.hpp"]),
     ("observers", ["observer/"]),
-    ("minimisers", ["minimizer/", "minimize.hpp"]),
+    ("minimisers", ["minimizer/", "minimize.hpp", "path/", "minimum_energy_path.hpp"]),
+    ("modes", ["modes/", "modes.hpp"]),
     ("everything", ["cayspin.hpp"]),
     ("ranks", ["mpi/"]),
 ]
 
-# The same for what is built on the library, relative to the repository.
+# Layers of the code built on the library, relative to the repository.
 PROGRAMS = [
     ("list of methods", ["src/io/method.hpp", "src/io/words.hpp", "src/simulation/method_list.hpp"]),  # data that all others read
-    ("the paper's steppers", ["paper/include/"]),  # headers on the library alone
+    ("the paper's steppers", ["paper/include/"]),  # headers that need only the library
     ("reader and writer", ["src/scene/", "src/trajectory/", "src/hdf5/", "src/ovf/", "src/files/",
                            "src/io/"]),
     ("simulation", ["src/simulation/"]),
@@ -47,7 +48,7 @@ PROGRAMS = [
 PHYSICS = ("anisotropy damping demag energy exchange field flow generator isotropy newton observer "
            "rotation sigma spin stability stepper tableau zeeman").split()
 
-# What compilers, processors and devices define, and the headers that may ask for it.
+# Macros of compilers, processors and devices, and the headers that may test them.
 BACKEND_MACRO = re.compile(r"\bKOKKOS_(?:ENABLE|ARCH)_\w+|"
                            r"\b__(?:CUDA|HIP|SYCL|NVCC|GNUC|clang|x86|FMA|AVX|SSE|ARM|aarch)\w*")
 BACKEND_HEADERS = ("/detail/backend.hpp", "/detail/execution.hpp",
@@ -190,7 +191,7 @@ def problems_of(root):
     return tree.problems
 
 
-# File, its text, and the problem that it brings to a tree without any.
+# File, its text, and the problem that it causes in a correct tree.
 MISTAKES = [
     ("include/cayspin/vec3.hpp", "#include <cayspin/field/a.hpp>", "(numbers) includes"),
     ("include/cayspin/vec3.hpp", "#include <cayspin/no.hpp>", "there is no cayspin/no.hpp"),

@@ -33,7 +33,8 @@ PLACES = {
     "steppers": (1, "methods and their tableaux"),
     "time": (2.5, "the loop over steps"),
     "observers": (2, "records, energy control, noise"),
-    "minimisers": (1, "states of rest"),
+    "minimisers": (1, "equilibria"),
+    "modes": (2.5, "normal modes of an equilibrium"),
     "everything": (1, "all of the library"),
     "ranks": (2.75, "a part of the lattice on each rank"),
     "list of methods": (2.25, "one row for each method of scenes"),
@@ -96,7 +97,7 @@ class Picture:
         self.top = max(self.rows.values())
         self.width = max(map(self.middle, includes)) + WIDTH / 2 + EDGE
         self.height = 2 * EDGE + self.top * ROW + HEIGHT
-        # What stands in a row: the boxes, then the arrows that pass between them.
+        # Objects in a row: the boxes, then the arrows that pass between them.
         self.taken = {row: [(self.middle(room), WIDTH / 2 + 9) for room in includes
                             if self.rows[room] == row] for row in range(self.top + 1)}
 

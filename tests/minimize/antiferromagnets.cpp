@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Neighbours that want to be opposite take no more evaluations than those that want to be parallel.
+// Antiferromagnetic neighbours take no more evaluations than ferromagnetic ones.
 #include "films.hpp"
 
 #include <numbers>
@@ -45,7 +45,7 @@ TYPED_TEST(Antiferromagnets, TakeAsFewEvaluations) {
     }
 }
 
-// Energies that differ by less than their round-off are no reason to stop.
+// Energy differences below round-off must not stop the search.
 TYPED_TEST(Antiferromagnets, ConvergeWhereRoundOffHidesTheEnergy) {
   if (!TestFixture::is_double) return;
   auto const lattice = with({16, 16, 16}, Boundary::periodic);
@@ -59,7 +59,7 @@ TYPED_TEST(Antiferromagnets, ConvergeWhereRoundOffHidesTheEnergy) {
   }
 }
 
-/// Exchange of its own constant along z.
+/// Exchange with a different constant along z.
 struct Layers {
   double in_plane, between;
 
@@ -80,8 +80,8 @@ struct Layers {
   }
 };
 
-// One axis of another sign than the others. An odd ring of layers cannot alternate: its spins turn
-// from layer to layer by a little less than pi.
+// One axis with another sign than the others. An odd ring of layers cannot alternate: its spins
+// turn from layer to layer by a little less than pi.
 TYPED_TEST(Antiferromagnets, OfSomeAxes) {
   for (auto const& [in_plane, between] : {std::pair{40.0, -30.0}, {-40.0, 30.0}})
     for (std::int64_t const layers : {10, 11})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The same bits and counts on Serial and the threaded host space.
+// Equal bits and counts on Serial and the threaded host space.
 #include "../backends/equal_bits.hpp"
 #include "films.hpp"
 

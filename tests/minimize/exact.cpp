@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// States of rest that are known: Stoner and Wohlfarth's particle through its hysteresis, a Bloch
-// wall, and a spiral of exchange and Dzyaloshinskii-Moriya interaction.
+// Known equilibria: Stoner and Wohlfarth's particle through its hysteresis, a Bloch wall, and a
+// spiral of exchange and Dzyaloshinskii-Moriya interaction.
 #include "films.hpp"
 
 #include <numbers>

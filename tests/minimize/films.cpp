@@ -36,7 +36,7 @@ TYPED_TEST(Films, TakeSeventyEvaluations) {
       EXPECT_LT(found.torque, 1e-6) << exchange << " " << i;
       EXPECT_LE(found.evaluations, most) << exchange << " " << i;
       EXPECT_LT(norm_defect(this->exec, this->spins), 4 * epsilon<typename TypeParam::Real>);
-      // The torque, by code that the minimiser has no part in.
+      // The torque from code that the minimiser does not use.
       LandauLifshitz const generator(film(this->spins.lattice(), exchange), 0);
       EXPECT_LT(largest_rate(this->exec, generator, this->spins), 1.1e-6);
       // Weak exchange keeps a wall.
@@ -48,7 +48,7 @@ TYPED_TEST(Films, TakeSeventyEvaluations) {
   }
 }
 
-// Long waves go before walls form, whose vortices would move by a cell an iteration.
+// Long waves vanish before walls form, whose vortices would move by a cell per iteration.
 TYPED_TEST(Films, TakeFewEvaluationsFarWiderThanAWall) {
   auto const lattice = Lattice::square(96, 96);
   for (unsigned const seed : {1U, 2U, 3U, 4U, 5U}) {
@@ -59,7 +59,7 @@ TYPED_TEST(Films, TakeFewEvaluationsFarWiderThanAWall) {
   }
 }
 
-// What the preconditioner is for: without it they grow as the root of the exchange.
+// Without the preconditioner evaluations grow as the root of the exchange.
 TYPED_TEST(Films, TakeManyMoreWithoutThePreconditioner) {
   auto const start = random_directions(width * width, 1);
   auto const with = this->relax(1000, start, {.torque = 1e-2});
@@ -85,7 +85,7 @@ TYPED_TEST(Films, EndEarly) {
   EXPECT_EQ(stopped.iterations, 5);
 }
 
-// Where round-off keeps the torque above the bound, that is said.
+// If round-off keeps the torque above the bound, the result says so.
 TYPED_TEST(Films, StagnateAboveRoundOff) {
   auto const found = this->relax(2, vortex(width), {.torque = 1e-30});
   EXPECT_EQ(found.end, MinimizeEnd::stagnated);

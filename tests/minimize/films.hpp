@@ -25,7 +25,7 @@ class MinimizerTest : public ::testing::Test {
   typename Backend::Exec exec;
 };
 
-/// A film with an easy axis in its plane and its own demagnetising field, spin by spin.
+/// Returns the field of a film with an easy axis in its plane and a local demagnetising field.
 inline auto film(Lattice const& lattice, double exchange) {
   return EffectiveField(Exchange(lattice, exchange), UniaxialAnisotropy(0.1, {1, 0, 0}),
                         SlabDemag({0, 0, 1}, 1.0));

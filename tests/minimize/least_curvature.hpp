@@ -12,7 +12,8 @@
 
 namespace cayspin::test {
 
-/// The least eigenvalue of the Hessian on the tangent planes, for a field that is affine in m.
+/// Returns the least eigenvalue of the Hessian on the tangent planes, for a field that is affine in
+/// m.
 template <class Field>
 double least_curvature(Field const& field, Lattice const& lattice, std::vector<double> const& m) {
   using Doubles = SpinField<double, Kokkos::HostSpace>;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Of random fields on small lattices: the energy falls from iteration to iteration, and what is
-// called converged has no torque and no direction to go down, by the eigenvalues of the Hessian.
+// Random fields on small lattices: the energy falls from iteration to iteration, and converged
+// states have no torque and no descent direction, by the eigenvalues of the Hessian.
 #include "films.hpp"
 #include "least_curvature.hpp"
 

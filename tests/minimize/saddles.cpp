@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A state without torque that is no minimum is left again.
+// The search leaves states without torque that are not minima.
 #include "films.hpp"
 #include "least_curvature.hpp"
 
@@ -67,7 +67,7 @@ TYPED_TEST(Saddles, WhereTheSearchOnlyJustFindsTheWay) {
   }
 }
 
-// Spins that are parallel to each other may point anywhere: no saddle, in single precision either.
+// Spins parallel to each other may point anywhere: no saddle, also in single precision.
 TYPED_TEST(Saddles, NotWhereTheEnergyIsFlat) {
   auto const lattice = Lattice::cubic(7, 6, 5);
   for (double const exchange : {1.0, 1000.0}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A lattice divided among ranks gives the bits of the lattice on one rank: spins, sums and maxima,
-// and the decisions of adaptive steps.
+// A lattice divided among ranks gives the bits of a single rank: spins, sums and maxima, and the
+// decisions of adaptive steps.
 #include "../support/backends.hpp"
 #include "../support/mean_field.hpp"
 #include "divisions.hpp"
@@ -17,7 +17,7 @@
 namespace cayspin::test {
 namespace {
 
-/// A field that turns.
+/// A rotating field.
 struct Turning {
   static auto generator_on(Lattice const& lattice) {
     return LandauLifshitz(
@@ -28,7 +28,7 @@ struct Turning {
         0.1);
   }
 };
-/// One that does not depend on t.
+/// A field that does not depend on t.
 struct Still {
   static auto generator_on(Lattice const& lattice) {
     return LandauLifshitz(
@@ -37,7 +37,7 @@ struct Still {
         0.1);
   }
 };
-/// One of all spins, on all ranks.
+/// A field that needs all spins, on all ranks.
 struct OfAllSpins {
   static auto generator_on(Lattice const& lattice) {
     return LandauLifshitz(EffectiveField(Exchange(lattice, 0.4), MeanField(0.7)), 0.1);
@@ -50,8 +50,8 @@ class EqualBits : public ::testing::Test {
   using Spins = typename Backend::Spins;
   using Real = typename Backend::Real;
 
-  /// `make`: a stepper for spins. Lattices that it refuses are left out. `one_in`: steppers that
-  /// ask the other ranks often take one lattice in so many.
+  /// `make`: returns a stepper for spins. Lattices that it refuses are skipped. `one_in`: steppers
+  /// that communicate often take one lattice in so many.
   template <class Motion = Turning, class Make>
   void expect_equal_bits(int depth, Make const& make, int steps = 3, std::size_t one_in = 1) {
     int compared = 0;
@@ -86,7 +86,7 @@ class EqualBits : public ::testing::Test {
   }
 
  private:
-  // All numbers of samples at the begin and after each step, and what the stepper counted.
+  // All numbers of samples at the start and after each step, and the stepper's counts.
   template <class Motion, class Make>
   std::vector<double> run(Spins& spins, Make const& make, int steps) {
     auto const generator = Motion::generator_on(spins.lattice());
@@ -107,7 +107,7 @@ class EqualBits : public ::testing::Test {
 
   typename Backend::Exec exec_;
 };
-/// Each precision once: sums and stages are those of the tests of one rank.
+/// Each precision once: sums and stages are tested on one rank elsewhere.
 using HostAndDefault = ::testing::Types<Backend<float, Kokkos::DefaultHostExecutionSpace>,
                                         Backend<double, Kokkos::DefaultExecutionSpace>>;
 TYPED_TEST_SUITE(EqualBits, HostAndDefault, BackendName);
@@ -116,7 +116,7 @@ TYPED_TEST(EqualBits, LieEuler) {
   this->expect_equal_bits(1, [](auto const& spins) { return LieEuler(spins); });
 }
 
-/// Sweeps are for hosts.
+/// Sweeps run only on hosts.
 template <class Exec>
 std::vector<Path> paths() {
   if (detail::is_host_execution<Exec>) return {Path::pass, Path::sweep};
@@ -172,7 +172,7 @@ TYPED_TEST(EqualBits, Implicit) {
   using Spins = typename TypeParam::Spins;
   this->expect_equal_bits(
       1, [](Spins const& spins) { return ImplicitMidpoint<Spins>(spins); }, 2, 2);
-  // Newton's method alone.
+  // Only Newton's method.
   ImplicitOptions options;
   options.fixed_point = 0;
   this->expect_equal_bits(
@@ -200,7 +200,7 @@ TYPED_TEST(EqualBits, FieldOfAllSpins) {
   }
 }
 
-// The noise of a site, also of one that is a ghost, is that of its place in the whole lattice.
+// The noise of a site, also of a ghost, depends on its place in the whole lattice.
 TYPED_TEST(EqualBits, ThermalNoise) {
   using Spins = typename TypeParam::Spins;
   typename TypeParam::Exec const exec;

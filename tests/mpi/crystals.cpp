@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Scenes of crystals, couplings, currents and numbers of sites give the numbers of one rank.
+// Scenes of crystals, couplings, currents and site-dependent numbers give the numbers of one rank.
 #include "on_ranks.hpp"
 
 #include <hdf5.h>
@@ -14,7 +14,7 @@
 namespace cayspin::program::test {
 namespace {
 
-/// The spins of a scene see others over bonds, all at once.
+/// A scene whose spins are coupled by all kinds of bonds at once.
 std::string scene_of(std::string const& lattice_and_field, std::string const& integrator,
                      std::string const& damping = "0.1") {
   return fmt::format(R"toml([system]
@@ -74,7 +74,7 @@ class CrystalsOnRanks : public OnRanks {
     }
   }
 
-  /// FOLDER/name with /values of these extents.
+  /// Returns FOLDER/name with /values of these extents.
   std::string values_file(std::string const& name, std::vector<hsize_t> const& extents) const {
     hsize_t count = 1;
     for (auto const extent : extents) count *= extent;
@@ -100,6 +100,20 @@ TEST_F(CrystalsOnRanks, HaveTheBitsOfOneRank) {
                               "boundary = 'periodic'\n[field]\ncouplings = { shells = [0.5] }\n",
                               heun),
                      {{3, "1,3"}, {4, "2,2"}});
+}
+
+TEST_F(CrystalsOnRanks, HaveDipoles) {
+  for (std::string const boundary : {"open", "periodic"}) {
+    SCOPED_TRACE(boundary);
+    auto const scene =
+        scene_of(fmt::format("[lattice]\nshape = [4, 6, 5]\ncrystal = 'bcc'\nmoments = [1, 0.5]\n"
+                             "boundary = ['open', 'periodic', '{}']\n[field]\ndipoles = true\n"
+                             "couplings = {{ shells = [0.5] }}\n",
+                             boundary),
+                 heun);
+    expect_bits_of_one(scene, {{2, "1,2"}, {3, "3,1"}, {4, "2,2"}});
+    expect_bits_of_one(scene, {{3, "1,3"}}, {"--precision", "single"});
+  }
 }
 
 // Bonds of every kind that reach further than a step has stages.
@@ -176,6 +190,29 @@ zhang_li = { velocity = ["0.3*cos(t)", 0.2, -0.4], nonadiabaticity = 0.2 }
 slonczewski = { damping_like = "0.1*t", field_like = 0.2, polarization = [0, 1, 0.5] })toml",
                               heun),
                      {{2, "1,2"}, {3, "3,1"}, {4, "2,2"}});
+}
+
+// Bonds reach over three rows and planes, further than a stage does.
+TEST_F(CrystalsOnRanks, HaveTorquesOfSitesAndBondsAcrossSpacers) {
+  std::string const layers = R"toml([lattice]
+shape = [6, 12, 14]
+boundary = ["open", "periodic", "open"]
+regions = "(i + j) % 3"
+occupied = "k % 5 != 2 && k % 5 != 3 && j != 4 && j != 5"
+gyromagnetic = { regions = [1, 0.6, 1.7] }
+[field]
+exchange = 0.7
+anisotropy = { constant = 0.4, axis = { regions = [[1, 2, 3], [0, 0, 1], [1, 0, 0]] } })toml";
+  std::string const bonds = R"toml(
+interlayer = [ { between = [0, 0], J = -0.2, biquadratic = 0.03, range = 2 } ])toml";
+  std::string const torque = R"toml(
+[torque.slonczewski]
+damping_like = { profile = "0.1*i", time = "cos(t)" }
+field_like = { regions = [0.1, -0.2, 0.3] }
+lambda = 1.6
+polarization = { regions = [[0, 1, 0.5], [1, 0, 0], [0, 0, 1]] })toml";
+  for (auto const& text : {layers + torque, layers + bonds + torque})
+    expect_bits_of_one(scene_of(text, heun), {{2, "1,2"}, {3, "3,1"}, {4, "2,2"}});
 }
 
 TEST_F(CrystalsOnRanks, StepByEveryKindOfMethod) {

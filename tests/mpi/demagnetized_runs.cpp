@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Scenes with the field of all cells on all cells write on several ranks what they write on one.
+// Scenes with a demagnetising field write equal files on several ranks and on one.
 #include "on_ranks.hpp"
 
 #include <tuple>
@@ -24,9 +24,10 @@ class DemagnetizedOnRanks : public OnRanks {
     return write("scene.toml", film("[7, 15, 21]", integrator));
   }
   static Arguments demag_of(std::string const& integrator) {
-    bool const is_dear = integrator == once_a_step;
+    bool const is_multirate = integrator == once_a_step;
     return {"--set",
-            fmt::format("field.demag={{strength=0.8,periodic_images=[0,1,0],dear={}}}", is_dear)};
+            fmt::format("field.demag={{strength=0.8,periodic_images=[0,1,0],multirate={}}}",
+                        is_multirate)};
   }
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The demagnetising field of a lattice divided among ranks has the bits of the lattice on one rank,
-// and so do the steps that evaluate it, in each stage or once a step.
+// The demagnetising field of a lattice divided among ranks has the bits of a single rank, and so do
+// steps that evaluate it, in each stage or once a step.
 #include "../support/backends.hpp"
 #include "divisions.hpp"
 
@@ -24,8 +24,8 @@ struct Body {
   }
 };
 
-// Of one, two and three dimensions; fewer wave numbers along x than ranks; blocks of rows that
-// parts share.
+// One, two and three dimensions; fewer wave numbers along x than ranks; blocks of rows that parts
+// share.
 Body const bodies[] = {
     {{13, 17, 19}},        {{7, 5, 9}},    {{9, 37, 1}},           {{35, 1, 12}},
     {{1, 41, 1}},          {{1, 1, 23}},   {{1, 12, 9}},           {{2, 8, 8}},
@@ -40,7 +40,7 @@ class DemagnetizingFieldOnRanks : public ::testing::Test {
     return {numbers.begin(), numbers.end()};
   }
 
-  /// work(lattice, spins): numbers, those of sites first, (sites, 3).
+  /// work(lattice, spins): returns numbers, those of sites first, (sites, 3).
   template <class Work>
   void expect_equal_bits(Boundary boundary, int depth, Work const& work) {
     int compared = 0;
@@ -78,13 +78,13 @@ TYPED_TEST(DemagnetizingFieldOnRanks, HasEqualBits) {
     auto const& lattice = spins.lattice();
     HostSpins<Real> const field("field", lattice);
     DemagnetizingField<Real> const demag(lattice, {0.8, body.images});
-    // Work memory is as the first call left it in the second one.
+    // The second call uses work memory left by the first one.
     for (int again = 0; again < 2; ++again) demag(spins, field, 0);
     return this->numbers_of(field);
   });
 }
 
-// What the parts keep grows with each part's own rows and wave numbers alone.
+// The memory of a part grows only with its own rows and wave numbers.
 TEST(DemagnetizingFieldOfParts, SharesItsMemory) {
   auto const lattice = Lattice::cubic(31, 16, 16);
   auto const of_one = DemagnetizingField<double>::work_bytes(lattice);
@@ -122,7 +122,7 @@ TYPED_TEST(DemagnetizingFieldOnRanks, StepsWithEqualBits) {
     return run(field_of(body, spins), Rkmk4<Spins>(spins), spins);
   });
   this->expect_equal_bits(Boundary::open, 2, [&](Body const& body, Spins& spins) {
-    Dear const demag(spins, field_of(body, spins));
+    SlowField const demag(spins, field_of(body, spins));
     return run(demag, Multirate(spins, LieHeun<Spins>(spins), demag, {.substeps = 2}), spins);
   });
 }

@@ -39,7 +39,7 @@ TEST(Division, DomainsAreHeldAgainstTheRanks) {
   EXPECT_EQ(alone.local().shape, (std::array<std::int64_t, 3>{8, 8, 8}));
 }
 
-// Planes come by cells, of parts and of their ghosts.
+// Planes of parts and of their ghosts come in whole cells.
 TEST(Division, PartsOfCrystalsHoldWholeCells) {
   int ranks = 0, rank = 0;
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);
@@ -57,7 +57,7 @@ TEST(Division, PartsOfCrystalsHoldWholeCells) {
   EXPECT_EQ(local.ghosts[1], Ghosts{});
 }
 
-// Every rank is told, whichever differs.
+// Every rank gets the error, whichever differs.
 TEST(Division, RanksThatDisagreeAreRefused) {
   int rank = 0, ranks = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
@@ -97,7 +97,7 @@ TEST(Division, CouplingsNeedGhostsAsFarAsTheyReach) {
   mpi::Domain const thin(MPI_COMM_WORLD, lattice, 1, {1, ranks}),
       thick(MPI_COMM_WORLD, lattice, {1, 2}, {1, ranks});
   EXPECT_THROW(PairCouplings(thin.local(), bonds), std::invalid_argument);
-  // Between the stages of a step nobody brings so many up to date.
+  // Between the stages of a step no ghosts are updated as deep.
   PairCouplings const field(thick.local(), bonds);
   SpinField<double> const spins("spins", thick.local());
   EXPECT_THROW(energy(Kokkos::DefaultExecutionSpace(), field, spins), std::invalid_argument);

@@ -18,7 +18,7 @@ inline int ranks() {
   return size;
 }
 
-/// All divisions of a lattice among the ranks that there are.
+/// Returns all divisions of a lattice among the available ranks.
 inline std::vector<mpi::Division> divisions(Lattice const& lattice, int depth) {
   std::vector<mpi::Division> found;
   for (int y = 1; y <= ranks(); ++y)
@@ -28,7 +28,7 @@ inline std::vector<mpi::Division> divisions(Lattice const& lattice, int depth) {
   return found;
 }
 
-/// Odd extents, thin ones, each boundary open and periodic.
+/// Returns lattices with odd and small extents, each boundary open and periodic.
 inline std::vector<Lattice> lattices() {
   std::vector<Lattice> all;
   std::array<std::int64_t, 3> const shapes[] = {
@@ -51,7 +51,7 @@ inline std::string name_of(Lattice const& lattice, mpi::Division const& division
   return name + "in " + std::to_string(division.y) + " x " + std::to_string(division.z) + " parts";
 }
 
-/// Of the numbers of a whole lattice, (sites, 3), those of a part.
+/// Returns the numbers of a part out of those of a whole lattice, (sites, 3).
 inline std::vector<double> numbers_of_part(Lattice const& local, std::vector<double> const& all) {
   auto const& shape = whole(local).shape;
   auto const begin = local.part->begin();

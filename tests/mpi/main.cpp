@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Runs the tests on all ranks at once. One rank speaks; a failure on any rank fails the program.
+// Runs the tests on all ranks at once. One rank prints; a failure on any rank fails the program.
 #include <Kokkos_Core.hpp>
 #include <gtest/gtest.h>
 #include <mpi.h>
 
 namespace {
 
-/// A failure elsewhere, told on the rank that speaks.
+/// Listener that reports failures of other ranks on the rank that prints.
 class FailuresOfOthers : public ::testing::EmptyTestEventListener {
   void OnTestEnd(::testing::TestInfo const& test) override {
     int failed = test.result()->Failed() ? 1 : 0, here = failed;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What a step sends, counted where MPI lets a program stand between: one message per face, or on
-// hosts one per component of a large face, and nothing between the stages.
+// Messages of a step, counted by intercepting MPI: one message per face, or on hosts one per
+// component of a large face, and nothing between the stages.
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -22,7 +22,7 @@ extern "C" int MPI_Send_init(void const* data, int count, MPI_Datatype type, int
 extern "C" int MPI_Recv_init(void* data, int count, MPI_Datatype type, int from, int tag,
                              MPI_Comm comm, MPI_Request* request) {
   int const result = PMPI_Recv_init(data, count, type, from, tag, comm, request);
-  sends.erase(*request);  // one that was freed
+  sends.erase(*request);  // a freed request
   return result;
 }
 extern "C" int MPI_Startall(int count, MPI_Request* requests) {
@@ -68,8 +68,8 @@ TEST(Messages, AreOnePerFaceAndStep) {
       expect_messages<LieHeun<Spins>>(small, division, 1);
       expect_messages<LieEuler<Spins>>(small, division, 1);
     }
-    // Large faces are sent where they lie on hosts, packed on devices. Those between planes are
-    // rows without gaps, component by component.
+    // Large faces are sent in place on hosts, packed on devices. Those between planes are rows
+    // without gaps, component by component.
     bool const on_host = cayspin::detail::is_host_execution<Kokkos::DefaultExecutionSpace>;
     expect_messages<Rkmk4<Spins>>(large, {1, ranks}, on_host ? 3 : 1);
     expect_messages<Rkmk4<Spins>>(large, {ranks, 1}, 1);

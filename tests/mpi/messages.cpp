@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Ghosts hold what the neighbours hold: by messages in place, and by packed ones as on devices.
+// Ghosts equal the neighbours' sites: by messages in place, and by packed ones as on devices.
 #include <cayspin/detail/ghosts.hpp>
 #include <cayspin/mpi/domain.hpp>
 #include <cayspin/spin_field.hpp>
@@ -9,7 +9,7 @@
 namespace cayspin::inline v0_1::mpi {
 namespace {
 
-/// The number that component c of a site has, by its place in the whole lattice.
+/// Returns the number of component c of a site, by its place in the whole lattice.
 template <class Real>
 Real number_of(Lattice const& whole, std::array<std::int64_t, 3> site, int c) {
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -33,7 +33,7 @@ void for_all(HostField<Real, Components> const& field, Work const& work) {
           work({x, y, z}, c, array.data[c * array.stride + layout.row_offset(y, z) + x]);
 }
 
-/// Own numbers by their place, ghosts -1.
+/// Sets own numbers by their place, ghosts to -1.
 template <class Real, int Components>
 void fill(Domain const& domain, HostField<Real, Components> const& field) {
   auto const& local = domain.local();

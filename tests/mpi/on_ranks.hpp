@@ -17,7 +17,7 @@ inline int setting(char const* name, int usual) {
   char const* const asked = std::getenv(name);
   return asked ? std::atoi(asked) : usual;
 }
-/// mpiexec -n RANKS cayspin ARGUMENTS...
+/// Fixture that runs mpiexec -n RANKS cayspin ARGUMENTS...
 class OnRanks : public ProgramTest {
  protected:
   Arguments launch(int ranks, Arguments const& arguments) const {
@@ -38,7 +38,7 @@ class OnRanks : public ProgramTest {
     return all;
   }
 
-  /// What two files say of a run is the same: all frames and samples, to the bit, and the counts.
+  /// Expects two files to contain equal runs: all frames and samples, to the bit, and the counts.
   void expect_same(std::string const& one, std::string const& other) const {
     auto const first = io::read_info(in_folder(one)), second = io::read_info(in_folder(other));
     EXPECT_TRUE(second.complete);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The program on several ranks writes the numbers that it writes on one.
+// The program writes equal numbers on several ranks and on one.
 #include "on_ranks.hpp"
 #include "simulation/random_run.hpp"
 
@@ -18,7 +18,7 @@ TEST_F(OnRanks, WriteTheSameFile) {
   for (std::string const precision : {"double", "single"}) {
     Arguments const in_precision{"--precision", precision};
     ASSERT_EQ(start(run_of(scene, "one.h5", in_precision)).status, 0);
-    // In chunks, the first rank takes a frame by pieces of whole ones.
+    // In chunks, the first rank takes a frame in pieces of whole chunks.
     for (auto const& [ranks, threads, cut, chunk] :
          {std::tuple{1, "2", "", "13"}, std::tuple{2, "1", "", "13"},
           std::tuple{2, "2", "2,1", "1"}, std::tuple{3, "1", "", "2"},
@@ -40,12 +40,13 @@ TEST_F(OnRanks, WriteTheSameFile) {
 }
 
 TEST_F(OnRanks, HaveASlabOnTheHost) {
-  for (auto const& [dear, substeps] : {std::pair{"false", 1}, {"true", 2}}) {
-    SCOPED_TRACE(fmt::format("dear {}", dear));
+  for (auto const& [multirate, substeps] : {std::pair{"false", 1}, {"true", 2}}) {
+    SCOPED_TRACE(fmt::format("multirate {}", multirate));
     auto const method = fmt::format("method = \"rkmk4\"\nsubsteps = {}", substeps);
     auto const scene = write("scene.toml", film("[7, 9, 13]", method));
     Arguments const slab{
-        "--set", fmt::format("field.slab_demag={{normal=[1,0,0],where='host',dear={}}}", dear)};
+        "--set",
+        fmt::format("field.slab_demag={{normal=[1,0,0],where='host',multirate={}}}", multirate)};
     ASSERT_EQ(start(run_of(scene, "one.h5", slab)).status, 0);
     for (auto const& [ranks, cut] : {std::pair{3, "1,3"}, {2, "2,1"}, {4, "2,2"}}) {
       SCOPED_TRACE(cut);
@@ -58,17 +59,51 @@ TEST_F(OnRanks, HaveASlabOnTheHost) {
   }
 }
 
+// A wall across the parts, and one along them.
+TEST_F(OnRanks, FollowAWallAndSumRegionsAndTerms) {
+  for (auto const& [axis, shape, wall] : {std::tuple{"y", "[3, 40, 8]", "j - 23"},
+                                          {"z", "[3, 8, 40]", "k - 23"},
+                                          {"x", "[40, 8, 9]", "i - 23"}}) {
+    SCOPED_TRACE(axis);
+    auto const scene =
+        write("scene.toml", fmt::format(R"toml(
+system = {{ kind = "llg", damping = 0.1 }}
+lattice = {{ shape = {}, follow = {{ axis = "{}", quantity = "mz" }}, regions = "{} % 2 + 4" }}
+initial = {{ expression = ["1/cosh({})", "0.3", "-tanh({})"] }}
+integrator = {{ method = "rkmk4", dt = 0.02, steps = 60 }}
+output = {{ every = 20, scalars_every = 10, regions = true, terms = true }}
+[field]
+exchange = 1.0
+anisotropy = {{ constant = 1.0, axis = [0, 0, 1] }}
+applied = [0, 0, 0.2]
+)toml",
+                                        shape, axis, *axis == 'y' ? "k" : "j", wall, wall));
+    ASSERT_EQ(start(run_of(scene, "one.h5")).status, 0);
+    EXPECT_GT(read_dataset("one.h5", "scalars/shift").values.back(), 2);
+    for (auto const& [ranks, cut] : {std::pair{2, "1,2"}, {2, "2,1"}}) {
+      SCOPED_TRACE(cut);
+      auto const outcome = start_on(ranks, run_of(scene, "other.h5", {"--ranks", cut}));
+      ASSERT_EQ(outcome.status, 0) << outcome.errors;
+      expect_same("one.h5", "other.h5");
+      for (char const* dataset : {"scalars/shift", "shift", "scalars/region_magnetization",
+                                  "scalars/region_energy", "scalars/term_energy"})
+        EXPECT_EQ(read_dataset("other.h5", dataset).values, read_dataset("one.h5", dataset).values)
+            << dataset;
+    }
+  }
+}
+
 TEST_F(OnRanks, RunEveryShippedScene) {
   for (auto const& entry : fs::directory_iterator(CAYSPIN_SCENES)) {
     if (entry.path().extension() != ".toml") continue;
     SCOPED_TRACE(entry.path().filename());
     auto const scene = entry.path().string();
     auto const text = (std::ostringstream() << std::ifstream(scene).rdbuf()).str();
-    if (!contains(text, "[integrator]")) continue;  // is relaxed, on one rank
+    if (!contains(text, "[integrator]")) continue;  // relaxed on one rank
     auto const short_run = text.find("\nend =") != std::string::npos ? "" : "x";
     Arguments more;
     if (*short_run) more = {"--set", "integrator.steps=40"};
-    // Its stages wait for those of the other ranks, which is slow where ranks share a core.
+    // Its stages wait for those of the other ranks, which is slow if ranks share a core.
     if (contains(text, "crystal ="))
       more = {"--set", contains(text, "\"SI\"") ? "integrator.end=2e-14" : "integrator.end=5"};
     if (contains(text, "\ndemag =")) more = {"--set", "integrator.end=2e-11"};
@@ -103,15 +138,16 @@ TEST_F(OnRanks, RunRandomScenesOfEveryMethod) {
   auto const variants = simulation::variants();
   for (int draw = 0; scenes < wanted && draw < 20 * wanted && !HasFailure(); ++draw) {
     RandomRun random(static_cast<std::uint64_t>(setting("CAYSPIN_SEED", 1)), draw);
-    // A prime beyond their number: all come in turn.
+    // A prime beyond their number, so that all come in turn.
     auto const& variant = variants[(10007 * static_cast<std::size_t>(draw)) % variants.size()];
-    auto const scene = write("scene.toml", random.scene(variant));
+    auto const text = random.scene(variant);
+    auto const scene = write("scene.toml", text);
     std::string const precision = random.one_in(2) ? "single" : "double";
     int const ranks = 2 + static_cast<int>(random.below(3));
     Arguments const same{"--precision", precision, "--set",
                          fmt::format("lattice.shape={}", shapes[random.below(5)])};
     SCOPED_TRACE(fmt::format("draw {}, {} ranks, {}", draw, ranks, same.back()));
-    if (start(run_of(scene, "one.h5", same)).status != 0) continue;  // has no meaning, or fails
+    if (start(run_of(scene, "one.h5", same)).status != 0) continue;  // invalid, or fails
     auto const outcome = start_on(ranks, run_of(scene, "other.h5", same));
     if (outcome.status == 2 && variant.ghosts == 0) {
       EXPECT_TRUE(contains(outcome.errors, "runs on one rank alone")) << outcome.errors;
@@ -120,7 +156,7 @@ TEST_F(OnRanks, RunRandomScenesOfEveryMethod) {
     }
     EXPECT_EQ(outcome.status, 0) << outcome.errors;
     expect_same("one.h5", "other.h5");
-    if (HasFailure()) std::printf("%s\n", random.scene(variant).c_str());
+    if (HasFailure()) std::printf("%s\n", text.c_str());
     methods.insert(variant.method->word);
     ++scenes;
   }
@@ -135,7 +171,7 @@ TEST_F(OnRanks, GoOnFromFilesOfOtherRanks) {
         "method = \"tsit5\"\ntolerance = 1e-5"}) {
     SCOPED_TRACE(method);
     auto const scene = write("scene.toml", film("[5, 8, 13]", method));
-    // An adaptive method ends at the last of its steps: all is compared with runs cut alike.
+    // An adaptive method ends at the last of its steps: compared with runs divided equally.
     auto const in_parts = [&](std::array<int, 3> const& ranks, std::string const& name) {
       std::string before;
       for (int part = 0; part < 3; ++part) {
@@ -159,7 +195,7 @@ TEST_F(OnRanks, GoOnFromFilesOfOtherRanks) {
   }
 }
 
-// The noise of a site is that of its place in the whole lattice, also where a run goes on.
+// The noise of a site depends on its place in the whole lattice, also in a continued run.
 TEST_F(OnRanks, HaveTheNoiseOfOneRank) {
   auto const scene = write("scene.toml", film("[35, 8, 13]", "method = \"rkmk4\""));
   for (auto const& [method, precision] : {std::pair{"heun", "single"}, std::pair{"rkmk4", "double"},

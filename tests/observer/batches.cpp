@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// integrate() takes several steps of few spins in one launch; nobody sees a difference.
+// integrate() takes several steps of few spins in one launch, with unchanged results.
 #include "../support/backends.hpp"
 #include "../support/mean_field.hpp"
 
@@ -10,7 +10,7 @@
 namespace cayspin::test {
 namespace {
 
-/// Keeps the spins' numbers at the steps it is called at, every seventh from the third.
+/// Observer that stores the spins' numbers at the steps of its calls, every seventh from the third.
 template <class Spins>
 struct Keep {
   std::vector<std::pair<std::int64_t, std::vector<double>>>* kept;
@@ -39,7 +39,7 @@ class Batches : public ::testing::Test {
         0.1);
   }
 
-  // The same run by integrate and by hand.
+  // Compares a run by integrate with one by hand.
   template <class Stepper, class Generator>
   void expect_same(Generator const& generator, bool batches) {
     Times const times{0.25, 0.01, 60};

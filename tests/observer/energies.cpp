@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The energy of each term alone, of three spins, against numbers worked out by hand.
+// The energy of each term, of three spins, against numbers computed by hand.
 #include "../support/backends.hpp"
 #include "../support/coefficients.hpp"
 

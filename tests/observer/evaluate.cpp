@@ -41,7 +41,7 @@ TYPED_TEST(Evaluations, FieldAndGeneratorByHand) {
     expect_near(at(h, site), expected, this->bound);
     expect_near(at(a, site), expected + 0.3 * cross(m, expected), this->bound);
   }
-  // One term alone, and the generator's torque against the largest one.
+  // A single term, and the generator's torque against the largest one.
   evaluate_field(this->exec, anisotropy, this->spins, 0, this->output);
   this->exec.fence();
   expect_near(at(numbers_of(this->output), 5), {0, 0, 0.7 * at(this->m, 5).z}, this->bound);
@@ -92,7 +92,8 @@ TYPED_TEST(Evaluations, EnergiesOfTermsInWrappers) {
   EXPECT_LT(expected[1].magnitude, 0.9 * energy(this->exec, field, this->spins).magnitude);
   for (std::size_t i = 0; i < 2; ++i)
     EXPECT_NEAR(found[i].value, expected[i].value, 16 * epsilon<double> * expected[i].magnitude);
-  // A generator has the terms of its field; a term and a rigid body are sums of one; none is none.
+  // A generator has the terms of its field; a term and a rigid body are sums of one; an empty field
+  // has none.
   auto const same = term_energies(this->exec, orthogonal(LandauLifshitz(among, 0.1)), this->spins);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(same[i].value, found[i].value);
   auto const one = term_energies(this->exec, RigidBody::principal(1, 2, 3), this->spins);

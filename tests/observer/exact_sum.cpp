@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A sum that is rounded once: against integers, in any order and in parts, and at the ends of the
+// A sum that is rounded once: against integers, in any order and in parts, and at the limits of the
 // range.
 #include <cayspin/detail/exact_sum.hpp>
 
@@ -20,7 +20,7 @@ double rounded_sum_of(std::vector<double> const& numbers) {
   return sum.rounded();
 }
 
-// Whole numbers up to 2^60, whose sums fit 63 bits: the conversion of that rounds to nearest.
+// Whole numbers up to 2^60, whose sums fit 63 bits: their conversion rounds to nearest.
 TEST(ExactSum, RoundsTheSumOfIntegers) {
   std::mt19937_64 engine(3);
   for (int trial = 0; trial < 5000; ++trial) {
@@ -60,7 +60,7 @@ TEST(ExactSum, LosesNothingBetweenLargeAndSmall) {
   double const largest = std::numeric_limits<double>::max();
   EXPECT_EQ(rounded_sum_of({largest, largest, -largest}), largest);
   EXPECT_EQ(rounded_sum_of({}), 0);
-  // Halfway to the next number: to the even one, but up where a little more follows.
+  // Halfway to the next number: to the even one, but up if a little more follows.
   EXPECT_EQ(rounded_sum_of({1, 0x1p-53}), 1);
   EXPECT_EQ(rounded_sum_of({1, 0x1p-53, least}), 1 + 0x1p-52);
 }

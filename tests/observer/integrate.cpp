@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What integrate() does around a stepper: times, calls of observers, early ends, counts.
+// integrate() around a stepper: times, calls of observers, early ends, counts.
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -11,7 +11,7 @@
 
 namespace cayspin::test {
 
-/// Counts how often its A is asked for, on one site in host memory.
+/// A generator that counts the evaluations of its A, on one site in host memory.
 struct CountingGenerator {
   std::int64_t* evaluations;
   std::vector<double>* times;
@@ -33,7 +33,7 @@ struct CountingGenerator {
 
 namespace {
 
-/// Steps nothing and remembers; cannot be copied.
+/// A stepper that does nothing but has memory; not copyable.
 template <class Spins>
 struct Remembering {
   using spins_type = Spins;
@@ -73,7 +73,7 @@ TYPED_TEST_SUITE(Integrate, Backends, BackendName);
 
 using Numbers = std::vector<std::int64_t>;
 
-// 0.1 is not a sum of itself: adding it up would show in the last digits.
+// 0.1 is not exact: repeated addition would show in the last digits.
 TYPED_TEST(Integrate, TimesAreProducts) {
   Times const times{-1.5, 0.1, 1000};
   Summary const summary =
@@ -121,7 +121,7 @@ TYPED_TEST(Integrate, ObserversAreCalledEachWhenDueAndInOrder) {
   EXPECT_EQ(who, (std::vector<int>{1, 2, 2, 1, 2, 2, 1, 2}));
 }
 
-// The others are still called at the step where one says stop.
+// The others are still called at the step at which one stops the run.
 TYPED_TEST(Integrate, AnObserverEndsIt) {
   auto const stop_at = [](std::int64_t number) {
     return [number](auto const&, Step const& step, auto const&) {
@@ -160,7 +160,7 @@ TYPED_TEST(Integrate, ObserversAfterOneThatStopsAreTold) {
   for (auto const& step : this->seen) EXPECT_FALSE(step.stops);
 }
 
-// As integrate does; only temporaries move into it.
+// Like integrate; only temporaries are moved into it.
 TYPED_TEST(Integrate, EveryRefersToObserversWithNames) {
   using Spins = typename TypeParam::Spins;
   copy_from_host(random_directions(3, 9), this->spins);
@@ -181,7 +181,7 @@ TYPED_TEST(Integrate, EveryRefersToObserversWithNames) {
   static_assert(detail::changes_spins<Every<Control&>>);
   static_assert(detail::changes_spins<std::reference_wrapper<Control>>);
   static_assert(detail::changes_spins<Every<std::reference_wrapper<Control>>>);
-  // A reference asks it, too, whether it wants the call.
+  // A reference also asks its due().
   EnergyControl seldom(this->spins, conserving, {.period = 3});
   integrate(this->exec, stepper, conserving, this->spins, {0, 0.1, 4}, std::ref(seldom));
   EXPECT_EQ(seldom.evaluations_done(), 2);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The Newton step towards |m| = 1 alone, and as an observer that keeps round-off from adding up.
+// The Newton step towards |m| = 1 by itself, and as an observer that prevents accumulation of
+// round-off.
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -28,7 +29,7 @@ TYPED_TEST(Normalizing, IsNewtonsStep) {
   }
 }
 
-// A length that is right to an epsilon is left alone, and one that is none is not hidden.
+// A length correct to an epsilon does not change, and NaN is not hidden.
 TYPED_TEST(Normalizing, AtRestAndNotFinite) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::chain(20);
@@ -67,7 +68,8 @@ TYPED_TEST(Normalizing, SpinsOfOnesOwnAreHeldToLengthOne) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::square(19, 5);
   auto numbers = random_directions(lattice.sites(), 8);
-  for (auto& number : numbers) number = static_cast<float>(number);  // what a file of floats holds
+  for (auto& number : numbers)
+    number = static_cast<float>(number);  // precision of a file of floats
   EXPECT_NO_THROW(require_unit_spins(this->exec, spins_of<Spins>(lattice, numbers)));
   double const nan = std::numeric_limits<double>::quiet_NaN();
   for (double const factor : {0.0, 0.999, 1.001, 3.0, nan}) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Sums and maxima over sites against plain loops, and numbers that are none found wherever they
-// are.
+// Sums and maxima over sites against plain loops, and NaN detected at every site.
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -14,7 +13,7 @@ template <class Backend>
 using Scalars = OnBackend<Backend>;
 TYPED_TEST_SUITE(Scalars, Backends, BackendName);
 
-// Lengths from 0.5 to 1.5, signs of all kinds.
+// Lengths from 0.5 to 1.5, all signs.
 std::vector<double> uneven(Lattice const& lattice, unsigned seed) {
   auto numbers = random_directions(lattice.sites(), seed);
   for (std::size_t i = 0; i < numbers.size(); ++i)
@@ -47,7 +46,7 @@ TYPED_TEST(Scalars, AgainstPlainLoops) {
   }
 }
 
-// One pass finds what a pass for each finds, over one block of rows and over many.
+// One pass gives the results of separate passes, over one block of rows and over many.
 TYPED_TEST(Scalars, ASampleIsAllOfThem) {
   using Spins = typename TypeParam::Spins;
   for (auto const& lattice : {Lattice::chain(5), Lattice::cubic(37, 29, 23)}) {
@@ -78,8 +77,8 @@ TYPED_TEST(Scalars, AFieldAtRest) {
   EXPECT_EQ(magnetization(this->exec, spins).z, 1);
 }
 
-// One spin off the sphere, at each place in turn: the maximum is never lost in another lane, and
-// numbers past the end of a row never enter.
+// One spin off the sphere, at each site in turn: the maximum is never lost in another lane, and
+// padding of a row never counts.
 TYPED_TEST(Scalars, TheLargestDefectIsFoundAtEverySite) {
   auto const lattice = Lattice::square(19, 2);
   typename TypeParam::Spins const spins("spins", lattice);
@@ -106,7 +105,7 @@ TYPED_TEST(Scalars, NumbersThatAreNoneAreFoundAtEverySite) {
       EXPECT_TRUE(std::isnan(norm_defect(this->exec, spins))) << site;
       EXPECT_TRUE(std::isnan(largest_rate(this->exec, generator, spins))) << site;
       EXPECT_TRUE(std::isnan(energy(this->exec, generator, spins).value)) << site;
-      // Infinity is larger than all others, but NaN must win over it too.
+      // Infinity is larger than all others, but NaN must take precedence.
       wrong[3 * site + c] = -std::numeric_limits<double>::infinity();
       copy_from_host(wrong, spins);
       EXPECT_EQ(norm_defect(this->exec, spins), std::numeric_limits<double>::infinity()) << site;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The topological charge: whole numbers of known textures, and any spins against plain loops over
-// plaquettes.
+// The topological charge: whole numbers for known textures, and arbitrary spins against plain loops
+// over plaquettes.
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -21,7 +21,7 @@ Lattice film(std::int64_t nx, std::int64_t ny, Boundary boundary, std::int64_t n
   return Lattice::cubic(nx, ny, nz, 1, boundary);
 }
 
-/// m = (sin t cos p, sin t sin p, cos t) in each plane, with [t, p] = angles(x, y).
+/// Returns m = (sin t cos p, sin t sin p, cos t) in each plane, with [t, p] = angles(x, y).
 template <class Angles>
 std::vector<double> by_angles(Lattice const& lattice, Angles const& angles) {
   std::vector<double> m;
@@ -51,7 +51,7 @@ std::vector<double> negative(std::vector<double> m) {
   return m;
 }
 
-/// Half the solid angle of a triangle, by its corners (L'Huilier's theorem), and its sign.
+/// Returns half the solid angle of a triangle by its corners (L'Huilier's theorem), with its sign.
 double half_angle(Vec3<double> const& a, Vec3<double> const& b, Vec3<double> const& c) {
   auto const side = [](Vec3<double> const& u, Vec3<double> const& v) {
     auto const n = cross(u, v);
@@ -64,7 +64,7 @@ double half_angle(Vec3<double> const& a, Vec3<double> const& b, Vec3<double> con
   return std::copysign(angle, dot(a, cross(b, c)));
 }
 
-/// Of plane z, plaquette by plaquette.
+/// Returns the charge of plane z, plaquette by plaquette.
 double by_plaquettes(Lattice const& lattice, std::vector<double> const& m, std::int64_t z) {
   auto const nx = lattice.shape[0], ny = lattice.shape[1];
   auto const spin = [&](std::int64_t x, std::int64_t y) {
@@ -177,7 +177,7 @@ TYPED_TEST(TopologicalCharge, TheNumbersOfThePackage) {
   EXPECT_NEAR(charge(Boundary::open, Boundary::periodic), -0.8933656985875352, bound);
 }
 
-// Lengths are of no account, also those that single precision rounds.
+// Lengths do not matter, also those that single precision rounds.
 TYPED_TEST(TopologicalCharge, SpinsOfAnyLength) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = film(23, 17, Boundary::periodic);
@@ -186,7 +186,7 @@ TYPED_TEST(TopologicalCharge, SpinsOfAnyLength) {
   EXPECT_NEAR(topological_charge(this->exec, spins_of<Spins>(lattice, m)), -1, 1e-12);
 }
 
-// The quotient of their angle is 0 / 0 but for round-off.
+// The quotient of their angle is 0 / 0 except for round-off.
 TYPED_TEST(TopologicalCharge, AntiparallelSpinsEncloseNothing) {
   using Spins = typename TypeParam::Spins;
   for (auto const boundary : {Boundary::open, Boundary::periodic}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Single steps of coupled Landau-Lifshitz chains against 70-digit arithmetic: the chain laid along
-// each axis of a lattice, alone and repeated along the other axes, where equal neighbours add
+// Single steps of coupled Landau-Lifshitz chains against 70-digit arithmetic: the chain along each
+// axis of a lattice, single and repeated along the other axes, where equal neighbours contribute
 // nothing.
 #include "../support/evaluate.hpp"
 #include "steps.hpp"
@@ -19,7 +19,7 @@ struct Placement {
     lattice.boundary[axis] = Boundary::open;
     return lattice;
   }
-  /// The chain's site that a site of the lattice is a copy of.
+  /// Returns the chain's site that a site of the lattice copies.
   std::int64_t place(std::int64_t site, Lattice const& lattice) const {
     for (int a = 0; a < axis; ++a) site /= lattice.shape[a];
     return site % lattice.shape[axis];
@@ -32,7 +32,7 @@ struct Placement {
   }
 };
 
-// 5 and 19 cut packs of every width, 16 fills them; 2 and 1 close on themselves.
+// 5 and 19 cut packs of every width, 16 fills them; 2 and 1 wrap around to themselves.
 std::vector<Placement> const placements{{0, {1, 1, 1}},  {0, {1, 3, 2}},  {1, {1, 1, 1}},
                                         {1, {5, 1, 3}},  {1, {16, 1, 1}}, {2, {1, 1, 1}},
                                         {2, {19, 2, 1}}, {2, {2, 1, 1}}};

@@ -12,7 +12,7 @@ SymmetricTensor tensor(std::vector<double> const& matrix) {
   return {matrix[0], matrix[4], matrix[8], matrix[1], matrix[2], matrix[5]};
 }
 
-// The inverse of a symmetric matrix by cofactors, rounded once.
+// Returns the inverse of a symmetric matrix by cofactors, rounded once.
 SymmetricTensor inverse(std::vector<double> const& m) {
   long double const a = m[0], b = m[1], c = m[2], d = m[4], e = m[5], f = m[8];
   long double const determinant = a * (d * f - e * e) - b * (b * f - c * e) + c * (b * e - c * d);
@@ -33,10 +33,10 @@ template <class Backend>
 class RigidBodyOracles : public ::testing::Test {};
 TYPED_TEST_SUITE(RigidBodyOracles, OracleBackends, BackendName);
 
-// Nineteen bodies alike: whole packs, the rest of one, and every lane.
+// Nineteen equal bodies: whole packs, a partial one, and every lane.
 constexpr std::int64_t bodies = 19;
 
-/// The methods that rigid bodies alone have, and those of all generators.
+/// Calls the methods that only rigid bodies have, and those of all generators.
 template <class Spins, class With>
 auto with_body_method(std::string const& method, RigidBody const& body, double constant,
                       Spins const& like, With const& with) {

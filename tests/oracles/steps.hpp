@@ -16,22 +16,22 @@
 
 namespace cayspin::test {
 
-/// 1e-13 in double; as many epsilons, 450, in float.
+/// 1e-13 in double; the same number of epsilons, 450, in float.
 template <class Real>
 inline constexpr double step_tolerance = 1e-13 / epsilon<double> * epsilon<Real>;
 
-/// Of two ways to write the same sigma.
+/// Compares two ways to write one sigma.
 inline void expect_same(std::vector<double> const& a, std::vector<double> const& b, double bound,
                         std::string const& where) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], bound) << where;
 }
 
-/// Both precisions where steps run by default: the spaces agree bit for bit (tests/backends).
+/// Both precisions on the default space: the spaces agree bit for bit (tests/backends).
 using OracleBackends = ::testing::Types<Backend<float, Kokkos::DefaultExecutionSpace>,
                                         Backend<double, Kokkos::DefaultExecutionSpace>>;
 
-/// A step from a state, or from a state and the one a step before.
+/// A step from a state, or from a state and the previous one.
 struct Start {
   Lattice lattice;
   std::vector<double> spins, before;
@@ -51,7 +51,8 @@ std::vector<double> step_once(Stepper& stepper, Generator const& generator, Star
   return numbers_of(spins);
 }
 
-/// with(stepper, generator) of the method that the oracles call `method`; `constant` is its sigma.
+/// Calls with(stepper, generator) for the method that the oracles call `method`; `constant` is its
+/// sigma.
 template <class Spins, class Generator, class With>
 auto with_method(std::string const& method, Generator const& generator, double constant,
                  Spins const& like, With const& with) {
@@ -94,7 +95,7 @@ auto with_method(std::string const& method, Generator const& generator, double c
   throw std::invalid_argument("no stepper for " + method);
 }
 
-/// One step of it.
+/// Takes one step with it.
 template <class Exec, class Spins, class Generator>
 std::vector<double> one_step(std::string const& method, Generator const& generator, double constant,
                              Start const& start) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Orders of explicit one-step methods on a coupled chain, over step sizes fixed beforehand.
+// Orders of explicit one-step methods on a coupled chain, for fixed step sizes.
 #include "chain.hpp"
 
 #include "../support/backends.hpp"

@@ -33,7 +33,7 @@ class ChainOrder : public ::testing::TestWithParam<double> {
   double const end_time = std::min(1.0, 1 / GetParam());
   Spins const reference = run<Rkmk4<Spins>>(slab.natural(), chain_start(), end_time / 4000, 4000);
 
-  /// Steps; round-off is not to be seen in the errors.
+  /// Steps at which round-off does not show in the errors.
   std::array<int, 4> ladder = {40, 80, 160, 320};
   double order_tolerance = 0.15;
 
@@ -56,7 +56,7 @@ class ChainOrder : public ::testing::TestWithParam<double> {
   }
 };
 
-/// The largest stable dt of a mode of rate 1 over the number of stages, at each damping.
+/// Expects the largest stable dt of a mode of rate 1 over the number of stages, at each damping.
 template <class Stepper>
 void expect_stable_per_stage(std::vector<std::pair<double, double>> const& limits,
                              double tolerance) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Orders of the energy of an undamped coupled chain, over T = 10 and step sizes fixed beforehand:
-// not those of a single sphere.
+// Orders of the energy of an undamped coupled chain, over T = 10 and fixed step sizes. They differ
+// from those of a single sphere.
 #include "chain.hpp"
 
 #include <cayspin_paper/analytic_sigma.hpp>
@@ -30,7 +30,7 @@ void expect_energy(char const* what, Generator const& generator, std::vector<int
   });
 }
 
-// Steps in all: those of order 4 are near round-off where the others begin to follow their order.
+// Numbers of steps: order 4 is near round-off where the others begin to follow their order.
 std::vector<int> const fine{4000, 5657, 8000}, coarse{177, 250, 354, 500, 707};
 
 TEST(ChainEnergyOrder, LieEuler) {
@@ -40,7 +40,7 @@ TEST(ChainEnergyOrder, LieEuler) {
   expect_energy<LieEuler<Spins, FiniteDifferenceBackward>>("backward", slab.natural(), fine, 2);
 }
 
-// On a single sphere both generators of Heun's method have 3.
+// On a single sphere both generators of Heun's method have order 3.
 TEST(ChainEnergyOrder, OrderTwo) {
   expect_energy<LieHeun<Spins>>("Heun, default", slab.natural(), fine, 3);
   expect_energy<LieHeun<Spins>>("Heun, orthogonal", slab.orthogonal(), fine, 2);
@@ -48,7 +48,7 @@ TEST(ChainEnergyOrder, OrderTwo) {
   expect_energy<LieAdamsBashforth2<Spins>>("ab2, orthogonal", slab.orthogonal(), fine, 2);
 }
 
-// Readings between the orders 4 and 5 of two terms of opposite weight.
+// Measured between the orders 4 and 5 of two terms of opposite sign.
 TEST(ChainEnergyOrder, Rkmk4) {
   expect_energy<Rkmk4<Spins>>("default", slab.natural(), coarse, 4.9, 0.2);
   expect_energy<Rkmk4<Spins>>("orthogonal", slab.orthogonal(), coarse, 4.2, 0.2);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Orders of the methods that remember, iterate or differentiate, and of the policies for sigma, on
-// a coupled chain, over step sizes fixed beforehand.
+// Orders of multistep and implicit methods, of methods with derivatives, and of the policies for
+// sigma, on a coupled chain with fixed step sizes.
 #include "chain.hpp"
 
 #include <cayspin_paper/analytic_sigma.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Orders of the trajectory and of the energy on three random triaxial rigid bodies, over T = 2 and
-// step sizes fixed beforehand.
+// fixed step sizes.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -18,7 +18,7 @@ constexpr int bodies = 3;
 constexpr double end_time = 2;
 Lattice const lattice = Lattice::chain(bodies);
 
-// Inverse inertias; each principal value is at least 1.4 times the one before.
+// Inverse inertias; each principal value is at least 1.4 times the previous one.
 std::vector<double> const tensors{0.855976, 1.162556, 1.649652, 0.043564,  0.62717,   -0.055694,
                                   1.117146, 1.857536, 1.952938, -0.004366, -0.671065, 0.412494,
                                   1.932378, 1.86113,  0.992395, -0.611087, -0.200564, -0.080505};
@@ -46,7 +46,7 @@ double energy_of(std::vector<double> const& numbers, int body) {
          b[4] * m[0] * m[2] + b[5] * m[1] * m[2];
 }
 
-/// Distance to the true end, and the largest energy error on the way, of each body.
+/// Distance to the exact end, and the largest energy error on the way, of each body.
 struct Errors {
   std::array<double, bodies> end{}, energy{};
 };
@@ -71,7 +71,7 @@ Errors errors(Stepper& stepper, Generator const& generator, int steps) {
   return found;
 }
 
-constexpr double exact = 0;  // an energy kept to round-off
+constexpr double exact = 0;  // an energy conserved to round-off
 
 struct Orders {
   int trajectory;
@@ -79,8 +79,8 @@ struct Orders {
 };
 
 constexpr double tolerance = 0.15, scattered = 0.4;
-/// Four step sizes, a factor sqrt(2) apart: the coarser the higher the order, or errors are
-/// round-off; for A finer than for A_o, which turns less in a step.
+/// Returns four step sizes, a factor sqrt(2) apart: coarser for higher orders, to stay above
+/// round-off; finer for A than for A_o, which turns less in a step.
 std::vector<int> ladder(int order, bool orthogonal) {
   int const first = order == 1 ? 512 : (order == 2 ? 256 : 64) / (orthogonal ? 2 : 1);
   std::vector<int> steps;

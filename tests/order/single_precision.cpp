@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Orders in single precision, over step sizes whose errors stand above round-off; and in double
-// under a field that depends on time.
+// Orders in single precision, for step sizes whose errors are above round-off; and in double with a
+// field that depends on time.
 #include "../support/evaluate.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
@@ -53,7 +53,8 @@ TEST(TimeDependentField, KeepsTheOrder) {
   expect_slope<ProjectedRk4<Spins>>("projected rk4", 4, ladder);
 }
 
-/// The largest local error along A_o of one step, over dt^2: what a right sigma makes vanish.
+/// Returns the largest local error along A_o of one step, over dt^2, which a correct sigma makes
+/// vanish.
 template <class Isotropy>
 double local_error_along_generator(double dt) {
   constexpr double t = 0.4;

@@ -18,7 +18,7 @@ namespace cayspin::inline v0_1::io::test {
 using cayspin::test::read_bytes;
 using cayspin::test::write_bytes;
 
-/// A folder of its own for each test, removed afterwards.
+/// A separate folder for each test, removed afterwards.
 class OvfTest : public testing::Test {
  protected:
   OvfTest() {
@@ -36,7 +36,7 @@ class OvfTest : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// The bytes of numbers as they lie in memory.
+/// Returns the bytes of numbers as stored in memory.
 template <class Real>
 std::string bytes(std::vector<Real> const& numbers) {
   std::string result(numbers.size() * sizeof(Real), '\0');
@@ -44,14 +44,14 @@ std::string bytes(std::vector<Real> const& numbers) {
   return result;
 }
 
-/// `text` with its one occurrence of `from` replaced.
+/// Returns `text` with its only occurrence of `from` replaced.
 inline std::string replaced(std::string text, std::string const& from, std::string const& to) {
   auto const at = text.find(from);
   if (at == std::string::npos) throw std::runtime_error("not in the file: " + from);
   return text.replace(at, from.size(), to);
 }
 
-/// Two nodes, as the OOMMF user guide describes a file.
+/// Two nodes, in the format of the OOMMF user guide.
 inline std::string small_header() {
   return R"(# OOMMF OVF 2.0
 # Segment count: 1

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Files as OOMMF and mumax3 write them, put together byte by byte.
+// Files in the format of OOMMF and mumax3, assembled byte by byte.
 #include "ovf_test.hpp"
 
 #include <cmath>
@@ -53,6 +53,23 @@ TEST_F(OvfTest, SitesFollowWithXFastest) {
             (std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}));
 }
 
+TEST_F(OvfTest, OneComponentIsReadWhereItIsAskedFor) {
+  auto const one = replaced(replaced(small_text(), "valuedim: 3", "valuedim: 1"),
+                            "1 0 0\n0 0.6 -8e-1\n", "0.25\n7\n");
+  EXPECT_EQ(read_ovf(write(one), 1).values, (std::vector<double>{0.25, 7}));
+  EXPECT_EQ(ovf_components(write(one)), 1);
+  EXPECT_EQ(ovf_components(write(small_text())), 3);
+  EXPECT_THROW(read_ovf(write(one)), std::runtime_error);
+  EXPECT_THROW(read_ovf(write(small_text()), 1), std::runtime_error);
+  EXPECT_THROW(read_ovf_mesh(write(small_text()), 1), std::runtime_error);
+  try {
+    read_ovf(write(replaced(one, "7\n", "")), 1);
+    ADD_FAILURE();
+  } catch (std::runtime_error const& error) {
+    EXPECT_NE(std::string(error.what()).find("2 x 1 x 1 nodes of one value"), std::string::npos);
+  }
+}
+
 TEST_F(OvfTest, NumbersBeyondADoubleAreKeptAsFarAsTheyGo) {
   auto const text = replaced(small_text(), "1 0 0", "1e-400 nan 5e-324");
   auto const values = read_ovf(write(text)).values;
@@ -70,7 +87,7 @@ TEST_F(OvfTest, CommentsMayFollowANumberAndTheSegment) {
   EXPECT_EQ(read_ovf(write(replaced(text, "# End: Segment", "#"))).values, small_values());
 }
 
-// Of which only one is read, and nothing depends on the others.
+// Only one of them is read, and nothing depends on the others.
 TEST_F(OvfTest, OtherLabelsMayBeRepeated) {
   auto const text = replaced(small_text(), "# Desc: made by hand\n",
                              "# Desc: made\n# Desc: by hand\n# Note: 1\n# Note: 2\n# xnodes: 2\n");

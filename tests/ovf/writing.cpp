@@ -14,7 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Nodes, spacings and origins that differ along every axis, and numbers that need all digits.
+/// Returns a field whose nodes, spacings and origins differ along every axis, and numbers that need
+/// all digits.
 OvfField asymmetric_field() {
   OvfField field;
   field.title = "m of a test";
@@ -44,7 +45,7 @@ TEST_F(OvfTest, WhatIsWrittenIsReadBack) {
   }
 }
 
-// More values than the writer and the reader take at a time.
+// More values than the writer and the reader process at a time.
 TEST_F(OvfTest, LongFilesAreReadBack) {
   OvfField field;
   field.mesh.nodes = {70001, 1, 1};
@@ -144,7 +145,7 @@ TEST_F(OvfTest, ValuesHaveToBeThoseOfTheMesh) {
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
-// They would end the line, and what follows would be read as a record of its own.
+// They would end the line, and the rest would be read as a separate record.
 TEST_F(OvfTest, LineBreaksInUnitsAreBlanks) {
   auto field = asymmetric_field();
   field.mesh.unit = "nm\n# xnodes: 1";

@@ -9,7 +9,7 @@ import pathlib
 import re
 import sys
 
-# What CMake finds, and how Spack and conda-forge call it.
+# Packages that CMake finds, and their names in Spack and conda-forge.
 PACKAGES = {
     "HDF5": ("hdf5", "hdf5"),
     "tomlplusplus": ("tomlplusplus", "tomlplusplus"),
@@ -18,6 +18,7 @@ PACKAGES = {
     "Eigen3": ("eigen", "eigen"),
     "nlohmann_json": ("nlohmann-json", "nlohmann_json"),
     "CLI11": ("cli11", "cli11"),
+    "PNG": ("libpng", "libpng"),
 }
 
 
@@ -33,6 +34,7 @@ def problems_of(root):
     [beyond] = re.findall(r"CAYSPIN_KOKKOS_BEYOND (\d+)\)", kokkos)
     options = re.findall(r"option\((CAYSPIN_\w+)", top)
     required = re.findall(r"find_package\((\w+)(?: ([\d.]+))? REQUIRED", read("src/CMakeLists.txt"))
+    required += re.findall(r"find_package\((\w+)(?: ([\d.]+))? QUIET\)", top)
 
     in_spack = [f'version("{version}")', f'"kokkos@{lowest}:{int(beyond) - 1}"', f'"cmake@{cmake}:"']
     in_conda = [f'version = "{version}"', f"- kokkos >={lowest},<{beyond}\n", f"- cmake >={cmake}\n"]

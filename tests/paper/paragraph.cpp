@@ -13,7 +13,7 @@ std::string printed(std::string const& text) {
   return ::testing::internal::GetCapturedStdout();
 }
 
-// Lines have 116 columns at most, and longer words lines of their own.
+// Lines have at most 116 columns, and longer words get their own lines.
 TEST(Paragraph, BreaksAtSpaces) {
   EXPECT_EQ(printed("a b"), "\n  a b\n");
   std::string const word(117, 'w'), line(116, 'x');

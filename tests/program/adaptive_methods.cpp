@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Methods that choose their steps by integrator.tolerance: what error they come to, when frames are
-// written, what ends them.
+// Methods that choose their steps by integrator.tolerance: their error, the times of frames, and
+// failures.
 #include "io/method.hpp"
 #include "program_test.hpp"
 
@@ -10,7 +10,7 @@ namespace {
 struct AdaptiveMethods : ProgramTest {
   std::vector<double> end(Arguments const& more) const { return end_of(chain_scene(), more); }
 
-  /// A run of the chain that has to end with this status, and one line that has `part`.
+  /// Expects a run of the chain to end with this status, and one line that contains `part`.
   void expect_end(int status, std::string const& part, Arguments const& more) const {
     auto const outcome = run_into("out.h5", chain_scene(), more);
     EXPECT_EQ(outcome.status, status);
@@ -58,7 +58,7 @@ TEST_F(AdaptiveMethods, WriteFramesAtTheTimesAskedFor) {
   EXPECT_LT(distance(second, exact), 30e-7);
 }
 
-// How often a run is looked at changes no bit of its end and costs no evaluation.
+// The number of observations changes no bit of the end and costs no evaluation.
 TEST_F(AdaptiveMethods, TakeTheSameStepsHoweverOftenTheyAreLookedAt) {
   std::vector<double> ends[3];
   std::int64_t evaluations[3];
@@ -80,7 +80,7 @@ TEST_F(AdaptiveMethods, TakeTheSameStepsHoweverOftenTheyAreLookedAt) {
   }
 }
 
-// Where spins come to rest the energy goes up and down within the tolerance.
+// Near equilibrium the energy fluctuates within the tolerance.
 TEST_F(AdaptiveMethods, ComeToRestUnderTheGuard) {
   for (std::string const method : {"tsit5", "bs3", "dp5"})
     for (std::string const tolerance : {"1e-1", "1e-3"})
@@ -88,7 +88,7 @@ TEST_F(AdaptiveMethods, ComeToRestUnderTheGuard) {
              set("integrator={method='" + method + "',tolerance=" + tolerance + ",end=400.0}"));
 }
 
-// A look is no step: the rate is that of the method's own.
+// The rate counts internal steps of the method, not observations.
 TEST_F(AdaptiveMethods, TheRateCountsTheirOwnSteps) {
   auto const output = output_of({"run", "chain.toml", "--output", "out.h5", "--set",
                                  "integrator={method='tsit5',tolerance=1e-6,dt=40,steps=1}"});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Every choice a scene has between method, generator, isotropy and rotation runs at its order, on
-// spins and on rigid bodies.
+// Every valid combination of method, generator, isotropy and rotation in a scene runs at its order,
+// on spins and on rigid bodies.
 #include "../support/method_choice.hpp"
 #include "program_test.hpp"
 
@@ -21,18 +21,18 @@ class AllMethods : public ProgramTest {
     return end_of(scene, joined(joined(changes, set("integrator.dt=" + dt)), plain));
   }
 
-  // `floor`: below it errors are round-off, and longer steps show the order.
+  // `floor`: errors below it are round-off, and longer steps show the order.
   void expect_orders(std::string const& scene, io::SystemKind kind, double floor) {
     auto const reference = end(scene, set("integrator.method='rkmk8'"), "0.0025");
     std::set<std::string_view> checked;
     std::set<double> errors_of_rkmk4;
     for_each_method_choice([&](MethodChoice const& choice) {
-      // The others take a tolerance: adaptive_methods.cpp.
+      // The others use a tolerance: adaptive_methods.cpp.
       if (!choice.method.has_equal_steps() || !choice.has_meaning(kind)) return;
       checked.insert(choice.method.word);
       Arguments changes;
       for (auto const& assignment : choice.overrides()) changes = joined(changes, set(assignment));
-      // One colour of the spins moves at a time: the host would compute the field of all.
+      // It moves one colour of the spins at a time, but the host would compute the field of all.
       if (choice.method.by_colour)
         changes = joined(changes, set("field.slab_demag={normal=[1,0,0]}"));
       auto const name = testing::PrintToString(changes);
@@ -62,7 +62,7 @@ class AllMethods : public ProgramTest {
   }
 };
 
-// With a field that the host computes.
+// Includes a field that the host computes.
 std::string spins_scene() {
   return R"toml([system]
 kind = "llg"
@@ -106,8 +106,9 @@ TEST_F(AllMethods, OnRigidBodiesHaveTheirOrder) {
   expect_orders(tensor_bodies_scene(), io::SystemKind::rigid_body, 1e-12);
 }
 
-// With a field in time sigma by the derivative needs dH/dt: without it the energy's rate is wrong
-// to first order, seen in how far the two ways to the same sigma are apart.
+// With a time-dependent field, sigma by the derivative needs dH/dt: without it the rate of the
+// energy is wrong to first order, which shows in the difference between two ways to compute one
+// sigma.
 TEST_F(AllMethods, AnalyticSigmaSeesAFieldInTime) {
   auto const with = [&](std::string const& isotropy, char const* dt) {
     return end(spins_scene(),

@@ -41,7 +41,7 @@ TEST_F(Checking, StableDtIsThatOfTheStabilityPolynomial) {
   }
 }
 
-// The stiff chain and the 2D and 3D lattices: |H| = 5 and all constants 1.
+// The stiff chain, and lattices in 2D and 3D: |H| = 5 and all constants 1.
 TEST_F(Checking, StableDtOfLattices) {
   Arguments const stiff =
       set("system.damping=0.05", "initial.random.seed=1",
@@ -54,8 +54,8 @@ TEST_F(Checking, StableDtOfLattices) {
         .at("stable_dt")
         .get<double>();
   };
-  // Never above what was measured, and at most an eighth of it lower where the field's bound is
-  // above the exact one.
+  // Never above the measured one, and at most an eighth below it where the field's bound exceeds
+  // the exact one.
   EXPECT_NEAR(stable_dt("[100]", "0.01"), 7.26586e-5, 4e-8);
   EXPECT_LT(stable_dt("[100]", "1.0"), 3.88384e-1);
   EXPECT_GT(stable_dt("[100]", "1.0"), 3.88384e-1 * 0.65);
@@ -88,7 +88,7 @@ TEST_F(Checking, IterationsHaveNoCountBeforehand) {
   }
 }
 
-// `run` would refuse it; a scene may still be checked beside its file.
+// `run` would refuse it; a scene may still be checked next to its file.
 TEST_F(Checking, SaysWhatIsWrongWithTheOutputFile) {
   auto const last_line = [&](std::string const& file) {
     auto const output = output_of({"check", "chain.toml", "--set", "output.file='" + file + "'"});
@@ -127,7 +127,7 @@ TEST_F(Checking, CountsBytesOfFilesThatNoDiskHolds) {
   EXPECT_TRUE(contains(text, "1000000000001 frames, 24 EB, to"));
 }
 
-// rkmk4 holds the state, two fields of spins and three of increments; euler the state and one.
+// rkmk4 has the state, two fields of spins and three of increments; euler the state and one field.
 TEST_F(Checking, CountsMemory) {
   auto const bytes = [&](std::string const& method, std::string const& precision) {
     return check(chain_scene(), {"--set", "lattice.shape=[64,64,64]", "--set",
@@ -138,14 +138,14 @@ TEST_F(Checking, CountsMemory) {
   EXPECT_NEAR(bytes("euler", "double") / (2 * 24), 1, 0.15);
   EXPECT_NEAR(bytes("euler", "single") / (2 * 12), 1, 0.3);
   EXPECT_NEAR(bytes("euler", "double") / bytes("series4", "double"), 2. / 8, 1e-12);
-  // A sweep's two fields and its buffers, or, where the cores' caches are large, the five of
+  // A sweep's two fields and its buffers, or, if the cores' caches are large, the five fields of
   // passes.
   EXPECT_GT(bytes("rkmk4", "double"), bytes("euler", "double"));
   EXPECT_LE(bytes("rkmk4", "double"), 5. / 2 * bytes("euler", "double") * (1 + 1e-12));
 }
 
-// As the system counts it, for runs of one step. Buffers on the host, which the C library may keep
-// and the writing thread takes in pieces, are met less closely than what the simulation holds: to a
+// As counted by the system, for runs of one step. Buffers on the host, which the C library may keep
+// and the writing thread allocates in pieces, agree less closely than the simulation's memory: to a
 // frame and a copy of it.
 TEST_F(Checking, MemoryIsWhatARunTakes) {
   if (address_sanitizer) GTEST_SKIP() << "the sanitizer's own memory is counted, too";
@@ -202,6 +202,9 @@ TEST_F(Checking, HelpAndVersion) {
   for (Arguments const& arguments :
        {Arguments{"--help"}, Arguments{"run", "--help"}, Arguments{"--version"}})
     EXPECT_NE(output_of(arguments), "");
+  EXPECT_EQ(output_of({"help"}), output_of({"--help"}));
+  EXPECT_EQ(output_of({"help", "run"}), output_of({"run", "--help"}));
+  expect_refused({"help", "simulate"}, "unknown command simulate");
 }
 
 // RKMK4 on parts of 8 rows and 16 planes in the middle: (10 * 18 + 12 * 20 + 14 * 22) / 3 of 8

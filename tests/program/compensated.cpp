@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// integrator.compensated: in single precision, many short steps leave the digits that double has.
+// integrator.compensated: in single precision, many short steps keep the digits of double.
 #include "program_test.hpp"
 
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Runs that end before their end: by a signal, or at rest.
+// Runs that end early: by a signal, or at equilibrium.
 #include "program_test.hpp"
 
 #include <cmath>
@@ -9,7 +9,7 @@ namespace {
 
 class EarlyEnd : public ProgramTest {
  protected:
-  /// A run of the chain that is interrupted a while after it began to write `file`.
+  /// Runs the chain, and interrupts it a while after it began to write `file`.
   Outcome interrupt(std::string const& file, Arguments const& more) const {
     return start(joined({"run", "chain.toml", "--quiet", "--output", file}, more),
                  {.interrupt_after = 0.2, .interrupt_when = in_folder(file)});
@@ -30,7 +30,7 @@ TEST_F(EarlyEnd, InterruptLeavesAWholeFile) {
   for (double const component : last_spins("chain.h5")) EXPECT_TRUE(std::isfinite(component));
 }
 
-// Steps are counted from the start of the run that it goes on from.
+// Steps are counted from the start of the run that it continues.
 TEST_F(EarlyEnd, InterruptAfterARestartNamesTheStepOfTheFile) {
   output_of({"run", "chain.toml", "--quiet", "--set", "integrator.steps=500"});
   auto const outcome =
@@ -41,7 +41,7 @@ TEST_F(EarlyEnd, InterruptAfterARestartNamesTheStepOfTheFile) {
   EXPECT_TRUE(contains(outcome.errors, "on.h5 (step " + step + ", t = "));
 }
 
-// Without a dt of the scene, too.
+// Also if the scene has no dt.
 TEST_F(EarlyEnd, InterruptEndsAdaptiveSteps) {
   auto const outcome =
       interrupt("chain.h5", set("integrator={method='tsit5',tolerance=1e-8,end=2e5}",

@@ -5,7 +5,8 @@
 
 namespace cayspin::program::test {
 
-/// A slab whose motion ends in the first part of its run of 20, with the rest of the scene.
+/// Returns a scene of a slab that reaches equilibrium in the first part of its run of 20, with the
+/// rest of the scene.
 inline std::string early_rest(std::string const& integrator_and_output) {
   return R"toml([system]
 kind = "llg"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// cayspin export, and runs that start from what it wrote.
+// cayspin export, and runs that start from its files.
 #include "io/ovf.hpp"
 #include "program_test.hpp"
 
@@ -14,7 +14,7 @@ class Exporting : public ProgramTest {
  protected:
   Arguments const to_ovf{"export", "out.h5", "--ovf", "ovf"};
 
-  /// What it says.
+  /// Returns its output.
   std::string export_frames(Arguments const& more) const { return output_of(joined(to_ovf, more)); }
 
   std::vector<double> frame(std::int64_t number) const {
@@ -56,6 +56,13 @@ TEST_F(Exporting, WritesAllFramesOrOne) {
   EXPECT_EQ(io::read_ovf(in_folder("ovf/out_000001.ovf")).values, single);
 }
 
+TEST_F(Exporting, CountsFramesFromTheEnd) {
+  run(chain_scene());
+  EXPECT_EQ(export_frames({"--frames=-1"}), "ovf/out_000003.ovf\n");
+  EXPECT_EQ(export_frames({"--frames", "-4"}), "ovf/out_000000.ovf\n");
+  EXPECT_EQ(io::read_ovf(in_folder("ovf/out_000000.ovf")).values, frame(0));
+}
+
 TEST_F(Exporting, SinglePrecisionKeepsItsBitsInFourBytes) {
   run(chain_scene(), {"--precision", "single"});
   export_frames({});
@@ -75,8 +82,9 @@ TEST_F(Exporting, ExistingFilesStayUnlessOverwritten) {
 
 TEST_F(Exporting, WrongUsesAreOneLine) {
   run(chain_scene());
-  for (std::string const wrong : {"4", "-1", "first", "1.5"})
-    expect_refused(joined(to_ovf, {"--frames=" + wrong}), "accepted: last, all, or 0 to 3");
+  for (std::string const wrong : {"4", "-5", "first", "1.5"})
+    expect_refused(joined(to_ovf, {"--frames=" + wrong}),
+                   "accepted: last, all, 0 to 3, or -1 to -4 from the end of out.h5");
   expect_refused(joined(to_ovf, {"--format", "binary"}), "accepted: text, binary4, binary8");
   EXPECT_FALSE(exists("ovf"));
   write("ovf", "a file");
@@ -92,7 +100,7 @@ TEST_F(Exporting, FullDiskLeavesNoFile) {
   EXPECT_EQ(files(), 0U);
 }
 
-// The start is normalised whatever file it comes from, so both runs begin with the same bits.
+// The start is normalised for any kind of file, so both runs start with equal bits.
 TEST_F(Exporting, RunsFromOvfAreRunsFromTheTrajectory) {
   for (std::string const precision : {"double", "single"}) {
     run(chain_scene(), {"--precision", precision});

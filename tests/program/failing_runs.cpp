@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Runs that fail on their way: status 2 or 3, one line, and a file that does not look whole.
+// Runs that fail on the way: status 2 or 3, one line, and a file marked as not complete.
 #include "program_test.hpp"
 
 #include <cmath>
@@ -27,7 +27,8 @@ TEST_F(FailingRun, EnergyThatRisesIsStatusThree) {
     EXPECT_LT(info.frame_scalars[frame].energy, info.frame_scalars[frame - 1].energy);
 }
 
-// Many sites are looked at in every tenth step alone, few in every step: 4096 are few.
+// Large lattices are checked only in every tenth step, small ones in every step: 4096 sites are
+// few.
 TEST_F(FailingRun, AmongManySitesIsFoundInATenthStep) {
   auto const failing_step = [&](std::string const& sites) -> std::int64_t {
     auto const outcome = run_chain(set("lattice.shape=[" + sites + "]", "output.every=100000",
@@ -65,7 +66,7 @@ TEST_F(FailingRun, SpinsThatAreNotFiniteAreStatusThree) {
 }
 
 TEST_F(FailingRun, AppliedFieldThatIsNotFiniteOnTheWayIsStatusThree) {
-  // At one time of the run only: what is tried beforehand takes the values beside it.
+  // Only at one time of the run, so that earlier checks do not find it.
   auto const outcome = run_chain(set("integrator.dt=0.125", "integrator.steps=7", "output.every=1",
                                      "field.applied=[0,0,'t==0.125 ? 1/(t-0.125) : 0.1']"));
   EXPECT_EQ(outcome.status, 3);

@@ -17,6 +17,7 @@ TEST_F(NewScenes, OfEveryKindAreCommentedAndValid) {
     auto const text = text_of(kind + ".toml");
     EXPECT_TRUE(text.starts_with("# "));
     EXPECT_EQ(text.find("scenes/"), std::string::npos) << text;
+    EXPECT_TRUE(contains(text, "file = \"" + kind + ".h5\"")) << text;
     output_of({"check", kind + ".toml"});
   }
 }
@@ -28,7 +29,8 @@ TEST_F(NewScenes, ReplaceNoFileUnasked) {
   EXPECT_EQ(text_of("film.toml"), "mine");
   output_of({"new", "film", "--output", "other.toml"});
   output_of({"new", "film", "--overwrite"});
-  EXPECT_EQ(text_of("film.toml"), text_of("other.toml"));
+  EXPECT_TRUE(contains(text_of("other.toml"), "file = \"other.h5\""));
+  EXPECT_TRUE(contains(text_of("film.toml"), "file = \"film.h5\""));
 }
 
 TEST_F(NewScenes, OfAnUnknownKindAreRefused) {

@@ -20,7 +20,7 @@ TEST_F(OutputFiles, StandBesideTheTrajectoryWhenAskedFor) {
   EXPECT_EQ(std::ranges::count(text_of("out.txt"), '\n'), 27);
 }
 
-// A device that takes nothing stands for a disk that is full.
+// /dev/full represents a full disk.
 TEST_F(OutputFiles, StandardOutputThatCannotBeWrittenIsAnError) {
   run(chain_scene());
   for (std::string const command : {"check chain.toml", "check chain.toml --json", "info out.h5",

@@ -16,10 +16,10 @@ namespace cayspin::program::test {
 
 using Arguments = std::vector<std::string>;
 
-/// One behind the other.
+/// Returns both lists in order.
 Arguments joined(Arguments first, Arguments const& more);
 
-/// Each behind a "--set".
+/// Returns each text after a "--set".
 template <class... Texts>
 Arguments set(Texts const&... assignments) {
   Arguments all;
@@ -28,14 +28,14 @@ Arguments set(Texts const&... assignments) {
   return all;
 }
 
-/// The program's default space, and another word for one with the same bits.
+/// The program's default space, and another name for one with equal bits.
 #if defined(CAYSPIN_HOST_DEVICE)
 inline std::string const default_space = "host_device", another_space = "host_device";
 #else
 inline std::string const default_space = "openmp", another_space = "serial";
 #endif
 
-/// Is the program that `reproduce` starts built, too? It computes on hosts.
+/// True if the program that `reproduce` starts is built. It computes on hosts.
 #if defined(CAYSPIN_HOST_DEVICE)
 inline constexpr bool has_reproduce = false;
 #else
@@ -48,9 +48,9 @@ inline constexpr bool address_sanitizer = true;
 inline constexpr bool address_sanitizer = false;
 #endif
 
-/// What a run of the program left behind.
+/// Result of a run of the program.
 struct Outcome {
-  int status = -1;  // 128 + signal when one killed it
+  int status = -1;  // 128 + signal if one killed it
   std::string output, errors;
   double peak_bytes = 0;  // most memory in use at once
 };
@@ -60,7 +60,7 @@ struct Dataset {
   std::vector<double> values;
 };
 
-/// How a run is treated.
+/// Limits and interrupts of a run.
 struct Treatment {
   long file_limit = -1;        // bytes a file may have
   long memory_limit = -1;      // bytes of address space
@@ -70,8 +70,8 @@ struct Treatment {
   std::filesystem::path program = CAYSPIN_PROGRAM;
 };
 
-/// Each test in a folder of its own, which is the program's working directory. It has chain.toml
-/// and spin.toml, the scenes below.
+/// A separate folder for each test, which is the program's working directory. It has chain.toml and
+/// spin.toml, the scenes below.
 class ProgramTest : public testing::Test {
  protected:
   ProgramTest();
@@ -80,30 +80,30 @@ class ProgramTest : public testing::Test {
   /// Starts the program and waits.
   Outcome start(Arguments const& arguments, Treatment const& treatment = {}) const;
 
-  /// The same. It has to end with this status and, unless that is 0, one line on standard error.
+  /// Starts the program, and expects this status and, unless it is 0, one line on standard error.
   Outcome expect_status(int status, Arguments const& arguments,
                         Treatment const& treatment = {}) const;
-  /// It has to end with status 2, and one line that has `part`.
+  /// Expects status 2, and one line that contains `part`.
   void expect_refused(Arguments const& arguments, std::string const& part,
                       Treatment const& treatment = {}) const;
-  /// What it says on standard output. It has to succeed without a word on standard error.
+  /// Returns its standard output. Expects success without output on standard error.
   std::string output_of(Arguments const& arguments) const;
 
-  /// Starts the program and does not wait; what it says is lost.
+  /// Starts the program without waiting; discards its output.
   pid_t begin(Arguments const& arguments,
               std::filesystem::path const& program = CAYSPIN_PROGRAM) const;
-  /// Sends it a signal, where that is not 0, and waits. As Outcome::status.
+  /// Sends it a signal unless that is 0, and waits. Returns a status like Outcome::status.
   static int end(pid_t process, int signal);
 
-  /// Waits until something is so, at most a minute. False when it never was.
+  /// Waits until something is true, at most a minute. Returns false if it never was.
   static bool eventually(std::function<bool()> const& is_so);
 
-  /// Writes a scene, and runs it without words into a file in the folder.
+  /// Writes a scene, and runs it with --quiet into a file in the folder.
   Outcome run_into(std::string const& file, std::string const& scene,
                    Arguments const& more = {}) const;
-  /// The same into out.h5. It has to succeed without a word on standard error.
+  /// Runs a scene into out.h5. Expects success without output on standard error.
   io::TrajectoryInfo run(std::string const& scene, Arguments const& more = {}) const;
-  /// The same, its last spins. It may warn.
+  /// Runs a scene and returns its last spins. Warnings are allowed.
   std::vector<double> end_of(std::string const& scene, Arguments const& more = {}) const;
 
   /// Writes FOLDER/name, returns its path.
@@ -113,25 +113,25 @@ class ProgramTest : public testing::Test {
   io::TrajectoryInfo info_of(std::string const& name) const {
     return io::read_info(in_folder(name));
   }
-  /// All that a file in the folder has.
+  /// Returns the contents of a file in the folder.
   std::string text_of(std::string const& name) const;
 
-  /// A dataset of a file in the folder.
+  /// Returns a dataset of a file in the folder.
   Dataset read_dataset(std::string const& name, std::string const& dataset) const;
 
-  /// The last frame of a file in the folder.
+  /// Returns the last frame of a file in the folder.
   std::vector<double> last_spins(std::string const& name) const;
 
   std::filesystem::path folder_;
 };
 
-/// The largest distance of any spin; infinity where there are more of one, or NaN.
+/// Returns the largest distance of any spin; infinity for different counts or NaN.
 double distance(std::vector<double> const& a, std::vector<double> const& b);
 
-/// Exactly one line, with a line end.
+/// Expects exactly one line, with a line end.
 testing::AssertionResult is_one_line(std::string const& text);
 
-/// Of two lines, the second; the first has to be a warning about integrator.dt.
+/// Returns the second of two lines; the first must be a warning about integrator.dt.
 std::string behind_warning(std::string const& errors);
 
 testing::AssertionResult contains(std::string const& text, std::string const& part);

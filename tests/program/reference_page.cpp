@@ -22,7 +22,7 @@ std::set<std::string> options_in(std::string const& text) {
   return found;
 }
 
-// The lines of each command at the page's head, which go on until the next `cayspin`.
+// Returns the lines of each command at the page's head, which end at the next `cayspin`.
 std::map<std::string, std::string> synopses() {
   std::ifstream page(std::string(CAYSPIN_DOCS) + "/reference/command_line.md");
   std::map<std::string, std::string> all;
@@ -39,12 +39,12 @@ TEST_F(ReferencePage, HasTheOptionsOfEveryCommand) {
   auto const page = synopses();
   int commands = 0;
   for (auto const& [command, synopsis] : page) {
-    if (command.starts_with('[') || command.starts_with('-')) continue;
+    if (command == "help" || command.starts_with('-')) continue;
     if (!has_reproduce && command == "reproduce") continue;
     EXPECT_EQ(options_in(synopsis), options_in(output_of({command, "--help"}))) << command;
     ++commands;
   }
-  EXPECT_EQ(commands, has_reproduce ? 13 : 12);
+  EXPECT_EQ(commands, has_reproduce ? 15 : 14);
 }
 
 }  // namespace

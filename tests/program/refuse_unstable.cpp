@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The key integrator.refuse_unstable: a warning of dt becomes an error, and nothing else changes.
+// The key integrator.refuse_unstable: a warning about dt becomes an error, and nothing else
+// changes.
 #include "program_test.hpp"
 
 namespace cayspin::program::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// cayspin relax: a state of rest, or one for each field of a list, its file, and how it ends.
+// cayspin relax: an equilibrium, or one for each field of a list, its file, and how it ends.
 #include "program_test.hpp"
 
 #include <nlohmann/json.hpp>
@@ -115,7 +115,7 @@ TEST_F(Relax, KeepsASaddleOnDemand) {
   }
 }
 
-// What an earlier run left beside the file is not taken for the file's own.
+// An earlier run's file next to this one is not taken for its checkpoint.
 TEST_F(Relax, LeavesNoCheckpointOfAnother) {
   write("out.checkpoint.h5", "of another run");
   EXPECT_EQ(relax(scene).status, 2);
@@ -130,7 +130,7 @@ TEST_F(Relax, IsExported) {
   EXPECT_TRUE(exists("ovf/out_000000.ovf"));
 }
 
-// `check` says what relax would do with a scene that only relax takes.
+// `check` describes what relax would do with a scene that only relax accepts.
 TEST_F(Relax, IsChecked) {
   std::string const list = "field.applied=[[0.3, 0, 0.001], [0, 0, 0.001], [-0.3, 0, 0.001]]";
   auto const file = write("scene.toml", scene);
@@ -159,7 +159,7 @@ TEST_F(Relax, IsChecked) {
   ASSERT_EQ(relax(scene, set(list, "lattice.shape=[120, 100]")).status, 0);
   EXPECT_GT(static_cast<double>(std::filesystem::file_size(in_folder("out.h5"))), frames);
 
-  // With [integrator] as without it: the list decides. Without a list it is a run.
+  // With or without [integrator], the list decides. Without a list it is a run.
   std::string const integrator = "[integrator]\nmethod = \"rkmk4\"\ndt = 0.1\nsteps = 50\n";
   auto const both = write("scene.toml", scene + integrator);
   EXPECT_TRUE(contains(output_of({"check", both, "--set", list}), "output      3 frames, "));
@@ -181,10 +181,11 @@ TEST_F(Relax, IsRefusedByCheck) {
   auto const file = write("scene.toml", scene);
   for (auto const& [more, says] : std::vector<std::pair<Arguments, std::string>>{
            {{"--ranks", "1,2"}, "--ranks 1,2: the scene is for cayspin relax, which runs on one"},
-           {set("thermal={ temperature = 1, seed = 2 }"), "thermal.temperature: a state of"}}) {
+           {set("thermal={ temperature = 1, seed = 2 }"),
+            "thermal.temperature: an equilibrium has"}}) {
     expect_refused(joined({"check", file}, more), says);
   }
-  // A rigid body is for `run` alone.
+  // A rigid body is only for `run`.
   auto const body = write("body.toml",
                           "[system]\nkind = \"rigid_body\"\ninertia = [1, 2, 3]\n"
                           "[lattice]\nshape = [1]\n[initial]\nuniform = [1, 0, 0]\n");

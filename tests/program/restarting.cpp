@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// --restart: a run that goes on from a file is the run without a break.
+// --restart: a run continued from a file equals an uninterrupted run.
 #include "io/checkpoint.hpp"
 #include "io/scene.hpp"
 #include "program_test.hpp"
@@ -11,7 +11,7 @@ namespace {
 
 class Restarting : public ProgramTest {
  protected:
-  /// The first `steps` of the scene's 25, in `file`.
+  /// Runs the first `steps` of the scene's 25 into `file`.
   void run_to(char const* steps, char const* file, Arguments const& more = {}) const {
     output_of(joined({"run", "chain.toml", "--quiet", "--output", file, "--set",
                       std::string("integrator.steps=") + steps},
@@ -24,7 +24,7 @@ class Restarting : public ProgramTest {
                   more);
   }
 
-  /// Done, with one line that names these keys and ends in `end`.
+  /// Expects success, with one line that names these keys and ends in `end`.
   void expect_named(Arguments const& more, std::string const& keys,
                     std::string const& end = "") const {
     auto const outcome = start(to_second(more));
@@ -71,7 +71,7 @@ TEST_F(Restarting, IsRefusedForAnotherStateThanTheScenes) {
   expect_refused({}, "first.h5");
 }
 
-// What a lattice is has to be equal, however it is typed.
+// The lattice must be equal, however it is typed.
 TEST_F(Restarting, IsRefusedOnAnotherLattice) {
   run_to("12", "first.h5");
   auto const expect_key = [&](std::string const& change, std::string const& key) {
@@ -85,7 +85,7 @@ TEST_F(Restarting, IsRefusedOnAnotherLattice) {
   expect_key("lattice.frozen='i==0'", "lattice.frozen");
   expect_key("lattice.moments=[0.5]", "lattice.moments");
   expect_key("lattice.gyromagnetic=[0.5]", "lattice.gyromagnetic");
-  // Typed otherwise, but the same.
+  // Typed differently, but equal.
   output_of(
       to_second(set("lattice={shape=[20,3,1],spacing=[1,1.0,7.5],boundary=['open','open',"
                     "'periodic'],moments=[1.0]}",
@@ -124,11 +124,11 @@ TEST_F(Restarting, NamesWhatElseDiffers) {
   expect_named(set("thermal={temperature=0.01,seed=2}"), "thermal");
   expect_named(set("integrator.dt=0.01"), "integrator.dt");
   EXPECT_EQ(info_of("second.h5").frame_steps.front(), 24);
-  // 1.0 is 1, and what belongs to the new run alone is not named.
+  // 1.0 equals 1, and keys of only the new run are not named.
   output_of(to_second(set("field.exchange=1", "output.every=3", "initial={uniform=[0,0,1]}")));
 }
 
-// What a method remembers of another motion would be wrong: the energy that it holds, for example.
+// The method's memory of another motion would be wrong: the energy that it holds, for example.
 TEST_F(Restarting, ForgetsTheStepsOfAnotherMotion) {
   for (std::string const method : {"ab2", "dp5"}) {
     SCOPED_TRACE(method);
@@ -137,7 +137,7 @@ TEST_F(Restarting, ForgetsTheStepsOfAnotherMotion) {
     run_to("12", "first.h5", joined(same, {"--overwrite"}));
     auto const other = joined(same, set("field.applied=[3.0,-0.2,0.1]"));
     expect_named(other, "field.applied", "; the method begins again");
-    // By hand: the state as a start, the field of no use before.
+    // By hand: the state as a start.
     run_to("13", "third.h5",
            joined(other, joined(set("initial={file='first.h5'}"), {"--overwrite"})));
     auto const one = last_spins("second.h5"), other_one = last_spins("third.h5");
@@ -147,7 +147,7 @@ TEST_F(Restarting, ForgetsTheStepsOfAnotherMotion) {
   }
 }
 
-/// What makes a run remember more than its spins.
+/// Settings that make a run remember more than its spins.
 std::vector<Arguments> const memories{
     set("integrator.method='ab2'"),
     {"--set", "integrator.compensated=true", "--precision", "single"},
@@ -177,7 +177,7 @@ TEST_F(Restarting, NeedsTheCheckpointOfAMethodThatRemembers) {
   auto const checkpoint = in_folder("first.checkpoint.h5");
   std::filesystem::rename(checkpoint, in_folder("kept.h5"));
   expect_refused(ab2, "first.checkpoint.h5 is not there");
-  // Of another scene than the file's.
+  // From another scene than the file's.
   run_to("7", "other.h5", ab2);
   std::filesystem::rename(in_folder("other.checkpoint.h5"), checkpoint);
   expect_refused(ab2, "is of another scene");
@@ -199,7 +199,7 @@ TEST_F(Restarting, CheckpointsAreStoredWhereTheyAreNeeded) {
   EXPECT_FALSE(exists("first.checkpoint.h5")) << "the last frame is it";
   run_to("12", "never.h5", set("integrator.method='ab2'", "output.checkpoint_every=0"));
   EXPECT_FALSE(exists("never.checkpoint.h5"));
-  // One that a deleted trajectory left is in nobody's way.
+  // A checkpoint without its trajectory may be replaced.
   run_to("12", "third.h5", set("integrator.method='ab2'"));
   std::filesystem::remove(in_folder("third.h5"));
   ASSERT_TRUE(exists("third.checkpoint.h5"));
@@ -240,7 +240,7 @@ TEST_F(Restarting, TakesTheMethodThatAutoChoseBefore) {
   };
   run_to("5", "first.h5", set(to("5")));
   auto const first = info_of("first.h5").header.resolved_scene;
-  // What stands in the file is taken, whatever would be chosen.
+  // Uses the choice in the file, whatever would be chosen now.
   auto const before = io::parse_scene(first, "scene.toml").integrator;
   run_to("10", "second.h5", {"--set", to("10"), "--restart", "first.h5"});
   auto const second = info_of("second.h5");

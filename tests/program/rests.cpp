@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// integrator.until_torque ends a run at a minimum of the energy: at a maximum or a saddle the
-// torque is small, too.
+// integrator.until_torque ends a run at a minimum of the energy: the torque is also small at a
+// maximum or a saddle.
 #include "program_test.hpp"
 
 #include <array>
@@ -13,14 +13,14 @@ namespace {
 
 class Rests : public ProgramTest {
  protected:
-  /// A scene that has to come to rest with all spins along +z or -z.
+  /// A scene whose spins must all relax to +z or -z.
   struct Trial {
     std::string scene;
     Arguments more = {};
     double end_z = 1;  // 0: either
   };
 
-  /// The run has to end before its end, at a minimum.
+  /// Expects the run to end early, at a minimum.
   void expect_minimum(Trial const& trial) const {
     auto const info = run(trial.scene, joined(trial.more, {"--overwrite"}));
     auto const m = last_spins("out.h5");
@@ -44,7 +44,7 @@ class Rests : public ProgramTest {
     return text;
   }
 
-  /// Spins along z up to an angle in a direction of their own each.
+  /// Returns spins at up to an angle from z, each in a random direction.
   static std::string near_pole(double angle, unsigned seed, char const* pole = "-1") {
     std::mt19937 engine(seed);
     std::uniform_real_distribution<double> phase(0, 6.28);
@@ -62,7 +62,7 @@ class Rests : public ProgramTest {
   static constexpr auto film =
       "[lattice]\nshape = [5, 4]\n[field]\nexchange = 0.5\nanisotropy = { constant = 0.5, axis = "
       "[0, 0, 1] }\napplied = [0, 0, 0.8]";
-  // One spin at the top, one on its way down.
+  // One spin at the top, one moving down.
   static constexpr auto apart = "[lattice]\nshape = [2]\n[field]\napplied = [0, 0, 1]";
 };
 
@@ -74,7 +74,7 @@ TEST_F(Rests, AreNotMaxima) {
     expect_minimum({scene(pair, near_pole(angle, seed + 1))});
     expect_minimum({scene(film, near_pole(angle, seed + 2))});
     expect_minimum({scene(film, near_pole(angle, seed + 3)), {"--precision", "single"}});
-    // Of two spins that do not see each other, one falls from the top long after the other.
+    // One of two uncoupled spins falls from the top long after the other.
     char start[200];
     std::snprintf(start, sizeof start, "expression = [\"i == 0 ? %g : 1\", \"0\", \"-1\"]", angle);
     expect_minimum({scene(apart, start)});
@@ -82,7 +82,7 @@ TEST_F(Rests, AreNotMaxima) {
 }
 
 TEST_F(Rests, AreNotSaddles) {
-  // A hard axis along x, an easy one along z: y is a saddle, to which damping brings the spins.
+  // A hard axis along x, an easy one along z: y is a saddle, to which damping leads the spins.
   constexpr auto saddle =
       "[lattice]\nshape = [3]\n[field]\nexchange = 1\nanisotropy = [{ constant = 0.4, axis = [0, "
       "0, 1] }, { constant = -0.6, axis = [1, 0, 0] }]";
@@ -94,7 +94,7 @@ TEST_F(Rests, AreNotSaddles) {
 }
 
 TEST_F(Rests, OfAFilmInSi) {
-  // Against the easy axis by .4 T, more than the .25 T of the anisotropy.
+  // .4 T against the easy axis, more than the .25 T of the anisotropy.
   auto const film = [](double angle) {
     char text[600];
     std::snprintf(
@@ -116,7 +116,7 @@ TEST_F(Rests, ByMethods) {
     expect_minimum({scene(pair, near_pole(1e-9, 7), 0.2, method, 0.05)});
 }
 
-// Nothing moves a spin from the very top: the run says where it ended.
+// Nothing moves a spin exactly at the top: the run says where it ended.
 TEST_F(Rests, AtATopAreNamed) {
   write("top.toml", scene(apart, "expression = [\"i\", \"0\", \"-1\"]"));
   auto const outcome = start({"run", "top.toml", "--output", "top.h5"});
@@ -124,7 +124,7 @@ TEST_F(Rests, AtATopAreNamed) {
   EXPECT_TRUE(contains(outcome.output, "ended at a saddle or a maximum of the energy"));
   EXPECT_EQ(output_of({"run", "top.toml", "--quiet", "--output", "quiet.h5"}), "");
   EXPECT_EQ(info_of("top.h5").frame_steps.back(), 100000);
-  // A minimum from the start on is none.
+  // A run that starts at a minimum does not end early.
   auto const info = run(scene(one_spin, "uniform = [0, 0, 1]"), set("integrator.steps=50"));
   EXPECT_EQ(info.frame_steps.back(), 50);
 }

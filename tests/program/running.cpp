@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What a good run leaves in its file.
+// The file of a successful run.
 #include "program_test.hpp"
 
 #include <cmath>
@@ -76,7 +76,8 @@ TEST_F(Running, EnergyOfOneSpinIsTheFormula) {
   EXPECT_NEAR(info.frame_scalars[0].energy, anisotropy + zeeman + demag, 1e-15);
 }
 
-// Arithmetic on denormal numbers is ten times slower, and a run at rest would be full of them.
+// Arithmetic on denormal numbers is ten times slower, and a run near equilibrium would be full of
+// them.
 TEST_F(Running, ComponentsThatDecayEndAtZero) {
   for (std::string const threads : {"1", "2"}) {
     run(macrospin_scene(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The same scene by different ways has to give the same trajectory.
+// One scene in different forms must give one trajectory.
 #include "../scene/hdf5_file.hpp"
 #include "program_test.hpp"
 

@@ -32,7 +32,7 @@ TEST_F(SiScene, CheckPrintsBothKindsOfNumbers) {
   EXPECT_EQ(json.at("energy_unit"), units().energy_unit());
   EXPECT_TRUE(contains(output_of(joined({"check", scene}, set("thermal={temperature=300}"))),
                        "temperature 300 K (0.08583"));
-  // What is named as stable may be typed.
+  // The value printed as stable can be typed.
   auto const typed = output_of(
       {"check", scene, "--json", "--set", text("integrator.dt=", double(json.at("stable_dt")))});
   EXPECT_NEAR(nlohmann::json::parse(typed).at("dt"), json.at("stable_dt"), 1e-25);
@@ -146,7 +146,7 @@ TEST_F(SiScene, UntilTorqueIsInTesla) {
   EXPECT_GT(torque, 1e-4 * std::exp(-0.1 * gamma_e * 1.05e-12 / 1.01));
 }
 
-// Which method it is depends on the machine, and so does whether dt is warned of.
+// The chosen method depends on the machine, and so does a warning about dt.
 TEST_F(SiScene, AChosenMethodKeepsTheScenesTimes) {
   auto const run_by = [&](std::string const& text_of_scene, Arguments const& more) {
     auto const spins = end_of(text_of_scene, joined(more, {"--threads", "1"}));

@@ -11,7 +11,7 @@ namespace cayspin::program::test {
 
 inline constexpr double gamma_e = 1.760859e11;
 
-/// With every digit.
+/// Formats with every digit.
 template <class... Parts>
 std::string text(Parts const&... parts) {
   std::ostringstream stream;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// cayspin sweep: all combinations in one file, however it was interrupted on the way.
+// cayspin sweep: all combinations in one file, however often it was interrupted.
 #include "io/sweep.hpp"
 #include "program_test.hpp"
 
@@ -18,7 +18,7 @@ class Sweeping : public ProgramTest {
   static Arguments sweep_into(char const* file, Arguments const& more) {
     return joined({"sweep", "chain.toml", "--output", file}, more);
   }
-  /// Of six runs.
+  /// Returns arguments for six runs.
   static Arguments arguments(char const* file, Arguments const& more = {}) {
     return joined(sweep_into(file, {"--over", "system.damping=0.1,0.3", "--over",
                                     "field.applied=[0.3,-0.2,0.1],[0,0,0.5],['0.1*cos(t)',0,0]"}),
@@ -78,13 +78,13 @@ TEST_F(Sweeping, GoesOnAfterAKill) {
     return fs::exists(io::swept_run_file(file, 2)) && fs::exists(io::swept_run_file(file, 3));
   }));
   EXPECT_EQ(end(sweep_process, SIGKILL), 128 + SIGKILL) << "it ended before it was killed";
-  auto const torn = io::read_sweep(file);  // it is whole
+  auto const torn = io::read_sweep(file);  // it is complete
   EXPECT_FALSE(torn.complete);
   auto const early = io::read_info(io::swept_run_file(file, 0)).cost.wall_seconds;
   EXPECT_GT(early, 0);
   expect_refused(all("killed.h5.runs/none/killed.h5"), "does not exist");
 
-  // A reader who has it open is no obstacle.
+  // A reader that has it open does not matter.
   hid_t const reader = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   auto const output = output_of(all("killed.h5"));
   H5Fclose(reader);
@@ -122,7 +122,7 @@ TEST_F(Sweeping, RefusesADamagedRunUntilItIsDeleted) {
   EXPECT_TRUE(contains(outcome.errors, "torn.h5.runs/0000.h5: "));
   EXPECT_TRUE(fs::exists(io::swept_run_file(file, 2)));
   fs::remove(io::swept_run_file(file, 0));
-  fs::resize_file(io::swept_run_file(file, 1), 1000);  // noticed when the sweep goes on
+  fs::resize_file(io::swept_run_file(file, 1), 1000);  // noticed when the sweep continues
   EXPECT_TRUE(contains(output_of(all), "2 of 2  run 0001"));
   EXPECT_EQ(spins("torn.h5", 0), right);
 }
@@ -167,7 +167,7 @@ TEST_F(Sweeping, AnInterruptKeepsWhatIsDone) {
   EXPECT_FALSE(sweep.complete);
   EXPECT_EQ(sweep.runs[0].status, 0);
   EXPECT_EQ(sweep.runs[1].status, io::SweptRun::not_run);
-  EXPECT_EQ(spins("stopped.h5", 0).size(), 2u * 3 * 20 * 3);  // by its link
+  EXPECT_EQ(spins("stopped.h5", 0).size(), 2u * 3 * 20 * 3);  // through its link
   EXPECT_TRUE(contains(output_of({"info", "stopped.h5"}), "open"));
 }
 

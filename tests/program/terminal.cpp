@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What long work shows on a terminal.
+// Progress on a terminal.
 #include "program_test.hpp"
 
 #include <pty.h>
@@ -13,8 +13,8 @@ namespace {
 
 class Terminal : public ProgramTest {
  protected:
-  /// All that the program writes on a terminal, with standard output in a file where one is named.
-  /// It has to succeed.
+  /// Returns all output of the program on a terminal, with standard output in a file if one is
+  /// given. Expects success.
   std::string on_terminal(Arguments const& arguments, char const* output = nullptr,
                           unsigned short lines = 40) const {
     winsize const size{lines, 100, 0, 0};
@@ -84,7 +84,7 @@ TEST_F(Terminal, AdviceHasABarUnlessItIsToBeQuiet) {
   EXPECT_FALSE(contains(on_terminal(joined(arguments, {"--quiet"})), "\x1b"));
 }
 
-// Half blocks: the upper half of a character has one colour, what is behind it another.
+// Half blocks: the foreground colours the upper half of a character, the background the lower half.
 TEST_F(Terminal, CheckDrawsTheStartWhereColoursAreThere) {
   Arguments const film =
       set("lattice.shape=[4,4]", "initial={expression=['x < 0.5 ? 1 : 0','0','x < 0.5 ? 0 : 1']}");

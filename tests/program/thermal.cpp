@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// [thermal]: the same bits however a run is cut and watched, and what `check` says.
+// [thermal]: equal bits for any interruption and observation of a run, and the output of `check`.
 #include "program_test.hpp"
 
 #include <nlohmann/json.hpp>
@@ -96,7 +96,7 @@ TEST_F(Thermal, TemperatureZeroIsNoTemperature) {
   EXPECT_EQ(last_spins("zero.h5"), last_spins("cold.h5"));
 }
 
-// From rest spins take up energy; that a number is not finite stops a run as ever.
+// Spins in equilibrium take up energy; numbers that are not finite stop a run as usual.
 TEST_F(Thermal, TheGuardLetsEnergyRise) {
   Arguments const from_rest = set("initial={uniform=[0,0,1]}", "field={exchange=1.0}");
   end_of("out.h5", from_rest);
@@ -133,7 +133,7 @@ TEST_F(Thermal, IsRefusedWhereItHasNoMeaning) {
   auto const scene = write("scene.toml", warm_scene()).string();
   for (auto const& [arguments, part] : std::vector<std::pair<Arguments, std::string>>{
            {{"relax", scene, "--output", "out.h5", "--set", "field.applied=[0.3,0.1,0.2]"},
-            "thermal.temperature: a state of rest has no temperature"},
+            "thermal.temperature: an equilibrium has no temperature"},
            {{"trade", scene}, "thermal.temperature: trajectories at a temperature are random"},
            {{"advise", scene, "--error", "1e-4"}, "thermal.temperature: trajectories"}})
     expect_refused(arguments, part);

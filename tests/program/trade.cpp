@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// `cayspin trade` and `cayspin advise`: their errors are those of the runs they name.
+// `cayspin trade` and `cayspin advise`: their errors are those of the runs that they name.
 #include "early_rest.hpp"
 #include "program_test.hpp"
 
@@ -13,7 +13,7 @@
 namespace cayspin::program::test {
 namespace {
 
-/// Of the command that an advice names, behind the scene.
+/// Returns the arguments of a recommended command, after the scene.
 Arguments advised_arguments(std::string const& advice) {
   std::istringstream lines(advice);
   Arguments arguments;
@@ -57,7 +57,7 @@ end = 4.0
   std::string advise(std::string const& error, Arguments const& more = {}) const {
     return output_of(joined({"advise", "scene.toml", "--error", error, "--threads", "1"}, more));
   }
-  // Of out.h5.
+  // Reads from out.h5.
   void expect_equal_times(char const* dataset, double apart, std::size_t count) const {
     auto const times = read_dataset("out.h5", dataset).values;
     ASSERT_EQ(times.size(), count) << dataset;
@@ -67,7 +67,7 @@ end = 4.0
   std::vector<double> exact() const { return end(set("integrator.dt=0.0005")); }
 };
 
-TEST_F(Trading, ItsErrorsFallAndItsFrontIsAFront) {
+TEST_F(Trading, ErrorsFallAndParetoFrontHasNoDominatedPoint) {
   auto const all = trade({"--seconds", "2"});
   EXPECT_EQ(all["horizon"], 4.0);
   EXPECT_LT(all["uncertainty"].get<double>(), 1e-10);
@@ -77,7 +77,7 @@ TEST_F(Trading, ItsErrorsFallAndItsFrontIsAFront) {
     names.insert(method["method"]);
     auto const& rungs = method["rungs"];
     ASSERT_FALSE(rungs.empty()) << method["method"];
-    if (rungs.size() < 3) continue;  // far behind
+    if (rungs.size() < 3) continue;  // far slower than the others
     EXPECT_LT(rungs.back()["error"].get<double>(), 0.5 * rungs.front()["error"].get<double>())
         << method["method"];
     for (auto const& rung : rungs)
@@ -90,7 +90,7 @@ TEST_F(Trading, ItsErrorsFallAndItsFrontIsAFront) {
     for (auto const& [other, others] : front) EXPECT_FALSE(other <= error && others < seconds);
 }
 
-/// The lines of a text from one that begins so to the next empty one, without it.
+/// Returns the lines of a text from one with this start to the next empty one, without it.
 std::vector<std::string> table_below(std::string const& text, std::string const& heading) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
@@ -137,7 +137,7 @@ TEST_F(Trading, ItsTextHasEveryRungAndJudgesTheAdvice) {
   }
 }
 
-// Of what is measured: error and evaluations of the same dt, run by itself.
+// Error and evaluations equal those of a separate run with that dt.
 TEST_F(Trading, ARungIsARunOfTheScene) {
   auto const reference = exact();
   auto const all = trade({"--seconds", "2"});
@@ -151,7 +151,7 @@ TEST_F(Trading, ARungIsARunOfTheScene) {
     exactly << "integrator={method='rkmk4',dt=" << dt << ",steps=" << steps << "}";
     auto const numbers = end(set(exactly.str()));
     EXPECT_EQ(rung["evaluations"], 4 * steps);
-    // The largest of a dozen looks.
+    // The largest of a dozen samples.
     EXPECT_GE(rung["error"].get<double>(), 0.9 * distance(numbers, reference));
     EXPECT_LE(rung["error"].get<double>(), 100 * distance(numbers, reference));
   }
@@ -161,7 +161,7 @@ TEST_F(Trading, AnAdvisedRunHasTheErrorAskedFor) {
   auto const reference = exact();
   for (bool const fine : {false, true}) {
     std::string const error = fine ? "1e-6" : "1e-3";
-    // The finer one of a scene with keys that not every method takes.
+    // The finer of a scene with keys that not every method accepts.
     auto const advice = advise(
         error,
         set(fine
@@ -171,7 +171,7 @@ TEST_F(Trading, AnAdvisedRunHasTheErrorAskedFor) {
     auto const arguments = advised_arguments(advice);
     ASSERT_FALSE(arguments.empty()) << advice;
     EXPECT_LT(distance(end(arguments), reference), 2 * std::stod(error)) << advice;
-    // As the scene has it, whatever the steps are.
+    // As in the scene, for any steps.
     expect_equal_times("/time", 1.0, 5);
     expect_equal_times("/scalars/time", 0.4, 11);
     auto const text = info_of("out.h5").header.scene_text;
@@ -179,9 +179,9 @@ TEST_F(Trading, AnAdvisedRunHasTheErrorAskedFor) {
   }
 }
 
-/// A scene that is advised on, and seen at each of its frames.
+/// A scene to advise on, compared at each of its frames.
 struct Watched : Trading {
-  /// Over that asked for: the largest at any frame.
+  /// Returns the ratio of error to requested error: the largest at any frame.
   double error(std::string const& text, std::string const& asked) const {
     auto const frames = [&](Arguments const& more) {
       end_of(text, joined(more, {"--threads", "1"}));
@@ -194,8 +194,8 @@ struct Watched : Trading {
   }
 };
 
-// 40 radians in a fourth of the run: steps that long do not converge in an implicit method,
-// which halves them. Runs with 4 and 8 steps then end alike.
+// 40 radians in a fourth of the run: steps that long do not converge in an implicit method, which
+// halves them. Runs with 4 and 8 steps then end equally.
 TEST_F(Watched, OneSpinThatTurnsFast) {
   std::string const scene = R"toml([system]
 kind = "llg"
@@ -218,7 +218,7 @@ every = 10
     EXPECT_LT(this->error(scene, error), 2) << error;
 }
 
-// All that happens happens in the first fiftieth of the run.
+// All motion happens in the first fiftieth of the run.
 TEST_F(Watched, ASlabThatComesToRestEarly) {
   std::string const scene = early_rest(R"toml([integrator]
 method = "rkmk8"
@@ -227,7 +227,7 @@ end = 20.0
 [output]
 every = 20
 )toml");
-  // Errors of adaptive steps at rest rise and fall between the looks.
+  // Errors of adaptive steps near equilibrium rise and fall between the samples.
   for (char const* error : {"1e-3", "1e-6"}) EXPECT_LT(this->error(scene, error), 4) << error;
 }
 
@@ -280,13 +280,13 @@ TEST_F(Trading, TheCommandOfAnAdviceIsOneForAShell) {
       << advice;
 }
 
-TEST_F(Trading, OfAnEndlessRunItTakesAPart) {
+TEST_F(Trading, ShortensTheHorizonOfVeryLongRuns) {
   auto const all = trade(joined({"--seconds", "1e-9", "--precision", "double"},
                                 set("integrator={method='rkmk4',dt=1,end=1e8}")));
   EXPECT_EQ(all["horizon"], std::ldexp(1e8, -20));
 }
 
-TEST_F(Trading, ABudgetThatIsTooSmallIsSaidInOneLine) {
+TEST_F(Trading, AdviseReportsBudgetExceeded) {
   auto const outcome = expect_status(
       3, {"advise", "scene.toml", "--error", "1e-6", "--budget", "0.000000001s", "--threads", "1"});
   EXPECT_TRUE(contains(outcome.errors, "beyond the budget"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What `cayspin trade` and `cayspin advise` look at, what that costs, and how long they may take.
+// Samples, costs and duration of `cayspin trade` and `cayspin advise`.
 #include "early_rest.hpp"
 #include "program_test.hpp"
 
@@ -30,7 +30,7 @@ struct Looks : ProgramTest {
                                  [&](json const& one) { return one.at("method") == name; });
   }
 
-  /// At each step of so many, and of steps as many times as fine.
+  /// Returns frames at each of so many steps, and of steps `finer` times as fine.
   std::vector<double> frames(std::int64_t steps, std::int64_t finer) const {
     std::ostringstream integrator;
     integrator.precision(17);
@@ -42,7 +42,7 @@ struct Looks : ProgramTest {
   }
 };
 
-// At its end the error of this run is a millionth of that in motion.
+// At its end the error of this run is a millionth of that during the motion.
 TEST_F(Looks, ErrorsOfTradeAreThoseOfTheMotion) {
   auto const all = trade();
   for (auto const& rung : method(all, "rkmk4").at("rungs")) {
@@ -83,7 +83,7 @@ TEST_F(Looks, CostsOfErrorsLieBetweenTheRunsOfALadder) {
   EXPECT_NEAR(ratio, 3.162, 0.3);
 }
 
-// To this error of disordered spins it once took 40 s.
+// This error of disordered spins once took 40 s.
 TEST_F(Looks, AdviceTakesNoLongerThanItSays) {
   auto const disordered =
       set("lattice={shape=[8,8,8],boundary='periodic'}", "field={exchange=1.0,applied=[0,0,0.5]}",

@@ -11,14 +11,14 @@ namespace fs = std::filesystem;
 struct WrongUse {
   char const* name;
   Arguments arguments;
-  char const* named;  // what the line has to name
+  char const* named;  // words that the line must contain
 
   friend std::ostream& operator<<(std::ostream& stream, WrongUse const& use) {
     return stream << use.name;
   }
 };
 
-// Each is put behind "run chain.toml". tests/scene has the messages of single keys.
+// Each is appended to "run chain.toml". tests/scene has the messages of single keys.
 std::vector<WrongUse> wrong_scenes() {
   return {
       {"UnknownKey", set("lattice.spacng=1"), "spacing"},
@@ -92,7 +92,7 @@ TEST_P(WrongCommand, IsOneLineAndStatusTwo) {
 INSTANTIATE_TEST_SUITE_P(Program, WrongCommand, testing::ValuesIn(wrong_commands()),
                          [](auto const& use) { return std::string(use.param.name); });
 
-#if !defined(CAYSPIN_HOST_DEVICE)  // beside which it is not built
+#if !defined(CAYSPIN_HOST_DEVICE)  // not built with it
 INSTANTIATE_TEST_SUITE_P(
     Siblings, WrongCommand,
     testing::Values(WrongUse{"UnknownPartOfThePaper", {"reproduce", "table9"}, "table1"},

@@ -15,7 +15,7 @@ enum class Method { euler, heun, rkmk4, chart, ab2, projected_rk4, midpoint };
 inline constexpr std::array<char const*, 7> method_names{
     "euler", "heun (exponential)", "rkmk4", "rk4 in the chart", "ab2", "projected_rk4", "midpoint"};
 
-/// Numbers that are the same for a seed with any standard library.
+/// Random numbers equal for a seed with any standard library.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : engine_(seed) {}
@@ -35,19 +35,19 @@ class Draw {
   std::mt19937_64 engine_;
 };
 
-/// One scene of many: seed and number say all about it.
+/// A random scene, determined by seed and number.
 struct RandomScene {
   std::uint64_t seed;
   std::int64_t number;
   Method method;
   bool single, orthogonal;
   Slab slab;
-  double share;  // of the stable dt, or of 1 / (field bound) where there is none
+  double share;  // of the stable dt, or of 1 / (field bound) without one
   int steps;
   unsigned start;
 
   static RandomScene drawn(std::uint64_t seed, std::int64_t number) {
-    // Neighbouring seeds and numbers have nothing in common.
+    // Adjacent seeds and numbers are unrelated.
     Draw draw((seed + 1) * 0x9e3779b97f4a7c15u + static_cast<std::uint64_t>(number) * 1000003u);
     RandomScene scene{};
     scene.seed = seed;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What holds for every scene, on scenes drawn anew in each run: |m| = 1, an energy that falls, the
-// same bits on every host space, and symmetric methods that find their way back.
+// Properties of every scene, on new random scenes in each run: |m| = 1, a falling energy, equal
+// bits on every host space, and reversibility of symmetric methods.
 #include "../support/backends.hpp"
 #include "random_scene.hpp"
 
@@ -12,7 +12,7 @@
 namespace cayspin::test {
 namespace {
 
-/// Both generators as one type: which it is, is asked at run time.
+/// Both generators as one type, selected at run time.
 template <class Llg>
 struct EitherGenerator {
   Llg llg;
@@ -35,7 +35,7 @@ struct EitherGenerator {
 template <class Llg>
 EitherGenerator(Llg, bool) -> EitherGenerator<Llg>;
 
-/// The largest of what was seen, in units of what is allowed, and how often it was looked at.
+/// The largest observed value, in units of the allowed one, and the number of observations.
 struct Property {
   std::int64_t scenes = 0;
   double largest = 0;
@@ -51,7 +51,7 @@ struct Property {
   }
 };
 
-/// A second run has the same bits on it: all threads of a host, or the same device.
+/// Space of a second run with equal bits: all threads of a host, or the same device.
 using Again =
     std::conditional_t<detail::is_host_execution<Space>, Kokkos::DefaultHostExecutionSpace, Space>;
 
@@ -91,12 +91,12 @@ class Check {
     return scene_.share / rate;
   }
 
-  // The chart loses figures where a stage comes close to -m0, which it may from 0.85 on.
+  // The chart loses digits where a stage comes close to -m0, which may happen from 0.85 on.
   double share_of_norm() const { return scene_.method == Method::chart ? 0.7 : 1; }
 
-  // The bound is that of nearly uniform states; from others the energy may rise below it, seldom
-  // and seen above 0.9 of it at orders 1 and 2. At order 4 the method's own error in the energy, of
-  // (dt |A|)^5, has to stay below what little damping takes, damping dt |A|. ab2 has no bound.
+  // The bound holds for nearly uniform states; from others the energy may rarely rise below it,
+  // observed above 0.9 of it at orders 1 and 2. At order 4 the method's own energy error, of (dt
+  // |A|)^5, must stay below the loss by small damping, damping dt |A|. ab2 has no bound.
   bool energy_falls() const {
     if constexpr (is_midpoint) return true;
     if (scene_.method == Method::ab2) return false;
@@ -106,7 +106,7 @@ class Check {
     return scene_.share < 0.25 && std::pow(turn, 4) < 5 * damping;
   }
 
-  /// The end, and |m| and E after each step on the way.
+  /// Checks the end, and |m| and E after each step.
   Field check_steps(Field const& start) {
     auto const source = generator();
     Field spins = copy_of(start);
@@ -128,7 +128,7 @@ class Check {
     return spins;
   }
 
-  // On the threaded space, with no one looking on the way, so that steps may be taken in batches.
+  // On the threaded space without observers, so that steps may be taken in batches.
   void check_bits(Field const& start, Field const& end) {
     Field spins = copy_of(start);
     Stepper stepper(spins);
@@ -149,7 +149,7 @@ class Check {
       all_.not_reversed += away > 1;
   }
 
-  // Steps are solved to 8 epsilon, and neighbouring paths part at most by the field's rates.
+  // Steps are solved to 8 epsilon, and adjacent paths diverge at most by the field's rates.
   double reversal_bound() const {
     double const rate = dt_ * scene_.slab.field_bound();
     return 4 * eps * scene_.steps * std::exp(0.5 * rate * scene_.steps);
@@ -181,7 +181,7 @@ void check(RandomScene const& scene, Properties& properties) {
   }
 }
 
-/// Is there a checkerboard of two colours on it?
+/// Returns true if the lattice has a checkerboard of two colours.
 bool is_bipartite(Lattice const& lattice) {
   for (int axis = 0; axis < 3; ++axis)
     if (lattice.boundary[axis] == Boundary::periodic && lattice.shape[axis] > 1 &&
@@ -202,9 +202,9 @@ double distance_after_return(RandomScene const& scene, double dt) {
   return largest_distance(spins, start);
 }
 
-/// How far from its start a scene without damping is after as many red-black steps of -dt as of dt,
-/// in units of what is allowed. The longest part of a step, 1.7 dt at order 4, stays where the
-/// iteration for a spin's own terms settles.
+/// Returns the distance of an undamped scene from its start after as many red-black steps of -dt as
+/// of dt, in units of the allowed one. The longest part of a step, 1.7 dt at order 4, is short
+/// enough for the iteration of the on-site terms to converge.
 template <class Real>
 double red_black_reversal(RandomScene const& scene) {
   using Spins = SpinField<Real, Space::memory_space>;

@@ -17,7 +17,7 @@ SCENE = cayspin.Scene(
 
 
 def values(sim):
-    """What is averaged, from what the simulation says of itself."""
+    """Returns the samples to average, from the simulation's own properties."""
     spins, energies = sim.spins, sim.energies()
     of_sites = [spins[0].reshape(-1, 3).mean(0), spins[1][:, :, [0, 2, 3, 4, 5]].reshape(-1, 3).mean(0)]
     return {"energy": sim.energy(), "magnetization": sim.magnetization(),

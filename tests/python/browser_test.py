@@ -86,7 +86,7 @@ class Browser(ScriptTest):
         return np.round(255 * png[..., :3]).astype(int)
 
     def assert_colors(self, expected, tolerance=4):
-        """Of cells in rows from the bottom up, in their middles."""
+        """Compares the colours in the middle of cells, in rows from the bottom up."""
         pixels, (rows, columns) = self.pixels(), expected.shape[:2]
         up, right = ((np.arange(count) + 0.5) / count for count in (rows, columns))
         found = pixels[np.ix_((pixels.shape[0] * (1 - up)).astype(int),

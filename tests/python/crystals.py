@@ -39,7 +39,7 @@ class Dispersions(PackageTest):
         np.testing.assert_allclose(found.intensity, expected.intensity, rtol=1e-12)
         np.testing.assert_allclose(edges, run_of.cell[0] + run_of.cell[1], atol=1e-15)
         self.assertAlmostEqual(found.corners[1], 4 * np.pi / 3 / 0.5)
-        # Both bands, 0.5 (3 -+ |f|), but at Gamma, about whose mode all spins are looked at.
+        # Both bands, 0.5 (3 -+ |f|), except at Gamma, whose mode involves all spins.
         h, k, _ = 2 * np.pi * found.wave_vectors.T
         f = np.abs(1 + np.exp(-1j * h) + np.exp(-1j * k))
         off = np.minimum(np.abs(found.peak() - 0.5 * (3 - f)), np.abs(found.peak() - 0.5 * (3 + f)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""What the tests of the package share."""
+"""Shared code of the tests of the package."""
 
 import os
 import pathlib
@@ -65,7 +65,7 @@ class PackageTest(unittest.TestCase):
         return file
 
     def run_program(self, of_scene, *options, command="run"):
-        """What `cayspin run` writes of a scene: the open file."""
+        """Returns the open file that `cayspin run` writes for a scene."""
         self.programs += 1
         text = self.written(of_scene, f"program{self.programs}.toml")
         output = text.with_suffix(".h5")
@@ -84,6 +84,6 @@ class PackageTest(unittest.TestCase):
             self.assertNotIn("\n", message)
 
     def assert_all_refused(self, error, calls):
-        """Of {part of the message: call}."""
+        """Checks the messages of {part of the message: call}."""
         for part, call in calls.items():
             self.assert_refused(error, part, call)

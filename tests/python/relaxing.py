@@ -53,6 +53,27 @@ class Relaxing(PackageTest):
             self.assertEqual(file.attrs["evaluations"], found.evaluations)
             self.assertEqual(file.attrs["torque"], found.torque)
 
+    # Kittel's frequency of the film: curvatures K in the plane and K + 1 across it.
+    def test_the_modes_of_the_program(self):
+        sim = cayspin.Simulation(scene(initial={"uniform": [1, 0, 0]}))
+        modes = sim.modes(3)
+        self.assertTrue(modes.converged)
+        self.assertEqual(modes.shape.shape, (3, 1, 10, 12, 3))
+        half = 0.1 * (0.1 + 1.1) / 2
+        kittel = np.sqrt((1 + 0.1**2) * 0.1 * 1.1 - half**2)
+        self.assertAlmostEqual(modes.frequency[0], kittel, delta=1e-10)
+        self.assertAlmostEqual(modes.decay[0], half, delta=1e-10)
+        longest = np.sqrt((np.abs(modes.shape)**2).sum(-1)).max(axis=(1, 2, 3))
+        np.testing.assert_allclose(longest, 1, rtol=1e-12)
+        file = self.run_program(scene(initial={"uniform": [1, 0, 0]}), "--count", "3", "--at-rest",
+                                command="modes")
+        np.testing.assert_array_equal(modes.frequency, file["frequency"])
+        np.testing.assert_array_equal(modes.shape.real, file["mode"][..., 0])
+        for count in (0, -1, 1000):
+            self.assert_refused(cayspin.CayspinError, "modes; accepted: 1 to 128",
+                                lambda count=count: sim.modes(count))
+        self.assert_refused(cayspin.CayspinError, "tolerance", lambda: sim.modes(tolerance=2.0))
+
     # Along the easy axis a uniform film switches at |h| = K.
     def test_hysteresis(self):
         fields = [[0.03 * i, 0, 0.0003] for i in range(10, -11, -1)]
@@ -162,7 +183,7 @@ class Relaxing(PackageTest):
         body = cayspin.Scene(system={"kind": "rigid_body", "inertia": [1, 2, 3]},
                              lattice={"shape": [1]}, initial={"uniform": [1, 0, 0]},
                              integrator=steps)
-        for of, says in ((warm, "no temperature"), (body, "no state of rest")):
+        for of, says in ((warm, "no temperature"), (body, "no equilibrium")):
             self.assert_refused(cayspin.SceneError, says, cayspin.Simulation(of).relax)
         endless = cayspin.Simulation(scene(field={"nonlocal": lambda s, t: s * np.nan}))
         self.assert_refused(cayspin.NumbersFailed, "not finite", endless.relax)

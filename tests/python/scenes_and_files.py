@@ -103,7 +103,7 @@ class OwnFields(PackageTest):
         np.testing.assert_allclose(sims[0].spins, sims[1].spins, rtol=0, atol=40 * 64 * 2.0**-52)
         self.assertAlmostEqual(sims[0].energies()["nonlocal"], sims[1].energies()["slab_demag"])
 
-    def test_a_nonlocal_field_is_dear_between_substeps(self):
+    def test_a_nonlocal_field_is_multirate_between_substeps(self):
         calls = []
 
         def slab(spins, t):
@@ -124,7 +124,7 @@ class OwnFields(PackageTest):
         self.assert_refused(ZeroDivisionError, "at half past", sim.step, 1)
         self.assertEqual(sim.steps, 7)
         np.testing.assert_array_equal(sim.spins, before)
-        self.assert_refused(cayspin.CayspinError, "no term of the field is dear",
+        self.assert_refused(cayspin.CayspinError, "no term of the field is expensive",
                             lambda: cayspin.Simulation(scene(integrator={"substeps": 3})))
 
     def test_what_a_function_raises_and_returns(self):
@@ -197,6 +197,34 @@ class Files(PackageTest):
                         self.assertEqual(mine, theirs, key)
                 program.visititems(lambda name, node: isinstance(node, h5py.Group) or
                                    np.testing.assert_array_equal(here[name], node, name))
+
+    def test_regions_terms_and_the_shift(self):
+        # A wall three cells from the middle comes into it.
+        of = scene(lattice={"shape": [12, 4], "spacing": 1.0, "boundary": "open",
+                            "regions": "j % 2", "follow": {"axis": "x", "quantity": "mz"}},
+                   field={"anisotropy": {"constant": 2.0, "axis": [0, 0, 1]}, "applied": None,
+                          "slab_demag": None, "mu0": None},
+                   initial={"expression": ["1/cosh(i - 8.5)", "0", "-tanh(i - 8.5)"]},
+                   output={"every": 10, "scalars_every": 5, "regions": True, "terms": True})
+        program = self.run_program(of)
+        sim = cayspin.Simulation(of)
+        output = self.folder / "run.h5"
+        sim.run(output=output)
+        with cayspin.open(output) as run:
+            self.assertEqual(run.terms, ["exchange", "anisotropy"])
+            for name in ("region_magnetization", "region_energy", "term_energy", "shift"):
+                np.testing.assert_array_equal(run.scalars[name], program["scalars"][name], name)
+            self.assertEqual(run.scalars["region_magnetization"].shape, (9, 2, 3))
+            self.assertEqual(list(sim.energies().values()),
+                             list(run.scalars["term_energy"][-1]))
+            means = [sim.spins[0, row::2].reshape(-1, 3).mean(0) for row in range(2)]
+            np.testing.assert_allclose(run.scalars["region_magnetization"][-1], means, atol=1e-14)
+            self.assertEqual((run.shift[0], run.shift[-1]), (0, 3))
+        cayspin.Simulation(scene()).run(output=self.folder / "plain.h5")
+        with cayspin.open(self.folder / "plain.h5") as run:
+            self.assertEqual(run.terms, [])
+            with self.assertRaisesRegex(AttributeError, "the file of a scene with lattice.follow"):
+                run.shift
 
     def test_scene_names_the_file(self):
         output = self.folder / "named.h5"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""What tests of the scripts that draw share. Arguments: FOLDER_OF_SCRIPTS WRITER_OF_TRAJECTORIES."""
+"""Shared code of drawing tests. Arguments: FOLDER_OF_SCRIPTS WRITER_OF_TRAJECTORIES."""
 
 import os
 import pathlib

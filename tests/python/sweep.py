@@ -15,7 +15,7 @@ from cayspin_plots.sweep import read_sweep
 
 PROGRAM = sys.argv[2]
 
-# m_z = tanh(damping t) from the equator, by the closed form of one damped spin.
+# m_z = tanh(damping t) from the equator: closed form of one damped spin.
 SCENE = """
 [system]
 kind = "llg"

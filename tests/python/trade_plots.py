@@ -13,7 +13,7 @@ from cayspin_plots import trade_costs, trade_figure
 
 
 class PlotTrade(ScriptTest):
-    """What `cayspin trade --json` prints of five methods, the third never near the front."""
+    """Returns `cayspin trade --json` of five methods, the third never near the front."""
 
     FIRST, SECOND, GREY = (0x00, 0x72, 0xB2), (0xD5, 0x5E, 0x00), (0x8B, 0x91, 0x99)
     PANEL = (7.5, 5.5)
@@ -86,13 +86,13 @@ class PlotTrade(ScriptTest):
         self.assertAlmostEqual(trade_costs.cost(fast, "evaluations", 1e-2), 40 / 0.95 / 0.1**0.25)
         self.assertEqual(trade_costs.cost(euler, "seconds", 1e-8), float("inf"))
         ratio, winner = trade_costs.gain(self.trade, 1e-4)
-        self.assertEqual(winner, "rkmk4")  # double precision alone
+        self.assertEqual(winner, "rkmk4")  # only double precision
         self.assertAlmostEqual(ratio, 3)
         self.assertIsNone(trade_costs.gain(self.trade, 1e-8))
 
     def test_an_error_that_no_method_reaches(self):
         self.assertEqual(trade_costs.cheapest(self.trade["methods"], 1e-8), (math.inf, None))
-        # Another method needs the fewest evaluations to one of the three errors that are reached.
+        # Another method needs the fewest evaluations for one of the three errors reached.
         self.trade["methods"][1]["costs"][2]["evaluations"] = 1
         self.assertEqual(trade_figure.axes_that_differ(self.trade), ["seconds", "evaluations"])
 

@@ -18,7 +18,7 @@ from texture.colors import hue_colors, map_colors
 UP, LEFT, HOME = "\ue013", "\ue012", "\ue011"  # keys of WebDriver
 RENDERER = """const gl = document.createElement("canvas").getContext("webgl2");
 return gl.getParameter(gl.getExtension("WEBGL_debug_renderer_info").UNMASKED_RENDERER_WEBGL);"""
-# Frames that appear within so many milliseconds while the slider is pulled on and on.
+# Frames that appear within so many milliseconds while the slider is dragged.
 RATE = """const [milliseconds, done] = arguments, frame = document.getElementById("frame");
 let count = -1;
 const next = () => {
@@ -30,7 +30,7 @@ const observer = new MutationObserver(next);
 observer.observe(document.body, {attributeFilter: ["data-shown"]});
 setTimeout(() => { observer.disconnect(); done(count / milliseconds * 1000); }, milliseconds);
 next();"""
-# The page is hidden from its second look on, for a second.
+# The page is hidden for a second, from its second request on.
 HIDDEN = """let looks = 0, hidden = false;
 Object.defineProperty(document, "hidden", {get: () => {
   if (++looks === 2) {
@@ -186,7 +186,7 @@ class Controls(Browser):
         self.wait(lambda: self.driver.execute_script(ASKED) == 2)
 
     def shown_at_last(self, still=3, seconds=60):
-        """The frame that stays for `still` seconds."""
+        """Returns the frame that stays for `still` seconds."""
         begin = changed = time.monotonic()
         shown = self.shown()
         while time.monotonic() < changed + still:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""What the page of `cayspin view` gets, and what is refused."""
+"""Data that `cayspin view` sends to its page, and requests that it refuses."""
 
 import os
 import pathlib
@@ -220,7 +220,7 @@ class Data(ScriptTest):
             data["checksum"][20] = checksum.of_frame(
                 data["step"][20], [*numbers, *data["magnetization"][20]], data["spins"][20])
             data.flush()
-            # It may be half written when it is seen first.
+            # It may be half written at first.
             self.assertEqual(page.news(20, 20)["times"], [])
             news = page.news(20, 20)
             self.assertEqual((news["times"], len(news["rows"])), ([2.5], 1))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""What tests of the page in the browser share: TEST.py FOLDER_OF_SCRIPTS WRITER PROGRAM."""
+"""Shared code of tests of the page in the browser: TEST.py FOLDER_OF_SCRIPTS WRITER PROGRAM."""
 
 import http.client
 import json

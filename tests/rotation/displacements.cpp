@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Displacements keep their digits however short they are; rotations are made of them.
+// Displacements keep their relative precision at any length; rotations are computed from them.
 #include "reference.hpp"
 
 #include <cayspin/stage/update.hpp>
@@ -11,7 +11,7 @@ template <class Real>
 class Displacements : public ::testing::Test {};
 TYPED_TEST_SUITE(Displacements, Precisions, PrecisionName);
 
-// In long double the difference of two spins is good to 1e-19.
+// In long double the difference of two spins is accurate to 1e-19.
 template <class Real, class Map, class Exact>
 void expect_digits(char const* name, bool tangent, Map const& displacement, Exact const& exact) {
   double const shortest = sizeof(Real) == sizeof(double) ? 0.01 : 1e-7;
@@ -39,7 +39,7 @@ TYPED_TEST(Displacements, KeepTheirDigits) {
     long double const s = inner(f, f);
     return m + (2 / (1 + s)) * (f - s * m);
   };
-  // Where |m| is not quite 1, the projection goes to the sphere that m is on.
+  // If |m| is not exactly 1, the projection goes to the sphere of m.
   auto const exact_projection = [](Long const& f, Long const& m) {
     Long const end = m + f;
     return (1 / std::sqrt(1 + inner(end, end) - inner(m, m))) * end;

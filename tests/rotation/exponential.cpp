@@ -19,14 +19,14 @@ class ExponentialMap : public ::testing::Test {
         << "|f| = " << size;
   }
 
-  /// The numbers around a threshold: exactly it, neighbours, and a little further.
+  /// Returns numbers around a threshold: exactly it, neighbours, and a little further.
   static std::vector<Real> around(Real value) {
     Real const up = std::nextafter(value, std::numeric_limits<Real>::max());
     Real const down = std::nextafter(value, Real(0));
     return {value, up, down, value * Real(1 + 8 * eps), value * Real(1 - 8 * eps)};
   }
 
-  /// exp(f) e_x has its y and z from sin|f|/|f| f alone: seen relative to their own size.
+  /// exp(f) e_x has its y and z only from sin|f|/|f| f: compared relative to their own size.
   static void expect_small_angle(Real size) {
     for (auto const& [f, along] :
          {std::pair{Vec3<Real>{0, 0, size}, size}, std::pair{Vec3<Real>{0, -size, 0}, size},
@@ -61,7 +61,7 @@ TYPED_TEST(ExponentialMap, SmallAnglesToFullRelativePrecision) {
 }
 
 // Along a coordinate axis |f| is known exactly, and so is the angle: its reduction by multiples of
-// pi must not cost more digits the larger it is.
+// pi must not lose more digits for larger angles.
 TYPED_TEST(ExponentialMap, KnownAnglesToFullPrecision) {
   using Real = TypeParam;
   for (long double size = 1; size < 1e6L; size *= 1.0003L) {
@@ -90,8 +90,8 @@ TYPED_TEST(ExponentialMap, ThroughMultiplesOfPi) {
     this->expect_rotated(narrow<Real>((i * 0.01L) * direction(i)), i + 1);
 }
 
-// Where the square of |f| does not fit any more, f is scaled first: the angle has no meaning there,
-// but the axis and the sphere have.
+// If the square of |f| overflows, f is scaled first: the angle has no meaning there, but the axis
+// and the sphere have.
 TYPED_TEST(ExponentialMap, LargeCoordinatesKeepTheAxisAndTheSphere) {
   using Real = TypeParam;
   auto sizes = this->around(this->is_double ? Real(0x1p500) : Real(0x1p60));
@@ -111,14 +111,14 @@ TYPED_TEST(ExponentialMap, LargeCoordinatesKeepTheAxisAndTheSphere) {
   }
 }
 
-// Through |f| = 1/2, where the series hands over to the closed form, and on to 6.
+// Through |f| = 1/2, where the series is replaced by the closed form, and on to 6.
 TYPED_TEST(ExponentialMap, InverseTangentThroughItsSwitch) {
   using Real = TypeParam;
   unsigned seed = 0;
   auto const check = [&](Vec3<Real> const& f) {
     auto const y = narrow<Real>(direction(++seed));
     Long const expected = exponential_inverse_tangent(widen(f), widen(y));
-    // The coefficient feels an error of its angle more and more towards 2 pi.
+    // The coefficient depends ever more on errors of its angle towards 2 pi.
     long double const n = norm(widen(f)), to_pole = 6.2831853L - n;
     EXPECT_LE(largest(widen(Exponential::inverse_differential(f, y)) - expected),
               this->eps * (4 + 8 * n * n / (to_pole * to_pole)))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What holds for the maps whatever their formulas: inverses, lengths, and differentials found by
-// differences of the maps themselves.
+// Properties of the maps independent of their formulas: inverses, lengths, and differentials
+// compared with differences of the maps.
 #include "reference.hpp"
 
 namespace cayspin::test {
@@ -28,7 +28,7 @@ class Laws : public ::testing::Test {
     sweep(largest_size, [](auto const& f, auto const& x, auto const&) {
       auto const there = Rotation::rotate(f, x);
       EXPECT_NEAR(norm(widen(there)), norm(widen(x)), 6 * eps) << norm(widen(f));
-      // Each rotation adds up to 2 m, by a factor that is off by 3 eps.
+      // Each rotation adds up to 2 m, by a factor with an error of 3 eps.
       EXPECT_LE(largest(widen(Rotation::rotate(opposite(f), there)) - widen(x)), 12 * eps)
           << norm(widen(f));
     });
@@ -63,7 +63,7 @@ TYPED_TEST(Laws, TheTangentUndoesItsInverse) {
   this->template tangents_are_inverse<OverflowSafeCayley>();
 }
 
-/// d/ds map(f + s g) x at s = 0, by differences of fourth order.
+/// Returns d/ds map(f + s g) x at s = 0, by differences of fourth order.
 template <class Map>
 Long derivative(Map const& map, Long const& f, Long const& g, Long const& x) {
   long double const s = 1e-4L;
@@ -72,7 +72,7 @@ Long derivative(Map const& map, Long const& f, Long const& g, Long const& x) {
 }
 
 // d/ds R(f) x = (dR_f f') x R(f) x, right-trivialised; the left-trivialised map has f with the
-// other sign, which the same differences must refuse.
+// opposite sign, which these differences must refute.
 TYPED_TEST(Laws, CayleyTangentIsTheDerivative) {
   using Real = TypeParam;
   this->sweep(30, [&](auto const& f, auto const& x, auto const& g) {

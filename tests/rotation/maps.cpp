@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The maps against 32-digit values; packs.cpp holds packs to the same numbers. In float the inputs
-// are rounded (and brought into range) first, and the same formulas in long double are the
+// The maps against 32-digit values; packs.cpp compares packs with these numbers. In float the
+// inputs are rounded (and clamped to the range) first, and the formulas in long double are the
 // reference.
 #include "../support/oracles.hpp"
 #include "reference.hpp"
@@ -108,7 +108,7 @@ TYPED_TEST(Maps, Exponential) {
   }
 }
 
-// The overflow guard of the tests above is the file's own mark.
+// The limit of the tests above is a flag in the file.
 TEST(Maps, TheInverseTangentIsCheckedWhereItFits) {
   for (auto const& entry : oracles("maps")) {
     auto const value = read_long(entry.at("dcayinv_f_y"));
@@ -118,7 +118,7 @@ TEST(Maps, TheInverseTangentIsCheckedWhereItFits) {
   }
 }
 
-// The formulas that stand in for the file in float give the file's values in long double.
+// The formulas that replace the file in float give the file's values in long double.
 TEST(Maps, TheReferenceAgreesWithTheFile) {
   for (auto const& one : map_cases<double>()) {
     Long const f = widen(one.f), x = widen(one.x), y = widen(one.y);

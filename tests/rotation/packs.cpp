@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A lane of a pack gets the number that a plain number gets.
+// A lane of a pack gets the result of a plain number.
 #include "reference.hpp"
 
 namespace cayspin::test {
@@ -17,8 +17,8 @@ class Packs : public ::testing::Test {
     return {detail::load<Pack>(x), detail::load<Pack>(y), detail::load<Pack>(z)};
   }
 
-  // Equal bits where the compiler may not contract what the packs leave apart. Else each component,
-  // a difference of others, differs by round-off of the whole vector.
+  // Equal bits if the compiler may not contract operations that packs keep separate. Otherwise each
+  // component, a difference of others, differs by round-off of the whole vector.
   static void expect_equal(Vec3<Real> const& pack, Vec3<Real> const& number, char const* what) {
     auto const expect = [&](Real a, Real b) {
 #if defined(CAYSPIN_TEST_CONTRACTED)
@@ -39,7 +39,7 @@ class Packs : public ::testing::Test {
     for (int round = 0; round < 40; ++round) {
       std::vector<Vec3<Real>> f, x;
       for (int i = 0; i < lanes; ++i) {
-        // Sizes of all ranges side by side in a pack; in every second round to the ends.
+        // Sizes of all ranges side by side in a pack; in every second round up to the limits.
         int const number = i * 7 + round;
         int const power = round % 2 == 0 ? number % 24 - 18 : largest_power * (number % 7 - 3) / 3;
         long double const size = std::pow(10.0L, power);

@@ -10,7 +10,7 @@
 #include <array>
 #include <cmath>
 
-// The maps in long double, from their definitions and with another code path than the library's.
+// The maps in long double, from their definitions and by other formulas than the library's.
 namespace cayspin::test {
 
 using Long = std::array<long double, 3>;
@@ -53,7 +53,7 @@ inline Long cayley_inverse_tangent(Long const& f, Long const& y) {
   return y - 0.5L * outer(f, y) + (inner(f, y) / 4) * f;
 }
 
-/// Rodrigues: about f by |f|.
+/// Rodrigues' rotation about f by |f|.
 inline Long exponential(Long const& f, Long const& x) {
   long double const n = norm(f);
   if (n == 0) return x;
@@ -61,7 +61,7 @@ inline Long exponential(Long const& f, Long const& x) {
   long double const half = std::sin(n / 2);
   return x + std::sin(n) * c + (2 * half * half) * outer(u, c);
 }
-/// (1 - (n/2) cot(n/2)) / n^2
+/// Returns (1 - (n/2) cot(n/2)) / n^2.
 inline long double exponential_coefficient(long double n) {
   if (n < 1e-3L) return 1 / 12.L + n * n / 720 + n * n * n * n / 30240;
   return (1 - n / 2 / std::tan(n / 2)) / (n * n);
@@ -71,7 +71,7 @@ inline Long exponential_inverse_tangent(Long const& f, Long const& y) {
   return y - 0.5L * c + exponential_coefficient(norm(f)) * outer(f, c);
 }
 
-/// A direction for a case number, unit to long double's precision only after normalising.
+/// Returns a direction for a case number, normalised in long double.
 inline Long direction(unsigned seed) {
   auto const d = random_directions(1, seed);
   Long const a{d[0], d[1], d[2]};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Every key that a message lists as accepted is one that docs/reference/scene.md describes.
+// docs/reference/scene.md describes every key that a message lists as accepted.
 #include "scene_file.hpp"
 #include "wrong_scenes.hpp"
 
@@ -15,7 +15,7 @@ std::string page() {
   return text.str();
 }
 
-/// What is said of a scene with an unknown key in a table.
+/// Returns the message for a scene with an unknown key in a table.
 std::string said_of(std::string_view scene, std::string const& assignment) {
   try {
     parse_scene(std::string(scene), "scene.toml", {assignment});
@@ -43,6 +43,7 @@ TEST(AcceptedKeys, AreTheOnesOfThePage) {
                                        "field.anisotropy=[{nokey=1}]",
                                        "field.slab_demag={nokey=1}",
                                        "field.demag={nokey=1}",
+                                       "field.dipoles={nokey=1}",
                                        "field.couplings={nokey=1}",
                                        "field.couplings=[{nokey=1}]",
                                        "field.dmi=[{nokey=1}]",
@@ -52,6 +53,10 @@ TEST(AcceptedKeys, AreTheOnesOfThePage) {
                                        "initial={nokey=1}",
                                        "initial={nokey=1,uniform=[0,0,1]}",
                                        "initial={random={nokey=1}}",
+                                       "initial={state='vortex',nokey=1}",
+                                       "initial={state='bloch_skyrmion',nokey=1}",
+                                       "initial={state='two_domains',nokey=1}",
+                                       "initial={state='helix',nokey=1}",
                                        "integrator.nokey=1",
                                        "integrator.isotropy={nokey=1}",
                                        "thermal={nokey=1}",
@@ -70,7 +75,7 @@ TEST(AcceptedKeys, AreTheOnesOfThePage) {
   EXPECT_GE(lists, 15);
 }
 
-// What a program gives is named by what it is.
+// Values passed by a program are named by their kind.
 TEST(AcceptedKeys, ArraysWhereNoneIsTakenAreNamed) {
   Given given;
   given.numbers["output"] = std::make_shared<std::vector<double> const>(3, 1.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Cells, sites and bonds as scenes say them.
+// Cells, sites and bonds in scenes.
 #include "hdf5_file.hpp"
 #include "io/ovf.hpp"
 #include "scene_file.hpp"
@@ -49,10 +49,10 @@ TEST(Crystals, EveryKeyArrives) {
   ASSERT_EQ(field.anisotropies.size(), 1U);
   EXPECT_EQ(field.anisotropies[0].axis, (Triple{0, 0, 1}));
   EXPECT_EQ(field.anisotropies[0].site, 1);
-  ASSERT_EQ(field.cubic_anisotropies.size(), 1U);
-  EXPECT_EQ(field.cubic_anisotropies[0].constant, 0.2);
-  EXPECT_NEAR(field.cubic_anisotropies[0].axes[1][1], -std::sqrt(0.5), 1e-15);
-  EXPECT_EQ(field.cubic_anisotropies[0].site, -1);
+  ASSERT_EQ(field.crystal_anisotropies.size(), 1U);
+  EXPECT_EQ(field.crystal_anisotropies[0].constant, 0.2);
+  EXPECT_NEAR(field.crystal_anisotropies[0].axes[1][1], -std::sqrt(0.5), 1e-15);
+  EXPECT_EQ(field.crystal_anisotropies[0].site, -1);
   ASSERT_TRUE(field.torque.slonczewski);
   EXPECT_EQ(std::get<std::string>(field.torque.slonczewski->damping_like), "0.1*t");
   EXPECT_EQ(std::get<double>(field.torque.slonczewski->field_like), 0);
@@ -106,7 +106,7 @@ TEST(Crystals, WordsAreCells) {
   }
 }
 
-// Neighbours of each site at the first distances.
+// Numbers of neighbours of each site at the first distances.
 TEST(Crystals, ShellsHoldTheNeighboursOfTextbooks) {
   struct Case {
     Crystal crystal;
@@ -132,6 +132,33 @@ TEST(Crystals, ShellsHoldTheNeighboursOfTextbooks) {
     }
     for (auto const& of_site : found) EXPECT_EQ(of_site, neighbours);
   }
+}
+
+TEST(Crystals, PairsMayStandFromBothEnds) {
+  auto const of = [](std::string const& bonds) {
+    return couplings(crystal_with(
+        {"lattice={shape=[9,9],basis=[[0,0,0],[0.5,0.5,0]]}", "field={couplings=" + bonds + "}"}));
+  };
+  auto const once =
+      of("[{between=[0,1],J=2,D=[1,2,3]},{offset=[0,1,0],tensor=[[1,2,3],[4,5,6],[7,8,9]],"
+         "biquadratic=0.5}]");
+  EXPECT_EQ(of("{both_directions=true,pairs=[{between=[0,1],J=2,D=[1,2,3]},{offset=[0,1,0],"
+               "tensor=[[1,2,3],[4,5,6],[7,8,9]],biquadratic=0.5},{offset=[0,-1,0],"
+               "tensor=[[1,4,7],[2,5,8],[3,6,9]],biquadratic=0.5},"
+               "{between=[1,0],J=2,D=[-1,-2,-3]}]}"),
+            once);
+  EXPECT_EQ(of("{pairs=[{between=[0,1],J=2,D=[1,2,3]},{offset=[0,1,0],tensor=[[1,2,3],[4,5,6],"
+               "[7,8,9]],biquadratic=0.5}]}"),
+            once);
+}
+
+TEST(Crystals, PairsAddToShells) {
+  auto const chain = crystal_with({"lattice={shape=[9]}",
+                                   "field={couplings={shells=[1,2],pairs=[{offset=[-1,0,0],"
+                                   "D=[0,0,3]},{offset=[4,0,0],J=5}]}}"});
+  EXPECT_EQ(couplings(chain), (std::vector<Coupling>{Coupling::of({0, 0}, {1, 0, 0}, 1, {0, 0, -3}),
+                                                     Coupling::of({0, 0}, {2, 0, 0}, 2),
+                                                     Coupling::of({0, 0}, {4, 0, 0}, 5)}));
 }
 
 TEST(Crystals, ShellsKnowTheSpacingAndTheAxes) {
@@ -208,12 +235,12 @@ TEST(Crystals, ExpressionsThatFailAreNamed) {
   expect_holds(later({"lattice.occupied='x>2'"}), ": lattice.occupied: leaves no spin; accepted: ");
   expect_holds(later({R"(initial={expression=["0","0","k-1+s"]})"}),
                "the spin of site 1 of cell (0, 0, 0) is (0, 0, 0)");
-  // Where there is no spin, it may be zero.
+  // The spin may be zero where there is none.
   EXPECT_EQ(later({"lattice.occupied='k==1'", R"(initial={expression=["0","0","k"]})"}),
             "accepted");
 }
 
-// A number for each component, from which its site can be told.
+// Returns a number for each component that identifies its site.
 std::vector<double> numbered(std::size_t frames) {
   std::vector<double> numbers(frames * 144);
   for (std::size_t n = 0; n < numbers.size(); ++n) numbers[n] = 1 + static_cast<double>(n * n % 89);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The anisotropy of open sides that DMI with a free boundary comes to.
+// The anisotropy of open sides that represents DMI with a free boundary.
 #include "scene_file.hpp"
 
 #include <cayspin/crystal.hpp>
@@ -28,7 +28,7 @@ dt = 0.1
 steps = 1
 )toml";
 
-/// The constants of a scene's terms along an axis, summed.
+/// Returns the constants of a scene's terms along an axis, summed.
 std::vector<double> constants_along(Scene const& scene, Triple const& axis) {
   std::vector<double> sum(static_cast<std::size_t>(sites(scene)));
   for (auto const& term : scene.field.anisotropies) {
@@ -57,8 +57,8 @@ TEST(FreeBoundary, IsAHardAxisAtEachOpenSide) {
                   .field.anisotropies.empty());
 }
 
-// The spin that the boundary condition puts beyond the end, m' = m + h D/A m x d, has the torque of
-// this anisotropy by its exchange and its interaction, A/h^2 (m' - m) + D/h d x m'.
+// The spin beyond the end by the boundary condition, m' = m + h D/A m x d, gives the torque of this
+// anisotropy by its exchange and its interaction, A/h^2 (m' - m) + D/h d x m'.
 TEST(FreeBoundary, IsTheTorqueOfATurnedSpin) {
   using cayspin::detail::scalar_product, cayspin::detail::vector_product;
   std::mt19937_64 random(13);
@@ -104,6 +104,16 @@ TEST(FreeBoundary, OfTheBulkIsAlongTheBonds) {
   }
 }
 
+TEST(FreeBoundary, OfD2dIsAlongTheBondsInThePlane) {
+  auto const scene = scene_of(dmi_film, {"field.dmi={d2d=0.6,free_boundary=true}"});
+  EXPECT_EQ(scene.field.anisotropies.size(), 2U);
+  auto const of_x = constants_along(scene, {1, 0, 0}), of_y = constants_along(scene, {0, 1, 0});
+  for (std::size_t site = 0; site < 24; ++site) {
+    EXPECT_DOUBLE_EQ(of_x[site], site % 4 == 0 || site % 4 == 3 ? -0.18 : 0);
+    EXPECT_DOUBLE_EQ(of_y[site], site / 4 % 3 == 1 ? 0 : -0.18);
+  }
+}
+
 TEST(FreeBoundary, IsAlsoThatOfVacancies) {
   std::mt19937_64 random(11);
   for (int round = 0; round < 20; ++round) {
@@ -126,7 +136,7 @@ TEST(FreeBoundary, IsAlsoThatOfVacancies) {
           EXPECT_NEAR(of_x[n], one * (!has(i - 1, j, k) + !has(i + 1, j, k)), 1e-15);
           EXPECT_NEAR(of_y[n], one * (!has(i, j - 1, k) + !has(i, j + 1, k)), 1e-15);
         }
-    // A part of the lattice is that of the whole.
+    // A part of the lattice gives the values of the whole.
     for (auto const& term : scene.field.anisotropies) {
       SiteBox const box{{1, 1, 1}, {2, 2, 1}};
       auto const all = numbers_of_sites(scene, term.factors, "", whole(scene));
@@ -136,7 +146,7 @@ TEST(FreeBoundary, IsAlsoThatOfVacancies) {
   }
 }
 
-// mumax3's mirror spins at open sides are a hard axis of -D^2/(4 A), a constant Ku.
+// mumax3's mirror spins at open sides equal a hard axis of -D^2/(4 A), a constant Ku.
 TEST(FreeBoundary, InSiIsThatOfMumax) {
   std::string const si = R"toml(units = "SI"
 [material]

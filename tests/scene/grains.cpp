@@ -55,7 +55,7 @@ class NearestOfAll {
   }
 
  private:
-  // Not along an axis of one tile.
+  // Not along an axis with one tile.
   double distance(Triple const& a, Triple const& b) const {
     auto const sites = static_cast<std::int64_t>(lattice_.basis.size());
     Triple away{};
@@ -112,7 +112,7 @@ TEST(Grains, AreThoseOfTheNearestSeed) {
     for (std::size_t site = 0; site < found.size(); ++site)
       wrong += found[site] != nearest.at({x[site], y[site], z[site]});
     EXPECT_EQ(wrong, 0U);
-    // All of them are seen where a tile has dozens of sites.
+    // All grains are found if a tile has dozens of sites.
     auto const count = static_cast<std::size_t>(tiles[0] * tiles[1] * tiles[2]);
     if (found.size() > 50 * count) {
       EXPECT_EQ(std::set<double>(found.begin(), found.end()).size(), count);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What a scene says in vain, or in contradiction to another key.
+// Keys of a scene without effect, or that contradict another key.
 #include "io/notes.hpp"
 
 #include "io/ovf.hpp"
@@ -40,7 +40,7 @@ std::string refusal_with(std::vector<std::string> const& overrides) {
 
 struct Case {
   std::vector<std::string> overrides;
-  std::string note;  // a part of the only one; none where it is empty
+  std::string note;  // part of the only note; empty: no note
 };
 
 TEST(Notes, SayWhatActsNowhere) {
@@ -95,13 +95,33 @@ TEST(Notes, SayWhereImagesAndBoundariesDiffer) {
             "no images along x, where lattice.boundary is periodic"},
            {{images + "[0,0,0]"}, ""},
            {{images + "[0,2,0]"}, "images along y, where lattice.boundary is open"},
-           {{images + "[0,0,2]"}, ""},  // one cell along z: no other term sees an end
+           {{images + "[0,0,2]"}, ""},  // one cell along z: no other term depends on the end
        }) {
     auto const found = notes_with(overrides);
     SCOPED_TRACE(testing::PrintToString(overrides) + testing::PrintToString(found));
     ASSERT_EQ(found.size(), expected.empty() ? 0U : 1U);
     if (!expected.empty()) EXPECT_NE(found[0].find(expected), found[0].npos);
   }
+}
+
+// Along the vectors of more than one cell, and also along three.
+TEST(Dipoles, GoOnForEverAlongPeriodicVectors) {
+  auto const images = [](std::string const& lattice) {
+    return scene_of(film_with_notes, {"lattice=" + lattice, "field={dipoles=true}"})
+        .field.demag->periodic_images;
+  };
+  EXPECT_EQ(images("{shape=[4,4,1],crystal='bcc'}"), (std::array{0, 0, 0}));
+  EXPECT_EQ(images("{shape=[4,4,1],crystal='bcc',boundary='periodic'}"), (std::array{all, all, 0}));
+  EXPECT_EQ(images("{shape=[4,4,2],boundary='periodic'}"), (std::array{all, all, all}));
+  EXPECT_FALSE(scene_of(film_with_notes, {"field.dipoles=false"}).field.demag);
+  auto const cell =
+      std::string("{shape=[2,4],cell=[[1,0,0],[0,9000,0],[0,0,1]],boundary='periodic'}");
+  EXPECT_NE(refusal_with({"lattice=" + cell, "field={dipoles=true}"}).find("up to 1e4 : 1"),
+            std::string::npos);
+  EXPECT_NE(refusal_with({"field.demag=true", "field.dipoles=true"})
+                .find("field.dipoles: stands beside field.demag"),
+            std::string::npos);
+  EXPECT_EQ(notes_with({"field.dipoles.periodic_images=[0,2,0]"}).size(), 1U);
 }
 
 TEST(Demagnetization, GoesOnForEverAlongPeriodicAxes) {
@@ -132,13 +152,13 @@ TEST(Demagnetization, GoesOnForEverAlongPeriodicAxes) {
 TEST(Demagnetization, OfCellsOfAnyShapeUpToALimit) {
   EXPECT_EQ(refusal_with({"lattice={shape=[4,4,1],spacing=[1,1,1e-9]}", "field.demag=true"}),
             "accepted");
-  for (auto const* const demag : {"field.demag=true", "field.demag={dear=false}"})
+  for (auto const* const demag : {"field.demag=true", "field.demag={multirate=false}"})
     EXPECT_NE(
         refusal_with({"lattice={shape=[4,4,1],spacing=[1,1,1e-10]}", demag}).find("1e+10 : 1"),
         std::string::npos);
 }
 
-// A coupling is refused where no two cells of the lattice have its offset.
+// A coupling is refused if no two cells of the lattice have its offset.
 TEST(Couplings, ThatLeaveTheLatticeEverywhereAreRefused) {
   std::mt19937_64 random(3);
   auto const draw = [&](int least, int most) {

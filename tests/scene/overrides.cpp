@@ -48,12 +48,22 @@ TEST(Override, NoneKeepsTheTextAsTyped) {
   EXPECT_EQ(scene_of(text).text, text);
 }
 
+TEST(Override, WordsNeedNoQuotes) {
+  auto const scene = scene_of(llg_scene, {"integrator.method=heun", "lattice.boundary = periodic"});
+  EXPECT_EQ(scene.integrator.method->word, "heun");
+  EXPECT_EQ(scene.lattice.boundary[0], BoundaryKind::periodic);
+  EXPECT_EQ(scene_of(scene.text).integrator.method->word, "heun");
+  EXPECT_FALSE(scene_of(llg_scene, {"system.precession=false"}).system.precession);
+}
+
 TEST(Override, ThatIsWrongIsRefusedInOneLine) {
   for (std::array<std::string, 2> const& wrong :
        {std::array<std::string, 2>{"system.damping", "not an assignment; accepted: key.path=VALUE"},
         {"=3", "not an assignment"},
         {"system.damping=", "the value is not TOML"},
-        {"integrator.method=euler", "the value is not TOML"},
+        {"integrator.method=a b", "the value is not TOML"},
+        {"integrator.method=eulre", "integrator.method: \"eulre\" is not known, did you mean"},
+        {"dt=0.5", "dt: unknown key, did you mean \"integrator.dt\"?"},
         {"system..damping=1", "an empty key in the path"},
         {"system.damping.x=1", "\"damping\" is neither a table"},
         {"lattice.shape.2=1", "\"2\" is not an entry of an array of 2"},

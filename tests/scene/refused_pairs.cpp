@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Which terms and sites do not go with which methods: those of one table, which is printed, and no
-// others.
+// Terms and sites that cannot be combined with methods: exactly those of one table, which is
+// printed.
 #include "io/refused_pairs.hpp"
 
 #include "io/method.hpp"
@@ -35,6 +35,19 @@ std::vector<std::pair<std::string, Overrides>> terms() {
           {"couplings", {bond + "}]"}},
           {"biquadratic couplings", {bond + ",biquadratic=0.1}]"}},
           {"cubic axes", {"field.anisotropy={cubic=1,axes=[[1,0,0],[0,1,0]]}"}},
+          {"cubic axes of sites", {"field.anisotropy={cubic='i',axes=[['1+i',0,0],[0,1,0]]}"}},
+          {"hexagonal axis", {"field.anisotropy={hexagonal=1,axis=[0,0,1],in_plane=[1,0,0]}"}},
+          {"DMI of D2d", {"field.dmi={d2d=0.1}"}},
+          {"constants in t", {"field.in_time={exchange='1+t'}"}},
+          {"constants with a factor", {"field.in_time={exchange=2,anisotropy=0.5}"}},
+          {"second constant", {"field.anisotropy={constant=1,axis=[0,0,1],constant2='0.1*i'}"}},
+          {"axes of sites", {"field.anisotropy={constant=1,axis=['i+1',0,0]}"}},
+          {"interlayer", {"lattice.regions='i'", "field.interlayer=[{between=[0,1],J=1}]"}},
+          {"biquadratic interlayer",
+           {"lattice.regions='i'", "field.interlayer=[{between=[0,1],biquadratic=1}]"}},
+          {"moments of sites", {"lattice.moments='1+i'"}},
+          {"sources", {"field.sources=[{profile=[0,0,'i']}]"}},
+          {"sources in t", {"field.sources=[{profile=[0,0,'i'],time='t'}]"}},
           {"exchange of sites", {"field.exchange='1+0.1*i'"}},
           {"DMI of sites", {"field.dmi={bulk='1+0.1*i'}"}},
           {"anisotropy of sites", {"field.anisotropy={constant='1+0.1*i',axis=[0,0,1]}"}},
@@ -48,6 +61,7 @@ std::vector<std::pair<std::string, Overrides>> terms() {
           {"current across it", {"torque={slonczewski={field_like=1,polarization=[0,0,1]}}"}},
           {"in t", {"field.applied=[0,0,'cos(t)']"}},
           {"demag", {"field.demag={}"}},
+          {"dipoles", {"field.dipoles={}"}},
           {"slab", {"field.slab_demag={normal=[0,0,1]}"}},
           {"slab on the host", {"field.slab_demag={normal=[0,0,1],where='host'}"}},
           {"two sites in a cell, with ratios of their own",
@@ -73,7 +87,7 @@ std::vector<std::pair<std::string, Overrides>> methods_and_keys() {
   return all;
 }
 
-/// What the table says of a scene with these terms and that integrator.
+/// Returns the table's entry for a scene with these terms and that integrator.
 RefusedPair const* expected_of(Scene scene, Scene const& other) {
   scene.integrator = other.integrator;
   for (auto const& pair : refused_pairs())
@@ -104,7 +118,7 @@ TEST(RefusedPairs, AreThoseOfTheTable) {
       expect_holds(said, pair->accepted);
     }
   }
-  // All but a program's own field, which no text has.
+  // All except a program's own field, which no text has.
   for (std::size_t row = 1; row < found.size(); ++row)
     EXPECT_GT(found[row], 0) << refused_pairs()[row].terms << " with " << refused_pairs()[row].with;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Vectors that are typed with a few digits.
+// Vectors typed with a few digits.
 #include "scene_file.hpp"
 
 #include <cayspin/shells.hpp>
@@ -61,7 +61,7 @@ TEST(RoundedDigits, OfCubicAxesAreTaken) {
   EXPECT_NE(said.find("to 1e-4"), said.npos) << said;
 }
 
-// The bonds of exact vectors and of these rounded are the same.
+// Rounded vectors give the bonds of exact ones.
 TEST(RoundedDigits, OfACellKeepItsShells) {
   double const s = std::sqrt(0.75);
   struct Cell {

@@ -14,7 +14,7 @@
 
 namespace cayspin::inline v0_1::io::test {
 
-/// A folder of its own for each test, removed afterwards.
+/// A separate folder for each test, removed afterwards.
 class Folder {
  public:
   Folder() {
@@ -86,7 +86,7 @@ dt = 0.1
 steps = 10
 )toml";
 
-/// Short, for tests that type into it what they are about.
+/// A short scene, into which tests type their own keys.
 inline constexpr std::string_view plain_scene = R"toml([system]
 kind = "llg"
 damping = 0.1
@@ -100,7 +100,7 @@ dt = 0.01
 steps = 10
 )toml";
 
-/// `text` with its one occurrence of `from` replaced.
+/// Returns `text` with its only occurrence of `from` replaced.
 inline std::string replaced(std::string_view text, std::string_view from, std::string_view to) {
   std::string result(text);
   auto const at = result.find(from);
@@ -108,7 +108,7 @@ inline std::string replaced(std::string_view text, std::string_view from, std::s
   return result.replace(at, from.size(), to);
 }
 
-/// A text as a scene, without files or with a folder for them.
+/// Returns a text as a scene, without files or with a folder for them.
 inline Scene scene_of(std::string_view text, std::vector<std::string> const& overrides = {}) {
   return parse_scene(std::string(text), "scene.toml", overrides);
 }
@@ -119,7 +119,7 @@ inline Scene read_text(Folder const& folder, std::string_view text,
 
 inline SiteBox whole(Scene const& scene) { return {{0, 0, 0}, scene.lattice.shape}; }
 
-/// What a SceneError of `work` says, in one line; "accepted" without one.
+/// Returns the message of a SceneError from `work`, in one line; "accepted" without one.
 template <class Work>
 std::string refusal(Work const& work) {
   try {
@@ -131,7 +131,7 @@ std::string refusal(Work const& work) {
     return message;
   }
 }
-/// The same of reading a scene.
+/// Returns the message of reading a scene.
 inline std::string refusal_of(std::string_view text,
                               std::vector<std::string> const& overrides = {}) {
   return refusal([&] { scene_of(text, overrides); });

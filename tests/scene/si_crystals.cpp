@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// units = "SI": crystals, sublattices, currents and constants of sites.
+// units = "SI": crystals, sublattices, currents and site-dependent constants.
 #include "hdf5_file.hpp"
 #include "io/expression.hpp"
 #include "si_constants.hpp"
@@ -133,7 +133,7 @@ TEST(SiCrystals, AnisotropiesAreEnergies) {
                  "0,0],[0,1,0]],site=0},{constant={meV=1},axis=[1,0,0]}]",
                  "material.K=2e-23", "material.axis=[0,3,0]"});
   auto const& [uniaxial, cubic] =
-      std::tie(scene.field.anisotropies, scene.field.cubic_anisotropies);
+      std::tie(scene.field.anisotropies, scene.field.crystal_anisotropies);
   ASSERT_EQ(uniaxial.size(), 3U);
   expect_near(uniaxial[0].constant, 4e-23 / 7.05e-21);
   EXPECT_EQ(uniaxial[0].axis, (Triple{0, 1, 0}));
@@ -148,8 +148,26 @@ TEST(SiCrystals, AnisotropiesAreEnergies) {
       permalloy_with({"field.anisotropy=[{cubic=4.8e4,axes=[[1,0,0],[0,1,0]]},"
                       "{constant=500,axis=[0,1,0]}]"});
   double const pressure = mu0 * 8e5 * 8e5;
-  expect_near(film.field.cubic_anisotropies.at(0).constant, 4.8e4 / pressure);
+  expect_near(film.field.crystal_anisotropies.at(0).constant, 4.8e4 / pressure);
+  auto const hexagonal = permalloy_with(
+      {"field.anisotropy=[{hexagonal=1e3,axis=[0,0,1],in_plane=[1,0,0]},{cubic=1e3,constant2='2e3*("
+       "1+i)',axes=[[1,0,0],[0,1,0]]}]"});
+  auto const& terms = hexagonal.field.crystal_anisotropies;
+  expect_near(terms.at(0).constant, 1e3 / pressure);
+  expect_near(
+      numbers_of_sites(hexagonal, terms.at(1).factors2, "field.anisotropy", whole(hexagonal))[1],
+      4e3 / pressure);
   expect_near(film.field.anisotropies.at(0).constant, 1000 / pressure);
+}
+
+// mu0 mu^2 / (a^3 J): the moment of the first site counts as 1.
+TEST(SiCrystals, DipolesAreOfTheMoments) {
+  auto const scene =
+      iron_with({"field.dipoles={strength=0.5}", "material.mu_s={bohr_magnetons=[2.22,1.11]}"});
+  double const moment = 2.22 * mu_B;
+  expect_near(scene.field.demag.value().strength,
+              0.5 * mu0 * moment * moment / std::pow(2.866e-10, 3) / 7.05e-21);
+  expect_near(scene.lattice.moments, {1, 0.5});
 }
 
 TEST(SiCrystals, ASlabHasTheMagnetizationOfTheCrystal) {
@@ -169,6 +187,10 @@ TEST(SiScenes, BulkDmiIsThatOfAnInterfaceWithoutItsNormal) {
   ASSERT_TRUE(film.field.bulk_dmi);
   EXPECT_FALSE(film.field.dmi);
   expect_near(film.field.bulk_dmi->constant, 3e-3 / (mu0 * 8e5 * 8e5 * 4e-9));
+  auto const d2d = permalloy_with({"material.D2d=3e-3"});
+  ASSERT_TRUE(d2d.field.d2d_dmi);
+  for (double const each : numbers_of_sites(d2d, d2d.field.dmi_factors, "field.dmi", whole(d2d)))
+    expect_near(each, 3e-3 / (mu0 * 8e5 * 8e5 * 4e-9));
   auto const atoms = iron_with({"material.D_bulk={meV=1}", "lattice.crystal='bcc'",
                                 "lattice={shape=[4],spacing=3e-10}", "field={}"});
   EXPECT_EQ(atoms.field.bulk_dmi->constant, 1);
@@ -207,7 +229,7 @@ TEST(SiScenes, ConstantsOfSitesAreInSi) {
   EXPECT_EQ(field.anisotropies[0].constant, 1);
   EXPECT_EQ(scene.system.damping, 0);
   EXPECT_TRUE(scene.system.gilbert_of_sites);
-  expect_near(scene.units.time, 1 / (gamma * mu0 * 8e5));  // sites take 1 + alpha^2
+  expect_near(scene.units.time, 1 / (gamma * mu0 * 8e5));  // sites apply 1 + alpha^2
   auto const landau_lifshitz =
       read_text(folder, replaced(text, "\"gilbert\"", "'landau_lifshitz'"));
   EXPECT_FALSE(landau_lifshitz.system.gilbert_of_sites);
@@ -217,7 +239,7 @@ TEST(SiTorques, VelocitiesAreInMetresPerSecond) {
   auto const scene =
       permalloy_with({"torque={zhang_li={velocity=[100,'50*sin(1e9*t)',0],nonadiabaticity=0.04}}"});
   auto const& of = scene.field.torque.zhang_li.value();
-  // In cells over the turn of a spin by mu0 Ms, whatever the damping's form.
+  // Cells per turn of a spin by mu0 Ms, for any form of the damping.
   double const unit = 4e-9 * gamma * mu0 * 8e5;
   expect_near(std::get<double>(of.velocity[0]), 100 / unit);
   double const t = 1e-9 / scene.units.time;
@@ -248,6 +270,15 @@ TEST(SiTorques, StrengthsAreFields) {
   expect_near(std::get<double>(current.field.torque.slonczewski->damping_like),
               hbar * 0.4 * 1e12 / (2 * e * 8e5 * 3e-9) / (mu0 * 8e5));
   expect_near(std::get<double>(current.field.torque.slonczewski->field_like), 0.01 / (mu0 * 8e5));
+  auto const both = permalloy_with(
+      {"torque={slonczewski={current_density={profile='1e12*i',time='cos(t)'},efficiency=0.4,"
+       "lambda=2,epsilon_prime=0.1,thickness=3e-9,polarization=[0,1,0]}}"});
+  auto const& of_sites = both.field.torque.slonczewski.value();
+  EXPECT_EQ(of_sites.lambda, 2);
+  double const beta = hbar / (e * 8e5 * 3e-9) / (mu0 * 8e5);
+  expect_near(of_sites.damping_like_of_sites.unit, beta * 0.4 / 2);
+  expect_near(of_sites.field_like_of_sites.unit, beta * 0.1);
+  expect_near(Expression(std::get<std::string>(of_sites.field_like), {"t"})(&t), std::cos(3));
   auto const atoms = iron_with({"torque={slonczewski={damping_like=2,polarization=[0,1,0]}}"});
   expect_near(std::get<double>(atoms.field.torque.slonczewski->damping_like),
               2 * 2.22 * mu_B / 7.05e-21);
@@ -282,12 +313,12 @@ field.couplings = [{between=[0,1],J={meV=1,eV=1}}] | [0].J: is not one number wi
   | { eV = number }
 field.anisotropy = {constant={K=1},axis=[0,0,1]} | .constant.K: unknown key | meV, eV, mRy
 field.anisotropy = {constant=true,axis=[0,0,1]} | .constant: true is a boolean | an expression
-field.anisotropy = {cubic='x',axes=[[1,0,0],[0,1,0]]} | .cubic: 'x' is a string | a finite number
+field.anisotropy = {cubic=true,axes=[[1,0,0],[0,1,0]]} | .cubic: true is a boolean | an expression
 torque = {slonczewski={current_density=1e12,efficiency=0.4,thickness=1e-9,polarization=[0,0,1]}}
   | .slonczewski.current_density: needs the magnetization of a continuum
   | damping_like, or material.Ms
 material.mu_s = { bohr_magnetons = [1, 2] }; field.slab_demag = { normal = [0, 0, 1] }
-  | : needs moments that are all alike | one number in material.mu_s
+  | : needs moments that are all alike | one number in material.mu_s, or field.dipoles
 )");
 }
 
@@ -319,8 +350,18 @@ torque = {slonczewski={current_density=1e12,damping_like=1,efficiency=0.4,thickn
   | .slonczewski.current_density: stands beside damping_like | one of the two
 torque = {slonczewski={field_like=1,efficiency=0.4,polarization=[0,0,1]}}
   | .slonczewski.efficiency: stands without current_density | both or neither
+torque = {slonczewski={current_density=1e12,field_like=1,epsilon_prime=0.1,efficiency=0.4,
+ thickness=1e-9,polarization=[0,0,1]}}
+  | .slonczewski.field_like: stands beside epsilon_prime | one of the two
+material.gamma = '1.7e11'; torque = {slonczewski={current_density=1e12,efficiency=0.4,
+ thickness=1e-9,polarization=[0,0,1]}}
+  | .slonczewski.current_density: needs one gamma for all sites | damping_like, or one gamma
+lattice.gyromagnetic = 2; material.gamma = '1.7e11' | : stands beside lattice.gyromagnetic
+  | one number
 material.A =; material.D = 1e-3; material.normal = [0, 0, 1]; material.D_bulk = 1e-3
-  | : stands beside material.D | D with normal, of an interface, or D_bulk
+  | : stands beside material.D | D with normal, of an interface, D_bulk, or D2d
+material.A =; material.D_bulk = 1e-3; material.D2d = 1e-3
+  | : stands beside material.D_bulk | D with normal, of an interface, D_bulk, or D2d
 material.alpha = '0.5'; material.damping_form = 1 | : 1 is an integer | gilbert
 material.alpha = '0.5'; material.damping_form = | : is missing | gilbert
 )");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// units = "SI": what a material comes to in reduced units, and what is refused.
+// units = "SI": conversion of a material to reduced units, and refusals.
 #include "io/expression.hpp"
 #include "si_constants.hpp"
 #include "wrong_scenes.hpp"
@@ -79,6 +79,13 @@ steps = 10
 
 void expect_close(double value, double expected) {
   EXPECT_NEAR(value, expected, 4e-16 * std::abs(expected));
+}
+
+TEST(SiScene, PeriodsOfOutputAreInSeconds) {
+  auto const scene = parse_scene(std::string(si_film), "scene.toml",
+                                 {"output={every={time=1e-11},scalars_every={time=2e-12}}"});
+  EXPECT_EQ(scene.output.every, 10);
+  EXPECT_EQ(scene.output.scalars_every, 2);
 }
 
 TEST(SiScene, MicromagneticsComesToReducedUnits) {

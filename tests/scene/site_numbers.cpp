@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Constants that differ from site to site: by expressions, and from files.
+// Site-dependent constants: by expressions, and from files.
 #include "hdf5_file.hpp"
 #include "scene_file.hpp"
 
@@ -11,7 +11,7 @@ namespace {
 
 std::string const plain_film = std::string(plain_scene) + "[field]\nexchange = 1\n";
 
-// What reading a scene, its files or its numbers says.
+// Returns the error of reading a scene, its files or its numbers.
 std::string refusal_in(Folder const& folder, std::string const& text) {
   return refusal([&] {
     auto const scene = read_text(folder, text);
@@ -128,7 +128,7 @@ TEST(SiteNumbers, ThatAreWrongAreRefusedInOneLine) {
        {std::pair{"{ file = 'short.h5' }", "its extents are (3, 4); accepted: (2, 3, 4)"},
         {"1",
          ":6: lattice.occupied: 1 is an integer; accepted: an expression in x, y, z, i, j, k, "
-         "or { file = \"NAME.h5\" }"}}) {
+         "{ file = \"NAME.h5\" }, { image = \"NAME.png\" } or { regions = [v0, v1, ..] }"}}) {
     expect_holds(
         refusal_in(folder, replaced(plain_film, "shape = [4, 3, 2]",
                                     "shape = [4, 3, 2]\noccupied = " + std::string(typed))),
@@ -156,7 +156,7 @@ TEST(SiteNumbers, SitesWithoutASpinHaveNoNoise) {
       read_text(folder, replaced(plain_scene, "shape = [4, 3, 2]",
                                  "shape = [4, 3, 2]\ncrystal = 'kagome'\nmoments = [4, 0, 5]\n"
                                  "gyromagnetic = [2, 3, 1]"));
-  EXPECT_EQ(noise_of_sites(scene), (std::vector{0.5, 0.0, 0.2}));
+  EXPECT_EQ(noise_of_cell_sites(scene), (std::vector{0.5, 0.0, 0.2}));
   EXPECT_EQ(largest_noise(scene), 0.5);
 }
 

@@ -3,6 +3,8 @@
 #include "io/ovf.hpp"
 #include "scene_file.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -162,7 +164,20 @@ TEST(Start, OvfFileComesBackNormalised) {
   }
 }
 
-// Both are normalised in the same way, so the start does not depend on the kind of file.
+TEST(Start, OvfFileOfVersion1IsRead) {
+  Folder const folder;
+  auto const spins = start("{random={seed=9}}");
+  std::string text =
+      "# OOMMF: rectangular mesh v1.0\n# Segment count: 1\n# Begin: Segment\n# Begin: Header\n"
+      "# meshtype: rectangular\n# xnodes: 4\n# ynodes: 3\n# znodes: 2\n# valueunit: A/m\n"
+      "# valuemultiplier: 8e5\n# End: Header\n# Begin: Data Text\n";
+  for (auto const value : spins) text += fmt::format("{}\n", value);
+  folder.write(text + "# End: Data Text\n# End: Segment\n", "old.omf");
+  auto const back = start(from(folder / "old.omf"));
+  for (std::size_t n = 0; n < spins.size(); ++n) EXPECT_NEAR(back[n], spins[n], 2 * eps);
+}
+
+// Both are normalised equally, so the start does not depend on the kind of file.
 TEST(Start, OvfAndHdf5FilesGiveTheSameBits) {
   Folder const folder;
   auto values = start("{random={seed=9}}");
@@ -204,7 +219,7 @@ TEST(Start, WrongFilesAreRefusedInOneLine) {
   std::filesystem::copy(folder / "zero.ovf", folder / "short.ovf");
   std::filesystem::resize_file(folder / "short.ovf",
                                std::filesystem::file_size(folder / "short.ovf") - 60);
-  folder.write("# OOMMF: rectangular mesh v1.0\n", "old.ovf");
+  folder.write("# OOMMF: irregular mesh v1.0\n", "irregular.ovf");
   struct Case {
     std::string file;
     std::string message;
@@ -224,7 +239,7 @@ TEST(Start, WrongFilesAreRefusedInOneLine) {
            {"integer.h5", "dataset /spins: its type is neither float nor double", true},
            {"none.ovf", "cannot open the file: No such file or directory", true},
            {"shape.ovf", "its mesh has 3 x 4 x 2 nodes; accepted: 4 x 3 x 2, the lattice's", true},
-           {"old.ovf", "it is OVF 1.0; accepted: OVF 2.0", true},
+           {"irregular.ovf", "its mesh is irregular; accepted: a rectangular mesh", true},
            {"short.ovf", "it is truncated", false},
            {"zero.ovf", "the spin of site (1, 1, 0) is (0, 0, 0)", false},
            {"zero.h5", "the spin of site (1, 1, 0) is (0, 0, 0)", false},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Zero vectors in the file of a start, as other programs write them where nothing is.
+// Zero vectors in the file of a start, as other programs write them for empty sites.
 #include "hdf5_file.hpp"
 #include "io/notes.hpp"
 #include "io/ovf.hpp"
@@ -76,7 +76,7 @@ TEST(StartShape, IsWhereTheFileHasSpins) {
       auto const vacant = std::to_string(std::count(there.begin(), there.end(), 0));
       expect_holds(said[0],
                    "initial.file: zero vectors are sites without a spin, " + vacant + " of 24");
-      // The text says so, too: who reads it again has the same scene, without a look at the file.
+      // The text has it, too: reading it again gives an equal scene without the file.
       auto const again = parse_scene(scene.text, scene.path);
       EXPECT_EQ(occupied(again, whole(again)), there);
       EXPECT_EQ(initial_spins(again), spins);
@@ -146,7 +146,7 @@ TEST(StartShape, NeedsAMethodThatKnowsVacancies) {
                "integrator.method");
 }
 
-// Of a crystal: (site, nz, ny, nx, 3).
+// Shape of a crystal's file: (site, nz, ny, nx, 3).
 TEST(StartShape, OfACrystalIsThatOfItsSites) {
   Folder const folder;
   std::vector<double> values(3 * 2 * 24, 1.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The values of --over, and the grid that they make.
+// The values of --over, and their grid.
 #include "io/scene.hpp"
 #include "io/sweep.hpp"
 

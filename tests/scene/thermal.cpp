@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The table [thermal]: what arrives, in reduced units and in SI, and what is refused.
+// The table [thermal]: values in reduced units and in SI, and refusals.
 #include "si_constants.hpp"
 #include "wrong_scenes.hpp"
 
@@ -20,7 +20,7 @@ TEST(ThermalScene, TemperatureAndSeedArrive) {
   EXPECT_EQ(scene_of(llg_scene, {"thermal.temperature=0.5"}).thermal->temperature, 0.5);
 }
 
-// At temperature 0 there is no noise that something could not go with.
+// Temperature 0 means no noise, which can be combined with everything.
 TEST(ThermalScene, TemperatureZeroGoesWithEverything) {
   for (auto const& other : std::vector<std::vector<std::string>>{
            {"system.damping=0.0"},
@@ -70,13 +70,12 @@ TEST(ThermalScene, WrongKeys) {
   expect_refused(thermal_scene("temperature = 0.5\nseed = 3\n"), R"(
 thermal.temperature = -0.5 | : | >= 0
 thermal.temperature = inf | : | >= 0
-thermal.temperature = '300 K' | : | is a string
+thermal.temperature = '300 K' | : | Unexpected token "K"
 thermal.temperature = | : | missing
 thermal.seed = -1 | : | whole number >= 0
 thermal.seed = 0.5 | : | whole number >= 0
 thermal.seed =; thermal.sed = 3 | : | did you mean "seed"
 system.damping = 0 | thermal.temperature: | needs damping
-system.damping = '0.1 + x' | thermal.temperature: | one damping for all sites
 integrator.tolerance = 1e-4; integrator.method = 'tsit5' | : | chooses its steps
 integrator.generator =; integrator.isotropy =; integrator.rotation =; integrator.error = 1e-4;
  integrator.method = 'auto' | : | chooses its steps

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Unit-cell files of Vampire: iron as its own examples are written, and a honeycomb with tensors as
-// other programs write them.
+// Unit-cell files of Vampire: iron in the format of its own examples, and a honeycomb with tensors
+// in that of other programs.
 #include "scene_file.hpp"
 
 #include <cmath>
@@ -64,7 +64,7 @@ TEST(UnitCellFile, TensorsKeepTheirSense) {
     EXPECT_NEAR(bond.tensor[0], J, 1e-30);
     EXPECT_NEAR(bond.tensor[8], 1.03 * J, 1e-30);
     if (bond.between[0] != bond.between[1]) continue;
-    // D has the sense of (1, 0), (0, 1) and (-1, -1) for site 0, and the other for site 1.
+    // D has the sense of (1, 0), (0, 1) and (-1, -1) for site 0, and the opposite for site 1.
     auto const& [i, j, k] = bond.offset;
     bool const forward = (i == 1 && j == 0) || (i == 0 && j == 1) || (i == -1 && j == -1);
     double const sign = (forward ? 1 : -1) * (bond.between[0] == 0 ? 1 : -1);
@@ -122,7 +122,7 @@ TEST(UnitCellFile, MayHaveBiquadraticBonds) {
   EXPECT_EQ(couplings(scene), expected);
 }
 
-/// What check_files or the reader says after the scene's place and the file's name.
+/// Returns the message of check_files or the reader, after the scene's place and the file's name.
 std::string refusal_of_cell(Folder const& folder, std::string const& unit_cell,
                             std::string const& lattice = {}) {
   auto const message = refusal([&] { check_files(read_with(folder, unit_cell, lattice)); });
@@ -133,7 +133,7 @@ std::string refusal_of_cell(Folder const& folder, std::string const& unit_cell,
   return message.substr(std::min(begin.size(), message.size()));
 }
 
-// A trajectory has this text, and may lie elsewhere than the file.
+// A trajectory stores this text, and may be elsewhere than the file.
 TEST(UnitCellFile, TextOfTheSceneHasTheCell) {
   Folder const folder;
   auto const scene = read_with(folder, text_of("honeycomb_with_dmi.ucf"));
@@ -227,7 +227,7 @@ TEST(UnitCellFile, ThatIsNotThereIsNamed) {
   }
 }
 
-// Whatever is wrong with a file ends in one line.
+// Any fault of a file gives one line.
 TEST(UnitCellFile, DamagedFilesAreReadOrRefused) {
   Folder const folder;
   std::mt19937 random(1);

@@ -41,6 +41,17 @@ TEST(Scene, EveryKeyArrives) {
   EXPECT_EQ(scene.path, folder / "scene.toml");
 }
 
+TEST(Scene, PeriodsOfOutputMayBeTimes) {
+  Folder const folder;
+  auto const scene = [&](std::string const& every) {
+    return read_text(folder, replaced(llg_scene, "every = 100", every)).output;
+  };
+  auto const both = scene("every = { time = 0.5 }\nscalars_every = { time = 0.02 }");
+  EXPECT_EQ(both.every, 50);
+  EXPECT_EQ(both.scalars_every, 2);
+  EXPECT_EQ(scene("every = { time = 0.07 }").scalars_every, 7);
+}
+
 TEST(Scene, TextIsAFile) {
   Folder const folder;
   auto const typed = parse_scene(std::string(llg_scene), folder / "scene.toml");
@@ -94,13 +105,13 @@ TEST(Scene, DemagnetizationStrengthDefaultsToOne) {
   auto const slab = scene_of(text).field.slab_demag;
   EXPECT_EQ(slab->strength, 1);
   EXPECT_TRUE(slab->on_host);
-  EXPECT_FALSE(slab->dear);
+  EXPECT_FALSE(slab->multirate);
 }
 
-TEST(Scene, DearFieldsAndSubsteps) {
-  auto const text = replaced(llg_scene, "strength = 2", "where = \"host\", dear = true");
+TEST(Scene, MultirateFieldsAndSubsteps) {
+  auto const text = replaced(llg_scene, "strength = 2", "where = \"host\", multirate = true");
   auto const scene = scene_of(text, {"integrator.substeps=4"});
-  EXPECT_TRUE(scene.field.slab_demag->dear);
+  EXPECT_TRUE(scene.field.slab_demag->multirate);
   EXPECT_EQ(scene.integrator.substeps, 4);
   EXPECT_EQ(scene_of(text).integrator.substeps, 1);
 }
@@ -114,13 +125,13 @@ TEST(Scene, TheWholeDemagnetizingField) {
   auto const demag = with("demag = true").value();
   EXPECT_EQ(demag.strength, 1);
   EXPECT_EQ(demag.periodic_images, (std::array{0, infinitely_many_images, 0}));
-  EXPECT_FALSE(demag.dear.has_value());
+  EXPECT_FALSE(demag.multirate.has_value());
   EXPECT_FALSE(with("demag = false"));
   auto const typed =
-      with("demag = { strength = 0.5, periodic_images = [3, 0, 1], dear = false }").value();
+      with("demag = { strength = 0.5, periodic_images = [3, 0, 1], multirate = false }").value();
   EXPECT_EQ(typed.strength, 0.5);
   EXPECT_EQ(typed.periodic_images, (std::array{3, 0, 1}));
-  EXPECT_EQ(typed.dear, false);
+  EXPECT_EQ(typed.multirate, false);
 }
 
 TEST(Scene, WholeNumbersServeAsNumbers) {
@@ -179,7 +190,7 @@ TEST(Scene, EndIsAWholeNumberOfSteps) {
   EXPECT_THROW(steps("0.3", "0.899999999"), SceneError);
 }
 
-// By default the end is kept to the last bit, where 100 looks would not: 7 is not 100 times 0.07.
+// By default the end keeps all bits, which 100 intervals would not: 7 is not 100 times 0.07.
 TEST(Scene, AMethodThatChoosesItsStepsLooksAt128EqualTimes) {
   for (std::string const method : {"method='tsit5',tolerance=1e-5", "method='auto',error=1e-3"})
     for (std::string const typed : {"7.0", "60.0", "0.3", "1e-9", "1e300"}) {

@@ -45,7 +45,7 @@ TEST(Methods, HaveTheTraitsThatTheirWordsSay) {
   }
 }
 
-// What does not go together: a row that says so would be refused whatever a scene says.
+// Detects contradictory rows, which would be refused for any scene.
 TEST(Methods, AreConsistent) {
   for (auto const* const method : methods()) {
     auto const& word = method->word;

@@ -37,11 +37,11 @@ lattice.basis =; lattice.crystal = 'bcc'; lattice.cell = [[1, 0, 0], [0, 1, 0], 
   | : stands beside lattice.crystal | no such key
 lattice.moments = [1] | : has 1 entries | 2 numbers >= 0
 lattice.moments = [1, -1] | [1]: -1 is negative | a number >= 0
-lattice.moments = '1' | : '1' is a string | a number >= 0
+lattice.moments = true | : true is a boolean | a number >= 0
 lattice.gyromagnetic = -1 | : -1 is not positive | a number > 0
 lattice.gyromagnetic = [1, nan] | [1]: nan is not finite
 lattice.occupied = true | : true is a boolean
-  | an expression in x, y, z, i, j, k, s, or { file = "NAME.h5" }
+  | an expression in x, y, z, i, j, k, s, { file = "NAME.h5" }, { image = "NAME.png" } or { regions = [v0, v1, ..] }
 lattice.occupied = 't < 1' | : expression "t < 1" | a formula in x, y, z, i, j, k, s
 lattice.frozen = 'i ==' | : expression "i ==" | a formula in
 lattice.frozen = 'i = 0' | : expression "i = 0" | assignment
@@ -95,7 +95,16 @@ field.couplings = [{ between = [0, 1], offset = [1, 2, 0], J = 1 },
  { between = [1, 0], offset = [-1, -2, 0], J = 1 }]
   | [1]: is the bond of field.couplings[0], reversed; | each bond once
 field.couplings = {} | : has no bonds | shells
-field.couplings = { shells = [1], file = 'a.ucf' } | : has shells and a file | { file = "NAME.ucf" }
+field.couplings = { both_directions = true, shells = [1] } | .both_directions: belongs to pairs
+field.couplings = { pairs = [{ J = 1 }], file = 'a.ucf' } | : has a file and other bonds
+field.couplings = { pairs = [{ offset = [1, 0, 0], J = 1 }], both_directions = 1 } | .both_directions: 1
+field.couplings = { pairs = [{ offset = [1, 0, 0], J = 1 }], both_directions = true }
+  | .pairs[0]: is not written from its other end | each bond from both ends
+field.couplings = { pairs = [{ offset = [1, 0, 0], J = 1 }, { offset = [-1, 0, 0], J = 2 }], both_directions = true }
+  | .pairs[0]: differs from field.couplings.pairs[1]
+field.couplings = { pairs = [{ offset = [1, 0, 0], J = 1 }, { offset = [-1, 0, 0], J = 1 }] }
+  | .pairs[1]: is the bond of field.couplings.pairs[0], reversed | both_directions
+field.couplings = { shells = [1], file = 'a.ucf' } | : has a file and other bonds | { file = "NAME.ucf" }
 field.couplings = { shell = [1] } | .shell: unknown key | did you mean "shells"?
 field.couplings = { shells = 1 } | .shells: 1 is an integer | the J of pairs at the first
 field.couplings = { shells = [] } | .shells: has 0 entries | the J of pairs at the first
@@ -120,14 +129,34 @@ field.anisotropy = { cubic = 1, constant = 1, axes = [[1, 0, 0], [0, 1, 0]] }
   | .constant: belongs to a uniaxial one | no such key
 field.anisotropy = { constant = 1, axes = [[1, 0, 0], [0, 1, 0]] } | .axes: belongs to a cubic one
   | no such key
-field.anisotropy = { cubic = '1', axes = [[1, 0, 0], [0, 1, 0]] } | .cubic: '1' is a string
+field.anisotropy = { cubic = true, axes = [[1, 0, 0], [0, 1, 0]] } | .cubic: true is a boolean
   | a finite number
+field.anisotropy = { cubic = 1, constant2 = 'q', axes = [[1, 0, 0], [0, 1, 0]] }
+  | .constant2: expression | a formula in x, y, z
+field.anisotropy = { cubic = 1, in_plane = [1, 0, 0], axes = [[1, 0, 0], [0, 1, 0]] }
+  | .in_plane: belongs to a hexagonal one | no such key
+field.anisotropy = { hexagonal = 1, cubic = 1, axes = [[1, 0, 0], [0, 1, 0]] }
+  | .hexagonal: belongs to a hexagonal one | no such key
+field.anisotropy = { hexagonal = 1, axes = [[1, 0, 0], [0, 1, 0]] } | .axes: belongs to a cubic one
+  | no such key
+field.anisotropy = { hexagonal = 1, constant2 = 1 } | .constant2: belongs to a uniaxial one
+  | no such key
+field.anisotropy = { hexagonal = 1, axis = [0, 0, 1] } | .in_plane: is missing
+  | a vector at right angles with axis
+field.anisotropy = { hexagonal = 1, in_plane = [0, 0, 1] } | .axis: is missing | three numbers
+field.anisotropy = { hexagonal = 1, axis = [0, 0, 1], in_plane = [1, 0, 1] }
+  | .in_plane: the axes are not at right angles, by 0.707 | two vectors at right angles
+field.anisotropy = { constant = 1, axis = [0, 0, 1], in_plane = [1, 0, 0] }
+  | .in_plane: belongs to a hexagonal one | no such key
+field.dmi = { d2d = 1, bulk = 1 } | : is of D2d and of another symmetry | { d2d = D }
+field.dmi = { d2d = 1, normal = [0, 0, 1] } | : is of D2d and of another symmetry | { d2d = D }
+field.dmi = { d2d = true } | .d2d: true is a boolean | an expression
 field.anisotropy = { cubic = 1, axes = [[1, 0, 0], [1, 1, 0]] }
   | .axes: the axes are not at right angles | two vectors at right angles
 field.anisotropy = { cubic = 1, axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]] } | .axes: has 3 entries
   | two vectors
 field.anisotropy = { cubic = 1, axes = [[1, 0, 0], [0, 0, 0]] } | .axes[1]: is a zero vector
-field.dmi = 1 | : 1 is an integer | { interfacial = D, normal = [x, y, z] } or { bulk = D }
+field.dmi = 1 | : 1 is an integer | { interfacial = D, normal = [x, y, z] }, { bulk = D }
 field.dmi = { interfacial = 1 } | .normal: is missing | three numbers
 field.dmi = { interfacial = 1, normal = [0, 0, 0] } | .normal: is a zero vector | three numbers
 field.dmi = { bulkk = 1 } | .bulkk: unknown key | interfacial, normal, bulk
@@ -140,6 +169,15 @@ field.dmi = { interfacial = 1, normal = [0, 0, 1] } | : needs one site in a cell
 field.dmi = { bulk = 1 } | : needs one site in a cell | field.couplings with D
 lattice.basis =; lattice.cell = [[1, 0, 0], [0.5, 1, 0], [0, 0, 1]]; field = { exchange = 1 }
   | .exchange: needs a cell along the axes | field.couplings with J
+field.dipoles = 1 | : 1 is an integer | true, or { strength, periodic_images, demagnetizing_factors
+field.demag = 1 | : 1 is an integer | true, or { strength, periodic_images, demagnetizing_factors
+field.dipoles = { images = [1, 0, 0] } | .images: unknown key | periodic_images
+field.dipoles = { periodic_images = [1, -1, 0] } | .periodic_images[1]: -1 is too small | 0 to 1000
+field.dipoles = { strength = nan } | .strength: nan is not finite
+field.dipoles = { demagnetizing_factors = [0, 0, 1] }
+  | .demagnetizing_factors: is of a lattice that is periodic along x, y and z | no such key
+field.dipoles = { demagnetizing_factors = [0, 0, 2] } | .demagnetizing_factors[2]: 2 | 0 to 1
+field.dipoles = { demagnetizing_factors = [0, 1] } | .demagnetizing_factors: has 2 entries
 )");
 }
 
@@ -178,7 +216,7 @@ TEST(WrongCrystal, OfABondTypedTwiceIsNamedByItsLine) {
                                "field.couplings[0]; accepted: each bond once"));
 }
 
-// What a scene to relax refuses, with and without an integrator.
+// Refusals of a scene to relax, with and without an integrator.
 TEST(WrongCrystal, ToRelaxIsRefused) {
   Folder const folder;
   auto const without =
@@ -189,7 +227,7 @@ TEST(WrongCrystal, ToRelaxIsRefused) {
     };
     EXPECT_EQ(refused({}), "accepted");
     expect_holds(refused({"torque={slonczewski={field_like=1,polarization=[0,0,1]}}"}),
-                 ": torque: moves spins for ever, and a state of rest needs an energy that falls; "
+                 ": torque: moves spins for ever, and an equilibrium needs an energy that falls; "
                  "accepted: no such table");
     expect_holds(refused({"field.exchange=1"}), ": field.exchange: needs one site in a cell");
   }

@@ -4,7 +4,7 @@
 namespace cayspin::inline v0_1::io::test {
 namespace {
 
-// What is no key of its table, over one line or more.
+// Text that is not a key of its table, over one line or more.
 TEST(WrongScene, ThatIsNoTomlOrHasNoSuchTable) {
   for (auto const& [typed, instead, begins, holds] : std::vector<std::array<std::string_view, 4>>{
            {"damping = 0.05", "damping = = 0.05", ":3: not TOML", "TOML 1.0"},
@@ -87,10 +87,10 @@ field.applied = [0.05, true, 0] | [1]: true | a string with an expression in t
 field.slab_demag = { normal = [0, 0, 0], strength = 2 } | .normal: is a zero vector
 field.slab_demag = { strength = 2 } | .normal: is missing
 field.slab_demag = { normal = [1, 0, 0], average = 'layer' } | .average: unknown key
-  | accepted: normal, strength, where, dear
+  | accepted: normal, strength, where, multirate
 field.slab_demag = { normal = [1, 0, 0], where = 'gpu' } | .where: "gpu" | accepted: "host"
-field.slab_demag = { normal = [1, 0, 0], dear = true } | .dear: | where = "host" beside it
-field.slab_demag = { normal = [1, 0, 0], dear = 'yes' } | .dear: | true
+field.slab_demag = { normal = [1, 0, 0], multirate = true } | .multirate: | where = "host" beside it
+field.slab_demag = { normal = [1, 0, 0], multirate = 'yes' } | .multirate: | true
 field.slab_demag =; field.demag = 1 | : 1 is an integer | true, or { strength
 field.slab_demag =; field.demag = { image = [1, 0, 0] } | .image: | periodic_images
 field.slab_demag =; field.demag = { periodic_images = [1, -1, 0] } | .periodic_images[1]:
@@ -114,14 +114,14 @@ initial = { expression = ['1', 't', 'y'] } | .expression[1] | a formula in x, y,
 initial = { random = {} } | .random.seed: is missing | a whole number
 initial = { random = { seed = 1.5 } } | .random.seed: 1.5 | a whole number
 initial = { random = { seed = -1 } } | .random.seed: -1 is too small | a whole number >= 0
-initial = { file = '' } | .file: the file name is empty | HDF5 or OVF 2.0 file
+initial = { file = '' } | .file: the file name is empty | HDF5 or OVF file
 )");
 }
 
 TEST(WrongScene, OfIntegrator) {
   expect_refused(llg_scene, R"(
 integrator.method = | : is missing | "euler", "implicit_euler"
-integrator.method = 'rk4' | : "rk4" | did you mean "rkmk4"?; accepted: "euler", "implicit_euler"
+integrator.method = 'rk4' | : "rk4" | here it is rkmk4 or projected_rk4; accepted: "euler", "implicit_euler"
 integrator.isotropy = 'constant' | : "constant" has no value | { constant = sigma }
 integrator.isotropy = { constant = inf } | .constant: inf is not finite
 integrator.rotation = 'rodrigues' | : | accepted: "cayley", "exponential"
@@ -142,7 +142,7 @@ integrator.end = -1 | : -1 is negative
 integrator.end = 0.025 | : 0.025 | accepted: dt = 0.0125 or 0.008333333333333333
 integrator.end = 0.004 | : 0.004 | accepted: dt = 0.004 or 0.002
 integrator.end = 1e-12 | : 1e-12 is less than a step of dt = 0.01
-  | accepted: a smaller dt, or steps = 0
+  | accepted: a smaller dt
 integrator.end = 1e300 | : | more than 2^53 steps
 integrator.end =; integrator.steps = -1 | : -1 | >= 0
 integrator.end =; integrator.steps = 3.0 | : 3.0 | a whole number
@@ -163,6 +163,10 @@ output.file = 5 | : 5 is an integer | HDF5 file
 output.file = '' | : the file name is empty
 output.every = 0 | : 0 is too small | >= 1
 output.every = 1.5 | : 1.5 | a whole number of steps
+output.every = { time = 0.0123 } | .time: | dt =
+output.every = { time = 0 } | .time: is 0 | a time > 0
+output.every = { steps = 3 } | .steps: unknown key | time
+output.every = {} | .time: is missing | a time > 0
 output.every =; output.scalars_every = -3 | : -3 | >= 1
 output.every =; output.compression = 10 | : 10 is too large | 0 (none) to 9
 output.every =; output.chunk = 0 | : 0 is too small | planes along z

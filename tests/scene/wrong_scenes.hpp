@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Scenes that one or more keys make wrong, as tables of what is typed and what is said.
+// Scenes made wrong by one or more keys, as tables of typed values and messages.
 #pragma once
 
 #include "scene_file.hpp"
@@ -24,13 +24,13 @@ inline std::vector<std::string> split(std::string_view text, std::string_view at
   return parts;
 }
 
-/// A scene by lines, in which keys are typed and found again.
+/// A scene by lines, in which keys are replaced and found again.
 class SceneText {
  public:
   explicit SceneText(std::string_view text) : lines_(split(trimmed(text), "\n")) {}
 
-  /// "table.key = VALUE", or "name = VALUE" of a whole table and of a key above all tables. What
-  /// has no value is taken out.
+  /// Types "table.key = VALUE", or "name = VALUE" for a whole table or a key above all tables.
+  /// Removes a key without a value.
   void type(std::string const& key, std::string const& value) {
     auto const path = split(key, ".");
     if (path.size() == 1) {
@@ -49,7 +49,8 @@ class SceneText {
       lines_.insert(at(begin), typed);
   }
 
-  /// The line that a message about a key names: its own, or else that of its table, or else 1.
+  /// Returns the line that a message about a key names: its own, otherwise that of its table,
+  /// otherwise 1.
   std::size_t line_of(std::string_view key) const {
     auto const path = split(key.substr(0, key.find('[')), ".");
     if (auto const line = find(path[0], 0); line < lines_.size()) return line + 1;
@@ -76,7 +77,7 @@ class SceneText {
     while (line < lines_.size() && !lines_[line].starts_with('[')) ++line;
     return line;
   }
-  /// The line of a key in the table whose lines begin there, or the number of lines.
+  /// Returns the line of a key in the table that starts at `begin`, or the number of lines.
   std::size_t find(std::string const& name, std::size_t begin) const {
     auto const end = end_of_table(begin);
     for (auto line = begin; line < end; ++line)
@@ -87,7 +88,7 @@ class SceneText {
   std::vector<std::string> lines_;
 };
 
-/// The rows of a table; a line that begins with a space goes on with the row before.
+/// Returns the rows of a table; a line that starts with a space continues the previous row.
 inline std::vector<std::string> rows_of(std::string_view table) {
   std::vector<std::string> rows;
   for (auto const& line : split(trimmed(table), "\n"))
@@ -98,10 +99,10 @@ inline std::vector<std::string> rows_of(std::string_view table) {
   return rows;
 }
 
-/// Each row is "key = VALUE; .. | what the message begins with after its place | what it holds",
-/// and makes the scene wrong. The message's key goes on from the last typed one where it begins
-/// with one of ".[:". It is one line, names the line of the key, and says what is accepted, unless
-/// a fourth column says that it does not.
+/// Each row is "key = VALUE; .. | start of the message after its place | text in the message", and
+/// makes the scene wrong. The message's key continues from the last typed one if it starts with one
+/// of ".[:". The message must be one line, name the line of the key, and say what is accepted,
+/// unless a fourth column says that it does not.
 inline void expect_refused(std::string_view scene, std::string_view table) {
   for (auto const& row : rows_of(table)) {
     SCOPED_TRACE(row);

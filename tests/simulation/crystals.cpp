@@ -5,7 +5,6 @@
 #include "scenes_of_text.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,8 +12,6 @@
 
 namespace cayspin::simulation::test {
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 /// A cone of spins that turns rigidly: phase(t) is the phase of each spin in i, j, k, s.
 struct Cone {
@@ -140,7 +137,7 @@ random = { seed = 1 }
   }
 }
 
-// H = -(1 / mu) dE/dm: without damping E stays, and so does the sum of (mu / g) m.
+// H = -(1 / mu) dE/dm: without damping E and the sum of (mu / g) m are conserved.
 TEST(CrystalScenes, MomentsConserveEnergyAndAngularMomentum) {
   auto const run = SceneRun::open(llg_scene("0", "rkmk8", 100, R"toml(
 [lattice]
@@ -171,7 +168,7 @@ random = { seed = 2 }
   for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(after[c], before[c], 1e-9);
 }
 
-// Paramagnets of two moments in one bath: each has Langevin's magnetization of its own mu h / T.
+// Paramagnets of two moments in one bath: each has Langevin's magnetization for its own mu h / T.
 TEST(CrystalScenes, EachMomentHasTheTemperature) {
   auto const scene = llg_scene("1", "heun", 1000, R"toml(
 [lattice]
@@ -198,7 +195,7 @@ uniform = [0, 0, 1]
   }
   for (int site : {0, 1}) {
     double const x = site == 0 ? 0.5 : 2, expected = 1 / std::tanh(x) - 1 / x;
-    // 8192 spins, ten looks that know little of each other.
+    // 8192 spins, ten nearly independent samples.
     EXPECT_NEAR(sums[site] / (10 * 8192), expected, 0.01) << site;
   }
 }
@@ -218,9 +215,9 @@ uniform = [0.6, 0, -0.8]
                 500 * epsilon(precision));
 }
 
-// A wall of width 1 in a current. Alone it moves at (1 + damping xi) u and turns; a hard axis holds
-// its plane below Walker's current, and it moves at (1 + damping^2) (xi / damping) u. Both are
-// exact but for the lattice, of second order.
+// A wall of width 1 in a current. A free wall moves at (1 + damping xi) u and turns; a hard axis
+// holds its plane below Walker's current, and it moves at (1 + damping^2) (xi / damping) u. Both
+// are exact except for second-order effects of the lattice.
 TEST(CrystalScenes, AWallUnderACurrent) {
   constexpr double damping = 0.4, xi = 0.25, u = 0.1;
   for (bool const has_hard_axis : {false, true}) {
@@ -300,8 +297,8 @@ random = { seed = 4 }
   EXPECT_NEAR(found.energy.value, 120 * -8.0 - 240 * 0.25, 1e-6);
 }
 
-// Moments do not bend the way down: the energy of a ferrimagnet along its field, and that of a
-// cubic crystal, whose field is not linear.
+// The descent works with different moments: the energy of a ferrimagnet along its field, and that
+// of a cubic crystal, whose field is not linear.
 TEST(CrystalScenes, RelaxMomentsAndCubicAxes) {
   auto const relaxed = [](std::string const& lattice, std::string const& field) {
     auto const run =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Random scenes of all terms, vacancies, frozen sites and crystals: the derivative of the energy,
-// the torque and the lowest curvature beside finite differences and a dense Hessian.
+// the torque and the lowest curvature against finite differences and a dense Hessian.
 #include "io/scene.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/ranks.hpp"
@@ -96,8 +96,11 @@ class RandomText {
                                             of_sites(0, 0.7 * strength), vector())
                               : "dmi = { bulk = " + of_sites(0, 0.7 * strength) + " }\n";
       if (is_open_ && chance(0.3)) field_ += "demag = true\n";
+    } else if (chance(0.4)) {
+      field_ += fmt::format("dipoles = {{ strength = {:.4f} }}\n", strength);
     }
-    if (chance(0.4) && field_.find("demag") == std::string::npos)
+    if (chance(0.4) && field_.find("demag") == std::string::npos &&
+        field_.find("dipoles") == std::string::npos)
       field_ += fmt::format("slab_demag = {{ normal = [0, 0, 1], strength = {:.4f}{} }}\n",
                             uniform(0, 1), !is_crystal && chance(0.3) ? ", where = 'host'" : "");
     std::string axes;
@@ -114,7 +117,8 @@ class RandomText {
     std::string list;
     std::set<std::array<int, 4>> bonds;
     for (int i = whole(1, 3); i > 0; --i) {
-      // Refused are one that leaves the lattice from every cell, a site with itself, and one twice.
+      // Refused: a coupling that leaves the lattice from every cell, a site with itself, a
+      // duplicate.
       int const x = extents_[0] > 1 ? 1 : 0, y = extents_[1] > 1 ? i - 2 : 0;
       int const from = whole(0, sites_ - 1), to = whole(0, sites_ - 1);
       if (x == 0 && y == 0 && from == to) continue;
@@ -148,7 +152,7 @@ class RandomText {
   bool is_open_ = true;
 };
 
-/// Opening a run initialises Kokkos.
+/// Fixture: opening a run initialises Kokkos.
 class Equilibria : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -188,7 +192,8 @@ class Reference {
     return largest;
   }
 
-  /// The energy's derivative as all mobile spins turn at random, by differences less that by H.
+  /// Returns the energy's derivative as all mobile spins turn at random, by differences minus that
+  /// by H.
   double error_of_derivative(unsigned seed) const {
     std::mt19937 engine(seed);
     auto v = std::vector<double>(m_.size());
@@ -210,7 +215,8 @@ class Reference {
            expected;
   }
 
-  /// Eigenvalues of the dense Hessian on the tangent planes of the mobile spins, least first.
+  /// Returns the eigenvalues of the dense Hessian on the tangent planes of the mobile spins, least
+  /// first.
   Eigen::VectorXd curvatures() const {
     auto const count = static_cast<Eigen::Index>(2 * mobile_.size());
     Eigen::MatrixXd hessian(count, count);
@@ -285,14 +291,14 @@ void expect_right_equilibria(unsigned seed) {
   auto const field = field_of<Spins>(scene, lattice, false).made_for(FieldFor::energy);
   SceneMinimizer<Real, Space> minimizer(spins);
 
-  // At the start, which no bound on the torque makes it leave.
+  // At the start, which the search does not leave with any bound on the torque.
   Reference const start(scene, lattice, numbers());
   if (start.mobile() == 0) return;
   auto const eigenvalues = start.curvatures();
   double const largest = eigenvalues.cwiseAbs().maxCoeff();
   if (largest == 0) return;  // no spin sees a field
   auto const before = numbers();
-  // Fields that are not affine are differentiated to the power 2/3 of epsilon.
+  // Fields that are not affine are differentiated with accuracy epsilon^(2/3).
   constexpr double part = is_double ? 1e-6 : 2e-3;
   double const allowed = part * (largest + 1e-3);
   auto const at_start =
@@ -332,7 +338,7 @@ struct Small {
   double energy;
 };
 
-// Vacant sites have no curvature and no field, whatever stands on them.
+// Vacant sites have no curvature and no field, whatever vector they have.
 TEST_F(Equilibria, WithVacanciesAreFound) {
   std::string const pair =
       "lattice = { shape = [3], occupied = 'i > 0' }\n"

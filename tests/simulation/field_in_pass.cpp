@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The same physics said in two ways, by every method that takes it: with and without the pass that
-// evaluates terms of few scenes, with fewer sites and with sites without spins, in numbers and in
-// expressions.
+// One physical system in two forms, with every method that accepts both: with and without the pass
+// for rarely used terms, with fewer sites and with vacant sites, by numbers and by expressions.
 #include "io/method.hpp"
 #include "scenes_of_text.hpp"
 
@@ -14,7 +13,7 @@
 namespace cayspin::simulation::test {
 namespace {
 
-// Every term of plain scenes, evaluated in a pass: moments of 1 ask for that and change nothing.
+// Every term of plain scenes, evaluated in a pass: moments of 1 request that and change nothing.
 TEST(FieldInPass, APassIsTheFieldThatKernelsEvaluate) {
   constexpr auto plain = R"toml(
 [system]
@@ -49,7 +48,7 @@ steps = 40
       try {
         usual = scene_of(fmt::format(plain, "", method->word, more));
       } catch (io::SceneError const&) {
-        continue;  // such as one that takes no field in t
+        continue;  // such as one that refuses time-dependent fields
       }
       try {
         auto const in_pass = scene_of(fmt::format(plain, "moments = [1]", method->word, more));
@@ -70,7 +69,7 @@ steps = 40
   EXPECT_LT(refused, 20);
 }
 
-// Half a film without spins is half a film, and what is frozen stays.
+// Half a film of vacant sites equals half a film, and frozen spins do not move.
 TEST(FieldInPass, SitesWithoutSpinsAreNone) {
   auto const film = [](std::string const& lattice, std::string const& method) {
     return scene_of(fmt::format(R"toml(
@@ -117,7 +116,8 @@ steps = 50
           double const there = large[3 * (19 * j + i) + c];
           largest = std::max(largest, std::abs(there - (i < 9 ? small[3 * (9 * j + i) + c] : 0)));
         }
-    // Stiff steps solve their equation to a part of their error, by another solver on each lattice.
+    // Stiff steps solve their equation to a fraction of their error, by another solver on each
+    // lattice.
     bool const is_rounded = !method->adaptive && !method->word.starts_with("stiff");
     EXPECT_LT(largest, is_rounded ? 1e-13 : 1e-6);
     auto const of_half = SceneRun::open(*half, {})->sample();
@@ -130,8 +130,7 @@ steps = 50
   EXPECT_GE(compared, 19);
 }
 
-// Constants by expressions that do not differ are constants, and a jump of the exchange is that of
-// the library.
+// Uniform expressions equal constants, and a jump of the exchange is that of the library.
 TEST(FieldInPass, NumbersOfSites) {
   auto const scene = [](std::string const& damping, std::string const& field) {
     return llg_scene(damping, "rkmk4", 50,
@@ -159,7 +158,7 @@ TEST(FieldInPass, NumbersOfSites) {
                   SceneRun::open(by_site, {.precision = precision})->sample().energy.value,
                   1e4 * epsilon(precision));
     }
-  // Spins without damping keep their height in a field, the others do not.
+  // Spins without damping keep their m_z in a field, the others do not.
   auto const run = SceneRun::open(scene("'0.2*(i<9)'", "applied = [0, 0, 1]"), {});
   auto const before = spins_of(*run);
   run->advance(50);

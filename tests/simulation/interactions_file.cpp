@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The file that keeps a demagnetising field's tensors: found again, and never trusted.
+// The cache file of a demagnetising field's tensors: found again, and verified.
 #include "simulation/interactions_file.hpp"
 
 #include <gtest/gtest.h>

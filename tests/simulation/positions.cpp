@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Where a file says that the sites of a crystal are.
+// Positions of a crystal's sites in a file.
 #include "io/relax.hpp"
 #include "simulation/run_files.hpp"
 #include "simulation/scene_minimizer.hpp"
@@ -41,7 +41,7 @@ TEST(Positions, AreThoseOfCellsAndBasisInTheUnitsOfTheScene) {
   EXPECT_EQ(options.positions, expected);
 }
 
-TEST(Positions, StandOnceInTheFileOfSeveralStatesOfRest) {
+TEST(Positions, StandOnceInTheFileOfSeveralEquilibria) {
   auto const bytes_of = [](std::string const& crystal, std::string const& applied) {
     auto const text = "[system]\nkind = 'llg'\ndamping = 0.1\n[lattice]\nshape = [6, 5, 4]\n" +
                       crystal + "\n[field]\ncouplings = { shells = [1] }\napplied = " + applied +

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Fields that change within a small part of a run: adaptive steps do not miss what they do, and
-// equal steps that may are warned of.
+// Fields that change within a small part of a run: adaptive steps resolve them, and constant steps
+// that may miss them cause a warning.
 #include "../support/random_pulses.hpp"
 #include "random_run.hpp"
 #include "scenes_of_text.hpp"
@@ -11,7 +11,7 @@ namespace {
 
 using cayspin::test::RandomPulses;
 
-/// One damped spin at rest along z, and a pulse across it.
+/// Returns a scene of one damped spin at equilibrium along z, and a pulse normal to it.
 std::string pulse_scene(std::string const& integrator,
                         std::string const& across = "t>500 && t<501.5 ? 1.0 : 0") {
   return "system = { kind = 'llg', damping = 0.5 }\nlattice = { shape = [1] }\n"
@@ -32,7 +32,7 @@ TEST(Pulses, AtRestAreNotMissed) {
 
 TEST(Pulses, OfAnySmallPartOfARunAreFound) {
   for (double const width : {1e-9, 1e-6, 1e-3, 1.0}) {
-    // A short pulse is as strong as it is short.
+    // A shorter pulse is stronger, with constant area.
     auto const text = fmt::format("t>500.25 && t<{:.17g} ? {:.17g} : 0", 500.25 + width, 1 / width);
     auto const scene = scene_of(pulse_scene("method = 'tsit5', tolerance = 1e-6, end = 502", text));
     auto const features = make_plan(scene, Precision::double_precision).features;
@@ -53,7 +53,7 @@ TEST(Pulses, AreLookedForWhereTheFieldDependsOnTime) {
   EXPECT_FALSE(plan.features->shortest);
 }
 
-// Errors beside a reference that ends its steps at all corners.
+// Errors against a reference whose steps end at all corners.
 TEST(Pulses, RandomOnesAreFollowedToTheTolerance) {
   static constexpr char const* methods[] = {"tsit5", "dp5", "bs3", "projected_dp5",
                                             "stiff2_adaptive"};
@@ -143,7 +143,7 @@ TEST(Pulses, OfCurrentsAreFoundToo) {
   EXPECT_EQ(plan.options.steps.bounds.size(), 2u);
 }
 
-// Spins that have come to rest before a pulse still have it before them.
+// A run with spins at equilibrium does not end before a pulse.
 TEST(Pulses, AreWaitedForByRunsThatEndAtRest) {
   auto const scene = scene_of(
       "system = { kind = 'llg', damping = 0.5 }\nlattice = { shape = [1] }\n"
@@ -153,7 +153,7 @@ TEST(Pulses, AreWaitedForByRunsThatEndAtRest) {
   auto const run = SceneRun::open(scene, {});
   EXPECT_EQ(run->advance(scene.integrator.steps, {.until_torque = true}), Advanced::at_rest);
   EXPECT_GT(run->time(), 501.5);
-  EXPECT_LE(run->time(), 600);  // the next look
+  EXPECT_LE(run->time(), 600);  // the next check
 }
 
 TEST(Pulses, BitsOfARunInPiecesAreThoseOfOne) {

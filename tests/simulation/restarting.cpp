@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A run that was stored and goes on is the run without a break: the same bits and counts, by every
-// method. One that is asked to end early says so.
+// A stored and continued run equals an uninterrupted one: equal bits and counts, with every method.
+// A run interrupted early says so.
 #include "random_run.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/failure.hpp"
@@ -18,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Runs a scene without and with a break after `cut` steps. False when it has no meaning.
+/// Runs a scene without and with an interruption after `cut` steps. Returns false for an invalid
+/// scene.
 bool gives_the_bits_of_one_run(std::string const& text, Precision precision, std::int64_t cut) {
   std::optional<io::Scene> scene;
   try {
@@ -72,7 +73,8 @@ TEST(Restarting, BeginsAnewAfterSpinsWereGiven) {
   fs::remove(file);
 }
 
-// What asks, such as Python's signals, hands a yes over to the run, which then has to end by it.
+// A poll that returns true, such as for Python's signals, hands the request to the run, which must
+// then stop.
 TEST(Interrupting, IsNotAskedAfterTheLastStep) {
   auto scene = llg_scene("0.1", "rkmk4", 40, chain_of_nine);
   auto const wait = std::make_shared<std::chrono::milliseconds>(0);
@@ -82,7 +84,7 @@ TEST(Interrupting, IsNotAskedAfterTheLastStep) {
   };
   auto const run = SceneRun::open(scene, {});
   run->advance(1);
-  *wait = std::chrono::milliseconds(30);  // not yet where the plan looks at it
+  *wait = std::chrono::milliseconds(30);  // not before the plan's evaluation
   for (std::int64_t const count : {1, 2, 3}) {
     bool said_yes = false;
     auto const ended =

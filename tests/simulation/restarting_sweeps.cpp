@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Runs that go on, on lattices large enough for steps that sweep (cayspin::Path), in fields under
-// which steps cannot sweep and in such that let them. CAYSPIN_RANDOM_RESTARTS: how many; without
-// it few, and 0 stands for each method with each field once.
+// Continued runs on lattices large enough for sweeps (cayspin::Path), with fields that prevent
+// sweeps and fields that allow them. CAYSPIN_RANDOM_RESTARTS: their number; few by default, and 0
+// means each method with each field once.
 #include "random_run.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/failure.hpp"
@@ -40,7 +40,7 @@ std::int64_t least_planes(Precision precision, std::int64_t sites_of_plane) {
   return 1 + static_cast<std::int64_t>(sites) / sites_of_plane * 5 / 4;
 }
 
-/// False when the scene has no meaning, or its numbers fail.
+/// Returns false when the scene is invalid, or its numbers fail.
 bool gives_the_bits_of_passes(Variant const& variant, KindOfField const& field, Precision precision,
                               RandomRun& random) {
   static constexpr std::int64_t planes[][2] = {{40, 36}, {67, 21}, {128, 16}};
@@ -85,7 +85,7 @@ TEST(RestartingSweeps, GivesTheBitsOfARunWithoutABreak) {
     for (std::int64_t draw = 0; done < asked && draw < 50 * asked && !HasFailure(); ++draw) {
       RandomRun random(random_seed() + 77, draw);
       auto const& variant = *suitable[static_cast<std::size_t>(random.below(std::ssize(suitable)))];
-      // Half of them by what keeps a residual.
+      // Half of them with methods that store a residual.
       if (draw % 2 == 0 && !variant.compensated) continue;
       auto const& field = fields[random.below(std::ssize(fields))];
       done += gives_the_bits_of_passes(variant, field, precisions[random.below(2)], random);

@@ -11,11 +11,14 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace cayspin::simulation::test {
+
+inline constexpr double pi = std::numbers::pi;
 
 inline constexpr Precision precisions[] = {Precision::double_precision,
                                            Precision::single_precision};
@@ -29,7 +32,7 @@ inline io::Scene scene_of(std::string const& text, std::vector<std::string> cons
   return io::parse_scene(text, "scene.toml", overrides);
 }
 
-/// Spins in steps of 0.02. `tables`: all but [system] and [integrator].
+/// Returns a scene of spins with steps of 0.02. `tables`: all but [system] and [integrator].
 inline io::Scene llg_scene(std::string_view damping, std::string_view method, int steps,
                            std::string const& tables) {
   return scene_of(
@@ -55,8 +58,8 @@ inline double largest_distance(std::vector<double> const& a, std::vector<double>
   return largest;
 }
 
-/// A run that is stored after `cut` steps, and one that goes on from there to the scene's end, have
-/// the bits and counts of a run that is not stored.
+/// Expects a run that is stored after `cut` steps, and one continued from there to the scene's end,
+/// to have the bits and counts of an uninterrupted run.
 inline void expect_same_bits_after_a_break(io::Scene const& scene, std::int64_t cut,
                                            Precision precision = Precision::double_precision) {
   auto const file =
@@ -81,7 +84,8 @@ inline void expect_same_bits_after_a_break(io::Scene const& scene, std::int64_t 
   std::filesystem::remove(file);
 }
 
-/// The scene that `make` returns is refused, by it or the plan, in one line with these words.
+/// Expects the scene that `make` returns to be refused, by it or the plan, in one line with these
+/// words.
 template <class Make>
 void expect_refused(Make const& make, std::string const& words) {
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Scenes in SI against the same physics in reduced units, and against numbers worked by hand.
+// Scenes in SI against equal physics in reduced units, and against numbers computed by hand.
 #include "scenes_of_text.hpp"
 
 #include <cmath>
@@ -11,18 +11,18 @@
 namespace cayspin::simulation::test {
 namespace {
 
-// The tests do not take these from the library.
+// Independent of the library's values.
 constexpr double mu0 = 1.25663706127e-6, gamma = 1.760859e11, mu_B = 9.2740100657e-24,
                  meV = 1.602176634e-22, boltzmann = 1.380649e-23, pi = std::numbers::pi;
 
-// Of the units of a reduced scene.
+// Units of a reduced scene.
 struct Reduced {
   double energy, field, time;
 };
 
 std::vector<double> field_of(SceneRun& run) { return packed<double>(run.field().vectors); }
 
-// Fields in T, energies in J, and the spins after the scene's steps.
+// Compares fields in T, energies in J, and the spins after the scene's steps.
 void expect_same_physics(std::string const& si_text, std::string const& reduced_text,
                          Reduced const& unit) {
   auto const si = scene_of(si_text), reduced = scene_of(reduced_text);
@@ -47,7 +47,7 @@ void expect_same_physics(std::string const& si_text, std::string const& reduced_
   }
 }
 
-// `{NAME}` of a text by its number, with all digits.
+// Replaces `{NAME}` in a text by its number, with all digits.
 std::string with_numbers(std::string_view text, std::map<std::string, double> const& numbers) {
   std::string made(text);
   for (auto const& [name, number] : numbers)
@@ -207,8 +207,8 @@ std::string iron(std::string const& couplings) {
          "integrator = { method = 'rkmk4', dt = 1e-17, steps = 1 }\n";
 }
 
-// 8 neighbours of 7.05e-21 J on 2.22 Bohr magnetons: 2739.42 T, by hand. So Vampire has it, whose
-// file names each bond from both ends.
+// 8 neighbours of 7.05e-21 J on 2.22 Bohr magnetons: 2739.42 T, by hand. Vampire agrees; its file
+// lists each bond from both ends.
 TEST(SiScenes, IronHasTheExchangeFieldOfItsEightNeighbours) {
   for (auto const& couplings : {std::string("{ shells = [7.05e-21] }"),
                                 std::string("{ shells = { meV = [44.00263897494837]} }"),
@@ -222,7 +222,7 @@ TEST(SiScenes, IronHasTheExchangeFieldOfItsEightNeighbours) {
         EXPECT_EQ(field[3 * site], 0);
         EXPECT_NEAR(field[3 * site + 2], expected, 8 * epsilon(precision) * expected);
       }
-      // Its bonds, 4 a site, each once; the energy of the one term alone.
+      // Its bonds, 4 per site, each once; the energy of only this term.
       double const energy = -4 * 120 * 7.05e-21;
       EXPECT_NEAR(run->sample().energy.value, energy, 8 * epsilon(precision) * -energy);
       auto const terms = run->energies();
@@ -231,8 +231,8 @@ TEST(SiScenes, IronHasTheExchangeFieldOfItsEightNeighbours) {
     }
 }
 
-// A spiral of 24 cells in a current. Where xi is Gilbert's damping it moves with the electrons as
-// it is: by 28.9755 m/s sin(q a) / (q a) against 1e12 A/m^2, which turns its spins.
+// A spiral of 24 cells in a current. If xi is Gilbert's damping it moves with the electrons
+// unchanged: by 28.9755 m/s sin(q a) / (q a) against 1e12 A/m^2, which turns its spins.
 TEST(SiScenes, ASpiralOfPermalloyMovesWithTheElectrons) {
   auto const text = [](double alpha) {
     return fmt::format(R"toml(units = "SI"
@@ -258,7 +258,7 @@ integrator = {{ method = "rkmk4", dt = 1e-12, steps = 200 }}
     }
 }
 
-// Spins without bonds: each moves as in a scene of its own damping.
+// Uncoupled spins: each moves as in a scene with its damping.
 TEST(SiScenes, GilbertsDampingMayDifferFromSiteToSite) {
   auto const end = [](std::string const& alpha, std::string const& form, Precision precision) {
     return end_of(scene_of("units = 'SI'\nmaterial = { Ms = 8e5, alpha = " + alpha +

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The shipped scenes of muMAG's standard problems, on coarse cells. Figures of finer ones are in
-// docs/reports/standard_problems.md.
+// The shipped scenes of muMAG's standard problems, on coarse cells.
+// docs/reports/standard_problems.md has figures of finer ones.
 #include "io/relax.hpp"
 #include "scenes_of_text.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Runs at a temperature have the same bits in pieces, however they are looked at, and after a
-// restart, by every one-step method.
+// Runs at a temperature have equal bits in pieces, for any observation, and after a restart, with
+// every one-step method.
 #include "random_run.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/failure.hpp"
@@ -20,7 +20,7 @@ class ThermalRuns : public testing::Test {
   ThermalRuns() { fs::create_directories(folder_); }
   ~ThermalRuns() override { fs::remove_all(folder_); }
 
-  /// The same run in other ways. False when the scene has no meaning.
+  /// Repeats the run in other ways. Returns false when the scene is invalid.
   bool holds(std::string const& text, Precision precision, RandomRun& random) const {
     std::optional<io::Scene> scene;
     std::unique_ptr<SceneRun> whole;
@@ -68,7 +68,7 @@ TEST_F(ThermalRuns, HaveTheSameBitsInRandomScenes) {
   std::set<std::string_view> methods;
   for (std::int64_t draw = 0; scenes < wanted && draw < 50 * wanted && !HasFailure(); ++draw) {
     RandomRun random(random_seed(), draw);
-    // A prime beyond their number: all come in turn.
+    // A prime beyond their number, so that all come in turn.
     auto const& variant = variants()[(10007 * static_cast<std::size_t>(draw)) % variants().size()];
     auto const text =
         random.scene(variant) + fmt::format("[thermal]\ntemperature = {}\nseed = {}\n",
@@ -99,7 +99,7 @@ TEST(ThermalPlan, RefusesMethodsThatRememberSteps) {
 
 std::int64_t fences_of_noise = 0;
 
-// Between two looks nothing waits for noise.
+// Between two observations nothing waits for noise.
 TEST_F(ThermalRuns, WaitForNoiseOnlyAtLooks) {
   namespace tools = Kokkos::Tools::Experimental;
   auto const run = SceneRun::open(thermal_chain(), {});
@@ -111,7 +111,7 @@ TEST_F(ThermalRuns, WaitForNoiseOnlyAtLooks) {
   EXPECT_EQ(fences_of_noise, 10);
 }
 
-// A program's field that throws once: the step is taken again, with the noise that it had.
+// A program's field that throws once: the step is repeated, with its noise.
 TEST_F(ThermalRuns, GoOnAfterAFieldThatFailed) {
   auto const run_of = [&](int failing_call) {
     auto scene = thermal_chain();

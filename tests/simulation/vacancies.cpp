@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Methods that divide by the length of a spin, in scenes with vacant sites: those of the shape as a
-// lattice of its own. A site of the cell without a spin: the scene without that site.
+// Methods that divide by the length of a spin, in scenes with vacant sites: compared with a lattice
+// of that shape, and, for a site of the cell without a spin, with the scene without that site.
 #include "random_run.hpp"
 #include "scenes_of_text.hpp"
 
@@ -84,7 +84,7 @@ TEST(Vacancies, LeaveTheMotionOfTheShapeAlone) {
   EXPECT_GT(compared, 40);
 }
 
-/// A film of moments 10, with so many hundredths of the most noise that a step may have.
+/// Returns a film of moments 10, with so many hundredths of the largest noise that a step may have.
 io::Scene film_of_moments(std::string const& lattice, std::string const& couplings,
                           int hundredths) {
   constexpr double damping = 0.5, dt = 0.02;
@@ -97,7 +97,7 @@ io::Scene film_of_moments(std::string const& lattice, std::string const& couplin
                   lattice, couplings, 0.01 * hundredths * 10 / (damping * dt)));
 }
 
-// Nor does what the empty site has of its own make dt too large.
+// The constants of an empty site do not make dt too large either.
 TEST(Vacancies, AMomentOfZeroIsNoSite) {
   std::string const bond = "{ offset = [1, 0, 0], J = 4, D = [0, 0, 1] }";
   auto const film = [&](int hundredths) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Approximations to (c + b K)^-1, beside K applied site by site in double.
+// Approximations to (c + b K)^-1, against K applied site by site in double.
 #include "problems.hpp"
 
 #include <cayspin/solver/helmholtz.hpp>
@@ -88,7 +88,7 @@ class Helmholtz : public ::testing::Test {
     return vectors;
   }
 
-  /// d + b K d across m, i standing for m x, of d = v x m; then turned back.
+  /// Returns d + b K d normal to m, where i stands for m x, for d = v x m; then turned back.
   static Numbers applied_about(Problem const& problem, Numbers const& spins, Number b,
                                Numbers const& v) {
     Numbers d(v.size());

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-// Linear systems on lattices, and what a solver leaves of their residuals.
+// Linear systems on lattices, and the residuals that a solver leaves.
 namespace cayspin::test {
 
 using Number = std::complex<double>;
@@ -65,7 +65,7 @@ inline std::vector<Problem> lines() {
   return problems;
 }
 
-/// Neighbours that want to be opposite along some axes.
+/// Lattices with antiferromagnetic neighbours along some axes.
 inline std::vector<Problem> alternating() {
   auto mixed = Lattice::cubic(9, 14, 5);
   mixed.boundary[1] = Boundary::periodic;
@@ -77,7 +77,7 @@ inline std::vector<Problem> alternating() {
           {"9 x 14 x 5 mixed", mixed, {60, -40, -55}}};
 }
 
-/// (c + b K) u
+/// Returns (c + b K) u.
 inline Numbers applied(Problem const& problem, double c, Number b, Numbers const& u) {
   auto const& shape = problem.lattice.shape;
   Numbers result(u.size());
@@ -148,7 +148,8 @@ inline Numbers random_numbers(Problem const& problem, bool complex, unsigned see
   return numbers;
 }
 
-/// What `solve` leaves of the residual of `apply`, in the mean of so many corrections.
+/// Returns the factor by which `solve` reduces the residual of `apply`, averaged over so many
+/// corrections.
 template <class Real, class Solve, class Apply>
 double left_over(Numbers rest, int corrections, Solve const& solve, Apply const& apply) {
   double const first = length(rest);

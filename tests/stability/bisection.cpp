@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The true limit, bisected with the stiffest mode of chains, planes and blocks of spins along a
-// field, beside the prediction, which is exact there.
+// field, against the prediction, which is exact there.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -29,7 +29,7 @@ auto generator(Lattice const& lattice, double damping) {
                         damping);
 }
 
-/// Spins along z with an eigenvector of the largest eigenvalue across it.
+/// Returns spins along z with an eigenvector of the largest eigenvalue normal to z.
 Spins stiffest_mode(Lattice const& lattice) {
   auto const wave = [&](int axis, auto i) {
     auto const n = static_cast<double>(lattice.shape[axis]);
@@ -49,8 +49,8 @@ double across(Spins const& spins) {
   return std::sqrt(square);
 }
 
-/// The first dt at which the mode grows, near `guess`; behind it there may be others where it does
-/// not.
+/// Returns the first dt at which the mode grows, near `guess`; above it there may be others at
+/// which it does not.
 template <class Stepper, class Generator>
 double bisected(Generator const& generator, Spins const& start, double guess, double sigma) {
   double stable = 0.98 * guess, unstable = 0.99 * guess;

@@ -55,7 +55,7 @@ TEST(ExchangeBound, IsTheLargestEigenvalue) {
     }
 }
 
-/// y of largest_stable_step = y / field_bound, at a bound that is not 1.
+/// Returns y of largest_stable_step = y / field_bound, at a bound other than 1.
 template <class Stepper>
 double scaled_limit(double damping, bool precession = true) {
   return 7 * largest_stable_step<Stepper>(7, damping, {.precession = precession});
@@ -132,7 +132,7 @@ TEST(StepLimit, ConstantSigma) {
 
 constexpr int modes = 400;
 
-/// Spins that do not see each other, each in a field of its own strength along z, up to `largest`.
+/// Uncoupled spins, in fields of different strengths along z, up to `largest`.
 struct FieldOfModes {
   double largest;
   template <class Stencil>
@@ -148,7 +148,7 @@ struct FieldOfModes {
   }
 };
 
-/// The largest |amplitude after a step / before| over modes, of small turns about the field.
+/// Returns the largest |amplitude after a step / before| over modes of small turns about the field.
 template <class Stepper>
 double amplification(double largest, double damping, double sigma, double dt) {
   auto const generator = orthogonal(LandauLifshitz{EffectiveField{FieldOfModes{largest}}, damping});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Noise about a uniform state dies out just below the measured limits and grows just above them;
-// the a-priori bound lies below.
+// Noise about a uniform state decays just below the measured limits and grows just above them; the
+// a-priori bound is below.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -58,7 +58,7 @@ double size(Spins const& spins) {
   return std::sqrt(square / static_cast<double>(spins.sites()));
 }
 
-/// The factor by which the disturbance has changed.
+/// Returns the factor by which the disturbance has changed.
 template <class Stepper>
 double growth(Measured const& row, double dt, int steps) {
   Spins const start = disturbed(row.lattice);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Spins that do not move, beside some that do, and spins whose rate passes through zero: sigma has
-// no 0/0, and what rests stays to the bit.
+// Spins at equilibrium with moving ones, and spins whose rate passes through zero: sigma has no
+// 0/0, and spins at equilibrium keep their bits.
 #include "../support/backends.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -18,7 +18,7 @@ class AtRest : public ::testing::Test {
  protected:
   using Field = SpinField<Real, Space::memory_space>;
 
-  /// Every method with a sigma of its own.
+  /// Calls check for every method with its own sigma.
   template <class Check>
   static void for_each(Field const& like, Check const& check) {
     using namespace isotropy;
@@ -31,7 +31,7 @@ class AtRest : public ::testing::Test {
 };
 TYPED_TEST_SUITE(AtRest, Precisions, PrecisionName);
 
-// Every third spin lies along the field's axis, and does not see its neighbours.
+// Every third spin is along the field's axis, and uncoupled.
 TYPED_TEST(AtRest, StaysToTheBitBesideMovingSpins) {
   using Field = typename TestFixture::Field;
   auto const lattice = Lattice::chain(37);
@@ -73,7 +73,7 @@ TYPED_TEST(AtRest, BodiesInTheirPrincipalAxes) {
   check("series as printed", Series4Paper(start, energy));
 }
 
-// The middle spin is along its own field at the start; its neighbours move, and so does it then.
+// The middle spin is along its field at the start; its neighbours move, and then it does.
 TYPED_TEST(AtRest, RateThatPassesZero) {
   using Field = typename TestFixture::Field;
   auto const lattice = Lattice::chain(3);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// integrate() and minimize() end in the memory that the spins had at first, whichever method, and
-// steppers go on from there with the bits of steps by hand.
+// integrate() and minimize() return the spins in their original memory, with any method, and
+// steppers continue from there with the bits of separate steps.
 #include "../support/backends.hpp"
 #include "every_stepper.hpp"
 
@@ -28,7 +28,7 @@ class CallersMemory : public ::testing::Test {
 };
 TYPED_TEST_SUITE(CallersMemory, Precisions, PrecisionName);
 
-/// Expects that the spins lie where they lay, and that what was taken from them before sees them.
+/// Expects the spins in their original memory, seen by arrays taken before.
 template <class Field>
 class WhereTheyLie {
  public:
@@ -65,7 +65,7 @@ TYPED_TEST(CallersMemory, IsWhereEveryIntegrationEnds) {
       EXPECT_EQ(copy_to_host(spins), copy_to_host(by_hand)) << what;
       before.expect_same(spins, what);
     }
-    // A stepper of another kind takes the same spins.
+    // A stepper of another kind uses these spins.
     Rkmk4 other(spins);
     integrate(Host(), other, generator, spins, Times{0, dt, 1});
     integrate(Host(), stepper, generator, spins, Times{0, dt, 3});

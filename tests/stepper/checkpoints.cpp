@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A stepper that gets back what another one remembered goes on with its bits and counts, and a run
-// that continues has the bits of one run.
+// A stepper restored from another one's checkpoint continues with its bits and counts, and a
+// continued run has the bits of a single run.
 #include "../order/chain.hpp"
 
 #include <cmath>
@@ -51,7 +51,7 @@ std::tuple<std::int64_t, std::int64_t> counts(Stepper const& stepper) {
     return {0, 0};
 }
 
-// At every step, the first ones of a multistep method among them, and within steps of an adaptive
+// At every step, including the first ones of a multistep method, and within steps of an adaptive
 // one.
 TYPED_TEST(Checkpoints, GoOnAsTheRunWouldHave) {
   static_assert(remembers_steps<TypeParam>);
@@ -74,14 +74,14 @@ TYPED_TEST(Checkpoints, GoOnAsTheRunWouldHave) {
     TypeParam first = made_like<TypeParam>(whole);
     go(first, whole, 0, cut);
     CheckpointInMemory checkpoint;
-    exchange_memory(first, checkpoint);
+    serialize(first, checkpoint);
     checkpoint.close();
     Spins second = start();
     copy_from_host(copy_to_host(whole), second);
     TypeParam other = made_like<TypeParam>(second);
-    Spins elsewhere = start();  // what it remembers of another run is replaced
+    Spins elsewhere = start();  // its memory of another run is replaced
     go(other, elsewhere, 0, 5);
-    exchange_memory(other, checkpoint);
+    serialize(other, checkpoint);
     go(first, whole, cut, steps);
     go(other, second, cut, steps);
     EXPECT_EQ(copy_to_host(whole), copy_to_host(in_one_piece));
@@ -90,7 +90,7 @@ TYPED_TEST(Checkpoints, GoOnAsTheRunWouldHave) {
   }
 }
 
-/// Gives back another number under one name.
+/// A checkpoint that changes the number of one name.
 class Altered final : public Checkpoint {
  public:
   Altered(Checkpoint& right, std::string name, double value)
@@ -117,14 +117,14 @@ void expect_counts_are_checked(Make const& make, Generator const& generator,
   auto stepper = make(spins), other = make(spins);
   for (int n = 0; n < 5; ++n) stepper.step(Space{}, generator, spins, 0.05 * n, 0.05);
   CheckpointInMemory checkpoint;
-  exchange_memory(stepper, checkpoint);
+  serialize(stepper, checkpoint);
   checkpoint.close();
   for (auto const& name : names)
     for (double const wrong : {1000.0, -1.0, 0.5, 1e300, std::nan("")}) {
       Altered altered(checkpoint, name, wrong);
-      EXPECT_THROW(exchange_memory(other, altered), std::invalid_argument) << name << ' ' << wrong;
+      EXPECT_THROW(serialize(other, altered), std::invalid_argument) << name << ' ' << wrong;
     }
-  exchange_memory(other, checkpoint);
+  serialize(other, checkpoint);
 }
 
 TEST(Checkpoint, CountsThatNoStepperHasAreRefused) {
@@ -134,10 +134,10 @@ TEST(Checkpoint, CountsThatNoStepperHasAreRefused) {
                             {"known", "exchange_known"});
   expect_counts_are_checked([](Spins const& like) { return StiffGauss4(like); }, natural,
                             {"known"});
-  Dear const dear(Spins("like", damped_chain.lattice), SlabDemag({1, 0, 0}, 0.4));
-  LandauLifshitz const generator(EffectiveField(Exchange(damped_chain.lattice, 1), dear), 0.2);
+  SlowField const multirate(Spins("like", damped_chain.lattice), SlabDemag({1, 0, 0}, 0.4));
+  LandauLifshitz const generator(EffectiveField(Exchange(damped_chain.lattice, 1), multirate), 0.2);
   expect_counts_are_checked(
-      [&](Spins const& like) { return Multirate(like, Rkmk4<Spins>(like), dear); }, generator,
+      [&](Spins const& like) { return Multirate(like, Rkmk4<Spins>(like), multirate); }, generator,
       {"known"});
 }
 
@@ -148,12 +148,12 @@ TEST(Checkpoint, HoldsNothingOfAnotherLattice) {
   Stepper stepper(spins), other(small);
   stepper.step(Space{}, damped_chain.natural(), spins, 0, 0.1);
   CheckpointInMemory checkpoint;
-  exchange_memory(stepper, checkpoint);
+  serialize(stepper, checkpoint);
   checkpoint.close();
-  EXPECT_THROW(exchange_memory(other, checkpoint), std::invalid_argument);
+  EXPECT_THROW(serialize(other, checkpoint), std::invalid_argument);
   CheckpointInMemory empty;
   empty.close();
-  EXPECT_THROW(exchange_memory(stepper, empty), std::out_of_range);
+  EXPECT_THROW(serialize(stepper, empty), std::out_of_range);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ TYPED_TEST(Compensation, SumAndResidualAreTheTwoNumbers) {
       auto const both = detail::rounded_sum(a, b);
       for (auto const c : {&Vec3<Real>::x, &Vec3<Real>::y, &Vec3<Real>::z}) {
         EXPECT_EQ(both.sum.*c, a.*c + b.*c);
-        // Exact: what is left after the larger one is a multiple of the last digit of the smaller.
+        // Exact: the remainder after the larger one is a multiple of the last digit of the smaller.
         bool const a_larger = std::abs(a.*c) > std::abs(b.*c);
         Real const larger = a_larger ? a.*c : b.*c, smaller = a_larger ? b.*c : a.*c;
         EXPECT_EQ(both.residual.*c, smaller - (both.sum.*c - larger));

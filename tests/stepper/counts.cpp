@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The evaluations that integrate() counts, beside fields that count their calls.
+// Evaluations counted by integrate(), against fields that count their calls.
 #include "../support/backends.hpp"
 #include "every_stepper.hpp"
 
@@ -18,7 +18,7 @@ struct CountingSolver {
   }
 };
 
-/// The same in kernels. It counts packs.
+/// The field in kernels, which counts packs.
 struct CountingTerm {
   static constexpr int degree = 2;
   std::int64_t* calls;

@@ -13,7 +13,7 @@
 
 namespace cayspin::test {
 
-/// What a stepper takes beside Landau-Lifshitz with local terms.
+/// Inputs that a stepper accepts besides Landau-Lifshitz with local terms.
 struct Takes {
   bool nonlocal = true, counts_fields = true;
 };

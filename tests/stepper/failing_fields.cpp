@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A field that throws at any of the evaluations of a step leaves the spins as they were before it.
+// A field that throws at any of the evaluations of a step leaves the spins unchanged.
 #include "../support/backends.hpp"
 #include "every_stepper.hpp"
 
@@ -8,7 +8,7 @@
 namespace cayspin::test {
 namespace {
 
-/// H = 9 m.z along z, until it is called so many times.
+/// H = 9 m.z along z, until a number of calls.
 struct FailingSolver {
   static constexpr int degree = 2;
   int* left;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The equation of an implicit step: roots by fixed point and by Newton's method, and none.
+// The equation of an implicit step: roots by fixed point and by Newton's method, and no root.
 #include "../support/backends.hpp"
 #include "../support/evaluate.hpp"
 #include "../support/landau_lifshitz.hpp"
@@ -95,7 +95,7 @@ TYPED_TEST(ImplicitStep, WithoutRootLeavesTheSpins) {
       EXPECT_NE(std::string(error.what()).find("dt = 3"), std::string::npos) << error.what();
     }
     EXPECT_EQ(copy_to_host(spins), before);
-    // And the stepper is as good as new.
+    // The stepper still works.
     stepper.step(Space{}, this->slab.natural(), spins, 0, 0.01);
     EXPECT_NE(copy_to_host(spins), before);
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The red-black splitting: orders, one spin exactly, energy, what it refuses.
+// The red-black splitting: orders, exactness for one spin, energy, refusals.
 #include "../support/backends.hpp"
 #include "../support/coefficients.hpp"
 #include "../support/figures.hpp"
@@ -70,7 +70,7 @@ TEST(RedBlackOrder, InAFieldThatChanges) {
                                slab.damping));
 }
 
-/// Exchange and a cubic field of the spin itself in one term, which says nothing about itself.
+/// Exchange and a cubic on-site field in one term, which does not declare its parts.
 struct Blended {
   Exchange exchange;
 
@@ -82,7 +82,7 @@ struct Blended {
   }
   template <class Stencil>
   KOKKOS_FUNCTION auto energy_density(Stencil const& stencil) const {
-    return exchange.energy_density(stencil);  // nobody asks
+    return exchange.energy_density(stencil);  // not needed
   }
 };
 
@@ -90,8 +90,8 @@ TEST(RedBlackOrder, OfATermThatSaysNothingAboutItself) {
   expect_orders("blended term", LandauLifshitz(EffectiveField{Blended{{block, 1}}}, 0.1));
 }
 
-/// An antisymmetric coupling to neighbours. It names what stands for a missing one, and does not
-/// say that all of it comes from neighbours.
+/// An antisymmetric coupling to neighbours. It replaces missing ones, and does not declare that all
+/// of it comes from neighbours.
 struct OpenBonds {
   static constexpr int degree = 2;
 
@@ -166,7 +166,7 @@ void expect_exact_macrospin() {
                           .precession = precession};
           auto const start =
               make_spins<Field>(slab.lattice, [&](auto, auto, auto) { return from; });
-          // Of the numbers that the field and dt have in this precision.
+          // For the numbers that the field and dt have in this precision.
           Macrospin const exact({double(Real(h.x)), double(Real(h.y)), double(Real(h.z))},
                                 spin(start, 0));
           double const t = static_cast<double>(static_cast<Real>(dt));
@@ -174,7 +174,8 @@ void expect_exact_macrospin() {
           auto const where = testing::Message() << "damping " << damping << " dt " << dt
                                                 << " precession " << precession << " " << from.x;
           EXPECT_NEAR(length(end), 1, 8 * eps) << where;
-          // Beyond 1/eps the angle is lost, and what is opposite to the field ever less sharp.
+          // Beyond 1/eps the angle is lost, and the direction opposite to the field becomes ever
+          // less sharp.
           double const turn = precession ? 1.3 * t : 0;
           double const start_error = 1 + 1 / std::sqrt(1 + dot(from, exact.axis) / length(from));
           if (turn < 1e3)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Steppers that keep a field from one step to the next, and the bound of sigma by differences.
+// Steppers that store a field from one step to the next, and the bound on sigma by differences.
 #include "../support/evaluate.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
@@ -51,7 +51,7 @@ TYPED_TEST(Forgetting, StartsAnewAfterReset) {
   EXPECT_EQ(copy_to_host(spins), fresh);
 }
 
-// A first step from a state that is told is the second step from it.
+// A first step from a given earlier state equals the second step from it.
 TYPED_TEST(Remembering, StateBefore) {
   Spins const start = random_spins(chain.lattice, 5);
   Spins const after_one = run<TypeParam>(chain.natural(), start, 0.05, 1);
@@ -62,7 +62,7 @@ TYPED_TEST(Remembering, StateBefore) {
   EXPECT_EQ(copy_to_host(spins), copy_to_host(run<TypeParam>(chain.natural(), start, 0.05, 2)));
 }
 
-/// Cannot be had after a time.
+/// A field that throws after a time.
 struct FieldUntil {
   static constexpr bool depends_on_time = true;
   double end;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// When the generator is evaluated: under a field H(t) alone A = H(t) whatever the spin, and the
-// coordinates of a step are a sum that can be written down.
+// Evaluation times of the generator: with only a field H(t), A = H(t) for any spin, and the
+// coordinates of a step are an explicit sum.
 #include "../support/landau_lifshitz.hpp"
 
 #include <cayspin_paper/analytic_sigma.hpp>

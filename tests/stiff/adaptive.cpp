@@ -12,7 +12,7 @@ namespace {
 using Stepper = AdaptiveStiffGauss2<Spins>;
 constexpr double end_time = 2;
 
-/// The largest error at times early and late, half of them in the first quarter.
+/// Returns the largest error at early and late times, half of them in the first quarter.
 double error_of(Stepper& stepper, Slab const& slab, std::vector<Spins> const& exact) {
   auto spins = smooth_start(slab.lattice);
   double largest = 0, t = 0;
@@ -73,7 +73,7 @@ TEST(AdaptiveStiff, LooksWithinStepsAreAsGood) {
   expect_below("at any look", largest, 1e-3);  // 1.4e-3 by a constant A
 }
 
-// Ten times as long a run hardly takes more: spins are at rest.
+// A run ten times as long takes hardly more steps: spins are at equilibrium.
 TEST(AdaptiveStiff, RestTakesFewSteps) {
   for (std::int64_t const cells : {100, 400}) {
     SCOPED_TRACE(cells);
@@ -103,7 +103,7 @@ TEST(AdaptiveStiff, AFieldSwitchedOnAtRestIsFollowed) {
   expect_below("after the jump", largest_distance(spins, exact), 30 * tolerance);
 }
 
-// Corrections of spins at rest are round-off, from which no step follows.
+// Corrections of spins at equilibrium are round-off, which must not affect the step.
 TEST(AdaptiveStiff, ShortStepsAtRestAreTakenAndLeftAgain) {
   auto const lattice = Lattice::chain(1);
   Vector const field{0.14205055664220612, 0.17394872326938271, 1};

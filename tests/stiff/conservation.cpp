@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Without damping stiff steps keep energy, length and, under exchange alone, the total spin.
+// Without damping stiff steps conserve energy, length and, if exchange is the only term, the total
+// spin.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -20,7 +21,7 @@ class RandomScene {
     slab.exchange = uniform(0.1, 20);
     dt = std::min(0.05, 8 / exchange_bound(slab.lattice, slab.exchange));
     spread = uniform(0.05, 0.5);
-    if (pick(0, 2) == 0) return;  // exchange alone
+    if (pick(0, 2) == 0) return;  // only exchange
     is_isotropic = false;
     slab.anisotropy = uniform(-2, 2);
     slab.axis = {uniform(-1, 1), uniform(-1, 1), 1};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Steps that divide by the length of a spin, on lattices with vacant sites, whose spins are zero:
-// beside the same shape as a lattice of its own.
+// against a lattice of that shape.
 #include "../support/backends.hpp"
 #include "../support/coefficients.hpp"
 #include "../support/figures.hpp"
@@ -16,7 +16,7 @@ namespace {
 template <class Real>
 using SpinsOf = SpinField<Real, Space::memory_space>;
 
-/// A box, and which of its sites hold a spin.
+/// A box, with an occupation for each site.
 struct Shape {
   Lattice box;
   std::vector<double> occupied;
@@ -39,7 +39,7 @@ struct Shape {
     return spins;
   }
 
-  /// With every term that knows vacancies.
+  /// Returns a field with every term that supports vacancies.
   template <class Real>
   auto generator(double exchange, double damping) const {
     return LandauLifshitz(
@@ -78,13 +78,13 @@ void expect_vacant_spins_are_zero(Field const& spins, Shape const& shape) {
   }
 }
 
-/// Steps of `Stepper` in a box whose surroundings are vacant, and the same on the film alone.
+/// Compares steps of `Stepper` in a box with vacant surroundings and on the film by itself.
 template <class Stepper>
 void expect_that_of_the_film_alone(char const* name, double tolerance) {
   using Field = typename Stepper::spins_type;
   using Real = typename Field::value_type;
   SCOPED_TRACE(name);
-  // At the low ends, so that rows are cut into the same packs.
+  // At the low ends, so that rows are cut into equal packs.
   Lattice const film{{13, 7, 3}}, box{{21, 11, 4}};
   auto const within = [](auto i, auto j, auto k) { return i < 13 && j < 7 && k < 3; };
   auto const shape = shape_of(box, within);
@@ -127,7 +127,7 @@ TYPED_TEST_SUITE(Vacancies, Precisions, PrecisionName);
 
 template <class Field>
 using Chart4 = StereographicRungeKutta<Field, tableau::Classical4>;
-/// Its increments are not recovered from spins.
+/// A generator whose increments are not recovered from spins.
 template <class Field>
 using ChartOfThreeEighths = StereographicRungeKutta<Field, tableau::ThreeEighths4>;
 
@@ -179,7 +179,7 @@ TEST(VacanciesOfAdaptiveStiffSteps, AreWithinTheToleranceOfTheFilmAlone) {
                                                                              tolerance);
 }
 
-/// Corrections that a step takes, on average.
+/// Returns the average number of corrections per step.
 template <class Stepper, class Generator>
 double corrections(Generator const& generator, Spins const& start, double dt) {
   Spins spins = copy_of(start);

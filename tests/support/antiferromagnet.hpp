@@ -6,18 +6,19 @@
 
 namespace cayspin::test {
 
-/// A spin wave of two sublattices, one along the axis of the anisotropy and one against it. Both
-/// turn rigidly about the axis, in opposite phases, at any opening.
+/// A spin wave of two sublattices, one along the axis of the anisotropy and one opposite to it.
+/// Both turn rigidly about the axis, in opposite phases, at any opening.
 struct AntiferromagneticCone {
   double smaller;    ///< the sine of the angle of the sublattice that opens less
   double frequency;  ///< of the right hand about the spins that open more
 
-  /// In the field `exchange` of one sublattice at rest on the other, times gamma in (0, 1] for the
-  /// wave, and `anisotropy` of each spin's own. `opening`: the angle of the other sublattice.
+  /// Returns the wave for the field `exchange` of one sublattice on the other at equilibrium, times
+  /// gamma in (0, 1] for the wave, and the on-site `anisotropy`. `opening`: the angle of the other
+  /// sublattice.
   static AntiferromagneticCone of(double exchange, double anisotropy, double gamma,
                                   double opening) {
     double const sin_a = std::sin(opening), cos_a = std::cos(opening), wave = exchange * gamma;
-    // What turns with a spin has the field's part across the axis along the spin's.
+    // For rigid rotation, the field's component normal to the axis is along the spin's.
     auto const rate_a = [&](double b) {
       return exchange * std::cos(b) + anisotropy * cos_a - wave * std::sin(b) * cos_a / sin_a;
     };
@@ -33,7 +34,7 @@ struct AntiferromagneticCone {
     return {std::sin(low), rate_a(low)};
   }
 
-  /// That of small openings.
+  /// Returns the frequency at small openings.
   static double of_small_opening(double exchange, double anisotropy, double gamma) {
     return std::sqrt(std::pow(exchange + anisotropy, 2) - std::pow(exchange * gamma, 2));
   }

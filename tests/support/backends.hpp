@@ -27,8 +27,7 @@ struct BothPrecisions {
 };
 
 /// Both precisions on the default space of the host and on that of a device; with
-/// CAYSPIN_BUILD_ALL_TESTS on every space that is compiled in. Where host threads play a device, on
-/// that alone.
+/// CAYSPIN_BUILD_ALL_TESTS on every compiled space; on an emulated device only on that.
 #if defined(CAYSPIN_HOST_DEVICE)
 using Backends = typename BothPrecisions<void, HostDevice>::type;
 #else
@@ -93,7 +92,7 @@ struct PrecisionName {
 template <class Real>
 inline constexpr double epsilon = std::numeric_limits<Real>::epsilon();
 
-/// `count` unit vectors, the same for a seed everywhere.
+/// Returns `count` unit vectors, equal for a seed everywhere.
 inline std::vector<double> random_directions(std::int64_t count, unsigned seed) {
   std::mt19937 engine(seed);
   auto const uniform = [&] { return engine() * 0x1p-31 - 1; };
@@ -106,7 +105,7 @@ inline std::vector<double> random_directions(std::int64_t count, unsigned seed) 
   return numbers;
 }
 
-/// A field with these numbers, (sites, 3), as nearly as Real holds them.
+/// Returns a field with these numbers, (sites, 3), rounded to Real.
 template <class Spins>
 Spins spins_of(Lattice const& lattice, std::vector<double> const& numbers) {
   Spins spins("spins", lattice);
@@ -114,7 +113,7 @@ Spins spins_of(Lattice const& lattice, std::vector<double> const& numbers) {
   return spins;
 }
 
-/// The numbers of a field, (sites, 3), in double.
+/// Returns the numbers of a field, (sites, 3), in double.
 template <class Field>
 std::vector<double> numbers_of(Field const& field) {
   auto const numbers = copy_to_host(field);

@@ -5,8 +5,8 @@
 
 namespace cayspin::test {
 
-/// E = -constant times the sum of (m.m')^2 over bonds of nearest neighbours: a term that sees its
-/// neighbours, and whose H is cubic in the spins.
+/// E = -constant times the sum of (m.m')^2 over nearest-neighbour bonds: a term with neighbours
+/// whose H is cubic in the spins.
 struct BiquadraticBonds {
   double constant;
 
@@ -15,7 +15,7 @@ struct BiquadraticBonds {
     return as_value<ValueOf<Stencil>>(2 * constant) *
            (along<0>(stencil) + along<1>(stencil) + along<2>(stencil));
   }
-  /// Each site carries half of each of its bonds.
+  /// Returns half the energy of each bond of the site.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     return as_value<ValueOf<Stencil>>(-0.25) * dot(stencil.center(), field(stencil));

@@ -11,7 +11,7 @@
 
 namespace cayspin::test {
 
-/// A ScalarField with the numbers value(site).
+/// Returns a ScalarField with the numbers value(site).
 template <class Spins, class Value>
 auto numbers_on(Lattice const& lattice, Value const& value) {
   std::vector<double> numbers;
@@ -23,7 +23,8 @@ auto numbers_on(Lattice const& lattice, Value const& value) {
   return field;
 }
 
-/// Numbers between `least` and `most`, the same for a seed everywhere; every `zeros`-th is zero.
+/// Returns numbers between `least` and `most`, equal for a seed everywhere; every `zeros`-th is
+/// zero.
 template <class Spins>
 auto random_numbers_on(Lattice const& lattice, double least, double most, unsigned seed,
                        int zeros = 0) {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-// What most tests need, compiled in compiled_once.cpp instead of in each of them: fields, the
+// Common code of most tests, compiled in compiled_once.cpp instead of in each test: fields, the
 // memory of common steppers, runs of the slab, messages of GoogleTest. nvcc and hipcc compile
 // kernels where they are used.
 #if !defined(KOKKOS_ENABLE_CUDA) && !defined(KOKKOS_ENABLE_HIP) && !defined(KOKKOS_ENABLE_SYCL)

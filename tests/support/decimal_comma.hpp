@@ -10,7 +10,7 @@
 
 namespace cayspin::test {
 
-/// While in scope, C++ and, where localedef can make a locale, C write 1.234,5 for 1234.5.
+/// While in scope, C++ and, if localedef can make a locale, C write 1.234,5 for 1234.5.
 class DecimalComma {
  public:
   explicit DecimalComma(std::filesystem::path const& folder)
@@ -30,7 +30,7 @@ class DecimalComma {
     ::unsetenv("LOCPATH");
   }
 
-  /// Does the locale of C have it, too?
+  /// True if the locale of C has it, too.
   bool has_c = false;
 
  private:

@@ -11,7 +11,7 @@
 
 namespace cayspin::test {
 
-/// Writes source.field(stencil) or, of a generator, source(stencil) at every site.
+/// Functor that writes source.field(stencil) or, for a generator, source(stencil) at every site.
 template <class Source, class Real>
 struct Evaluate {
   Source source;
@@ -28,7 +28,8 @@ struct Evaluate {
   }
 };
 
-/// H of a field term or A of a generator at every site, (sites, 3), in the field's precision.
+/// Returns H of a field term or A of a generator at every site, (sites, 3), in the field's
+/// precision.
 template <class Exec, class Source, class Spins>
 std::vector<double> evaluated(Exec const& exec, Source const& source, Spins const& spins,
                               double t = 0, bool streaming = false) {

@@ -5,7 +5,7 @@
 
 namespace cayspin::test {
 
-/// A uniform field that becomes another one at once.
+/// A uniform field that jumps to another value.
 struct FieldThatJumps {
   static constexpr bool depends_on_time = true;
   double when;

@@ -11,7 +11,7 @@
 
 namespace cayspin::test {
 
-/// A figure as a reference prints it, and half a unit of its last digit.
+/// A printed reference figure, and half a unit of its last digit.
 struct Printed {
   explicit Printed(std::string const& digits) : text(digits), value(std::atof(digits.c_str())) {
     auto const exponent = digits.find('e');
@@ -25,8 +25,8 @@ struct Printed {
   double value, half_unit = 0;
 };
 
-/// Prints a figure beside the reference and expects it within `relative` of it, and the rounding of
-/// its last digit.
+/// Prints a figure next to the reference and expects agreement within `relative` and the rounding
+/// of its last digit.
 inline void expect_figure(std::string const& what, double figure, std::string const& reference,
                           double relative = 0.01) {
   Printed const printed(reference);
@@ -40,7 +40,7 @@ inline void expect_below(std::string const& what, double figure, double bound) {
   EXPECT_LT(figure, bound) << what;
 }
 
-/// Least-squares slope of log(error) over log(dt).
+/// Returns the least-squares slope of log(error) over log(dt).
 inline double fitted_order(std::vector<double> const& dts, std::vector<double> const& errors) {
   double sx = 0, sy = 0, sxx = 0, sxy = 0;
   auto const n = static_cast<double>(dts.size());
@@ -56,7 +56,7 @@ inline void expect_order(std::string const& what, double order, double expected,
   EXPECT_NEAR(order, expected, tolerance) << what;
 }
 
-/// The order of error(steps, dt) in dt = end_time / steps, over a ladder of steps.
+/// Returns the order of error(steps, dt) in dt = end_time / steps, over a ladder of steps.
 template <class Ladder, class Error>
 void expect_convergence(std::string const& what, double end_time, Ladder const& ladder,
                         double expected, double tolerance, Error const& error) {

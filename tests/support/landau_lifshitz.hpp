@@ -24,7 +24,7 @@ using Spins = SpinField<double, Space::memory_space>;
 
 inline double length(Vector const& v) { return std::hypot(v.x, v.y, v.z); }
 
-/// The Landau-Lifshitz equation with every term of the slab; what is 0 acts on nothing.
+/// The Landau-Lifshitz equation with every term of the slab; terms of 0 have no effect.
 struct Slab {
   Lattice lattice;
   double exchange = 0, anisotropy = 0;
@@ -47,7 +47,7 @@ struct Slab {
   }
 };
 
-/// `start(i, j, k)` at every site, normalised.
+/// Returns a field with `start(i, j, k)` at every site, normalised.
 template <class Field = Spins, class Start>
 Field make_spins(Lattice const& lattice, Start const& start) {
   std::vector<double> numbers;
@@ -89,7 +89,7 @@ Vector spin(Field const& field, std::int64_t site) {
   }
 }
 
-/// Largest distance between two fields, over sites.
+/// Returns the largest distance between two fields over the sites.
 template <class A, class B>
 double largest_distance(A const& a, B const& b) {
   auto const first = copy_to_host(a);
@@ -110,7 +110,7 @@ void advance(Stepper& stepper, Generator const& generator, Field& spins, double 
     stepper.step(exec, generator, spins, static_cast<double>(n) * dt, dt);
 }
 
-/// A copy of `start` after `steps` steps of a new stepper.
+/// Returns a copy of `start` after `steps` steps of a new stepper.
 template <class Stepper, class Generator, class Field, class... Options>
 Field run(Generator const& generator, Field const& start, double dt, std::int64_t steps,
           Options const&... options) {

@@ -8,7 +8,7 @@
 
 namespace cayspin::test {
 
-/// A choice that a scene has between method, generator, isotropy and rotation.
+/// A combination of method, generator, isotropy and rotation in a scene.
 struct MethodChoice {
   io::Method const& method;
   io::Generator generator;
@@ -29,7 +29,7 @@ struct MethodChoice {
     return method.takes(rotation) && method.takes(generator) && method.takes(isotropy, kind);
   }
 
-  /// As KEY=VALUE; a baseline has no other word than its own.
+  /// Returns KEY=VALUE overrides; a baseline has only its own name.
   std::vector<std::string> overrides() const {
     auto const word = [](auto value) { return "'" + std::string(to_string(value)) + "'"; };
     std::vector<std::string> all{"integrator.method='" + std::string(method.word) + "'"};
@@ -43,7 +43,7 @@ struct MethodChoice {
   }
 };
 
-/// Calls work with each choice of words of the methods on the group, and with each baseline.
+/// Calls work for each combination of the methods on the group, and for each baseline.
 template <class Work>
 void for_each_method_choice(Work const& work) {
   for (auto const* const method : io::methods())

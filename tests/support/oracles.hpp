@@ -11,7 +11,7 @@
 
 namespace cayspin::test {
 
-/// One of the lists in tests/data/oracles.json: inputs are doubles, results decimal strings of 32
+/// Returns a list of tests/data/oracles.json: inputs are doubles, results decimal strings of 32
 /// digits from 70-digit arithmetic.
 inline nlohmann::json oracles(std::string const& list) {
   std::string const path = CAYSPIN_TEST_DATA "/oracles.json";
@@ -27,7 +27,7 @@ inline long double decimal(nlohmann::json const& digits) {
   return std::strtold(digits.get<std::string>().c_str(), nullptr);
 }
 
-/// Every number of an array, nested or not, in order.
+/// Returns every number of an array, nested or not, in order.
 inline std::vector<double> decimals(nlohmann::json const& array) {
   std::vector<double> numbers;
   for (auto const& entry : array.is_array() ? array : nlohmann::json::array({array})) {

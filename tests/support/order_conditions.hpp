@@ -12,8 +12,8 @@
 
 namespace cayspin::test {
 
-/// The largest defect of the order conditions of weights w at fraction s of a step, of one order up
-/// to 6.
+/// Returns the largest defect of the order conditions of weights w at fraction s of a step, of one
+/// order up to 6.
 template <class Tableau, class Weight>
 double defect(int of_order, double s, Weight const& w) {
   constexpr int n = Tableau::stages;
@@ -74,8 +74,8 @@ double defect(int of_order, double s, Weight const& w) {
   return largest;
 }
 
-/// Expects that weights satisfy the conditions up to `order` (at most 6) to `exact`, and those of
-/// the next order not even to `missed`.
+/// Expects weights to satisfy the conditions up to `order` (at most 6) to `exact`, and those of the
+/// next order not even to `missed`.
 template <class Tableau, class Weight>
 void expect_conditions(char const* name, int order, double exact, double missed, Weight const& w,
                        double s = 1) {
@@ -88,7 +88,7 @@ void expect_conditions(char const* name, int order, double exact, double missed,
       EXPECT_GT(largest, missed);
   }
 }
-/// The same of a tableau's steps and its own order.
+/// Checks a tableau's steps at its own order.
 template <class Tableau>
 void expect_conditions(char const* name, double exact, double missed = 1e-3) {
   expect_conditions<Tableau>(name, Tableau::order, exact, missed,

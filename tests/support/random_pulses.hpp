@@ -13,7 +13,7 @@
 
 namespace cayspin::test {
 
-/// A part of a component of H: its text in a scene, its value, and where it is not smooth.
+/// Part of a component of H: its text in a scene, its value, and its points that are not smooth.
 struct TimeShape {
   enum Kind { square, trapezoid, gaussian, sinc, step, train };
   static constexpr int kinds = 6;
@@ -78,7 +78,7 @@ struct TimeShape {
     return 0;
   }
 
-  /// Ascending: beyond the first and the last it hardly changes.
+  /// Returns corners in ascending order: beyond the first and the last it hardly changes.
   std::vector<double> corners() const {
     std::vector<double> all;
     switch (kind) {
@@ -97,7 +97,7 @@ struct TimeShape {
     }
   }
   bool is_smooth() const { return kind == gaussian || kind == sinc || kind == step; }
-  /// Of the pulse at half height.
+  /// Returns the pulse's width at half height.
   double width_at_half_height() const {
     if (kind == gaussian) return 2 * std::sqrt(std::numbers::ln2) * width;
     if (kind == sinc) return 2.5 * width;
@@ -133,7 +133,7 @@ class RandomPulses {
     return h;
   }
 
-  /// The tables of the scene but for [integrator].
+  /// Returns the tables of the scene except [integrator].
   std::string tables() const {
     auto const number = TimeShape::number;
     auto const triple = [&](auto const& of) {
@@ -156,7 +156,7 @@ class RandomPulses {
            " }\n";
   }
 
-  /// The shortest pulse that rises and falls within the run; infinite without one.
+  /// Returns the shortest pulse that rises and falls within the run; infinite without one.
   double shortest() const {
     double least = std::numeric_limits<double>::infinity();
     for (auto const& shapes : shapes_)
@@ -165,8 +165,8 @@ class RandomPulses {
     return least;
   }
 
-  /// Do two overlap in one component? Where one jumps on the flank of the other their sum may have
-  /// a pulse that is shorter than both.
+  /// Returns true if two overlap in one component. If one jumps on the flank of the other, their
+  /// sum may have a pulse that is shorter than both.
   bool overlap() const {
     return std::ranges::any_of(shapes_, [](auto const& shapes) {
       if (shapes.size() < 2) return false;
@@ -175,7 +175,7 @@ class RandomPulses {
     });
   }
 
-  /// At the end, by classical Runge-Kutta steps that end at all corners.
+  /// Returns the end state, by classical Runge-Kutta steps that end at all corners.
   Triple exact() const {
     auto m = start;
     auto const all = corners();
@@ -183,7 +183,7 @@ class RandomPulses {
       double const begin = all[i], length = all[i + 1] - begin;
       auto const steps = static_cast<std::int64_t>(std::ceil(length / longest_step(begin, length)));
       double const dt = length / static_cast<double>(steps);
-      // Where H jumps, the values of this side count.
+      // Where H jumps, uses the values on this side.
       double const aside = 1e-4 * dt;
       for (std::int64_t n = 0; n < steps; ++n) {
         double const t = begin + static_cast<double>(n) * dt;

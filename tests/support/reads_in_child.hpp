@@ -6,7 +6,7 @@
 
 namespace cayspin::test {
 
-/// HDF5 files are read as the program reads them: faults of HDF5 stay in a child.
+/// Reads HDF5 files like the program: faults of HDF5 stay in a child.
 inline bool const reads_in_child = [] {
   io::set_trial(program::try_in_child);
   return true;

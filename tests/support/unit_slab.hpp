@@ -7,7 +7,7 @@
 
 namespace cayspin::test {
 
-/// 100 spins across a slab with normal x, all coefficients 1.
+/// Returns 100 spins across a slab with normal x, all coefficients 1.
 inline Slab unit_slab(Vector const& applied, double damping, bool precession = true,
                       Vector const& axis = {0, 0, 1}, double spacing = 1) {
   return {.lattice = Lattice::chain(100, spacing),
@@ -20,14 +20,14 @@ inline Slab unit_slab(Vector const& applied, double damping, bool precession = t
           .precession = precession};
 }
 
-/// A slab of thickness 1 in so many cells: its fastest spin wave is of frequency 4 cells^2.
+/// Returns a slab of thickness 1 in so many cells: its fastest spin wave has frequency 4 cells^2.
 inline Slab thin_slab(std::int64_t cells, double damping) {
   Slab slab = unit_slab({0.05, 0.05, 0}, damping);
   slab.lattice = Lattice::chain(cells, 1 / static_cast<double>(cells));
   return slab;
 }
 
-/// Spins that turn a little across a slab.
+/// Returns spins that turn a little across a slab.
 template <class Field = Spins>
 Field smooth_start(Lattice const& lattice) {
   return make_spins<Field>(lattice, [&](auto i, auto, auto) {

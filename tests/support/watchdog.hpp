@@ -11,8 +11,7 @@
 
 namespace cayspin::test {
 
-/// Ends the program with a failure where there is no progress for two minutes: a hang, on a machine
-/// however busy.
+/// Fails the program after two minutes without progress: a hang, even on a busy machine.
 class Watchdog {
  public:
   explicit Watchdog(std::string what) : what_(std::move(what)) {}

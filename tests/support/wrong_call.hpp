@@ -10,7 +10,7 @@
 
 namespace cayspin::test {
 
-/// What a call is refused with.
+/// Returns the error message of a call.
 template <class Error = std::invalid_argument>
 std::string refusal(std::function<void()> const& call) {
   try {
@@ -21,7 +21,7 @@ std::string refusal(std::function<void()> const& call) {
   }
 }
 
-/// A call that has to be refused by an exception of one line.
+/// A call that must be refused by an exception of one line.
 struct WrongCall {
   std::string name;
   std::function<void()> call;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The simple cubic Heisenberg model with J = 1: averages beside those of a heat bath, which has no
+// The simple cubic Heisenberg model with J = 1: averages against those of a heat bath, which has no
 // step length, and its critical temperature, 1.443 (K. Chen, A. Ferrenberg and D. Landau, Phys.
 // Rev. B 48, 3249, 1993), where the Binder cumulants of two sizes cross. Seeds are fixed.
 #include "../support/backends.hpp"
@@ -30,7 +30,7 @@ class Averages {
       sums_[block][i] += values[i] / static_cast<double>(per_block_);
   }
 
-  /// A function of the means, and its standard error from leaving out each block.
+  /// Returns a function of the means, and its standard error from leaving out each block.
   template <class Of>
   std::pair<double, double> estimate(Of const& of) const {
     std::array<double, 4> all{};
@@ -61,7 +61,7 @@ Lattice cube(std::int64_t extent) {
   return Lattice::cubic(extent, extent, extent, 1, Boundary::periodic);
 }
 
-/// Red-black steps and noise: a look every 1.6, the first fifth left out.
+/// Runs red-black steps and noise: a sample every 1.6, without the first fifth.
 template <class Real>
 Averages by_noise(std::int64_t extent, double temperature, double dt, std::int64_t looks,
                   std::uint64_t seed) {
@@ -76,7 +76,7 @@ Averages by_noise(std::int64_t extent, double temperature, double dt, std::int64
   Averages averages(looks);
   auto const sites = static_cast<double>(lattice.sites());
   auto const look = [&](auto const& exec, Spins const& now) {
-    // Exchange counts from parallel spins.
+    // Exchange energies are relative to parallel spins.
     averages.add(energy(exec, field, now).value / sites - 3, magnetization(exec, now));
   };
   Kokkos::DefaultHostExecutionSpace const exec;
@@ -97,7 +97,7 @@ Averages by_noise(std::int64_t extent, double temperature, double dt, std::int64
   return averages;
 }
 
-/// Sweeps of a heat bath: each spin anew, by Boltzmann's weights in the field of its neighbours.
+/// Sweeps of a heat bath: redraws each spin by Boltzmann's weights in the field of its neighbours.
 Averages by_heat_bath(std::int64_t extent, double temperature, std::int64_t looks) {
   auto const n = static_cast<std::size_t>(extent), sites = n * n * n;
   auto const numbers = random_directions(static_cast<std::int64_t>(sites), 9);
@@ -177,7 +177,7 @@ TEST(HeisenbergModel, DISABLED_BinderCumulantsCrossAtTheCriticalTemperature) {
     difference[t] = found[1].first - found[0].first;
     error[t] = std::hypot(found[0].second, found[1].second);
   }
-  // The zero of the line through both differences, between them.
+  // The zero of the line through both differences.
   double const share = difference[0] / (difference[0] - difference[1]);
   double const apart = temperatures[1] - temperatures[0];
   double const crossing = temperatures[0] + share * apart;
@@ -190,7 +190,7 @@ TEST(HeisenbergModel, DISABLED_BinderCumulantsCrossAtTheCriticalTemperature) {
   EXPECT_NEAR(crossing, 1.443, 0.01 * 1.443);
 }
 
-// Spin waves of a finite cube take T / (2 N) times the sum of 1 / (3 - sum of cosines) from |m|.
+// Spin waves of a finite cube reduce |m| by T / (2 N) times the sum of 1 / (3 - sum of cosines).
 TEST(HeisenbergModel, HasTheSpinWavesOfLowTemperatures) {
   constexpr int extent = 8;
   double sum = 0;
@@ -203,7 +203,7 @@ TEST(HeisenbergModel, HasTheSpinWavesOfLowTemperatures) {
   double const temperature = 0.05;
   auto const [found, error] =
       by_noise<double>(extent, temperature, 0.05, 800, 8).estimate(Averages::magnetization);
-  // Interactions of spin waves: a term of the second order.
+  // Interactions of spin waves are of second order.
   EXPECT_NEAR((1 - found) / temperature, sum, 5 * error / temperature + temperature * sum);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Thermal noise: diffusion on the sphere, Langevin's function, Boltzmann's law of a uniaxial spin,
-// and bits that do not depend on where and in how many pieces a run takes place. Seeds are fixed;
-// statistical limits are five standard errors.
+// and bits that do not depend on space, place or interruptions. Seeds are fixed; statistical limits
+// are five standard errors.
 #include "../support/backends.hpp"
 #include "kept_of_direction.hpp"
 
@@ -23,7 +23,7 @@ class Thermal : public ::testing::Test {
   using Half = typename Noise::Half;
   typename Backend::Exec exec;
 
-  /// Independent spins in a field, from +z, `steps` steps to rest.
+  /// Runs independent spins in a field, from +z, for `steps` steps to equilibrium.
   template <class Field>
   Spins at_rest(Field const& field, double temperature, double dt, int steps) {
     Spins spins("spins", Lattice::square(256, 64));
@@ -46,7 +46,7 @@ TYPED_TEST(Thermal, DirectionsAreForgottenAtTheRateOfDiffusion) {
   auto const start = random_directions(lattice.sites(), 3);
   auto const spins = spins_of<Spins>(lattice, start);
   ThermalNoise<Spins> const noise(spins, 0.5, {.temperature = 0.4, .seed = 5});
-  double const dt = 4, u = 0.5 * 0.4 * dt;  // so large that the term u^2/12 shows
+  double const dt = 4, u = 0.5 * 0.4 * dt;  // large enough to show the term u^2/12
   for (auto const half : {Half::before, Half::after}) noise.turn(this->exec, 1, half, dt, spins);
   this->exec.fence();
   auto const now = numbers_of(spins);
@@ -61,7 +61,7 @@ TYPED_TEST(Thermal, DirectionsAreForgottenAtTheRateOfDiffusion) {
     }
     largest_defect = std::max(largest_defect, std::abs(square - 1));
   }
-  // Each of three components keeps the same part: variance below 3 <(m m_0)^2> <= 9/5.
+  // Each of three components keeps an equal part: variance below 3 <(m m_0)^2> <= 9/5.
   double const kept = std::pow(kept_of_direction(u), 2);
   for (double const of_component : mean)
     EXPECT_NEAR(of_component, kept, 5 * std::sqrt(1.8 / sites));
@@ -76,7 +76,7 @@ TYPED_TEST(Thermal, SpinsInAFieldFollowLangevin) {
   auto const m = magnetization(this->exec, spins);
   double const error =
       std::sqrt((square - langevin * langevin) / static_cast<double>(spins.sites()));
-  EXPECT_NEAR(m.z, langevin, 5 * error + 5e-4);  // and the bias of dt = 0.05
+  EXPECT_NEAR(m.z, langevin, 5 * error + 5e-4);  // includes the bias of dt = 0.05
   EXPECT_NEAR(m.x, 0, 5 * std::sqrt((1 - square) / 2 / static_cast<double>(spins.sites())));
 }
 
@@ -110,8 +110,8 @@ TYPED_TEST(Thermal, AUniaxialSpinFollowsBoltzmann) {
   EXPECT_NEAR(found / sites, expected, 5 * error + 5e-4);
 }
 
-// E = -(m_x^2 + 2 m_z^2) / 2: hard, medium and easy axis. <m_x^2> and <m_z^2> by the middle of
-// cells over the sphere.
+// E = -(m_x^2 + 2 m_z^2) / 2: hard, medium and easy axis. <m_x^2> and <m_z^2> by the midpoint rule
+// over the sphere.
 TYPED_TEST(Thermal, ABiaxialSpinFollowsBoltzmann) {
   double const temperature = 0.4;
   EffectiveField const field(UniaxialAnisotropy(1, {1, 0, 0}), UniaxialAnisotropy(2, {0, 0, 1}));
@@ -141,7 +141,7 @@ TYPED_TEST(Thermal, ABiaxialSpinFollowsBoltzmann) {
   }
 }
 
-// A turn's own round-off is the same in each step: without care, 1e5 of them add up to 400 epsilon.
+// A turn's round-off repeats in each step: uncorrected, 1e5 of them add up to 400 epsilon.
 TYPED_TEST(Thermal, LengthsDoNotDrift) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::chain(40);
@@ -154,7 +154,7 @@ TYPED_TEST(Thermal, LengthsDoNotDrift) {
   EXPECT_LT(norm_defect(this->exec, spins), 8 * epsilon<typename TypeParam::Real>);
 }
 
-// A run in one piece, and the same in two: the noise goes on with the number of the step.
+// A run in one piece and in two: the noise depends on the number of the step.
 TYPED_TEST(Thermal, BitsDoNotDependOnWhereARunIsCut) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::cubic(21, 6, 5);
@@ -196,7 +196,7 @@ TEST(ThermalBits, AreThoseOfEveryHostSpace) {
   EXPECT_EQ(run(Kokkos::Serial()), run(Kokkos::DefaultHostExecutionSpace()));
 }
 
-// A run that an observer stops, and that goes on, is one run.
+// A run that an observer stops and that is then continued equals an uninterrupted run.
 TYPED_TEST(Thermal, BitsDoNotDependOnWhereARunIsStopped) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::square(21, 6);
@@ -226,7 +226,7 @@ TYPED_TEST(Thermal, BitsDoNotDependOnWhereARunIsStopped) {
     for (bool const at_once : {false, true}) EXPECT_EQ(run(stop, at_once), whole) << stop;
 }
 
-// A copy has turns of its own, for its length of step.
+// A copy has separate turns, for its length of step.
 TYPED_TEST(Thermal, CopiesTakeStepsOfOtherLengths) {
   using Spins = typename TypeParam::Spins;
   using Noise = typename TestFixture::Noise;
@@ -244,7 +244,7 @@ TYPED_TEST(Thermal, CopiesTakeStepsOfOtherLengths) {
   EXPECT_NE(turned(copy, 0.2), expected);
   EXPECT_EQ(turned(noise, 0.1), expected);
   EXPECT_EQ(turned(copy, 0.1), expected);
-  // With spins that do not move there are turns of a cell's sites, too.
+  // With spins that do not move there are also turns of a cell's sites.
   ScalarField<typename TypeParam::Real, typename TypeParam::MemorySpace> const moves("moves",
                                                                                      lattice, 1);
   Noise const moving(like, 0.5, {.temperature = 0.4, .seed = 3}, moves);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The Heisenberg chain at a temperature against Fisher's solution (Am. J. Phys. 32, 343, 1964), and
-// what the length of steps adds to its energy: an error of second order. Seeds are fixed;
-// statistical limits are five standard errors.
+// the second-order error of its energy due to the length of steps. Seeds are fixed; statistical
+// limits are five standard errors.
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -17,8 +17,8 @@ constexpr double temperature = 0.5, damping = 0.5;  // J = 1
 /// <m_i, m_i+1>
 double fisher() { return 1 / std::tanh(1 / temperature) - temperature; }
 
-/// Runs a periodic chain from random spins, and calls look(energy per site, spins) every 1.6 from
-/// t = 20 on.
+/// Runs a periodic chain from random spins, and calls look(energy per site, spins) every 1.6 from t
+/// = 20 on.
 template <class Spins, class Look>
 void run_chain(std::int64_t sites, double dt, double end, Look const& look) {
   auto const lattice = Lattice::chain(sites, 1, Boundary::periodic);
@@ -60,7 +60,7 @@ TYPED_TEST(ThermalChain, FollowsFisher) {
       for (int c = 0; c < 3; ++c)
         sum += m[static_cast<std::size_t>(3 * i + c)] *
                m[static_cast<std::size_t>(3 * ((i + distance) % sites) + c)];
-    // Pairs that share bonds are not: at most 2 distance - 1 go with each.
+    // Pairs that share bonds are correlated: at most 2 distance - 1 with each.
     double const limit = 5 * std::sqrt((2 * distance - 1.0) / sites) / std::sqrt(3) + 5e-4;
     EXPECT_NEAR(sum / sites, std::pow(neighbors, distance), limit) << distance;
   }

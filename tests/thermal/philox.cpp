@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The known answers that the authors of Philox4x32-10 publish with Random123.
+// The known answers for Philox4x32-10 that its authors publish with Random123.
 #include <cayspin/detail/philox.hpp>
 
 #include <Kokkos_Core.hpp>
@@ -35,7 +35,7 @@ TEST(Philox, GivesTheKnownAnswersInEveryLane) {
     Philox<1> alone(number, draw);
     encrypt(keys, alone);
     for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(alone.word[i] & all, expected[i]);
-#if !defined(KOKKOS_ENABLE_CUDA)  // nvcc takes no vectors in functions for host and device
+#if !defined(KOKKOS_ENABLE_CUDA)  // nvcc rejects vectors in functions for host and device
     Philox<8> fourth(number - 3, draw), first(number, draw);
     encrypt(keys, fourth, first);
     for (std::size_t i = 0; i < 4; ++i) {

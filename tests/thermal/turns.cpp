@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The law of the random turns: moments of all 32 cases, how often each occurs, that sites and
-// halves are independent, and the same bits for a site alone and in a register. Seeds are fixed;
+// The distribution of the random turns: moments of all 32 cases, their frequencies, independence of
+// sites and halves, and equal bits for a single site and in a register. Seeds are fixed;
 // statistical limits are five standard errors.
 #include "../support/backends.hpp"
 #include "kept_of_direction.hpp"
@@ -18,7 +18,7 @@ namespace {
 using Vector = std::array<double, 3>;
 using Columns = std::array<Vector, 3>;
 
-/// v of the rotation exp(v) with these columns, by less than half a turn.
+/// Returns v of the rotation exp(v) with these columns, by less than half a turn.
 Vector logarithm(Columns const& columns) {
   Vector v;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -31,7 +31,7 @@ Vector logarithm(Columns const& columns) {
   return v;
 }
 
-/// The product of the odd numbers below an even power: the moments of a normal number.
+/// Returns the product of the odd numbers below an even power: the moments of a normal number.
 double normal_moment(int power) {
   if (power % 2 == 1) return 0;
   double product = 1;
@@ -51,7 +51,7 @@ TYPED_TEST(ThermalTurns, HaveTheMomentsOfNormalNumbersUpToTheFifth) {
     Columns columns;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       auto const unit = [&](std::size_t c) { return TypeParam(c == axis ? 1 : 0); };
-      // The other half's bits have no part in it.
+      // The bits of the other half must have no effect.
       auto const bits = static_cast<typename detail::RandomTurn<TypeParam, true>::Bits>(code << 5U);
       auto const m = turn.template turned<5>(bits | 0xfc1fU, Vec3{unit(0), unit(1), unit(2)});
       columns[axis] = {m.x, m.y, m.z};
@@ -70,7 +70,7 @@ TYPED_TEST(ThermalTurns, HaveTheMomentsOfNormalNumbersUpToTheFifth) {
       }
 }
 
-// exp(-u) is what diffusion keeps; an error of the third order in u is one of weak order 2.
+// Diffusion keeps exp(-u); an error of third order in u corresponds to weak order 2.
 TEST(ThermalTurn, IsDiffusionToTheThirdOrder) {
   double last = 0;
   for (double const u : {0.1, 0.05, 0.025, 0.0125}) {
@@ -131,7 +131,7 @@ TYPED_TEST(ThermalSites, TurnIndependently) {
     return kinds;
   };
   auto const after = turns_of(5, Half::after);
-  // Pairs that should be independent: of halves and steps, and of sites so far apart.
+  // Pairs that should be independent: halves, steps, and sites so far apart.
   auto const expect_independent = [&](auto const& first, auto const& second, std::size_t apart) {
     std::vector<double> found(225);
     for (std::size_t i = 0; i < sites; ++i) ++found[15 * first[i] + second[(i + apart) % sites]];
@@ -183,7 +183,7 @@ TYPED_TEST(ThermalTurns, OfSitesOneByOneAreThoseOfPacks) {
   EXPECT_NE(numbers_of(sites), start);
 }
 
-// Processors look the cases up where they can, and compute them otherwise.
+// Processors look the cases up if they can, and compute them otherwise.
 TYPED_TEST(ThermalTurns, AreTheSameLookedUpAndComputed) {
   using Value = detail::Pack<TypeParam>;
   constexpr int lanes = detail::host_lanes<TypeParam>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What a process may still take, in a tree of files that stands for /proc and /sys.
+// Available memory of a process, in a tree of files that replaces /proc and /sys.
 #include "files/available_memory.hpp"
 
 #include <gtest/gtest.h>
@@ -57,11 +57,11 @@ TEST_F(AvailableMemory, OfAJob) {
   group_2("system.slice/job_7/step_0/", "max", "70000");
   group_2("system.slice/job_7/", "1000000", "70000");
   EXPECT_EQ(bytes(), 930000);
-  // Files that were read count as used, and are dropped when memory is needed.
+  // File caches count as used, but are dropped when memory is needed.
   write("sys/fs/cgroup/system.slice/job_7/memory.stat",
         "anon 10000\nfile 60000\ninactive_file 40000\nactive_file 15000\n");
   EXPECT_EQ(bytes(), 985000);
-  // The tightest of the groups around it decides, and the machine where it has less.
+  // The tightest of the groups decides, or the machine if it has less.
   group_2("system.slice/", "500000", "450000");
   EXPECT_EQ(bytes(), 50000);
   group_2("system.slice/", "20000000", "0");
@@ -72,7 +72,7 @@ TEST_F(AvailableMemory, OfAJob) {
 }
 
 TEST_F(AvailableMemory, OfAContainer) {
-  // Its groups lie in the folder itself, also where their name is that of the host.
+  // Its groups are in the folder itself, even if their name is that of the host.
   group_2("", "1000000", "100000");
   for (auto const* const name : {"0::/\n", "0::/docker/4f2a\n", "0::/../outside\n"}) {
     write("proc/self/cgroup", name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What tells a damaged file from a whole one.
+// Detection of damaged files.
 #include "hdf5/attribute.hpp"
 #include "hdf5/guarded_reading.hpp"
 #include "hdf5/handle.hpp"
@@ -97,7 +97,7 @@ TEST_F(TrajectoryTest, AttributeOfSeveralValuesIsRefused) {
                        "cannot read attribute threads: it is not one value"));
 }
 
-// All of a checkpoint is tried when it is opened, its numbers like its fields.
+// Everything in a checkpoint is verified when it is opened, both numbers and fields.
 TEST_F(TrajectoryTest, NumberOfACheckpointThatIsNoneIsRefused) {
   auto const path = folder_ / "a.checkpoint.h5";
   double number = 0.25;
@@ -206,7 +206,7 @@ TEST_F(TrajectoryTest, HeadOfTheFileIsOfVersionTwo) {
 
 using cayspin::program::try_in_child;
 
-/// Readings are tried as in the program.
+/// Readings are tried in a child, as in the program.
 class Guard : public testing::Test {
  protected:
   Guard() { set_trial(try_in_child); }
@@ -247,13 +247,13 @@ TEST_F(Guard, LeavesNoChildAndNoOutput) {
   try_reading("a.h5", [] { std::fprintf(stderr, "not to be seen"); });
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);
-  std::signal(SIGCHLD, SIG_IGN);  // then the system keeps no status of children
+  std::signal(SIGCHLD, SIG_IGN);  // the system then keeps no status of children
   EXPECT_EQ(read_guarded("a.h5", [] { return 7; }), 7);
   EXPECT_TRUE(contains(reason([] { std::raise(SIGSEGV); }), "damaged (reading it fails)"));
   std::signal(SIGCHLD, SIG_DFL);
 }
 
-// A child that waits for something that never comes takes no time of a processor.
+// A child that waits for an event that never comes uses no CPU time.
 TEST_F(Guard, EndsAChildThatWaits) {
   auto const wait = [] { ::pause(); };
   EXPECT_TRUE(contains(
@@ -263,7 +263,7 @@ TEST_F(Guard, EndsAChildThatWaits) {
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);
 }
 
-// HDF5 can be used in the child, whatever other threads do at the moment of the fork.
+// HDF5 works in the child, whatever other threads do at the moment of the fork.
 TEST_F(Guard, WaitsForOtherThreadsThatUseHdf5) {
   std::atomic<bool> done = false;
   std::thread other([&] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Files of crystals with several sites in a cell, which lie site by site.
+// Files of crystals with several sites per cell, which are stored site by site.
 #include "hdf5/real_dataset.hpp"
 #include "io/checkpoint.hpp"
 #include "io/run_output.hpp"
@@ -43,7 +43,7 @@ void write_crystal(std::filesystem::path const& path, TrajectoryHeader const& he
   output.finish({});
 }
 
-// The numbers of site s of the cell of an array in the order of the run.
+// Returns the numbers of site s of the cell from an array in the order of the run.
 template <class Real>
 std::vector<double> numbers_of(std::vector<Real> const& spins, TrajectoryHeader const& header,
                                std::int64_t site) {
@@ -87,7 +87,7 @@ void expect_stored(std::filesystem::path const& path, TrajectoryHeader const& he
 
 TEST_F(TrajectoryTest, CrystalsLieSiteBySiteAndComeBackAsTheyWere) {
   auto const path = folder_ / "a.h5";
-  // Planes of three pages are chunks that HDF5 does not see; of the others it sees all.
+  // Planes of three pages are chunks that bypass HDF5; other chunks do not.
   for (std::array<std::int64_t, 3> const shape :
        {std::array<std::int64_t, 3>{4, 3, 9}, {32, 16, 9}})
     for (int const compression : {0, 1})
@@ -200,7 +200,7 @@ TEST_F(TrajectoryTest, OtherCrystalsAreRefused) {
     error_line(path, [&] { read_spins(path, shape); });
 }
 
-// Whoever is killed leaves whole frames, and a frame that has no sublattices is none.
+// A killed writer leaves whole frames; a frame without sublattices does not count.
 TEST_F(TrajectoryTest, FramesOfCrystalsWithoutSublatticesDoNotCount) {
   auto const path = folder_ / "a.h5";
   auto const header = crystal_header();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What a run leaves behind, however it ends.
+// Files of runs, however they end.
 #include "hdf5/handle.hpp"
 #include "trajectory_test.hpp"
 

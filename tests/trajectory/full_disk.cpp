@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The disk fills, or fails, under a run. All of it happens in child processes, whose exit status
-// also tells that HDF5 was left fit to close.
+// The disk fills up or fails during a run. Everything happens in child processes, whose exit status
+// also shows that HDF5 could close.
 #include "hdf5/handle.hpp"
 #include "io/scene.hpp"
 #include "trajectory/format.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Without its signal set to be ignored, going past this limit kills.
+// Exceeding this limit kills unless its signal is ignored.
 void limit_file_size(rlim_t bytes) {
   rlimit const limit{bytes, bytes};
   if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) std::exit(9);
@@ -27,7 +27,7 @@ void limit_file_size(rlim_t bytes) {
   exit_after([&] { write_frames(path, 1000000, {.sync = sync}); });
 }
 
-/// Tests in which less fits on the disk than a program writes that counts its executed lines.
+/// Tests on a disk that is too small for the coverage data of a program.
 class SmallDisk : public TrajectoryTest {
  protected:
   void SetUp() override {
@@ -81,7 +81,7 @@ TEST_F(SmallDisk, FullDiskAtOverwritingKeepsTheOldFile) {
   });
 }
 
-// Room is taken before the last samples are written, too.
+// Space is also reserved before the last samples are written.
 TEST_F(SmallDisk, FullDiskAtTheEndKeepsTheFrames) {
   auto const path = folder_ / "a.h5";
   EXPECT_EXIT(end_on_full_disk(path), testing::ExitedWithCode(3),
@@ -125,7 +125,7 @@ TEST_F(TrajectoryTest, FailedWriteIsReportedAndLeavesTheFileAsItWas) {
   EXPECT_EQ(info.frames, 5);
 }
 
-// The journal has the frame that could not be put into the file.
+// The journal has the frame that could not be written to the file.
 TEST_F(TrajectoryTest, FailedWriteOfASyncedFileIsReportedAndLosesNothing) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   auto const path = folder_ / "a.h5";

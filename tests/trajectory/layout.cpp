@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What other tools find in the file, asked through HDF5's own interface.
+// The file as other tools see it, through HDF5's own interface.
 #include "hdf5/handle.hpp"
 #include "trajectory/format.hpp"
 #include "trajectory_test.hpp"

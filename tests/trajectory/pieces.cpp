@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Frames and fields that no memory holds whole: written by planes, read by boxes.
+// Frames and fields too large for memory: written by planes, read by boxes.
 #include "io/checkpoint.hpp"
 #include "io/run_output.hpp"
 #include "trajectory/fletcher32.hpp"
@@ -123,7 +123,7 @@ TEST_F(TrajectoryTest, PiecesOutOfOrderAreRefused) {
   EXPECT_EQ(file.frames(), 1);
 }
 
-// A run that ends within a frame: the frames before count.
+// A run that ends within a frame: only earlier frames count.
 TEST_F(TrajectoryTest, FramesThatWereNotEndedDoNotCount) {
   auto const path = folder_ / "a.h5";
   {

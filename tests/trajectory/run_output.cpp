@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The files of a run, written by a thread of their own.
+// The files of a run, written by a separate thread.
 #include "io/run_output.hpp"
 
 #include "trajectory/scalar_table.hpp"
@@ -61,7 +61,7 @@ TEST_F(TrajectoryTest, OutputHoldsWhatWasHandedOver) {
   write_and_expect<float>(folder_ / "single.h5", "single");
 }
 
-// Frames that are one chunk are written past HDF5's filters, others through them.
+// Frames of one chunk bypass HDF5's filters, others use them.
 TEST_F(TrajectoryTest, OutputIsTheSameWithAndWithoutChunks) {
   auto const whole = folder_ / "whole.h5", cut = folder_ / "cut.h5";
   for (auto const& [path, chunk] : {std::pair{whole, 0}, {cut, 1}}) {
@@ -107,7 +107,7 @@ TEST_F(TrajectoryTest, OutputHandsOverManySamplesWithoutAFrame) {
   RunOutput output(folder_ / "a.h5", small_header(), {.table = true});
   for (int sample = 0; sample < 1024; ++sample)
     output.write_scalars(sample, sample, numbered_scalars(sample));
-  EXPECT_EQ(output.frames(), 0);  // all that was handed over has been written
+  EXPECT_EQ(output.frames(), 0);  // all queued data have been written
   EXPECT_EQ(std::ranges::count(read_bytes(folder_ / "a.txt"), '\n'), 1 + 1024);
 }
 
@@ -213,12 +213,12 @@ TEST_F(TrajectoryTest, TableGivesTheDoublesBack) {
             (std::vector<double>{1 / 7., 0.1, 1 - 1e-16, -1e300, -1 / 3., 5e-324}));
 }
 
-// What does not fit as a whole is taken back: a table has no torn line.
+// Samples that do not fit completely are removed: a table has no torn line.
 TEST_F(TrajectoryTest, TableOnAFullDiskKeepsWholeLines) {
   auto const path = folder_ / "a.txt";
   ScalarTable table(path, false, false);
   Sample const sample{1, 0.5, numbered_scalars(1)};
-  table.append({sample});
+  table.append({{sample}});
   auto const before = read_bytes(path);
   EXPECT_EQ(std::ranges::count(before, '\n'), 2);
 
@@ -227,12 +227,12 @@ TEST_F(TrajectoryTest, TableOnAFullDiskKeepsWholeLines) {
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &unlimited), 0);
   rlimit const limit{before.size() + 30, unlimited.rlim_max};
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
-  auto const message = error_line(path, [&] { table.append({sample, sample}); });
+  auto const message = error_line(path, [&] { table.append({{sample}, {sample}}); });
   ::setrlimit(RLIMIT_FSIZE, &unlimited);
   std::signal(SIGXFSZ, handler);
   EXPECT_TRUE(contains(message, "cannot write the file: File too large"));
   EXPECT_EQ(read_bytes(path), before);
-  table.append({sample});
+  table.append({{sample}});
   EXPECT_EQ(read_bytes(path), before + before.substr(before.find('\n') + 1));
 }
 
@@ -280,7 +280,7 @@ TEST_F(TrajectoryTest, XdmfDescribesEveryFrameThatIsInTheFile) {
   for (auto const* const part : {"Dimensions=\"2 3 4\"/>", ">1 0.5 0.25</", ">2 1 0.5</",
                                  "Precision=\"4\"", "a&amp;b.h5:/spins", "<Time Value=\"0.2\"/>"})
     EXPECT_TRUE(contains(text, part));
-  // Where a frame begins in /spins, its strides and its extents.
+  // Start of a frame in /spins, its strides and its extents.
   std::string numbers;
   std::istringstream last(text.substr(text.rfind("Format=\"XML\">") + 13));
   for (std::string word; last >> word && word.front() != '<';) numbers += word + ' ';

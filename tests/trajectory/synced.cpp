@@ -22,7 +22,7 @@ class Synced : public TrajectoryTest {
     return write_frames(path, frames, {.sync = true}, overwrite);
   }
 
-  // As a cut leaves it: a sector that the last frame wrote over the file is not there.
+  // As after a power cut: a sector that the last frame overwrote is missing.
   fs::path half_written(std::string const& name, int frames) const {
     auto const whole = folder_ / ("whole_" + name), path = folder_ / name;
     auto file = begin(whole, frames);
@@ -109,7 +109,7 @@ TEST_F(Synced, AJournalThatIsNotWholeIsNotNeeded) {
   EXPECT_FALSE(fs::exists(journal_of(path)));
 }
 
-// Root may write any file. Without exit handlers: a sanitizer's would need the rights.
+// Root may write any file. Without exit handlers, because a sanitizer's would need the rights.
 [[noreturn]] void read_without_rights(fs::path const& path) {
   if (::geteuid() == 0 && ::seteuid(65534) != 0) std::_Exit(1);
   try {

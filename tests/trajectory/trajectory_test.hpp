@@ -21,8 +21,8 @@ using cayspin::test::overwrite;
 using cayspin::test::read_bytes;
 using cayspin::test::write_bytes;
 
-/// A folder of its own for each test, removed afterwards. Children of the test, also those started
-/// afresh, use the same.
+/// A separate folder for each test, removed afterwards. Children of the test, including restarted
+/// ones, use it, too.
 class TrajectoryTest : public testing::Test {
  protected:
   TrajectoryTest() {
@@ -82,8 +82,8 @@ inline TrajectoryFile write_frames(std::filesystem::path const& path, int frames
   return file;
 }
 
-/// The message of the std::runtime_error that `call` throws, which has to be one line that names
-/// `path`; anything else fails the test.
+/// Returns the message of the std::runtime_error that `call` throws, which must be one line that
+/// names `path`; anything else fails the test.
 template <class Call>
 std::string error_line(std::filesystem::path const& path, Call const& call) {
   try {
@@ -98,7 +98,7 @@ std::string error_line(std::filesystem::path const& path, Call const& call) {
   return "";
 }
 
-/// Ends a child of a test: with 3 and the message on standard error where `call` throws
+/// Ends a child of a test: with 3 and the message on standard error if `call` throws
 /// std::runtime_error, otherwise with 0.
 template <class Call>
 [[noreturn]] void exit_after(Call const& call) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Wrong uses of the writers: each ends in one line, and leaves the file as it was.
+// Wrong uses of the writers: each gives one line and leaves the file unchanged.
 #include "../support/wrong_call.hpp"
 #include "io/checkpoint.hpp"
 #include "io/run_output.hpp"
@@ -17,7 +17,7 @@ using test::WrongCall;
 
 constexpr auto most = std::numeric_limits<std::int64_t>::max();
 
-/// Headers of files that cannot be, with what is wrong.
+/// Returns invalid headers, with what is wrong.
 std::vector<std::pair<std::string, TrajectoryHeader>> impossible_headers() {
   std::vector<std::pair<std::string, TrajectoryHeader>> headers;
   for (auto const* const precision : {"half", "", "Double"})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The figures of docs/guide/units.md, and what is refused.
+// The figures of docs/guide/units.md, and refusals.
 #include "../support/figures.hpp"
 
 #include <cayspin/units.hpp>
@@ -45,7 +45,7 @@ TEST(Units, AtomisticFigures) {
   EXPECT_EQ(material.dmi(1e-21), 1);
 }
 
-// g mu_B P j / (2 e Ms) and hbar P j / (2 e Ms d) by hand; electrons go against the current.
+// g mu_B P j / (2 e Ms) and hbar P j / (2 e Ms d) by hand; electrons move against the current.
 TEST(Units, CurrentsComeToVelocitiesAndFields) {
   units::PolarizedCurrent drift{.density = 1e12, .polarization = 0.4, .Ms = 8e5};
   EXPECT_NEAR(units::drift_velocity(drift), -28.9755, 5e-5);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Without damping: drift of the energy and of the magnetization along a symmetry axis, and the
+// Undamped runs: drift of the energy and of the magnetization along a symmetry axis, and the
 // lengths of spins over a million steps.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"

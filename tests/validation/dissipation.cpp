@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// With damping the energy falls in every step, right up to near the a-priori limit of the step.
+// Damping: the energy falls in every step, up to near the a-priori limit of the step.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 

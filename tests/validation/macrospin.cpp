@@ -58,7 +58,7 @@ TEST(Macrospin, Euler) {
                 {"7.49e-1", "3.27e-1", "1.52e-1", "7.35e-2"});
 }
 
-/// The errors of a method with each generator, in the constant field.
+/// Checks the errors of a method with each generator, in the constant field.
 template <class Stepper>
 void expect_errors(std::string const& method, std::vector<std::string> const& natural,
                    std::vector<std::string> const& orthogonal) {
@@ -96,7 +96,7 @@ TEST(Macrospin, RotatingField) {
         return Vector{0.7 * std::cos(1.3 * t), 0.7 * std::sin(1.3 * t), 0.9};
       }}},
       0.0};
-  // In the frame that turns with the field, the spin precesses about a constant one.
+  // In the frame that turns with the field, the spin precesses about a constant field.
   Vector const in_frame = damped_precession({0.7, 0, 0.9 - 1.3}, 0, {0.6, 0, 0.8}, end_time);
   double const c = std::cos(1.3 * end_time), s = std::sin(1.3 * end_time);
   Vector const exact{c * in_frame.x - s * in_frame.y, s * in_frame.x + c * in_frame.y, in_frame.z};

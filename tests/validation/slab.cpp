@@ -18,7 +18,7 @@ struct Path {
   Spins end;
 };
 
-/// The watched spin at equally spaced times, and the largest norm defect at those times.
+/// The observed spin at equally spaced times, and the largest norm defect at those times.
 template <class Stepper, class Generator, class... Options>
 Path path(Generator const& generator, double end_time, double dt, Options const&... options) {
   Space const exec;
@@ -41,7 +41,7 @@ double distance(Path const& a, Path const& b) {
   return largest;
 }
 
-/// The backward difference with sigma of the sign that the paper prints.
+/// The backward difference with the paper's sign of sigma.
 struct PrintedDifference : detail::BackwardDifference {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> operator()(detail::TwoPoints<Value>& p) const {
@@ -97,7 +97,8 @@ TEST_F(Precessing, Euler) {
   expect<ClassicalEuler<Spins>>("Euler, dt 1e-3", a, 1e-3, ".0469", "3.753e-2");
   auto const fine = expect<ClassicalEuler<Spins>>("Euler, dt 1e-4", a, 1e-4, ".0045", "3.699e-3");
 
-  // mean ln|m| = (dt/2) ((P + lambda^2)/lambda) (E_start - E_end) / N, energies along the true path
+  // mean ln|m| = (dt/2) ((P + lambda^2)/lambda) (E_start - E_end) / N, with energies of the exact
+  // path.
   Space const exec;
   double const fall = energy(exec, slab_.field(), slab_start()).value -
                       energy(exec, slab_.field(), reference_.end).value;

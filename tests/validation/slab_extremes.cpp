@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The slab at rest, cut into cells finer than atoms, and under strong damping.
+// The slab at equilibrium, with cells smaller than atoms, and with strong damping.
 #include "../support/figures.hpp"
 #include "../support/unit_slab.hpp"
 
@@ -10,7 +10,7 @@ namespace {
 
 Vector const strong{5, 0, 0}, weak{0.05, 0.05, 0}, along_x{1, 0, 0}, along_z{0, 0, 1};
 
-// Torque and energy: above the stability limit a run may end at rest in an energy maximum.
+// Checks torque and energy: above the stability limit a run may end in an energy maximum.
 void expect_rest(char const* what, Slab const& slab, std::array<char const*, 3> const& figures) {
   Space const exec;
   Spins spins = slab_start();
@@ -75,7 +75,7 @@ TEST(Slab, NormDriftOfClassicalRk4) {
     std::string const name = std::string("classical rk4, damping ") + row.name;
     double const coarse = drift(0.01);
     expect_figure(name + ", dt .01, max ||m| - 1|", coarse, row.drift);
-    // Near damping .05 and 10 the drift is not yet, at this dt, a single power.
+    // Near damping .05 and 10 the drift is not a single power at this dt.
     if (row.damping == 1)
       expect_figure(name + ", ratio to half the dt", coarse / drift(0.005), "16", 0.05);
   }

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double anisotropy = 1.3;
 
-/// Whether a spin near +z reverses in a field at the angle psi to -z that is ramped up and held.
+/// Returns true if a spin near +z reverses in a field at the angle psi to -z that is ramped up and
+/// held.
 bool switches(double strength, double psi) {
   auto const under = [&](double h) {
     return Slab{.lattice = Lattice::chain(1),

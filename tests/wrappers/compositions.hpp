@@ -5,15 +5,15 @@
 #include "members.hpp"
 
 #include <cayspin/crystal.hpp>
-#include <cayspin/field/dear.hpp>
 #include <cayspin/field/field_of_moments.hpp>
+#include <cayspin/field/slow_field.hpp>
 
 #include <random>
 #include <utility>
 
 namespace cayspin::test {
 
-/// A wrapper of one's own, with what a wrapper must have and no more.
+/// A user's wrapper with only the required members.
 template <class Inner>
 class Named : public Forwarding<Named<Inner>, Inner> {
  public:
@@ -68,7 +68,7 @@ Setting<Real> random_setting(unsigned seed) {
   on.lattice = {{extent(5), extent(3), 2 * extent(2)}, {1.25, 0.75, 1}, {end(), end(), end()}};
   on.lattice.cell_sites = 2;
   auto const sites = on.lattice.sites();
-  // Numbers that both precisions hold.
+  // Numbers that both precisions hold exactly.
   auto const rounded = [](std::vector<double> numbers) {
     for (double& number : numbers) number = static_cast<float>(number);
     return numbers;
@@ -122,10 +122,10 @@ void for_each_term(Setting<Real> const& on, Visit const& visit) {
   visit("PairCouplings", PairCouplings<Host>(lattice, {bilinear, within}));
   visit("PairCouplings, biquadratic",
         PairCouplings<Host>(lattice, {bilinear, {{0, 1}, {0, 0, 0}, {}, number()}}));
-  visit("Dear", Dear<Field, Exchange>(lattice, Exchange(lattice, number())));
-  visit("Dear(Zeeman)", Dear<Field, Zeeman>(lattice, Zeeman{vector()}));
+  visit("SlowField", SlowField<Field, Exchange>(lattice, Exchange(lattice, number())));
+  visit("SlowField(Zeeman)", SlowField<Field, Zeeman>(lattice, Zeeman{vector()}));
   using Solved = HostField<Field, AlongZ>;
-  visit("Dear(HostField)", Dear<Field, Solved>(lattice, Solved(lattice, AlongZ())));
+  visit("SlowField(HostField)", SlowField<Field, Solved>(lattice, Solved(lattice, AlongZ())));
 }
 
 template <class Term>
@@ -133,7 +133,7 @@ inline constexpr bool sees_vacant_spins =
     detail::holds<PairCouplings, Term>() || detail::holds<detail::SeesAllSpins, Term>();
 
 /// Calls visit(name, wrapped, factors, is_alone) for each of the library's wrappers around a term,
-/// and for some around each other. `is_alone`: it answers as the term does.
+/// and for some around each other. `is_alone`: it behaves like the term.
 template <class Real, class Term, class Visit>
 void for_each_wrapper(Setting<Real> const& on, std::string const& name, Term const& term,
                       std::vector<double> const& factors, Visit const& visit) {
@@ -166,7 +166,7 @@ template <class Real, class Wrapped, class Term>
 void expect_answers(std::string const& name, Wrapped const& wrapped, Term const& inside,
                     Setting<Real> const& on) {
   auto found = answers(wrapped, on), expected = answers(inside, on);
-  // Of one's own: without derivatives, which is refused when compiled where they are asked for.
+  // User wrappers have no derivatives; using these does not compile.
   found.conservative = expected.conservative = true;
   if (name.starts_with("Named(")) {
     found.linear = expected.linear = true;
@@ -175,7 +175,7 @@ void expect_answers(std::string const& name, Wrapped const& wrapped, Term const&
   EXPECT_TRUE(found == expected) << name << " answers otherwise than its inside";
 }
 
-/// Each term, each wrapper around it, and one wrapper around one of those.
+/// Calls visit for each term, each wrapper around it, and one wrapper around one of those.
 template <class Real>
 void expect_all_members(Setting<Real> const& on) {
   int count = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Landau-Lifshitz generators around wrapped terms: A from H alone, and a step of a method that asks
-// for rows.
+// Landau-Lifshitz generators around wrapped terms: A from H only, and a step of a method that
+// evaluates rows.
 #include "compositions.hpp"
 
 #include <cayspin/evaluate.hpp>
@@ -61,7 +61,7 @@ class WrappedGenerators : public ::testing::Test {
   void expect_step(Members const& is, Generator const& generator, Vectors const& a,
                    Setting<Real> const& on) {
     Host const exec;
-    // A step asks for the field along rows.
+    // A step evaluates the field along rows.
     double const dt = 0.25;
     auto spins = on.field(on.m);
     LieEuler(spins).step(exec, generator, spins, on.t, dt);

@@ -15,7 +15,7 @@
 #include <type_traits>
 #include <vector>
 
-// Every member of a term beside numbers made from `field` and `energy_density` alone.
+// Every member of a term, against numbers made only from `field` and `energy_density`.
 namespace cayspin::test {
 
 using Vectors = std::vector<Vec3<double>>;
@@ -48,7 +48,7 @@ inline std::vector<double> combined(std::vector<double> const& a, double factor,
   return sum;
 }
 
-/// What a prepared term says at each site.
+/// Results of a prepared term at each site.
 struct Said {
   Vectors field, added, turning, added_turning, neighbor, local, other_local;
   std::vector<double> energy, magnitude, sum_of_terms, magnitude_of_terms;
@@ -112,7 +112,7 @@ template <class Prepared, class Field>
   return all;
 }
 
-/// H at every site, and nothing else.
+/// A term with only H at every site.
 template <class Term, class Field>
 Vectors field_of(Term const& term, Field const& spins, double t) {
   auto const prepared = detail::prepare_term(term, Host(), spins, t);
@@ -128,7 +128,7 @@ double energy_of(Term const& term, Field const& spins, double t) {
   return sum;
 }
 
-/// What a wrapper has to say as its inside does.
+/// Answers that a wrapper must forward from its inside.
 struct Answers {
   bool linear, derivative, affine, conservative, depends_on_time, stationary, by_time;
   int energy_terms;
@@ -147,7 +147,7 @@ Answers answers(Term const& term, Setting<Real> const& on) {
           .conservative = detail::is_conservative<Term>,
           .depends_on_time = detail::depends_on_time<Term>,
           .stationary = detail::is_stationary(term, Host(), spins),
-          .by_time = detail::needs_time_alone(term, Host(), spins),
+          .by_time = detail::needs_only_time(term, Host(), spins),
           .energy_terms = detail::energy_terms<Term>};
 }
 
@@ -198,13 +198,13 @@ inline Vectors operator*(double factor, Vectors a) {
   return a;
 }
 
-/// Derivative along h of f at 0, exact for polynomials of degree 4.
+/// Returns the derivative along h of f at 0, exact for polynomials of degree 4.
 template <class Function>
 auto derivative(Function const& f, double h) {
   return (1 / (12 * h)) * (8.0 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h)));
 }
 
-/// `factors`: H is -dE/dm times that of each site; empty: 1.
+/// `factors`: H is -dE/dm times the site's factor; empty: 1.
 template <class Real, class Term>
 void expect_members(std::string const& name, Term const& term, Setting<Real> const& on,
                     std::vector<double> const& factors = {}) {
@@ -228,7 +228,7 @@ void expect_members(std::string const& name, Term const& term, Setting<Real> con
   is.expect_turns(here.turning, field, m, "turning_field");
   is.expect_turns(here.added_turning, with_added, m, "add_turning_field");
 
-  // In two parts, of which the neighbour field is that of no spin itself.
+  // In two parts; the neighbour field does not depend on the spin itself.
   if constexpr (detail::comes_in_parts<Prepared, Stencil>()) {
     is.expect_turns(here.neighbor - (-1.0 * here.local), field, m,
                     "neighbor_field and local_field");
@@ -248,13 +248,13 @@ void expect_members(std::string const& name, Term const& term, Setting<Real> con
       is.expect_same(here.other_local, here.local, "local_field_varies");
   }
 
-  // At which times and spins it may be used.
+  // Times and spins at which it may be used.
   Vectors const later = field_of(term, others, on.t + 0.3);
   Said const of_others = said(prepared, others);
   if (detail::is_stationary(term, exec, spins))
     is.expect_same(of_others.field, later, "is_stationary");
-  if (detail::needs_time_alone(term, exec, spins))
-    is.expect_same(of_others.field, field_of(term, others, on.t), "needs_time_alone");
+  if (detail::needs_only_time(term, exec, spins))
+    is.expect_same(of_others.field, field_of(term, others, on.t), "needs_only_time");
   if (!detail::depends_on_time<Term>)
     is.expect_same(later, field_of(term, others, on.t), "depends_on_time");
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Everything but steppers that takes a field made elsewhere: copies, sums, terms, observers.
+// Functions other than steppers that take a field made elsewhere: copies, sums, terms, observers.
 #include "wrong_calls.hpp"
 
 namespace cayspin::test {
@@ -15,7 +15,7 @@ struct NoField {
 
 std::vector<Coupling> const one_bond{Coupling::of({0, 0}, {1, 0, 0}, 1)};
 
-/// Every look at the energy of a term or generator.
+/// Calls every function for the energy of a term or generator.
 template <class Source>
 std::vector<WrongCall> sums_of(Source const& source, Spins const& spins) {
   return {{"energy", [=] { energy(Exec(), source, spins); }},
@@ -230,7 +230,7 @@ TEST(WrongCallsOfCopies, NoField) {
     });
 }
 
-// Every layout of a View is right, whatever its strides.
+// Every layout of a View works, with any strides.
 TEST(Copies, OfStridedViews) {
   Lattice const lattice = Lattice::square(4, 3);
   std::vector<double> numbers(12 * 8, -1);
@@ -251,7 +251,7 @@ TEST(Copies, OfStridedViews) {
   EXPECT_EQ(numbers[7], -1);
 }
 
-// tests/lattice/validate.cpp has the lattices that are wrong.
+// tests/lattice/validate.cpp has the invalid lattices.
 TEST(WrongCallsOfLattices, NoneThatCannotBe) {
   auto const lattice = Lattice::square(-3, -1);
   expect_refused({
@@ -269,7 +269,7 @@ TEST(WrongCallsOfLattices, NoneThatCannotBe) {
   });
 }
 
-// What is moved away leaves an empty field.
+// Moving leaves an empty field.
 TEST(Fields, MovedAwayFrom) {
   Spins from("from", Lattice::chain(3));
   double const* const memory = from.allocation().data();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Steppers refuse fields and generators of others, in every call, and their own memory as spins.
+// Steppers refuse other fields and generators, in every call, and their own memory as spins.
 #include "wrong_calls.hpp"
 
 #include <cayspin_paper/analytic_sigma.hpp>
@@ -36,7 +36,7 @@ void for_each_stepper(Visit const& visit) {
 #endif
 }
 
-/// Each call of a stepper with these spins and this generator.
+/// Makes each call of a stepper with these spins and this generator.
 template <class Make>
 std::vector<WrongCall> calls_of(std::string const& what, Make const& make, Lattice const& own,
                                 Spins spins, Generator const& generator) {
@@ -115,8 +115,8 @@ TEST(WrongCallsOfSteppers, BatchesOfNoSteps) {
   }
 }
 
-// A step exchanges the memory of the spins with the stepper's own. A second handle on the memory
-// from before is then the stepper's: it is refused, or the steps are as right as with the first.
+// A step swaps the memory of the spins with the stepper's own. A second handle on the original
+// memory is then the stepper's: it is refused, or the steps are as right as with the first.
 TEST(WrongCallsOfSteppers, ASecondHandleOnTheSpins) {
   for_each_stepper([](std::string const& name, auto const& make) {
     Lattice const own = own_lattices[0];

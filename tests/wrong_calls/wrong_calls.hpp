@@ -22,8 +22,8 @@ Field moved_from(Lattice const& lattice) {
   return field;
 }
 
-/// Every lattice but this one: of another shape, as many sites in another shape, other boundaries
-/// and other spacings.
+/// Returns lattices that differ from this one: in shape, in shape with as many sites, in boundaries
+/// and in spacings.
 inline std::vector<std::pair<std::string, Lattice>> lattices_of_others(Lattice const& own) {
   auto wider = own, turned = own, closed = own, coarser = own;
   wider.shape[0] += 1;
@@ -36,7 +36,7 @@ inline std::vector<std::pair<std::string, Lattice>> lattices_of_others(Lattice c
   return lattices;
 }
 
-/// Fields on these, and fields on none.
+/// Returns fields on these, and empty fields.
 template <class Field>
 std::vector<std::pair<std::string, Field>> fields_of_others(Lattice const& own) {
   std::vector<std::pair<std::string, Field>> fields{{"default-constructed", Field()},
@@ -46,11 +46,11 @@ std::vector<std::pair<std::string, Field>> fields_of_others(Lattice const& own) 
   return fields;
 }
 
-/// A default-constructed Lattice is a single site, so that this is the lattice of an empty field
-/// which nobody tells apart.
+/// A default-constructed Lattice is a single site, and thus equals the lattice of an empty field.
 inline std::vector<Lattice> const own_lattices{Lattice::square(6, 4), Lattice()};
 
-/// Each call is refused, since what `who` was made for is not the lattice of the spins.
+/// Expects each call to be refused, since `who` was made for another lattice than that of the
+/// spins.
 inline void expect_made_for_another(std::string const& who, Lattice const& made_for,
                                     Lattice const& of_spins, std::vector<WrongCall> const& calls) {
   auto const sites = [](Lattice const& lattice) {
@@ -64,7 +64,7 @@ inline void expect_made_for_another(std::string const& who, Lattice const& made_
   for (auto const& [name, call] : calls) EXPECT_EQ(refusal(call), sentence) << name;
 }
 
-/// Conservative, and couples sites.
+/// Returns a conservative generator that couples sites.
 inline auto generator_on(Lattice const& lattice) {
   return LandauLifshitz(EffectiveField(Exchange(lattice, 1), Zeeman{{0.3, 0, 1}}), 0);
 }

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cayspin/demagnetization/fftw.hpp>
-#include <cayspin/demagnetization/interactions.hpp>
-#include <cayspin/demagnetization/spectrum_of_interactions.hpp>
 #include <cayspin/demagnetization/spectrum_of_parts.hpp>
 #include <cayspin/demagnetization/workers.hpp>
 
@@ -16,24 +14,30 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// The field of interactions between cells. Rows along x are transformed by themselves, and each of
-/// their wave numbers then along y and z in memory of one thread's own, where it meets the
-/// interactions and comes back: no zero beyond the lattice is kept, and each number of the spectrum
-/// is read and written once. Parts of a lattice have each its own rows and a share of the wave
-/// numbers, which they exchange. The same bits for any number of threads and parts.
-template <class Real>
+/// The field of interactions between cells, by FFTs. Rows along x are transformed first. Each wave
+/// number along x is then transformed along y and z in one thread's memory, multiplied by the
+/// interactions and transformed back. So no zeros beyond the lattice are stored, and each number of
+/// the spectrum is read and written once. Parts of a lattice each transform their own rows and a
+/// share of the wave numbers, which they exchange. The bits do not depend on the number of threads
+/// and parts.
+///
+/// Kernel: the transformed interactions. It multiplies the transforms of all sites of a cell.
+template <class Real, class Kernel>
 class Convolution {
   using Complex = std::complex<Real>;
+  using Interactions = typename Kernel::Interactions;
 
  public:
-  /// Of a lattice or a part of it, for the interactions of the whole one.
-  Convolution(Lattice const& lattice, InteractionsOfCells const& interactions)
+  /// Makes the convolution for a lattice, or a part of it, with the interactions of the whole
+  /// lattice.
+  Convolution(Lattice const& lattice, Interactions const& interactions)
       : parts_(lattice),
         rows_of_parts_(rows_of_parts(lattice)),
         own_(rows_of_parts_[parts_.index()]),
         n_(interactions.cells()),
         period_(interactions.period()),
-        octant_{interactions.octant(0), interactions.octant(1), interactions.octant(2)},
+        sites_(lattice.cell_sites),
+        waves_(period_[0] / 2 + 1),
         rows_at_once_(std::min(n_[1], 8)),
         row_(row_of(period_[1], period_[2])),
         padded_plane_(whole(std::size_t(row_) * std::size_t(period_[2]))),
@@ -42,23 +46,21 @@ class Convolution {
         along_z_(period_[2], static_cast<int>(row_), period_[1], 1),
         row_workers_("cayspin::DemagnetizingField: rows", blocks(),
                      whole(row_waves()) * 2 + std::size_t(rows_at_once_ * period_[0])),
-        spectrum_("cayspin::DemagnetizingField: spectrum", parts_, octant_[0], lines_of_parts()),
+        spectrum_("cayspin::DemagnetizingField: spectrum", parts_, waves_, lines_of_parts()),
+        kernel_(interactions, parts_),
         plane_workers_("cayspin::DemagnetizingField: planes", spectrum_.own_waves(),
-                       3 * padded_plane_),
-        kernel_("cayspin::DemagnetizingField: interactions",
-                6 * octant_plane() * std::size_t(spectrum_.own_waves())) {
-    transform_interactions(interactions, parts_, kernel_);
-  }
+                       planes() * padded_plane_ + kernel_.work_numbers()) {}
 
-  /// Less what each thread has of its own: three planes and some rows.
-  static std::int64_t work_bytes(Lattice const& lattice, InteractionsOfCells const& interactions) {
+  /// Returns bytes without the memory of each thread: three planes and some rows.
+  static std::int64_t work_bytes(Lattice const& lattice, Interactions const& interactions) {
     Parts const parts(lattice);
-    std::int64_t const ny = interactions.cells()[1], nz = interactions.cells()[2];
-    std::int64_t const waves = interactions.octant(0);
+    std::int64_t const ny = interactions.cells()[1];
+    std::int64_t const nz = interactions.cells()[2] * lattice.cell_sites;
+    std::int64_t const waves = interactions.period()[0] / 2 + 1;
     std::int64_t const spectrum =
         SpectrumOfParts<Complex>::numbers(parts, waves, 3 * own_rows(lattice).count(), 3 * ny * nz);
-    std::int64_t const octant = parts.share(waves, parts.index()) * interactions.lines();
-    return (2 * spectrum + 6 * octant) * static_cast<std::int64_t>(sizeof(Real));
+    std::int64_t const kernel = Kernel::numbers(interactions, parts.share(waves, parts.index()));
+    return (2 * spectrum + kernel) * static_cast<std::int64_t>(sizeof(Real));
   }
 
   template <class HostSpins>
@@ -71,7 +73,7 @@ class Convolution {
           std::copy_n(m.data + std::ptrdiff_t(c) * m.stride + rows.offset(layout, y), n_[0],
                       rows.numbers + (rows.slot + y) * period_[0]);
         row_transforms_.forward(rows.numbers, rows.waves);
-        for (int k = 0; k < octant_[0]; ++k)
+        for (int k = 0; k < waves_; ++k)
           std::copy_n(rows.waves + k * rows_at_once_ + rows.slot, rows.count,
                       in_own_rows(k, c, rows));
       });
@@ -82,7 +84,7 @@ class Convolution {
     spectrum_.waves_to_lines();
     row_workers_.run(blocks(), [&](std::int64_t block, Real* memory) {
       for_each_component(block, memory, [&](BlockOfRows const& rows, std::size_t c) {
-        for (int k = 0; k < octant_[0]; ++k) {
+        for (int k = 0; k < waves_; ++k) {
           Complex* const wave = rows.waves + k * rows_at_once_;
           std::fill(wave, wave + rows.slot, Complex(0));
           std::copy_n(in_own_rows(k, c, rows), rows.count, wave + rows.slot);
@@ -99,8 +101,8 @@ class Convolution {
   }
 
  private:
-  /// Neighbouring rows of a plane: place y, z among the part's own. Each is transformed in the slot
-  /// that it has in the whole lattice: FFTW does not promise that bits are those of any slot.
+  /// Neighbouring rows of a plane: their y, z within the part. Each row is transformed in the slot
+  /// that it has in the whole lattice, because FFTW does not promise equal bits in different slots.
   struct BlockOfRows {
     std::int64_t y, z;
     int slot, count;
@@ -113,15 +115,15 @@ class Convolution {
     }
   };
 
-  /// From row to row of a plane: an odd number of cache lines, for columns that do not compete for
-  /// the same cache sets.
+  /// Returns the distance between rows of a plane: an odd number of cache lines, so that columns do
+  /// not compete for the same cache sets.
   static int row_of(int ny, int nz) {
     constexpr int line = 64 / sizeof(Complex);
     return nz == 1 ? ny : ((ny + line - 1) / line | 1) * line;
   }
   static std::size_t whole(std::size_t count) { return Workers<Complex>::whole_lines(count); }
-  std::size_t row_waves() const { return std::size_t(rows_at_once_) * std::size_t(octant_[0]); }
-  std::size_t octant_plane() const { return std::size_t(octant_[1]) * std::size_t(octant_[2]); }
+  std::size_t row_waves() const { return std::size_t(rows_at_once_) * std::size_t(waves_); }
+  std::size_t planes() const { return 3 * std::size_t(sites_); }
   std::int64_t first_block() const { return own_.y / rows_at_once_; }
   std::int64_t blocks_of_plane() const {
     return (own_.y + own_.ny + rows_at_once_ - 1) / rows_at_once_ - first_block();
@@ -151,83 +153,61 @@ class Convolution {
     return spectrum_.of_own_lines(k) + std::int64_t(c) * own_.count() + rows.z * own_.ny + rows.y;
   }
 
-  /// body(in plane, in spectrum, count) for all rows of a wave number.
+  /// Returns the place of a component of a site of the cells.
+  Complex* plane_of(Complex* planes, std::int64_t site, std::size_t c) const {
+    return planes + (std::size_t(site) * 3 + c) * padded_plane_;
+  }
+  /// Calls body(in plane, in spectrum, count) for all rows of a wave number.
   template <class Body>
-  void for_each_row(std::int64_t k, std::size_t c, Complex* plane, Body const& body) const {
+  void for_each_row(std::int64_t k, std::size_t c, Complex* planes, Body const& body) const {
     for (std::size_t part = 0; part < rows_of_parts_.size(); ++part) {
       RowsOfPart const& rows = rows_of_parts_[part];
       Complex* in_spectrum = spectrum_.of_own_wave(k, part) + std::int64_t(c) * rows.count();
-      for (std::int64_t z = 0; z < rows.nz; ++z, in_spectrum += rows.ny)
-        body(plane + (rows.z + z) * row_ + rows.y, in_spectrum, rows.ny);
+      for (std::int64_t z = rows.z; z < rows.z + rows.nz; ++z, in_spectrum += rows.ny)
+        body(plane_of(planes, z % sites_, c) + z / sites_ * row_ + rows.y, in_spectrum, rows.ny);
     }
   }
 
-  /// One wave number along x.
+  /// Convolves one wave number along x.
   void convolve(std::int64_t k, Complex* planes) const {
-    for (std::size_t c = 0; c < 3; ++c) {
-      Complex* const plane = planes + c * padded_plane_;
-      for_each_row(k, c, plane, [](Complex* row, Complex const* from, std::int64_t count) {
+    for (std::size_t c = 0; c < 3; ++c)
+      for_each_row(k, c, planes, [](Complex* row, Complex const* from, std::int64_t count) {
         std::copy_n(from, count, row);
       });
+    for (std::size_t i = 0; i < this->planes(); ++i) {
+      Complex* const plane = planes + i * padded_plane_;
       for (int z = 0; z < n_[2]; ++z)
         std::fill(plane + z * row_ + n_[1], plane + z * row_ + period_[1], Complex(0));
       std::fill(plane + n_[2] * row_, plane + period_[2] * row_, Complex(0));
       if (period_[1] > 1) along_y_.forward(plane);
       if (period_[2] > 1) along_z_.forward(plane);
     }
-    multiply(k, planes);
-    for (std::size_t c = 0; c < 3; ++c) {
-      Complex* const plane = planes + c * padded_plane_;
+    kernel_.multiply(k, planes, {row_, padded_plane_});
+    for (std::size_t i = 0; i < this->planes(); ++i) {
+      Complex* const plane = planes + i * padded_plane_;
       if (period_[2] > 1) along_z_.backward(plane);
       if (period_[1] > 1) along_y_.backward(plane);
-      for_each_row(k, c, plane, [](Complex const* row, Complex* to, std::int64_t count) {
+    }
+    for (std::size_t c = 0; c < 3; ++c)
+      for_each_row(k, c, planes, [](Complex const* row, Complex* to, std::int64_t count) {
         std::copy_n(row, count, to);
       });
-    }
-  }
-
-  void multiply(std::int64_t k, Complex* planes) const {
-    for (int z = 0; z < period_[2]; ++z) {
-      bool const beyond = z >= octant_[2];
-      Real const* const kernel = kernel_.data() + std::size_t(k) * 6 * octant_plane() +
-                                 std::size_t(beyond ? period_[2] - z : z) * std::size_t(octant_[1]);
-      Complex* const row = planes + z * row_;
-      Real const sign = beyond ? -1 : 1;
-      multiply_row<1>(kernel, sign, row, 0, octant_[1]);
-      multiply_row<-1>(kernel, sign, row, octant_[1], period_[1]);
-    }
-  }
-  /// `Sign`: of y; `sign_of_z`: -1 where the distance's mirror image stands for it.
-  template <int Sign>
-  void multiply_row(Real const* kernel, Real sign_of_z, Complex* row, int begin, int end) const {
-    std::size_t const next = octant_plane();
-    Real const *const xx = kernel, *const yy = xx + next, *const zz = yy + next,
-                      *const xy = zz + next, *const xz = xy + next, *const yz = xz + next;
-    Complex *const mx = row, *const my = row + padded_plane_, *const mz = my + padded_plane_;
-    Real const sign_yz = Sign * sign_of_z;
-    for (int y = begin; y < end; ++y) {
-      int const i = Sign > 0 ? y : period_[1] - y;
-      Real const n_xy = Sign * xy[i], n_xz = sign_of_z * xz[i], n_yz = sign_yz * yz[i];
-      Complex const x = mx[y], of_y = my[y], z = mz[y];
-      mx[y] = xx[i] * x + n_xy * of_y + n_xz * z;
-      my[y] = n_xy * x + yy[i] * of_y + n_yz * z;
-      mz[y] = n_xz * x + n_yz * of_y + zz[i] * z;
-    }
   }
 
   Parts parts_;
   std::vector<RowsOfPart> rows_of_parts_;
   RowsOfPart own_;
-  std::array<int, 3> n_, period_, octant_;
-  int rows_at_once_;
-  std::ptrdiff_t row_;  // a plane can have more numbers than an int
+  std::array<int, 3> n_, period_;  // in cells
+  std::int64_t sites_;             // per cell
+  int waves_, rows_at_once_;
+  std::ptrdiff_t row_;  // a plane can have more numbers than an int holds
   std::size_t padded_plane_;
   RowTransforms<Real> row_transforms_;
   ComplexTransforms<Real> along_y_, along_z_;
   Workers<Real> row_workers_;
   SpectrumOfParts<Complex> spectrum_;  // wave number along x, component, z, y
-  Workers<Complex> plane_workers_;
-  Kokkos::View<Real*, Kokkos::HostSpace> kernel_;  // wave number, component, z, y of octants
+  Kernel kernel_;
+  Workers<Complex> plane_workers_;  // site of a cell, component, z, y
 };
 
 }  // namespace cayspin::inline v0_1::detail

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <string>
 
-// Transforms of a demagnetising field by cuFFT: the same numbers in the same places as those of
-// fftw.hpp, in the memory of a device and in the order of an execution space instance.
+// Transforms of a demagnetising field by cuFFT, with the data layout of fftw.hpp, in device memory
+// and in the order of an execution space instance.
 namespace cayspin::inline v0_1::detail {
 
 template <class Real>
@@ -43,13 +43,13 @@ inline void require_cufft(cufftResult result) {
 
 class CufftPlan {
  public:
-  /// Between the numbers of a transform, and from one transform to the next.
+  /// Strides between the numbers of a transform, and from one transform to the next.
   struct Places {
     int stride, distance;
   };
 
   CufftPlan(cufftType type, int length, int count, Places in, Places out) {
-    // Any `embed` but none makes cuFFT heed the strides, and along one axis it is not looked at.
+    // cuFFT uses the strides only if `embed` is given; along one axis its value is ignored.
     int embed = length;
     cufftHandle plan{};
     require_cufft(cufftPlanMany(&plan, 1, &length, &embed, in.stride, in.distance, &embed,
@@ -72,7 +72,7 @@ class CufftPlan {
   std::unique_ptr<cufftHandle const, Destroy> plan_;
 };
 
-/// Complex transforms in place, `count` of them, `distance` from one to the next. Unscaled.
+/// Complex transforms in place: `count` of them, `distance` apart. Unscaled.
 template <class Real>
 class CufftComplexTransforms {
   using Functions = Cufft<Real>;
@@ -98,7 +98,7 @@ class CufftComplexTransforms {
 };
 
 /// Transforms of `count` rows of real numbers, row after row, to and from wave numbers 0 .. length
-/// / 2 of each row, those of one wave number side by side. Unscaled.
+/// / 2. Values of one wave number are adjacent. Unscaled.
 template <class Real>
 class CufftRowTransforms {
   using Functions = Cufft<Real>;

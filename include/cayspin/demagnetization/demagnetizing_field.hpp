@@ -4,6 +4,7 @@
 #include <cayspin/demagnetization/convolution.hpp>
 #include <cayspin/demagnetization/device_convolution.hpp>
 #include <cayspin/demagnetization/interactions.hpp>
+#include <cayspin/demagnetization/kernel_of_cells.hpp>
 #include <cayspin/lattice.hpp>
 #include <cayspin/spin_field.hpp>
 
@@ -13,44 +14,47 @@
 
 namespace cayspin::inline v0_1 {
 
-/// The demagnetising field of a lattice of cells, each uniformly magnetized and as large as the
-/// lattice's spacings: H_i = -strength sum_j N_ij m_j, by FFTs. A solver for HostField, which Dear
-/// can take: E = -m.H/2. An axis with images is periodic: a cell sees the nearest image of another
-/// one and `periodic_images` more on both sides of it, whatever the lattice's boundary says to its
-/// other terms. Real and MemorySpace: of the spins; DemagnetizingField(spins) takes both from them.
-/// On CUDA the transforms are cuFFT's; elsewhere FFTW's, on the host. Copies share their work
-/// memory; one at a time can be evaluated. On a part of a lattice (mpi::Domain) the host's is the
-/// field of all parts, with the bits of one: all make it and evaluate it together. Needs the target
+/// The demagnetising field of a lattice of uniformly magnetized cells, each as large as the
+/// lattice's spacings: H_i = -strength sum_j N_ij m_j, by FFTs. A solver for HostField, which
+/// SlowField can hold: E = -m.H/2.
+///
+/// An axis with images is periodic: a cell sees the nearest image of another cell and
+/// `periodic_images` more on both sides of it, whatever boundary the lattice has for other terms.
+///
+/// Real and MemorySpace are those of the spins; DemagnetizingField(spins) deduces both. On CUDA the
+/// transforms use cuFFT, elsewhere FFTW on the host. Copies share their work memory; evaluate one
+/// at a time. On a part of a lattice (mpi::Domain, host only) it is the field of all parts, with
+/// the bits of a single one: all parts construct and evaluate it together. Needs the target
 /// cayspin::fftw.
 template <class Real, class MemorySpace = Kokkos::HostSpace>
 class DemagnetizingField {
   static constexpr bool on_host = std::is_same_v<MemorySpace, Kokkos::HostSpace>;
   using Convolution =
-      std::conditional_t<on_host, detail::Convolution<Real>,
+      std::conditional_t<on_host, detail::Convolution<Real, detail::KernelOfCells<Real>>,
                          detail::DeviceConvolution<Real, typename MemorySpace::execution_space>>;
 
  public:
   static constexpr int degree = 2;
 
-  /// Throws std::invalid_argument for a crystal, edges of a cell that differ by more than 1e9 : 1,
-  /// a strength that is not finite, a negative number of images, infinitely_many_images along three
-  /// axes, and on a device for a part of a lattice.
+  /// Throws std::invalid_argument for a crystal, cell edges with a ratio above 1e9, a non-finite
+  /// strength, a negative number of images, infinitely_many_images along three axes, and on a
+  /// device for a part of a lattice.
   explicit DemagnetizingField(Lattice const& lattice, DemagnetizationOptions const& options = {})
       : lattice_(lattice),
         convolution_(std::make_shared<Convolution const>(
             lattice, detail::InteractionsOfCells(lattice, options))) {}
-  /// For spins like these: their lattice, precision and memory space.
+  /// Uses the lattice, precision and memory space of the spins `like`.
   explicit DemagnetizingField(SpinField<Real, MemorySpace> const& like,
                               DemagnetizationOptions const& options = {})
       : DemagnetizingField(like.lattice(), options) {}
 
-  /// Of such a field, on a part that part's: the spectrum and the interactions.
+  /// Returns the bytes of the spectrum and the interactions; on a part, those of that part.
   static std::int64_t work_bytes(Lattice const& lattice,
                                  DemagnetizationOptions const& options = {}) {
     return Convolution::work_bytes(lattice, {lattice, options});
   }
 
-  /// `field`: H of the spins. Throws std::invalid_argument for another lattice.
+  /// Writes H of the spins into `field`. Throws std::invalid_argument for another lattice.
   template <class HostSpins>
     requires on_host
   void operator()(HostSpins const& spins, HostSpins const& field, double /*t*/) const {
@@ -59,7 +63,7 @@ class DemagnetizingField {
     require_lattice("cayspin::DemagnetizingField", lattice_, spins.lattice());
     (*convolution_)(spins, field);
   }
-  /// The same in the memory of a device.
+  /// Writes H into `field` in device memory.
   template <class Exec, class Spins>
     requires(!on_host)
   void operator()(Exec const& exec, Spins const& spins, Spins const& field, double /*t*/) const {

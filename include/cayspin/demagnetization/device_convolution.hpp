@@ -16,10 +16,11 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// How a DeviceConvolution lays out its numbers.
+/// Memory layout of a DeviceConvolution.
 struct DeviceSpectrum {
   std::int64_t cells[3], period[3], octant[3];
-  std::int64_t waves;  // so many wave numbers along x meet the interactions at once
+  std::int64_t
+      waves;  // number of wave numbers along x that are multiplied by the interactions at once
 
   std::int64_t rows() const { return cells[1] * cells[2]; }
   std::int64_t numbers() const { return 3 * rows() * period[0]; }
@@ -29,7 +30,7 @@ struct DeviceSpectrum {
   std::int64_t octant_plane() const { return octant[1] * octant[2]; }
 };
 
-/// Component, row, x: the rows of spins, and zeros up to a period.
+/// Output order component, row, x: the rows of spins, padded with zeros up to a period.
 template <class Real>
 struct PadRows {
   DeviceSpectrum at;
@@ -46,7 +47,7 @@ struct PadRows {
   }
 };
 
-/// The rows of a field from those of PadRows.
+/// Functor that copies the rows of a field back from the layout of PadRows.
 template <class Real>
 struct TakeRows {
   DeviceSpectrum at;
@@ -62,12 +63,12 @@ struct TakeRows {
   }
 };
 
-/// z, line, y: from the spectrum, whose order is line, z, y; a line has a wave number along x and a
-/// component. Zeros up to the periods.
+/// Output order z, line, y, from the spectrum with the order line, z, y; a line is a wave number
+/// along x and a component. Padded with zeros up to the periods.
 template <class Real>
 struct PadPlanes {
   DeviceSpectrum at;
-  Kokkos::complex<Real> const* spectrum;  // from the first line on
+  Kokkos::complex<Real> const* spectrum;  // starts at the first line
   std::int64_t lines, all_lines;
   Kokkos::complex<Real>* planes;
 
@@ -80,7 +81,7 @@ struct PadPlanes {
   }
 };
 
-/// The way back.
+/// Functor that copies planes back into the spectrum.
 template <class Real>
 struct CutPlanes {
   DeviceSpectrum at;
@@ -95,12 +96,13 @@ struct CutPlanes {
   }
 };
 
-/// The interactions times the spectrum of the spins; wave number by wave number. Of each axis the
-/// kernel knows the waves up to half a period, and the parity of the others.
+/// Functor that multiplies the spectrum of the spins by the interactions, wave number by wave
+/// number. The kernel stores wave numbers up to half a period of each axis; the others follow by
+/// parity.
 template <class Real>
 struct MultiplyPlanes {
   DeviceSpectrum at;
-  Real const* kernel;  // from the first wave number along x on
+  Real const* kernel;  // starts at the first wave number along x
   std::int64_t waves;
   Kokkos::complex<Real>* planes;
 
@@ -124,9 +126,9 @@ struct MultiplyPlanes {
   }
 };
 
-/// The field of interactions between cells in the memory of a device. Rows along x are transformed
-/// by themselves; then some of their wave numbers at a time go along y and z, meet the interactions
-/// and come back, in planes that are padded there alone.
+/// The field of interactions between cells in device memory. Rows along x are transformed first.
+/// Then some wave numbers at a time are transformed along y and z, multiplied by the interactions
+/// and transformed back, in planes that are the only padded ones.
 template <class Real, class Exec>
 class DeviceConvolution {
   using Complex = Kokkos::complex<Real>;
@@ -137,7 +139,7 @@ class DeviceConvolution {
                 "Kokkos::HostSpace, in a HostField, goes with any.");
 
  public:
-  /// Planes of some MiB stay in the second cache of a large device.
+  /// Planes of a few MiB stay in the second-level cache of a large device.
   DeviceConvolution(Lattice const& lattice, InteractionsOfCells const& interactions,
                     std::int64_t bytes_at_once = 32 << 20)
       : at_(places(interactions, bytes_at_once)),
@@ -157,7 +159,7 @@ class DeviceConvolution {
     Kokkos::deep_copy(kernel_, kernel);
   }
 
-  /// Of all that is kept, less what the transforms take for themselves, and planes.
+  /// Returns all bytes kept, without the planes and the work memory of the transforms.
   static std::int64_t work_bytes(Lattice const&, InteractionsOfCells const& interactions) {
     auto const at = places(interactions, 0);
     return (at.numbers() + 2 * at.spectrum() + static_cast<std::int64_t>(kernel_size(at))) *

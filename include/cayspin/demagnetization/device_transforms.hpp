@@ -8,10 +8,10 @@
 #include <cayspin/demagnetization/cufft.hpp>
 #endif
 
-// Who transforms the numbers of an execution space: transforms with the same members.
+// Selects the FFT library of an execution space. The transforms of each have equal members.
 namespace cayspin::inline v0_1::detail {
 
-/// FFTW in a host space, which lets tests run what is written for devices; none elsewhere.
+/// FFTW in a host space, so that tests can run the device code there; none elsewhere.
 template <class Exec>
 struct DeviceTransforms {
   static constexpr bool exist = is_synchronous<Exec>;

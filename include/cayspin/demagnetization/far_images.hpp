@@ -14,15 +14,14 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// The sum of the tensors between a cell and infinitely many images of another one, along one or
-/// two periodic axes, without the nearest of these. Images further than 16 periods are taken as
-/// dipoles along lines, and lines as sheets, whose fields are integrals. Differences over a period,
-/// up to the sixth, turn the integrals into sums over images, and the dipoles into cells. The error
-/// is below 1e-10 of the trace of a cell.
+/// The sum of tensors between a cell and infinitely many images of another, along one or two
+/// periodic axes, without the nearest images. Images beyond 16 periods are replaced by lines of
+/// dipoles, and lines by sheets, whose fields are integrals. Corrections by differences over a
+/// period, up to the sixth, turn the integrals into sums over images and the dipoles into cells.
+/// The error is below 1e-10 of the trace of a cell.
 class FarImages {
  public:
-  /// `period`: of the periodic axes, and 0 along the others. `nearest`: images on each side that
-  /// are left out.
+  /// `period`: 0 along non-periodic axes. `nearest`: images on each side to leave out.
   FarImages(Lengths const& cell, Lengths const& period, std::array<int, 3> const& nearest)
       : cell_(cell), period_(period), nearest_(nearest) {
     std::vector<std::size_t> periodic;
@@ -69,7 +68,7 @@ class FarImages {
   double beyond(std::size_t axis) const { return (images_[axis] + 0.5) * period_[axis]; }
   std::size_t normal() const { return 3 - line_ - *sheet_; }
 
-  /// With d^2 the second difference: asinh(d/2) / (d/2), which makes a sum of an integral, times
+  /// With d^2 the second difference: asinh(d/2) / (d/2), which turns an integral into a sum, times
   /// the mean over both cells.
   WeightedShifts over_periods(std::size_t axis) const {
     double const edge = cell_[axis] / period_[axis], q = edge * edge;
@@ -88,8 +87,8 @@ class FarImages {
     return shifts;
   }
 
-  /// The mean over both cells: over pieces, each by a rule of three points that is exact to the
-  /// fifth order. `distance`: of the images.
+  /// The mean over both cells, by pieces with a three-point rule of fifth order. `distance`: to the
+  /// images.
   WeightedShifts over_an_edge(std::size_t axis, double distance) const {
     auto const pieces = static_cast<int>(std::ceil(24 * cell_[axis] / distance));
     double const piece = cell_[axis] / pieces, point = std::sqrt(0.4) * piece;
@@ -152,7 +151,7 @@ class FarImages {
     }
   }
 
-  /// Adds the sheets that the lines of images form farther away.
+  /// Adds the sheets of the lines farther away.
   void add_sheet(Entries& e, double weight, double y, double z) const {
     std::size_t const q = *sheet_, n = normal();
     for (int const side : {-1, 1}) {
@@ -165,7 +164,7 @@ class FarImages {
 
   Lengths cell_, period_;
   std::array<int, 3> nearest_, images_{};
-  std::size_t line_ = 0;              // the axis of the shorter period
+  std::size_t line_ = 0;              // axis of the shorter period
   std::optional<std::size_t> sheet_;  // the other periodic axis
   std::array<WeightedShifts, 3> of_lines_;
   std::array<WeightedShifts, 2> of_sheets_;

@@ -16,8 +16,8 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// The sums over far images for all distances of a lattice. They are smooth along the periodic
-/// axes: there they are known at ten points and interpolated between these, to 1e-12 of the trace.
+/// Sums over far images for all distances of a lattice. They vary smoothly along the periodic axes:
+/// they are computed at ten points there and interpolated to 1e-12 of the trace.
 class FarImagesTable {
  public:
   /// Distances along an axis.
@@ -25,7 +25,7 @@ class FarImagesTable {
     int distances = 1;
     double step = 1;
     bool is_smooth = false;
-    std::vector<double> images = {0};  ///< places of images that are summed over
+    std::vector<double> images = {0};  ///< shifts by images that are summed explicitly
   };
 
   FarImagesTable(FarImages const& far, std::array<Axis, 3> const& axes) {

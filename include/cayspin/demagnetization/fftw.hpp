@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <type_traits>
 
-// Transforms of a demagnetising field by FFTW, in both precisions. Plans come from FFTW_ESTIMATE,
-// which takes the same one each time, and with it the same bits; it looks at no number. Arrays
-// begin on a cache line, as Kokkos allocates them.
+// Transforms of a demagnetising field by FFTW, in both precisions. Plans use FFTW_ESTIMATE, which
+// does not measure: it chooses the same plan each time, and so the same bits. Arrays are aligned to
+// cache lines, as Kokkos allocates them.
 namespace cayspin::inline v0_1::detail {
 
 template <class Real>
@@ -42,7 +42,7 @@ struct Fftw<float> {
   static constexpr auto run_backward = fftwf_execute_dft_c2r;
 };
 
-/// FFTW makes and destroys one plan at a time.
+/// Mutex for FFTW's planner, which is not thread-safe.
 inline std::mutex fftw_planner;
 
 template <class Real>
@@ -51,7 +51,7 @@ class FftwPlan {
   using Plan = typename Functions::Plan;
 
  public:
-  /// make(): of FFTW.
+  /// make(): calls an FFTW planner.
   template <class Make>
   explicit FftwPlan(Make const& make) {
     std::scoped_lock const alone(fftw_planner);
@@ -79,10 +79,9 @@ auto as_std(Kokkos::complex<Real>* data) {
   return reinterpret_cast<std::complex<Real>*>(data);
 }
 
-// Members that take an execution space are those of cufft.hpp: host spaces run with them what is
-// written for devices.
+// Members that take an execution space match cufft.hpp, so that host spaces can run device code.
 
-/// Complex transforms in place, `count` of them, `distance` from one to the next. Unscaled.
+/// Complex transforms in place: `count` of them, `distance` apart. Unscaled.
 template <class Real>
 class ComplexTransforms {
  public:
@@ -118,7 +117,7 @@ class ComplexTransforms {
 };
 
 /// Transforms of `count` rows of real numbers, row after row, to and from wave numbers 0 .. length
-/// / 2 of each row, those of one wave number side by side. Unscaled.
+/// / 2. Values of one wave number are adjacent. Unscaled.
 template <class Real>
 class RowTransforms {
  public:

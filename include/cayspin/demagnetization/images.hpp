@@ -5,10 +5,10 @@
 
 namespace cayspin::inline v0_1 {
 
-/// A number of periodic images: all of them, along one or two axes.
+/// Value of `periodic_images` that stands for infinitely many.
 inline constexpr int infinitely_many_images = std::numeric_limits<int>::max();
 
-/// The largest ratio of two periods that such images are summed for.
+/// Largest ratio of two periods for which infinitely many images are summed.
 inline constexpr double largest_period_ratio = 1e4;
 
 }  // namespace cayspin::inline v0_1

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/demagnetization/far_images_table.hpp>
+#include <cayspin/demagnetization/good_length.hpp>
 #include <cayspin/demagnetization/images.hpp>
 #include <cayspin/demagnetization/tensor.hpp>
 #include <cayspin/detail/execution.hpp>
@@ -22,20 +23,20 @@ namespace cayspin::inline v0_1 {
 
 struct DemagnetizationOptions {
   double strength = 1;
-  /// More images on each side than the nearest one, along the axes that have any. Along one or two
-  /// axes they may be infinitely_many_images: not along three, where the sum depends on the shape
-  /// of the whole.
+  /// Images on each side beyond the nearest one, along periodic axes. infinitely_many_images is
+  /// allowed along one or two axes, not along three, where the sum depends on the shape of the
+  /// body.
   std::array<int, 3> periodic_images{};
   TensorOfCells* tensor = demagnetizing_tensor;
-  /// Is given what computes the tensors of a whole lattice, and returns what that returns: for a
-  /// cache. None: they are computed.
+  /// Cache for the tensors of a whole lattice: called with the function that computes them, and
+  /// returns its result or a stored one. Empty: the tensors are computed.
   std::function<DemagnetizingTensors(std::function<DemagnetizingTensors()> const& compute)> kept{};
 };
 
 namespace detail {
 
-/// -strength N between the cells of a lattice, of the whole one where it is given by a part, on the
-/// octant of distances that are not negative.
+/// Interactions -strength N between the cells of a lattice, on the octant of non-negative
+/// distances; of the whole lattice, even if a part is given.
 class InteractionsOfCells {
  public:
   InteractionsOfCells(Lattice const& lattice, DemagnetizationOptions const& options)
@@ -62,15 +63,16 @@ class InteractionsOfCells {
   }
 
   std::array<int, 3> const& cells() const { return cells_; }
-  /// Of the convolution, which is cyclic: room for all distances, or the lattice itself.
+  /// Returns the extents of the cyclic convolution: room for all distances, or the lattice itself.
   std::array<int, 3> const& period() const { return period_; }
   /// Distances 0 .. octant - 1 along each axis stand for all.
   int octant(std::size_t axis) const { return period_[axis] / 2 + 1; }
 
-  /// Lines along x in the octant.
+  /// Returns the number of lines along x in the octant.
   std::int64_t lines() const { return std::int64_t{octant(1)} * octant(2); }
 
-  /// Of all distances of some of these lines, x first, then y; those that no two cells have are 0.
+  /// Returns tensors for all distances of `count` lines, x fastest, then y; 0 for distances that no
+  /// two cells have.
   DemagnetizingTensors of_lines(std::int64_t first, std::int64_t count) const {
     if (options_.kept && count == lines())
       return options_.kept([&] { return computed(first, count); });
@@ -82,7 +84,7 @@ class InteractionsOfCells {
     DemagnetizingTensors found(static_cast<std::size_t>(octant(0)) *
                                static_cast<std::size_t>(lines));
     auto const far = far_images();
-    // Near ones take longest: dealt out one by one.
+    // Near cells take longest, so they are dealt out one by one.
     auto const count = static_cast<std::int64_t>(found.size());
     Kokkos::parallel_for(
         "cayspin::DemagnetizingField: tensors",
@@ -91,16 +93,6 @@ class InteractionsOfCells {
         Find{*this, first, far ? &*far : nullptr, found.data()});
     Kokkos::DefaultHostExecutionSpace().fence("cayspin::DemagnetizingField: tensors");
     return found;
-  }
-
-  /// With a number of factors 2, 3, 5 and 7, for which FFTs are fast.
-  static int good_length(int least) {
-    for (int length = least;; ++length) {
-      int rest = length;
-      for (int const factor : {2, 3, 5, 7})
-        while (rest % factor == 0) rest /= factor;
-      if (rest == 1) return length;
-    }
   }
 
   struct Find {
@@ -121,8 +113,8 @@ class InteractionsOfCells {
   bool is_infinite(std::size_t axis) const { return images(axis) == infinitely_many_images; }
   double period_length(std::size_t axis) const { return cells_[axis] * cell_[axis]; }
 
-  /// For each distance, sums the images within two of the longer periods. far_images.hpp has the
-  /// infinitely many others.
+  /// Chooses the images to sum for each distance: those within two of the longer periods.
+  /// far_images.hpp adds the infinitely many others.
   void choose_nearest() {
     nearest_ = options_.periodic_images;
     std::vector<double> periods;
@@ -145,7 +137,7 @@ class InteractionsOfCells {
         nearest_[axis] = static_cast<int>(std::ceil(2 * longest / period_length(axis)));
   }
 
-  /// None where no axis has infinitely many.
+  /// Returns the far images, or nothing if no axis has infinitely many.
   std::optional<FarImagesTable> far_images() const {
     std::array<double, 3> period{};
     std::array<FarImagesTable::Axis, 3> axes;

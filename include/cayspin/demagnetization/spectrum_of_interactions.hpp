@@ -14,9 +14,9 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// The transform of the interactions, which is real: each axis of a component is even or odd, and
-/// of the odd ones there are two or none. Of an octant of wave numbers, and along x of this part's
-/// share of them.
+/// The transform of the interactions, which is real: each component is even or odd along each axis,
+/// and odd along two axes or none. It holds an octant of wave numbers, along x only the share of
+/// this part.
 class SpectrumOfInteractions {
  public:
   SpectrumOfInteractions(InteractionsOfCells const& interactions, Parts const& parts)
@@ -29,7 +29,7 @@ class SpectrumOfInteractions {
         along_x_("cayspin::DemagnetizingField: spectrum of interactions", parts, octant_[0],
                  lines_) {}
 
-  /// Wave number along x, along z, along y.
+  /// Returns values in the order wave number along x, along z, along y.
   std::vector<double> operator()(double DemagnetizingTensor::*component,
                                  std::array<bool, 3> const& is_odd) const {
     along(
@@ -68,7 +68,7 @@ class SpectrumOfInteractions {
     return of_parts;
   }
 
-  /// number(line, i), and what it becomes: result(line, i, value).
+  /// Transforms number(line, i) and passes the values on: result(line, i, value).
   template <class Number, class Result>
   void along(std::size_t axis, bool is_odd, std::int64_t lines, Number const& number,
              Result const& result) const {
@@ -85,23 +85,23 @@ class SpectrumOfInteractions {
         whole[i] = value;
         if (i > 0) whole[length - i] = is_odd ? -value : value;
       }
-      // Half a period away there are two nearest images, whose odd parts cancel: into the imaginary
-      // part goes neither that number nor the first.
+      // Half a period away there are two nearest images, whose odd parts cancel. So the imaginary
+      // part leaves out that number and the first.
       transforms.forward(whole, waves);
       for (int i = 0; i < count; ++i) result(line, i, is_odd ? waves[i].imag() : waves[i].real());
     });
   }
 
   std::array<int, 3> octant_, period_;
-  std::vector<std::int64_t> lines_;  // of each part
+  std::vector<std::int64_t> lines_;  // on each part
   std::int64_t own_lines_;
   std::vector<DemagnetizingTensor> tensors_;
   SpectrumOfParts<double> along_x_;
 };
 
-/// Writes to `kernel`, in host memory, for this part's wave numbers along x, then the components
-/// xx, yy, zz, xy, xz, yz, then the wave numbers of the octant along z and y: the transforms of the
-/// interactions, divided by the number of cells in a period.
+/// Writes the transformed interactions, divided by the number of cells in a period, to `kernel` in
+/// host memory. Order: this part's wave numbers along x, components xx, yy, zz, xy, xz, yz, wave
+/// numbers of the octant along z and y.
 template <class Kernel>
 void transform_interactions(InteractionsOfCells const& interactions, Parts const& parts,
                             Kernel const& kernel) {

@@ -16,7 +16,7 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// The parts of a lattice, of which one that is whole is the only one.
+/// The parts of a lattice; a whole lattice is a single part.
 class Parts {
  public:
   explicit Parts(Lattice const& lattice) : part_(lattice.part) {}
@@ -24,7 +24,7 @@ class Parts {
   std::size_t count() const { return part_ == nullptr ? 1 : part_->parts(); }
   std::size_t index() const { return part_ == nullptr ? 0 : part_->index(); }
 
-  /// Where the share of part number `of` begins, when all have equal ones.
+  /// Returns the start of the share of part `of` when all parts have equal shares.
   std::int64_t begin_of_share(std::int64_t total, std::size_t of) const {
     return total * static_cast<std::int64_t>(of) / static_cast<std::int64_t>(count());
   }
@@ -32,7 +32,7 @@ class Parts {
     return begin_of_share(total, of + 1) - begin_of_share(total, of);
   }
 
-  /// Blocks of numbers that begin at these places, one for each part, and their ends.
+  /// Blocks of numbers, one for each part: block i is begins[i] .. begins[i + 1].
   template <class Number>
   struct Blocks {
     Number* data;
@@ -59,14 +59,14 @@ class Parts {
   Part const* part_;
 };
 
-/// A part's rows, of which those along x are whole, in planes: their place among all.
+/// A part's rows in planes, complete along x, and their place in the whole lattice.
 struct RowsOfPart {
   std::int64_t y, z, ny, nz;
 
   std::int64_t count() const { return ny * nz; }
 };
 
-/// Without ghosts, of this part.
+/// Returns the rows of this part, without ghosts.
 inline RowsOfPart own_rows(Lattice const& lattice) {
   RowsOfPart rows{0, 0, lattice.own(1), lattice.own(2)};
   if (lattice.part == nullptr) return rows;
@@ -76,7 +76,7 @@ inline RowsOfPart own_rows(Lattice const& lattice) {
   return rows;
 }
 
-/// Those of each part. All parts call it.
+/// Returns the rows of each part. Collective.
 inline std::vector<RowsOfPart> rows_of_parts(Lattice const& lattice) {
   Parts const parts(lattice);
   std::vector<RowsOfPart> own(parts.count(), own_rows(lattice)), all = own;
@@ -86,12 +86,12 @@ inline std::vector<RowsOfPart> rows_of_parts(Lattice const& lattice) {
   return all;
 }
 
-/// Lines of wave numbers on the parts of a lattice. A part has all wave numbers of its own lines,
-/// and a share of the wave numbers of all parts' lines. On one part these are the same memory.
+/// Lines of wave numbers on the parts of a lattice. A part holds all wave numbers of its own lines,
+/// and a share of the wave numbers of all lines. On a single part these are the same memory.
 template <class Number>
 class SpectrumOfParts {
  public:
-  /// `lines`: of each part.
+  /// `lines`: one count for each part.
   SpectrumOfParts(std::string const& label, Parts const& parts, std::int64_t waves,
                   std::vector<std::int64_t> const& lines)
       : parts_(parts),
@@ -114,23 +114,23 @@ class SpectrumOfParts {
     return waves * own_lines + parts.share(waves, parts.index()) * all_lines;
   }
 
-  /// The wave numbers of this part's share.
+  /// Returns the number of wave numbers in this part's share.
   std::int64_t own_waves() const { return static_cast<std::int64_t>(own_waves_); }
 
-  /// One wave number of all, of the part's own lines.
+  /// Returns one wave number of this part's lines; `wave` counts all of them.
   Number* of_own_lines(std::int64_t wave) const {
     return of_lines_.data() + static_cast<std::size_t>(wave) * own_lines_;
   }
-  /// One wave number of the share, counted from its first, of the lines of `part`.
+  /// Returns one wave number of this part's share, counted from its first, on the lines of `part`.
   Number* of_own_wave(std::int64_t wave, std::size_t part) const {
     return of_waves_.data() + for_waves_[part] + static_cast<std::size_t>(wave) * lines_[part];
   }
 
-  /// After all of_own_lines are written.
+  /// Sends lines to the shares. Call after all of_own_lines are written.
   void lines_to_waves() const {
     if (parts_.count() > 1) parts_.exchange<Number>(of_lines(), of_waves());
   }
-  /// After all of_own_wave are written.
+  /// Sends shares back to the lines. Call after all of_own_wave are written.
   void waves_to_lines() const {
     if (parts_.count() > 1) parts_.exchange<Number>(of_waves(), of_lines());
   }
@@ -143,7 +143,7 @@ class SpectrumOfParts {
 
   Parts parts_;
   std::size_t own_lines_, own_waves_;
-  std::vector<std::size_t> lines_;  // of each part
+  std::vector<std::size_t> lines_;  // on each part
   std::vector<std::size_t> for_lines_,
       for_waves_;               // where what goes to, or is of, each part begins
   Memory of_lines_, of_waves_;  // wave number, line; part, wave number, line

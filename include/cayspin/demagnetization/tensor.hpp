@@ -21,11 +21,11 @@ struct DemagnetizingTensor {
 
 using DemagnetizingTensors = std::vector<DemagnetizingTensor>;
 
-/// Such a tensor of a position and of the edges of a cell.
+/// A function from the position and the edges of a cell to such a tensor.
 using TensorOfCells = DemagnetizingTensor(std::array<double, 3> const& position,
                                           std::array<double, 3> const& cell);
 
-/// The largest ratio of a cell's edges that the tensor is known to be right for.
+/// Largest ratio of a cell's edges for which the tensor is tested.
 inline constexpr double largest_edge_ratio = 1e9;
 
 namespace detail {
@@ -41,17 +41,17 @@ void add(Tensor& sum, Number weight, Tensor const& a) {
 }
 
 /// Newell's functions at one point: f for the diagonal entries, g for the others. Their second
-/// differences cancel most digits, hence long double.
+/// differences cancel most digits, so they use long double.
 struct NewellFunctions {
   long double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 };
 
-/// Newell, Williams and Dunlop 1993, eqs. 27 and 32, which share their asinh and atan.
+/// Newell, Williams and Dunlop 1993, eqs. 27 and 32, which have asinh and atan terms in common.
 inline NewellFunctions newell_functions(long double x, long double y, long double z) {
   using Number = long double;
   Number const x2 = x * x, y2 = y * y, z2 = z * z, xyz = x * y * z;
   Number const r = std::sqrt(x2 + y2 + z2);
-  // 0 where the denominator is 0: there, the factors of these terms are 0.
+  // Returns 0 where the denominator is 0: the factors of these terms are 0 there.
   auto const asinh_of = [](Number a, Number b2) {
     return b2 > 0 ? std::asinh(a / std::sqrt(b2)) : 0;
   };
@@ -71,7 +71,7 @@ inline NewellFunctions newell_functions(long double x, long double y, long doubl
   };
 }
 
-/// The second difference of Newell's functions along each axis, at 27 points.
+/// Returns second differences of Newell's functions along each axis, at 27 points.
 inline DemagnetizingTensor near_demagnetizing_tensor(Lengths const& position, Lengths const& cell) {
   using Number = long double;
   NewellFunctions sum;
@@ -95,9 +95,9 @@ constexpr std::array<double, Size> factorials() {
   return result;
 }
 
-/// The second differences divided by the squares of the edges are the series
-/// sum 8 h_x^2i h_y^2j h_z^2k / ((2i+2)! (2j+2)! (2k+2)!) d_x^2i d_y^2j d_z^2k. It acts on 1/r, so
-/// d_z^2 = -(d_x^2 + d_y^2). This returns the factors of d_x^2i d_y^2j, with i + j = m, at [m][i].
+/// Factors of the Taylor series. The second differences divided by the squares of the edges are sum
+/// 8 h_x^2i h_y^2j h_z^2k / ((2i+2)! (2j+2)! (2k+2)!) d_x^2i d_y^2j d_z^2k. It acts on 1/r, so
+/// d_z^2 = -(d_x^2 + d_y^2). The factors of d_x^2i d_y^2j, with i + j = m, are returned at [m][i].
 template <std::size_t HalfOrder>
 std::array<std::array<double, HalfOrder + 1>, HalfOrder + 1> difference_series(Lengths const& h) {
   constexpr auto factorial = factorials<2 * HalfOrder + 3>();
@@ -120,7 +120,7 @@ std::array<std::array<double, HalfOrder + 1>, HalfOrder + 1> difference_series(L
   return series;
 }
 
-/// The Taylor series in edge / distance up to Order. Order 0 is the field of a dipole.
+/// Returns the Taylor series in edge / distance up to Order. Order 0 is the field of a dipole.
 template <std::size_t Order>
 DemagnetizingTensor far_demagnetizing_tensor(Lengths const& position, Lengths const& cell,
                                              double distance) {
@@ -130,9 +130,9 @@ DemagnetizingTensor far_demagnetizing_tensor(Lengths const& position, Lengths co
   Lengths const h{cell[0] / distance, cell[1] / distance, cell[2] / distance};
   auto const series = difference_series<Order / 2>(h);
 
-  // The Taylor numbers b_n = d^n (1/r) / n! at r = 1 of the multi-indices (i, degree - i, 0) in
-  // `even` and (i, degree - i - 1, 1) in `odd`, for three degrees in turn, between zeros:
-  // |n| b_n + (2 |n| - 1) sum_a x_a b_(n - e_a) + (|n| - 1) sum_a b_(n - 2 e_a) = 0.
+  // The Taylor coefficients b_n = d^n (1/r) / n! at r = 1: `even` has the multi-indices (i, degree
+  // - i, 0), `odd` (i, degree - i - 1, 1), for three consecutive degrees, between zeros: |n| b_n +
+  // (2 |n| - 1) sum_a x_a b_(n - e_a) + (|n| - 1) sum_a b_(n - 2 e_a) = 0.
   constexpr std::size_t pad = 2;
   using Numbers = std::array<double, Order + 3 + 2 * pad>;
   std::array<Numbers, 3> even{}, odd{};
@@ -171,7 +171,7 @@ inline DemagnetizingTensor divided_demagnetizing_tensor(Lengths const& position,
 inline DemagnetizingTensor slender_demagnetizing_tensor(Lengths const& position,
                                                         Lengths const& cell);
 
-/// By the cheapest of these ways that holds its digits at this distance.
+/// Returns the tensor by the cheapest method that is accurate at this distance.
 inline DemagnetizingTensor cheapest_demagnetizing_tensor(Lengths const& position,
                                                          Lengths const& cell) {
   double const edge = std::max({cell[0], cell[1], cell[2]}), distance = norm(position);
@@ -180,15 +180,16 @@ inline DemagnetizingTensor cheapest_demagnetizing_tensor(Lengths const& position
   if (distance >= 4 * edge) return far_demagnetizing_tensor<22>(position, cell, distance);
   if (edge > 1000 * std::min({cell[0], cell[1], cell[2]}))
     return slender_demagnetizing_tensor(position, cell);
-  // Second differences lose digits in proportion to the square of this. The number of pieces is
-  // bounded by the other condition.
+  // Second differences lose digits in proportion to the square of this ratio. The other condition
+  // bounds the number of pieces.
   double const reach = distance + edge;
   double const loss = (distance / cell[0]) * (reach / cell[1]) * (reach / cell[2]);
   if (loss > 6000 && 100 * distance > edge) return divided_demagnetizing_tensor(position, cell);
   return near_demagnetizing_tensor(position, cell);
 }
 
-/// The mean over pairs of pieces, one of each cell, with edges up to a fifth of the distance.
+/// Returns the mean over pairs of pieces, one of each cell, with edges up to a fifth of the
+/// distance.
 inline DemagnetizingTensor divided_demagnetizing_tensor(Lengths const& position,
                                                         Lengths const& cell) {
   std::array<int, 3> pieces{};
@@ -210,8 +211,8 @@ inline DemagnetizingTensor divided_demagnetizing_tensor(Lengths const& position,
   return sum;
 }
 
-/// The tensor of slender cells: the longest edge is halved until no edge is over 16 times the
-/// shortest. Pairs of pieces that are already far apart are summed at once, so that few remain.
+/// Returns the tensor of slender cells: the longest edge is halved until no edge exceeds 16 times
+/// the shortest. Pairs of pieces that are already far apart are summed at once, so that few remain.
 inline DemagnetizingTensor slender_demagnetizing_tensor(Lengths const& position,
                                                         Lengths const& cell) {
   using Offset = std::array<std::int64_t, 3>;  // between the pieces of a pair, in pieces
@@ -251,10 +252,10 @@ inline DemagnetizingTensor slender_demagnetizing_tensor(Lengths const& position,
 
 }  // namespace detail
 
-/// N between two rectangular cells whose centres differ by `position` and whose edges along x, y
-/// and z are `cell` (positive, in the unit of `position`). N has no unit. Its trace is 1 at
-/// position 0, and 0 where the cells do not overlap. xy is odd in x and in y, and so on: these
-/// symmetries are exact.
+/// Returns N between two rectangular cells whose centres differ by `position` and whose edges along
+/// x, y and z are `cell` (positive, in the unit of `position`). N has no unit. Its trace is 1 at
+/// position 0, and 0 where the cells do not overlap. Its symmetries are exact: xy is odd in x and
+/// in y, and so on.
 ///
 /// Below 4 longest edges, second differences of the functions of Newell, Williams and Dunlop,
 /// J. Geophys. Res. 98, 9551 (1993), eqs. 27 and 32. From there on, the Taylor series of these

@@ -6,16 +6,16 @@
 #include <cstddef>
 #include <cstdint>
 
-// Everything that differs between compilers, processors and devices has its name here, and other
-// headers ask for these names. Host spaces are in execution.hpp.
+// All differences between compilers, processors and devices are named here; other headers test
+// these names. Host spaces are in execution.hpp.
 
-// This pass of the compiler makes code for a device.
+// This compiler pass generates device code.
 #if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__) || defined(__SYCL_DEVICE_ONLY__)
 #define CAYSPIN_DETAIL_DEVICE_PASS
 #endif
 
-// The registers of a host's SIMD packs. No pass for a device sees them, because nvcc rejects host
-// SIMD types in `__host__ __device__` functions.
+// SIMD registers of the host. No device pass sees them, because nvcc rejects host SIMD types in
+// `__host__ __device__` functions.
 #if defined(CAYSPIN_DETAIL_DEVICE_PASS)
 // no pack type
 #elif defined(KOKKOS_ARCH_AVX512XEON)
@@ -31,7 +31,7 @@
 #define CAYSPIN_DETAIL_REGISTER_BYTES 16
 #endif
 
-// Intrinsics on vectors of whole numbers, which are GNU's. nvcc does not read them.
+// GNU's vector intrinsics on integers. nvcc does not parse them.
 #if defined(CAYSPIN_DETAIL_AVX512) && !defined(__CUDACC__)
 #define CAYSPIN_DETAIL_AVX512_OF_INTEGERS
 #elif defined(CAYSPIN_DETAIL_AVX2) && !defined(__CUDACC__)
@@ -43,17 +43,17 @@
 #define CAYSPIN_DETAIL_X86
 #endif
 
-// Statements of g++ and clang: inline assembly, prefetches.
+// g++ and clang extensions: inline assembly, prefetches.
 #if defined(__GNUC__) && !defined(CAYSPIN_DETAIL_DEVICE_PASS)
 #define CAYSPIN_DETAIL_GNU
 #endif
 
-// a * b + c is one instruction.
+// a * b + c is a single instruction.
 #if defined(__FMA__) || defined(__ARM_FEATURE_FMA) || defined(CAYSPIN_DETAIL_DEVICE_PASS)
 #define CAYSPIN_DETAIL_FMA
 #endif
 
-// The maximum of two packs is the second one where either is NaN.
+// The maximum of two packs returns the second one where either is NaN.
 #if defined(__AVX2__)
 #define CAYSPIN_DETAIL_MAXIMUM_IS_SECOND
 #endif
@@ -64,15 +64,15 @@
 #define CAYSPIN_DETAIL_NOINLINE
 #endif
 
-// A member without an address of its own. The device code of nvcc 13.0 takes what holds one for
-// larger than its host code does, and finds nothing in its place: there it has an address.
+// A member without an address of its own. nvcc 13.0 lays out a class with such a member differently
+// in device and host code, and device code then reads the wrong place: with CUDA it has an address.
 #if defined(KOKKOS_ENABLE_CUDA)
 #define CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS
 #else
 #define CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS [[no_unique_address]]
 #endif
 
-// In front of a loop over the cells of a row, none of which is written and read.
+// Precedes a loop over the cells of a row whose iterations are independent.
 #if defined(CAYSPIN_DETAIL_DEVICE_PASS)
 #define CAYSPIN_DETAIL_INDEPENDENT
 #elif defined(__clang__)
@@ -83,7 +83,7 @@
 #define CAYSPIN_DETAIL_INDEPENDENT
 #endif
 
-// In front of a loop that is not to be unrolled.
+// Precedes a loop that must not be unrolled.
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
 #define CAYSPIN_DETAIL_NOT_UNROLLED _Pragma("GCC unroll 1")
 #else
@@ -94,7 +94,7 @@ namespace cayspin::inline v0_1::detail {
 
 inline constexpr std::int64_t cache_line_bytes = 64, page_bytes = 4096;
 
-/// Threads of a device that share a tile of rows: a block of Kokkos on most devices.
+/// Threads of a device that share a tile of rows; on most devices the size of a Kokkos block.
 inline constexpr std::uint32_t threads_of_tile = 128;
 
 // 1 / number to at least 18 bits, where a division is slow.

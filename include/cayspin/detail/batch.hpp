@@ -9,7 +9,7 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// Several host loops over a small lattice, one after the other, `count` times.
+/// Several host loops over a small lattice, run one after another, `count` times.
 template <class... Loops>
 struct RepeatLoops {
   std::tuple<Loops...> loops;

@@ -5,7 +5,7 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// Exchanges the numbers of two fields.
+/// Swaps the memory of two fields.
 template <class Array, class Output>
 struct ExchangeNumbers {
   Array a, b;
@@ -19,12 +19,12 @@ struct ExchangeNumbers {
   }
 };
 
-/// Steps exchange the memory of the spins with that of `worker`, a stepper for example. When this
-/// ends, by an exception too, the spins are again in the memory that they had at first, in which
-/// copies of the field and arrays taken from it see them; the worker keeps what it remembers in the
-/// other one. Costs one pass if the memory has changed. Waits.
+/// Guard that restores the memory of the spins. Steps may swap it with memory of `worker`, for
+/// example a stepper. On destruction, also after an exception, the spins are in their original
+/// memory again, so that copies of the field and arrays from it see them, and the worker's own data
+/// are in the other memory. Costs one pass if the memory was swapped. Waits.
 ///
-/// `worker.visit_exchanged(visit)` calls visit(field) for the fields that may be exchanged.
+/// `worker.visit_exchanged(visit)` calls visit(field) for each field that may be swapped.
 template <class Exec, class Worker, class Spins>
 class CallersMemory {
  public:

@@ -7,9 +7,9 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// Sites of one colour of a checkerboard, as many as Value has lanes, two apart in one row: x,
-/// x + 2, ... Loads stay in the row's memory, between the neighbour before the first lane and the
-/// neighbour after the last one. They read these sites and sites of the other colour.
+/// Sites of one colour of a checkerboard, as many as Value has lanes, two apart in one row: x, x +
+/// 2, ... Loads stay between the neighbour before the first lane and the neighbour after the last
+/// one. They read these sites and sites of the other colour.
 template <class Value, bool AtEdge>
 class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
   using Base = SitesOfRow<Value, AtEdge, 2>;
@@ -23,7 +23,7 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
   /// Deleted: the lanes are two apart, so x plus the lane's number would be wrong.
   std::int32_t x() const = delete;
 
-  /// The lanes that are sites.
+  /// Returns the mask of lanes that are sites.
   KOKKOS_FORCEINLINE_FUNCTION mask_type inside() const {
     return lane_numbers<Value>() < Value(static_cast<scalar_type>(count()));
   }
@@ -42,7 +42,7 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
     return at(array.data + component * array.stride + row_.offset);
   }
 
-  /// Writes these sites and leaves the sites between them alone.
+  /// Writes these sites and leaves the sites between them unchanged.
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION void store(Vec3<Value> const& value,
                                          SiteArray<Real, 3> const& array) const {
@@ -52,7 +52,7 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
     store_every_other(value.z, to + 2 * array.stride, count());
   }
 
-  /// The same as of Site.
+  /// As Site::Place.
   struct Place {
     std::ptrdiff_t stride;
   };
@@ -94,7 +94,7 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t to_last() const {
     return row_.nx - 1 - static_cast<std::int32_t>(x_);
   }
-  /// Do whole packs stay within the row's memory?
+  /// Returns true if whole packs stay within the row's memory.
   KOKKOS_FORCEINLINE_FUNCTION bool has_room() const { return x_ + 2 * lanes <= row_.pitch; }
 
   template <class Real>

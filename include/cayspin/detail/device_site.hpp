@@ -11,12 +11,12 @@
 #include <limits>
 #include <type_traits>
 
-// How a thread of a device finds its numbers. Addresses are most of what a device kernel could
-// compute, so these are made of few 32-bit operations: one place in memory for each row of the
-// stencil, chosen without a branch at the ends, and one multiply-add for each number.
+// Addresses of the sites of a device thread. Most integer work of a device kernel is addressing, so
+// addresses take few 32-bit operations: one place in memory for each row of the stencil, chosen
+// without a branch at the ends, and one multiply-add for each number.
 namespace cayspin::inline v0_1::detail {
 
-/// Where the three components of a field begin.
+/// Pointers to the three components of a field.
 template <class Real>
 struct ComponentPointers {
   using value_type = Real;
@@ -28,12 +28,12 @@ struct ComponentPointers {
       : component{array.data, array.data + array.stride, array.data + 2 * array.stride} {}
 };
 
-/// What a launch knows of a layout. Index counts the numbers of one component.
+/// A layout as kernels see it. Index counts the numbers of one component.
 template <class Index>
 struct DeviceLayout {
   std::int32_t last[3];  // index along each axis
   Index step[3];         // to the next site along each axis
-  Index wrap[3];         // what a step past an end adds to stay inside: to the other end, or back
+  Index wrap[3];         // added by a step past an end: leads to the other end, or back
   bool periodic_x;
 
   explicit DeviceLayout(RowLayout const& layout)
@@ -44,14 +44,14 @@ struct DeviceLayout {
       wrap[axis] = layout.periodic[axis] ? step[axis] * (last[axis] + 1) : step[axis];
   }
 
-  /// Does Index reach all numbers of a component, with a plane beyond, and so many threads?
+  /// Returns true if Index can count all numbers of a component, one more plane, and all threads.
   static bool reaches(RowLayout const& layout, std::int64_t threads) {
     std::int64_t const numbers = (layout.nz + std::int64_t(1)) * layout.plane;
     return std::max(numbers, threads) <= std::numeric_limits<Index>::max();
   }
 };
 
-/// One site, for one thread of a device. The same members as Site.
+/// A site of a device thread, with the members of Site.
 template <class Value, class Index>
 class DeviceSite {
  public:
@@ -139,7 +139,7 @@ class DeviceSite {
   }
 
  private:
-  /// Where the neighbour lies; at an open end the site itself.
+  /// Returns the place of the neighbour; at an open end that of the site itself.
   template <int Axis, int Direction>
   KOKKOS_FORCEINLINE_FUNCTION Index beside() const {
     Index const step = Axis == 0 ? 1 : layout_.step[Axis];

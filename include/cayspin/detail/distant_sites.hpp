@@ -8,11 +8,10 @@
 #include <cstddef>
 #include <cstdint>
 
-// Spins some sites away, along x, y and z at once.
+// Spins at any distance along x, y and z.
 namespace cayspin::inline v0_1::detail {
 
-/// The vectors of a field, as sites see those that are not beside them. Past an open end there is
-/// the zero vector.
+/// A field as read from sites that are not adjacent. Past an open end it is the zero vector.
 template <class Real>
 struct DistantSites {
   SiteArray<Real, 3> array;
@@ -27,7 +26,7 @@ struct DistantSites {
         pitch(layout.pitch),
         plane(layout.plane) {}
 
-  /// Of sites that are all there.
+  /// Loads sites that all exist.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> inside(std::ptrdiff_t offset) const {
     return load_at<Value>(array.data + offset);
@@ -38,14 +37,15 @@ struct DistantSites {
             load<Value>(from + 2 * array.stride)};
   }
 
-  /// The first site of the row that is dy and dz away, at most the extents; null past an open end.
+  /// Returns the first site of the row at distance dy, dz (at most the extents); null past an open
+  /// end.
   KOKKOS_FORCEINLINE_FUNCTION Real const* row(std::int32_t y, std::int32_t z) const {
     y = wrapped(y, 1), z = wrapped(z, 2);
     if (y < 0 || z < 0) return nullptr;
     return array.data + z * plane + y * pitch;
   }
 
-  /// Sites x, x + 1, ... of a row, and those of its other end, at most an extent beside it.
+  /// Loads sites x, x + 1, ... of a row, wrapping at its ends; x is at most an extent outside.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> along(Real const* row, std::int32_t x) const {
     constexpr std::int32_t lanes = lanes_of<Value>;
@@ -71,8 +71,8 @@ struct DistantSites {
     return before ? i + extent[axis] : i - extent[axis];
   }
 
-  /// Of a pack with sites on both sides of an end of the row: some lanes from here, and the others
-  /// from where the row goes on. What lies past the row is read, and left out.
+  /// Loads a pack that crosses an end of the row: some lanes from here, the others from where the
+  /// row continues. Memory past the row is read and ignored.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> across_end(Real const* row, std::int32_t x) const {
     using Scalar = scalar_t<Value>;
@@ -89,7 +89,7 @@ struct DistantSites {
   KOKKOS_FORCEINLINE_FUNCTION Value lane_by_lane(Real const* row, std::int32_t x) const {
     using Scalar = scalar_t<Value>;
     auto const at = [&](std::int32_t lane) {
-      // Lanes past the end of the row are sites of no row.
+      // Lanes past the end of the row belong to no site.
       std::int32_t i = x + lane;
       i = wrapped(i < 2 * extent[0] ? i : extent[0] - 1, 0);
       return i < 0 ? Scalar(0) : static_cast<Scalar>(row[i]);

@@ -6,10 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 
-// Packs of numbers that lie two apart.
+// Packs of numbers with stride two.
 namespace cayspin::inline v0_1::detail {
 
-/// from[Odd], from[Odd + 2], ...; loads two whole packs.
+/// Returns from[Odd], from[Odd + 2], ...; loads two whole packs.
 template <int Odd, class Value, class Real>
 KOKKOS_FORCEINLINE_FUNCTION Value load_every_other(Real const* from) {
   if constexpr (std::is_same_v<scalar_t<Value>, Real>) {
@@ -41,8 +41,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value load_every_other(Real const* from) {
   return Value([from](auto lane) { return static_cast<scalar_t<Value>>(from[2 * lane() + Odd]); });
 }
 
-/// from[0], from[2], ... of the lanes whose index lies in first .. last; loads nothing else. The
-/// other lanes hold any number.
+/// Returns from[0], from[2], ... for lanes with an index in first .. last, and loads nothing else.
+/// The other lanes are unspecified.
 template <class Value, class Real>
 KOKKOS_FORCEINLINE_FUNCTION Value load_every_other_of(Real const* from, std::int32_t first,
                                                       std::int32_t last) {
@@ -71,8 +71,9 @@ KOKKOS_FORCEINLINE_FUNCTION Value load_every_other_of(Real const* from, std::int
   return load<Value>(numbers);
 }
 
-/// to[0], to[2], ... of the first `count` lanes; touches nothing else. The masked stores end with
-/// the last of these. A longer store would delay later loads of the memory after it.
+/// Writes to[0], to[2], ... from the first `count` lanes and touches nothing else. The masked
+/// stores end with the last of these, because a longer store would delay later loads of the memory
+/// after it.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION void store_every_other(Value const& value, scalar_t<Value>* to,
                                                    std::int32_t count) {

@@ -11,12 +11,12 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// A sum of doubles without round-off, rounded once when it is read: its bits do not depend on the
-/// order of the summands. A fixed-point number of 32-bit digits that overlap, as in R. Neal, "Fast
-/// exact summation using small and large superaccumulators" (2015). Sums of sums are sums of words.
+/// A sum of doubles without round-off until it is read, so that its bits do not depend on the order
+/// of the summands. A fixed-point number of overlapping 32-bit digits, as in R. Neal, "Fast exact
+/// summation using small and large superaccumulators" (2015). To add two sums, add their words.
 class ExactSum {
  public:
-  /// The digits, and then how many summands were not a number, infinity and minus infinity.
+  /// The digits, followed by counts of NaN, infinite and minus infinite summands.
   static constexpr int digits = 68, words = digits + 3;
 
   CAYSPIN_DETAIL_NOINLINE void add(double number) {
@@ -37,7 +37,7 @@ class ExactSum {
     if (--until_carry_ == 0) carry();
   }
 
-  /// Brings all digits but the last into 0 .. 2^32 - 1. So sums of 2^30 words fit a word.
+  /// Brings all digits but the last into 0 .. 2^32 - 1. Sums of up to 2^30 words then fit a word.
   void carry() {
     for (int i = 0; i + 1 < digits; ++i) {
       word_[i + 1] += word_[i] >> digit_bits;
@@ -46,7 +46,7 @@ class ExactSum {
     until_carry_ = most_between_carries;
   }
 
-  /// Adds a sum to which several threads add.
+  /// Adds a sum; several threads may do so at once.
   CAYSPIN_DETAIL_NOINLINE void add_atomically(ExactSum const& other) {
     for (int i = 0; i < words; ++i)
       if (other.word_[i] != 0) Kokkos::atomic_add(word_ + i, other.word_[i]);
@@ -55,7 +55,7 @@ class ExactSum {
   std::int64_t* data() { return word_; }
   std::int64_t const* data() const { return word_; }
 
-  /// The sum, rounded to nearest.
+  /// Returns the sum rounded to nearest.
   CAYSPIN_DETAIL_NOINLINE double rounded() {
     if (std::int64_t const* const special = word_ + digits;
         special[0] > 0 || (special[1] > 0 && special[2] > 0))
@@ -82,7 +82,8 @@ class ExactSum {
 
   std::uint64_t digit(int i) const { return i < 0 ? 0 : static_cast<std::uint64_t>(word_[i]); }
 
-  // Of a sum >= 0 after carry(): the first 64 bits, the last of which says whether more follow.
+  // Rounds a sum >= 0 after carry(): its first 64 bits, the last of which is set if any bit
+  // follows.
   double rounded_magnitude() const {
     int top = digits - 1;
     while (top > 0 && word_[top] == 0) --top;
@@ -94,7 +95,7 @@ class ExactSum {
     bool more = (third & digit_mask) != 0;
     for (int i = top - 3; i >= 0 && !more; --i) more = word_[i] != 0;
     if (more) bits |= 1;
-    constexpr int smallest = -1074;  // the exponent of the first digit's first bit
+    constexpr int smallest = -1074;  // exponent of the first bit of the first digit
     return std::ldexp(static_cast<double>(bits), smallest + (top - 1) * digit_bits - shift);
   }
 

@@ -18,10 +18,10 @@ template <class Exec>
 inline constexpr bool is_host_execution =
     std::is_same_v<typename Exec::memory_space, Kokkos::HostSpace>;
 
-/// Up to this many sites a host kernel runs on the calling thread: waking the others costs more.
+/// Host kernels of at most this many sites run on the calling thread: waking others costs more.
 inline constexpr std::int64_t calling_thread_sites = 2048;
 
-/// A host space that has finished a kernel when the launch returns.
+/// True for host spaces that finish a kernel before the launch returns.
 template <class Exec>
 inline constexpr bool is_synchronous =
 #if defined(KOKKOS_ENABLE_SERIAL)
@@ -35,20 +35,20 @@ inline constexpr bool is_synchronous =
 #endif
     false;
 
-/// Does a kernel over so many sites run on the calling thread?
+/// Returns true if a kernel over so many sites runs on the calling thread.
 template <class Exec>
 bool runs_on_calling_thread(std::int64_t sites) {
   return is_synchronous<Exec> && sites <= calling_thread_sites;
 }
 
-/// What names the kernels of the calling thread to Kokkos' tools.
+/// Reports kernels on the calling thread to Kokkos' tools.
 #if defined(KOKKOS_ENABLE_SERIAL)
 using CallingThread = Kokkos::Serial;
 #else
 using CallingThread = Kokkos::DefaultHostExecutionSpace;
 #endif
 
-/// A body by its address. So Kokkos compiles its launch code once for all kernels.
+/// A type-erased body, so that Kokkos' launch code is compiled once for all kernels.
 struct HostTask {
   void const* body;
   void (*run)(void const* body, std::int64_t task);
@@ -81,8 +81,8 @@ CAYSPIN_DETAIL_NOINLINE void run_tasks(Exec const& exec, std::string const& labe
   Kokkos::parallel_for(label, Kokkos::RangePolicy<Exec, TaskIndex>(exec, 0, count), task);
 }
 
-/// Runs body(0) .. body(count - 1) on the threads of a host space. Small kernels run on the calling
-/// thread, when the space finishes a kernel before the launch returns.
+/// Calls body(0) .. body(count - 1) on the threads of a host space. Small kernels run on the
+/// calling thread if the space finishes a kernel before the launch returns.
 template <class Exec, class Body>
 void for_each_task(Exec const& exec, std::string const& label, std::int64_t count,
                    std::int64_t sites, Body const& body) {
@@ -100,7 +100,7 @@ constexpr void check_access() {
                 "This execution space cannot reach the memory space of the field or View.");
 }
 
-/// Throws std::invalid_argument for a field that was default-constructed or moved from.
+/// Throws std::invalid_argument for a default-constructed or moved-from field.
 inline void require_sites(std::string const& where, std::int64_t sites) {
   if (sites == 0) [[unlikely]]
     throw std::invalid_argument(where + ": the field has no sites");

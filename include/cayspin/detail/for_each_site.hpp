@@ -13,7 +13,7 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// Rows are cut into pieces of this many sites, so that threads can share one long row.
+/// Rows are cut into pieces of this many sites, so that threads can share a long row.
 inline constexpr std::int32_t sites_per_task = 4096;
 
 inline std::int32_t tasks_per_row(RowLayout const& layout) {
@@ -38,8 +38,8 @@ struct RowBlock {
   std::int32_t z, y_begin, y_end, pack_begin, pack_end;
 };
 
-/// The blocks that host tasks work on: several short rows of a plane, or a part of a long row.
-/// There are enough for many threads, and each is large enough to hide the cost of its start.
+/// The blocks that host tasks work on: several short rows of a plane, or part of a long row. There
+/// are enough for many threads, and each is large enough to hide its launch cost.
 class RowBlocks {
  public:
   RowBlocks(RowLayout const& layout, std::int32_t packs, RowRange const& rows)
@@ -71,7 +71,7 @@ class RowBlocks {
   std::int32_t packs_, parts_of_row_, parts_of_plane_;
 };
 
-/// The host loop. One compiled body serves all host spaces, so their results have the same bits.
+/// Host loop. One compiled body serves all host spaces, so that they give equal bits.
 template <class Real, class Functor>
 struct RowLoop {
   Functor functor;
@@ -87,14 +87,14 @@ struct RowLoop {
   }
 };
 
-/// Row number `row` of those in a range.
+/// Returns row number `row` of a range.
 KOKKOS_FORCEINLINE_FUNCTION Row row_of(RowLayout const& layout, RowRange const& rows,
                                        std::int64_t row) {
   return {layout, static_cast<std::int32_t>(rows.y_begin + row % rows.ny()),
           static_cast<std::int32_t>(rows.z_begin + row / rows.ny())};
 }
 
-/// The device loop: body(layout, x, y, z) for the sites of a thread.
+/// Device loop: calls body(layout, x, y, z) for the sites of a thread.
 template <class Index, class Body>
 struct TileLoop {
   Body body;
@@ -107,7 +107,7 @@ struct TileLoop {
   }
 };
 
-/// Runs a TileLoop, with the shortest index that reaches all numbers.
+/// Runs a TileLoop with the shortest index type that suffices.
 template <class Exec, class Body>
 void for_each_tile(Exec const& exec, std::string const& label, RowLayout const& layout,
                    DeviceTiles const& tiles, Body const& body) {
@@ -123,7 +123,7 @@ void for_each_tile(Exec const& exec, std::string const& label, RowLayout const& 
     run(threads);
 }
 
-/// What a TileLoop does for for_each_site.
+/// Device loop body of for_each_site.
 template <class Real, class Functor>
 struct OnDeviceSite {
   Functor functor;
@@ -135,8 +135,8 @@ struct OnDeviceSite {
   }
 };
 
-/// Calls functor(site) for all sites of these rows; functor is a plain struct whose call operator
-/// is templated on the Site. The one parallel loop of the steppers.
+/// Calls functor(site) for all sites of these rows. functor is a plain struct with a call operator
+/// templated on the Site. All steppers use this parallel loop.
 template <class Real, class Exec, class Functor>
 void for_each_site(Exec const& exec, std::string const& label, RowLayout const& layout,
                    Functor const& functor, RowRange const& rows) {
@@ -149,7 +149,7 @@ void for_each_site(Exec const& exec, std::string const& label, RowLayout const& 
                   OnDeviceSite<Real, Functor>{functor});
   }
 }
-/// The same for all sites, ghosts included.
+/// Calls functor(site) for all sites, ghosts included.
 template <class Real, class Exec, class Functor>
 void for_each_site(Exec const& exec, std::string const& label, RowLayout const& layout,
                    Functor const& functor) {

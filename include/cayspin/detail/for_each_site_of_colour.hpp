@@ -9,28 +9,29 @@
 #include <string>
 #include <type_traits>
 
-// Loops over the sites of one colour of a checkerboard, those with x + y + z of a parity. The
-// functor changes these in place and reads their neighbours, which are all of the other colour.
+// Loops over the sites of one colour of a checkerboard: those where x + y + z has one parity. The
+// functor changes them in place and reads their neighbours, which all have the other colour.
 //
-// A host pack also loads the sites between its own, in its rows and in the neighbour rows. No other
-// task may write these at the same time. Rows of even y + z therefore run first, then rows of odd
-// y + z: no task writes to a neighbour row, and in its own row a pack writes its own sites only.
+// A host pack also loads the sites between its own, in its row and in the neighbour rows, so no
+// other task may write these at the same time. Therefore rows with even y + z run first, then rows
+// with odd y + z: no task writes to a neighbour row, and in its own row a pack writes only its own
+// sites.
 namespace cayspin::inline v0_1::detail {
 
-/// Rows whose y + z has a parity, or all.
+/// Rows with one parity of y + z, or all rows.
 enum class RowsOf : std::int32_t { even = 0, odd = 1, both = 2 };
 
 template <class Value, bool AtEdge>
 using PackOfColour =
     std::conditional_t<lanes_of<Value> == 1, Site<Value>, ColourSite<Value, AtEdge>>;
 
-/// Can the functor be called with two sites? Two independent sites keep the processor busy when
-/// each of them is a long chain of dependent operations.
+/// True if the functor accepts two sites. Two independent sites keep the processor busy when each
+/// is a long chain of dependent operations.
 template <class Functor>
 inline constexpr bool takes_pairs = requires { requires Functor::takes_pairs; };
 
-/// The host loop. A functor that takes pairs is called with two packs, which may lie in different
-/// rows. A single pack that is left over is passed twice.
+/// Host loop. A functor that accepts pairs is called with two packs, possibly in different rows. A
+/// single leftover pack is passed twice.
 template <class Real, class Functor>
 struct ColourRowLoop {
   Functor functor;
@@ -57,7 +58,7 @@ struct ColourRowLoop {
         else
           local(site);
       }
-      // The ends of the row, and an inner pack without a partner.
+      // Handles the ends of the row, and an inner pack without a partner.
       bool const ends_block = at_once == 2 && y + (rows == RowsOf::both ? 1 : 2) >= block.y_end;
       waiting.add(row, block.pack_begin == 0 ? x : layout.nx);
       waiting.add(row, pack < inner_end ? x + pack * pack_sites : layout.nx);
@@ -72,7 +73,8 @@ struct ColourRowLoop {
   using Edge = PackOfColour<Value, true>;
   static constexpr std::int32_t pack_sites = 2 * lanes_of<Value>;
 
-  /// Packs that share one instance of the functor: kernels are large, and compile slowly.
+  /// Packs waiting for a partner share one instance of the functor: kernels are large and slow to
+  /// compile.
   struct Waiting {
     struct Place {
       Row row;
@@ -101,11 +103,11 @@ ColourRowLoop<Real, Functor> colour_row_loop(Functor const& functor, RowLayout c
   return {functor, layout, RowBlocks(layout, (pack_count<Real>(layout) + 1) / 2, layout.own)};
 }
 
-/// What a TileLoop over half of each row does on devices.
+/// Device loop body over half of each row.
 template <class Real, class Functor>
 struct OnDeviceSiteOfColour {
   Functor functor;
-  std::int32_t parity;  // of the layout
+  std::int32_t parity;  // of the colour in the layout
 
   template <class Index>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(DeviceLayout<Index> const& layout, std::int32_t half,
@@ -115,8 +117,8 @@ struct OnDeviceSiteOfColour {
   }
 };
 
-/// Calls functor(site) for the part's own sites with x + y + z, in the whole lattice, of the parity
-/// functor.colour.
+/// Calls functor(site) for the part's own sites with x + y + z, counted in the whole lattice, of
+/// parity functor.colour.
 template <class Real, class Exec, class Functor>
 void for_each_site_of_colour(Exec const& exec, std::string const& label, RowLayout const& layout,
                              Functor const& functor) {

@@ -22,8 +22,7 @@ FieldNumbers field_numbers(Field const& field) {
           layout.nz,          !is_host_execution<typename Field::memory_space::execution_space>};
 }
 
-/// Brings the ghosts of fields up to date, after the work on `exec`; waits. Nothing for a lattice
-/// that is whole.
+/// Updates the ghosts of fields after the work on `exec`; waits. Does nothing on a whole lattice.
 template <class Exec, class... Fields>
 void update_ghosts(Exec const& exec, Lattice const& lattice, Fields const&... fields) {
   if (lattice.part == nullptr) [[likely]]
@@ -39,8 +38,8 @@ CAYSPIN_DETAIL_NOINLINE inline void require_whole(char const* who, Lattice const
     throw std::invalid_argument(std::string(who) + ": does not work on a part of a lattice");
 }
 
-/// Throws std::invalid_argument for a part of a lattice with fewer ghosts than `needed`, or any
-/// part if that is 0.
+/// Throws std::invalid_argument for a part of a lattice with fewer ghosts than `needed`, or for any
+/// part if `needed` is 0.
 CAYSPIN_DETAIL_NOINLINE inline void require_ghosts(std::string const& who, Lattice const& lattice,
                                                    int needed) {
   if (lattice.part != nullptr && needed == 0)

@@ -13,8 +13,8 @@
 #include <unistd.h>
 #endif
 
-// Loads and stores of packs, and the few things that depend on the operating system: huge pages,
-// the size of the last cache.
+// Loads and stores of packs, and what depends on the operating system: huge pages and the size of
+// the last cache.
 namespace cayspin::inline v0_1::detail {
 
 template <class Value, class Real>
@@ -34,7 +34,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value load(Real const* from) {
   }
 }
 
-// Reductions of float fields work on packs of double: half a register of floats, converted at once.
+// Reductions of float fields use packs of double: half a register of floats, converted at once.
 #if defined(CAYSPIN_DETAIL_AVX512)
 template <>
 KOKKOS_FORCEINLINE_FUNCTION Pack<double> load<Pack<double>, float>(float const* from) {
@@ -60,8 +60,8 @@ KOKKOS_FORCEINLINE_FUNCTION void store(Value const& value, scalar_t<Value>* to) 
   }
 }
 
-/// The same pointer or index, of which the compiler does not know where it comes from. It then
-/// computes an address where it is used, rather than keep more of them than there are registers.
+/// Returns its argument, hiding its origin from the compiler, which then computes an address where
+/// it is used rather than keep more addresses than there are registers.
 template <class Word>
 KOKKOS_FORCEINLINE_FUNCTION Word opaque(Word word) {
 #if defined(CAYSPIN_DETAIL_GNU) && defined(CAYSPIN_DETAIL_X86)
@@ -93,25 +93,25 @@ KOKKOS_FORCEINLINE_FUNCTION void store_streaming(Value const& value, scalar_t<Va
   store(value, to);
 }
 
-/// Asks for a cache line that will be read about a row later; any address will do.
+/// Prefetches a cache line that will be read about a row later; any address is allowed.
 KOKKOS_FORCEINLINE_FUNCTION void prefetch([[maybe_unused]] void const* address) {
 #if defined(CAYSPIN_DETAIL_GNU)
   __builtin_prefetch(address);
 #endif
 }
 
-/// Orders this thread's streaming stores before what it does next.
+/// Orders this thread's streaming stores before its later work.
 inline void streaming_fence() {
 #if defined(CAYSPIN_DETAIL_X86)
   _mm_sfence();
 #endif
 }
 
-/// A common size of the last cache, taken when the system reports none.
+/// A common size of the last cache, used when the system reports none.
 inline constexpr std::size_t usual_cache_bytes = std::size_t(32) << 20;
 
-/// Bytes of the last cache that one process can expect to keep: all of a small cache, a third of
-/// a large one, which many cores share.
+/// Returns the bytes of the last cache that one process can expect to keep: all of a small cache, a
+/// third of a large one that many cores share.
 inline std::size_t last_level_cache_bytes() {
 #if defined(__linux__) && defined(_SC_LEVEL3_CACHE_SIZE)
   static std::size_t const bytes = [] {
@@ -126,7 +126,7 @@ inline std::size_t last_level_cache_bytes() {
 #endif
 }
 
-/// Bytes that one thread can expect of the cache next to its core.
+/// Returns the bytes that one thread can expect of its core's cache.
 inline std::size_t core_cache_bytes() {
   static constexpr std::size_t usual = std::size_t(1) << 20;
 #if defined(__linux__) && defined(_SC_LEVEL2_CACHE_SIZE)
@@ -140,7 +140,8 @@ inline std::size_t core_cache_bytes() {
 #endif
 }
 
-/// Should a method that works on so many bytes store around the caches?
+/// Returns true if a method with so many bytes of working set should bypass the caches when
+/// storing.
 template <class Exec>
 bool exceeds_caches(std::size_t bytes) {
   if constexpr (std::is_same_v<typename Exec::memory_space, Kokkos::HostSpace>)
@@ -149,7 +150,7 @@ bool exceeds_caches(std::size_t bytes) {
     return false;
 }
 
-/// Asks for 2 MiB pages inside [begin, begin + bytes); call before the memory is first touched.
+/// Requests 2 MiB pages inside [begin, begin + bytes); call before the memory is first touched.
 inline void advise_huge_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t bytes) {
 #if defined(__linux__)
   constexpr std::uintptr_t page = std::uintptr_t(2) << 20;

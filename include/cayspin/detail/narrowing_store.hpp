@@ -4,7 +4,7 @@
 #include <cayspin/detail/memory.hpp>
 #include <cayspin/detail/site.hpp>
 
-// Reductions of float fields work on packs of double; what they keep is stored as float again.
+// Reductions of float fields compute in double and store float.
 namespace cayspin::inline v0_1::detail {
 
 template <class Value, class Real>
@@ -20,7 +20,7 @@ KOKKOS_FORCEINLINE_FUNCTION void store_narrowed(Value const& value, Real* to) {
   }
 }
 
-/// Three numbers per site, at the site's place in an array of the spins' layout.
+/// Stores three numbers per site in an array with the layout of the spins.
 template <class Value, class Site, class Real>
 KOKKOS_FORCEINLINE_FUNCTION void store_narrowed(Vec3<Value> const& value, Site const& site,
                                                 SiteArray<Real, 3> const& array) {

@@ -16,11 +16,11 @@
 #include <immintrin.h>
 #endif
 
-// A Pack is what one iteration of a host loop works on: a register of Kokkos' SIMD types where the
-// configured architecture has one (backend.hpp), otherwise one number. Device loops work on plain
-// numbers, and compilation passes for devices see those only. No kernel has a pack in its name or
-// arguments, so all passes agree on these. The operations here take packs and numbers: kernels are
-// written once.
+// A Pack is the value type of one iteration of a host loop: a register of Kokkos' SIMD types where
+// the configured architecture has one (backend.hpp), otherwise one number. Device loops use plain
+// numbers, and device passes of the compiler see only those. No kernel has a pack in its name or
+// arguments, so all passes agree on them. The operations here accept packs and numbers, so that
+// kernels are written once.
 namespace cayspin::inline v0_1::detail {
 
 #if defined(CAYSPIN_DETAIL_SIMD_ABI)
@@ -63,11 +63,11 @@ using scalar_t = typename ValueTraits<Value>::scalar;
 template <class Value>
 inline constexpr int lanes_of = ValueTraits<Value>::lanes;
 
-/// A site at a time, as on devices: a choice between formulas costs more than the longest of them.
+/// Selects a formula site by site, as on devices: evaluating only one is cheaper there.
 template <class Value>
 inline constexpr bool one_at_a_time = lanes_of<Value> == 1;
 
-/// a * b + c, rounded once wherever the hardware can.
+/// Returns a * b + c, rounded once wherever the hardware can.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value multiply_add(Value const& a, Value const& b, Value const& c) {
   if constexpr (std::is_floating_point_v<Value>) {
@@ -81,8 +81,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value multiply_add(Value const& a, Value const& b, V
   }
 }
 
-/// a * b - c, rounded once wherever the hardware can. (Kokkos' packs negate by subtracting from
-/// zero, which the compiler cannot fold into the product.)
+/// Returns a * b - c, rounded once wherever the hardware can. (Kokkos' packs negate by subtracting
+/// from zero, which the compiler cannot fold into the product.)
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value multiply_subtract(Value const& a, Value const& b,
                                                     Value const& c) {
@@ -106,8 +106,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value multiply_subtract(Value const& a, Value const&
   return multiply_add(a, b, Value(-c));
 }
 
-/// Conditions are made with < and == alone: in Kokkos 4.7 the > and >= of 512-bit double packs
-/// compare the wrong way round, and != is false for NaN.
+/// Conditions use only < and ==: in Kokkos 4.7 the > and >= of 512-bit double packs compare the
+/// wrong way round, and != is false for NaN.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value select(typename ValueTraits<Value>::mask const& condition,
                                          Value const& yes, Value const& no) {
@@ -131,7 +131,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value square_root(Value const& a) {
   return Kokkos::sqrt(a);
 }
 
-/// The nearest whole number, for |a| below half the largest that is exact; beyond it, a nearby one.
+/// Returns the nearest whole number, for |a| below half the largest exact one; beyond that, a
+/// nearby one.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value nearest(Value const& a) {
   Value const shift(sizeof(scalar_t<Value>) == sizeof(double)
@@ -140,7 +141,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value nearest(Value const& a) {
   return (a + shift) - shift;
 }
 
-/// `a` where it is NaN.
+/// Returns the maximum, and `a` where it is NaN.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value maximum(Value const& a, Value const& b) {
 #if defined(CAYSPIN_DETAIL_MAXIMUM_IS_SECOND)
@@ -149,7 +150,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value maximum(Value const& a, Value const& b) {
   return select<Value>(a < b, b, a);
 }
 
-/// 2^k for a whole number k within the exponents of normal numbers.
+/// Returns 2^k for a whole number k within the exponents of normal numbers.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value power_of_two(Value const& k) {
   if constexpr (std::is_floating_point_v<Value>) {
@@ -169,7 +170,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value power_of_two(Value const& k) {
   }
 }
 
-/// Does a condition hold in all lanes?
+/// Returns true if a condition holds in all lanes.
 template <class Mask>
 KOKKOS_FORCEINLINE_FUNCTION bool holds_everywhere(Mask const& mask) {
   if constexpr (std::is_same_v<Mask, bool>)
@@ -178,7 +179,7 @@ KOKKOS_FORCEINLINE_FUNCTION bool holds_everywhere(Mask const& mask) {
     return Kokkos::Experimental::all_of(mask);
 }
 
-/// 0, 1, 2, ... over the lanes.
+/// Returns 0, 1, 2, ... over the lanes.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value lane_numbers() {
   if constexpr (std::is_floating_point_v<Value>) {

@@ -9,7 +9,7 @@
 
 namespace cayspin::inline v0_1::detail {
 
-// Numbers side by side in registers, by the vectors of GCC and Clang.
+// Integers side by side in registers, by vector extensions of GCC and Clang.
 template <class Number, int Lanes>
 struct LanesOf {
   typedef Number type __attribute__((vector_size(sizeof(Number) * Lanes)));
@@ -19,7 +19,7 @@ struct LanesOf<Number, 1> {
   using type = Number;
 };
 
-/// What Philox makes of a key: two words for each round.
+/// The key schedule of Philox: two words for each round.
 struct PhiloxKeys {
   static constexpr int rounds = 10;
   std::uint64_t of_round[std::size_t{rounds}][2] = {};
@@ -38,15 +38,15 @@ struct PhiloxKeys {
 };
 
 /// Philox4x32-10 of J. Salmon, M. Moraes, R. Dror and D. Shaw, "Parallel random numbers: as easy as
-/// 1, 2, 3" (2011): four random words for each counter of four words, under a key of two. Several
-/// counters side by side. The words are the lower halves of the numbers; the upper ones are of no
-/// account.
+/// 1, 2, 3" (2011): four random words for each counter of four words, under a key of two words.
+/// Several counters side by side. The words are the lower halves of the numbers; the upper halves
+/// are ignored.
 template <int Lanes>
 struct Philox {
   using Words = typename LanesOf<std::uint64_t, Lanes>::type;
   Words word[4];
 
-  /// Counters (number + lane, draw).
+  /// Sets counters (number + lane, draw).
   KOKKOS_FORCEINLINE_FUNCTION Philox(std::uint64_t number, std::uint64_t draw) {
     Words numbers{};
     if constexpr (Lanes == 1) {
@@ -70,9 +70,9 @@ struct Philox {
   }
 
  private:
-  // The processor has an instruction for each of these that g++ does not find.
+  // g++ does not find the processor's instruction for each of these.
 
-  /// Of lower halves.
+  /// Multiplies the lower halves.
   KOKKOS_FORCEINLINE_FUNCTION static Words product(Words const& a, std::uint64_t b) {
 #if defined(CAYSPIN_DETAIL_AVX512_OF_INTEGERS)
     if constexpr (Lanes == 8)
@@ -85,7 +85,7 @@ struct Philox {
 #endif
     return (a & 0xFFFFFFFF) * b;
   }
-  /// a ^ b ^ key
+  /// Returns a ^ b ^ key.
   KOKKOS_FORCEINLINE_FUNCTION static Words mixed(Words const& a, Words const& b,
                                                  std::uint64_t key) {
 #if defined(CAYSPIN_DETAIL_AVX512_OF_INTEGERS)
@@ -98,8 +98,8 @@ struct Philox {
   }
 };
 
-/// Turns counters into random words, several generators in step: each is a long chain of dependent
-/// operations.
+/// Turns counters into random words. Several generators run in step, because each is a long chain
+/// of dependent operations.
 template <int Lanes, class... Others>
 KOKKOS_FORCEINLINE_FUNCTION void encrypt(PhiloxKeys const& keys, Philox<Lanes>& random,
                                          Others&... others) {

@@ -7,7 +7,7 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// a / b, numbers, to less than a unit in the last place, from 1 / b to 18 bits or more.
+/// Returns a / b to less than a unit in the last place, from 1 / b to 18 bits or more.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value refined_quotient(Value const& a, Value const& b, Value inverse) {
   Value const error = Kokkos::fma(-b, inverse, Value(1));
@@ -16,8 +16,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value refined_quotient(Value const& a, Value const& 
   return Kokkos::fma(Kokkos::fma(-b, quotient, a), inverse, quotient);
 }
 
-/// a / b for a normal b. nvcc makes a division a call of a function for numbers near the ends of
-/// their range, and tests for these.
+/// Returns a / b for a normal b. nvcc tests every division for operands near the ends of their
+/// range, and calls a function for those.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value quotient(Value const& a, Value const& b) {
 #if defined(CAYSPIN_DETAIL_ROUGH_INVERSE)

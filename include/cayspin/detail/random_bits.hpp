@@ -10,19 +10,19 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// 16 random bits for each of numbered places, by Philox with 64 places to eight counters. One
-/// place gets the same bits alone as in a register. Devices draw for one place at a time.
+/// 16 random bits for each numbered place, by Philox with 64 places to eight counters. A place gets
+/// equal bits whether drawn singly or in a register. Devices draw for one place at a time.
 template <bool OnHost>
 class RandomBits {
  public:
-  /// Places side by side in a register start at a multiple of their number.
+  /// Places side by side in a register start at a multiple of their count.
   static constexpr std::uint64_t most_lanes = 16;
 
   RandomBits() = default;
   RandomBits(std::uint64_t seed, std::uint64_t draw) : keys_(seed), draw_(draw) {}
 
-  /// The lower 16 bits of each number are those of `place` and of the places after it. The upper
-  /// ones are of no account.
+  /// Returns numbers whose lower 16 bits belong to `place` and the places after it. The upper bits
+  /// are unspecified.
   template <class Number, int Lanes>
   KOKKOS_FORCEINLINE_FUNCTION typename LanesOf<Number, Lanes>::type get(std::uint64_t place) const {
     if constexpr (Lanes == 1) {
@@ -35,15 +35,15 @@ class RandomBits {
   }
 
  private:
-  // Place p of 64 has half p / 32 of word p / 16 % 2 * 2 + p % 2 of counter p % 16 / 2: with two
-  // words in each number, they lie in memory as the places do.
+  // Place p of 64 uses half p / 32 of word p / 16 % 2 * 2 + p % 2 of counter p % 16 / 2. With two
+  // words in each number, words lie in memory in the order of places.
   static constexpr int lanes = host_lanes<double>, counters = 8;
   static constexpr std::uint64_t places = 64, drawn_at_once = 2 * places;
 
   KOKKOS_FORCEINLINE_FUNCTION std::uint64_t alone(std::uint64_t place) const {
     Philox<1> random(place / places * counters + place % 16 / 2, draw_);
     encrypt(keys_, random);
-    // By constant indices: an array on the stack of a device is slow.
+    // Constant indices: an array on the stack of a device is slow.
     auto const& word = random.word;
     auto const even = place % 32 < 16 ? word[0] : word[2];
     auto const odd = place % 32 < 16 ? word[1] : word[3];
@@ -83,7 +83,7 @@ class RandomBits {
     return __builtin_convertvector(found, Numbers);
   }
 
-  // Registers of a row follow one another.
+  // The last draw, cached because the registers of a row follow one another.
   struct Last {
     std::uint64_t block = ~std::uint64_t{0};
     alignas(64) std::uint32_t drawn[std::size_t{drawn_at_once}] = {};

@@ -15,13 +15,13 @@
 #include <optional>
 #include <string>
 
-// Sums and maxima over sites in double. On host spaces a row is summed in a fixed order, its ends
-// first and then the packs between them, the lanes of a pack in a fixed tree; rows are summed
-// without round-off. So the result has the same bits on every host space, for any number of threads
-// and for any division of a lattice into parts. Devices sum with twice the digits, in their order.
+// Sums and maxima over sites, in double. On host spaces a row is summed in a fixed order, first its
+// ends and then the packs between them, the lanes of a pack in a fixed tree; rows are added without
+// round-off. So the bits do not depend on the host space, the number of threads or the division of
+// a lattice into parts. Devices sum with twice the digits, in their own order.
 namespace cayspin::inline v0_1::detail {
 
-// How many of `Count` values are summed; of the others the maximum is found.
+// Number of `Count` values that are summed; for the others the maximum is found.
 struct Sum {
   template <int Count>
   static constexpr int sums = Count;
@@ -61,7 +61,7 @@ KOKKOS_FORCEINLINE_FUNCTION double combine_lanes(Value const& value) {
   }
 }
 
-/// Collects functor(site, Count values) over sites.
+/// Functor that accumulates functor(site, Count values) over sites.
 template <class Combine, int Count, class Functor, class Value>
 struct Collect {
   Functor const& functor;
@@ -82,7 +82,7 @@ struct Collect {
 };
 
 /// Calls functor(site) for the packs of part task % per_row of row task / per_row, counted without
-/// ghosts: those at the ends of the row first, then the others in order.
+/// ghosts: first those at the ends of the row, then the others in order.
 template <class Value, class Functor>
 void for_each_pack_ends_first(RowLayout const& layout, std::int64_t task, std::int32_t per_row,
                               Functor& functor) {
@@ -94,7 +94,7 @@ void for_each_pack_ends_first(RowLayout const& layout, std::int64_t task, std::i
   };
   std::int32_t const begin = cut(task % per_row), end = cut(task % per_row + 1);
   std::int32_t const last = packs - 1;
-  // Both ends share one compiled body.
+  // Both ends share one compiled loop body.
   CAYSPIN_DETAIL_NOT_UNROLLED
   for (std::int32_t pack = 0; pack <= last; pack = Kokkos::max(last, pack + 1))
     if (begin <= pack && pack < end) functor(Site<Value>(row, pack * lanes));
@@ -102,8 +102,7 @@ void for_each_pack_ends_first(RowLayout const& layout, std::int64_t task, std::i
     functor(Site<Value>(row, pack * lanes));
 }
 
-/// A sum of two doubles, whose round-off is lost after twice the digits: Knuth's sum of two numbers
-/// and its error.
+/// A sum as two doubles, with twice the digits: Knuth's sum of two numbers and its error.
 struct DoubledSum {
   double value = 0, error = 0;
 
@@ -118,11 +117,11 @@ struct DoubledSum {
   }
 };
 
-/// What several threads, and then several parts of a lattice, add to.
+/// The result that several threads, and then several parts of a lattice, add to.
 template <int Sums, int Maxima>
 struct Totals {
   std::array<ExactSum, std::size_t{Sums}> sums;
-  std::array<std::int64_t, std::size_t{Maxima}> maxima{};  // the bits of numbers >= 0, or of NaN
+  std::array<std::int64_t, std::size_t{Maxima}> maxima{};  // bits of numbers >= 0, or of NaN
 
   void add(double const* values) {
     for (ExactSum& sum : sums) sum.add(*values++);
@@ -201,12 +200,13 @@ struct ReduceBlock {
   }
 };
 
-/// The reduction on devices, by Kokkos. Its order is that of the device, and the same in each call.
+/// Functor that reduces on devices, by Kokkos, in the device's order, which does not change between
+/// calls.
 template <class Combine, int Count, class Functor>
 struct ReduceOnDevice {
   static constexpr int sums = Combine::template sums<Count>, maxima = Count - sums;
   struct value_type {
-    // Neither may have no elements.
+    // An array must have elements.
     DoubledSum sum[std::size_t{sums > 0 ? sums : 1}];
     double maximum[std::size_t{maxima > 0 ? maxima : 1}];
   };
@@ -231,12 +231,12 @@ struct ReduceOnDevice {
   }
 };
 
-/// More blocks than any host has threads.
+/// Exceeds the number of threads of any host.
 inline constexpr std::int64_t most_blocks = 1024;
 
-/// Combines what functor(site, values) puts into values[0 .. Count) over all sites, of
-/// all parts of the lattice; waits. Takes no memory from the heap on host spaces, and may run in
-/// several instances at once. Throws std::invalid_argument when there are no sites.
+/// Combines what functor(site, values) writes to values[0 .. Count) over all sites of all parts of
+/// the lattice; waits. On host spaces it allocates nothing and may run in several instances at
+/// once. Throws std::invalid_argument when there are no sites.
 template <class Combine, int Count, class Exec, class Functor>
 std::array<double, std::size_t{Count}> reduce_sites(Exec const& exec, std::string const& label,
                                                     RowLayout const& layout,
@@ -266,7 +266,7 @@ std::array<double, std::size_t{Count}> reduce_sites(Exec const& exec, std::strin
   return total.values();
 }
 
-/// The largest of the numbers at sites.
+/// Functor that returns the largest of the numbers of all sites.
 template <class Real>
 struct LargestOfSites {
   SiteArray<Real, 1> numbers;

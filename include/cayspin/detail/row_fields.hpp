@@ -7,33 +7,34 @@
 #include <cstddef>
 #include <cstdint>
 
-// Terms with many neighbours are summed faster for all sites of a row than spin by spin. The host
-// loop of a stage lets them do so, piece by piece of a row, before it goes along that piece. What
-// such a term's prepare_for_rows returns, and what is made of such terms, has
+// Terms with many neighbours are faster to sum for all sites of a row than spin by spin. The host
+// loop of a stage lets them do so for each piece of a row before it works on that piece. The object
+// that such a term's prepare_for_rows returns, or a sum of such objects, has
 //   static constexpr int row_fields                       how many fields it keeps
-//   void begin_row(row, begin, end, RowFields<Real>)      H of sites begin .. end - 1
-// where `row` has the spins of the stage and their neighbours. Where the term says
-//   bool rows_need_time_alone(exec, spins)
-// it looks at no other spins, and a sweep need not have them in a field.
-// A generator may find the packs at the ends of rows by itself, so that a stage's arithmetic is
-// compiled once, for packs between them:
+//   void begin_row(row, begin, end, RowFields<Real>)      computes H of sites begin .. end - 1
+// where `row` has the spins of the stage and their neighbours. If a term has
+//   bool rows_need_only_time(exec, spins)
+// and it is true, the term reads no other spins, and a sweep need not store them in a field. A
+// generator may evaluate the packs at the ends of rows itself, so that a stage's arithmetic is
+// compiled once, for the packs between them:
 //   void find_row_ends(row, begin, end, fields, turning_alone) const    after begin_row
 namespace cayspin::inline v0_1::detail {
 
-/// A row, its spins, and those beside it along y and z.
+/// A row of spins and its neighbour rows along y and z.
 template <class Real>
 struct RowOfSpins {
   Row const& row;
   RowStencil<Real> const& spins;
 };
 
-/// Sites of a piece: few enough for the first cache.
+/// Sites per piece: few enough for the first-level cache.
 inline constexpr std::int32_t sites_per_piece = 256;
 
-/// Fields of a piece: component c of its site i is data[c * stride + i] in the first of them.
+/// Fields of a piece: component c of site i is data[c * stride + i] in the first field.
 template <class Real>
 struct RowFields {
-  static constexpr std::ptrdiff_t stride = sites_per_piece + 8;  // not of the same cache sets
+  static constexpr std::ptrdiff_t stride =
+      sites_per_piece + 8;  // avoids a stride of equal cache sets
   Real* data = nullptr;
 
   template <class Value>
@@ -48,7 +49,7 @@ struct RowFields {
     detail::store(v.z, data + 2 * stride + i);
   }
 
-  /// Those after the first `fields`.
+  /// Returns the fields after the first `fields`.
   RowFields after(int fields) const { return {data + fields * 3 * stride}; }
 };
 

@@ -10,7 +10,7 @@
 namespace cayspin::inline v0_1::detail {
 
 /// One part of a sweep through a lattice of one plane, at one of its ticks: each stage works on the
-/// next plan.block rows, after the stage before it at one row.
+/// next plan.block rows, one row behind the stage before it.
 template <class Real>
 struct RowSweepPart {
   SweepPlan const& plan;
@@ -28,7 +28,8 @@ struct RowSweepPart {
   std::int32_t low(int stage) const { return clamped(front(stage), stage); }
   std::int32_t high(int stage) const { return clamped(front(stage) + plan.block, stage); }
 
-  /// The rows of a buffer that are in use. Those from `first` on are at the begin of the ring.
+  /// Returns the rows of a buffer that are in use. Rows from `first` on are at the start of the
+  /// ring.
   CAYSPIN_DETAIL_NOINLINE PlaneRows<Real> rows(int number, std::int32_t) const {
     SweepBuffer const& buffer = plan.buffer[number];
     Real* const ring = memory + buffer.ring;

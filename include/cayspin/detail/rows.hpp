@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// Rows of spins, in a field or in the buffers of a sweep. A Runge-Kutta stage works on them.
+// Rows of spins, in a field or in the buffers of a sweep, for a Runge-Kutta stage.
 namespace cayspin::inline v0_1::detail {
 
 /// The first site of a row: component c of site x is data[c * stride + x].
@@ -31,7 +31,7 @@ struct RowOutput {
   bool streaming = false;
 };
 
-/// Numbers of planes or rows along an axis. On a periodic axis they repeat with its extent.
+/// Indices of planes or rows along an axis. On a periodic axis they repeat with its extent.
 struct Axis {
   std::int32_t extent = 1;
   bool wraps = false;
@@ -40,7 +40,7 @@ struct Axis {
   KOKKOS_FUNCTION Axis(RowLayout const& layout, int axis)
       : extent(axis == 1 ? layout.ny : layout.nz), wraps(layout.periodic[axis] && extent > 1) {}
 
-  /// The neighbours of i; at an open end i itself.
+  /// Returns the neighbours of i; at an open end i itself.
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t previous(std::int32_t i) const {
     return i > 0 || wraps ? i - 1 : i;
   }
@@ -74,7 +74,7 @@ struct PlaneRows {
   }
 };
 
-/// Plane z of a field. `low` and `high` lead to the same rows one period away.
+/// Returns plane z of a field. `low` and `high` lead to these rows one period away.
 template <class Real>
 CAYSPIN_DETAIL_NOINLINE KOKKOS_FUNCTION PlaneRows<Real> plane_rows(SiteArray<Real, 3> const& array,
                                                                    RowLayout const& layout,

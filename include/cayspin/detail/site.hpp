@@ -8,7 +8,7 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// Neighbouring sites of a row, as many as Value has lanes.
+/// Adjacent sites of a row, as many as Value has lanes.
 template <class Value, bool AtEdge = true>
 class Site : public SitesOfRow<Value, AtEdge, 1> {
   using Base = SitesOfRow<Value, AtEdge, 1>;
@@ -21,9 +21,9 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t x() const { return static_cast<std::int32_t>(x_); }
   KOKKOS_FORCEINLINE_FUNCTION std::ptrdiff_t offset() const { return row_.offset + x_; }
 
-  /// Are there lanes past the end of the row?
+  /// Returns true if there are lanes past the end of the row.
   KOKKOS_FORCEINLINE_FUNCTION bool is_partial() const { return row_.nx - x_ < lanes; }
-  /// The lanes that are sites.
+  /// Returns the mask of lanes that are sites.
   KOKKOS_FORCEINLINE_FUNCTION auto inside() const {
     return lane_numbers<Value>() < Value(static_cast<scalar_type>(row_.nx - x_));
   }
@@ -71,8 +71,8 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
     }
   }
 
-  /// Where the three components of these sites lie, from the first number of a row with this
-  /// stride. One place serves all rows of a stencil.
+  /// Offset of the three components of these sites from the start of a row with this stride. One
+  /// place serves all rows of a stencil.
   struct Place {
     std::ptrdiff_t x, y, z;
   };
@@ -82,7 +82,7 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
     return {x_, y, opaque(y + spins.stride)};
   }
 
-  /// The spins themselves and those beside them along x, at an open end the spin itself.
+  /// Loads the spins and their neighbours along x; at an open end the neighbour is the spin itself.
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION void load_row(SiteArray<Real, 3> const& array, Place const& place,
                                             Vec3<Value>& center, Vec3<Value> (&beside)[2]) const {
@@ -95,8 +95,8 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
     load_row(rows.data, place, center, beside);
   }
 
-  /// The value one site back (direction 0) or on (direction 1) along y or z; at an open end, and
-  /// along an axis of extent 1, the spin itself.
+  /// Loads the neighbour before (direction 0) or after (direction 1) along y or z; at an open end,
+  /// and along an axis of extent 1, the spin itself.
   template <int Axis, int Direction, class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> neighbor(SiteArray<Real, 3> const& array,
                                                    Place const& place) const {
@@ -158,7 +158,7 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
           select<Value>(this->template is_end<1>(), past_end<1>(row, strides, center), beside[1]);
   }
 
-  /// The neighbours past the end of a row: those at the other end, or the spins themselves.
+  /// Loads the neighbours past the end of a row: those at the other end, or the spins themselves.
   template <int Direction, class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> past_end(Real const* row,
                                                    std::ptrdiff_t const (&strides)[2],
@@ -169,7 +169,7 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
             Value(scalar_type(end[strides[1]]))};
   }
 
-  /// The numbers at x of a row.
+  /// Loads the numbers at x of a row.
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load_at(Real const* row, std::ptrdiff_t stride) const {
     Real const* const from = opaque(row + x_);

@@ -10,7 +10,7 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// A row along x and the way to its neighbour rows; an open end leads back to the row itself.
+/// A row along x and the offsets of its neighbour rows; at an open end the offset is 0.
 struct Row {
   std::ptrdiff_t offset;
   std::ptrdiff_t to_neighbor[2][2];  // [axis - 1][previous, next], relative to `offset`
@@ -29,7 +29,7 @@ struct Row {
     step(1, z, layout.nz, layout.plane, layout.periodic[2]);
   }
 
-  /// For the neighbour rows only: along x the answer depends on the site.
+  /// For neighbour rows only: along x the answer depends on the site.
   template <int Axis, int Direction>
   KOKKOS_FORCEINLINE_FUNCTION bool has_neighbor() const {
     return to_neighbor[Axis - 1][Direction] != 0;
@@ -44,8 +44,8 @@ struct Row {
   }
 };
 
-/// The sites that one iteration works on, as many as Value has lanes: x, x + Spacing, ... in one
-/// row. AtEdge: they may hold the first or the last site of the row.
+/// The sites of one iteration, as many as Value has lanes: x, x + Spacing, ... in one row. AtEdge:
+/// they may include the first or the last site of the row.
 template <class Value, bool AtEdge, int Spacing>
 class SitesOfRow {
  public:
@@ -64,7 +64,7 @@ class SitesOfRow {
   KOKKOS_FORCEINLINE_FUNCTION bool has_neighbor() const {
     return row_.template has_neighbor<Axis, Direction>();
   }
-  /// Have all these sites neighbours on both sides?
+  /// Returns true if all these sites have neighbours on both sides.
   template <int Axis>
   KOKKOS_FORCEINLINE_FUNCTION bool is_between() const {
     if constexpr (Axis > 0)
@@ -74,7 +74,7 @@ class SitesOfRow {
     else
       return true;
   }
-  /// `found`, a neighbour along x, but `missing` on the lane at an open end.
+  /// Returns `found`, a neighbour along x, or `missing` on a lane at an open end.
   template <int Direction>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> unless_past_end(Vec3<Value> const& found,
                                                           Vec3<Value> const& missing) const {
@@ -92,12 +92,12 @@ class SitesOfRow {
     if constexpr (Spacing == 1) return Direction == 0 ? way == 0 : way < lanes;
     return way >= 0 && way < Spacing * lanes && way % Spacing == 0;
   }
-  /// The lane at the end of the row, if these sites hold it.
+  /// Returns the lane at the end of the row, if these sites include it.
   template <int Direction>
   KOKKOS_FORCEINLINE_FUNCTION auto is_end() const {
     return lane_numbers<Value>() == Value(static_cast<scalar_type>(to_end<Direction>() / Spacing));
   }
-  /// The neighbour past the end of a row: the site at the other end, or `center`.
+  /// Returns the neighbour past the end of a row: the site at the other end, or `center`.
   template <int Direction, class Real>
   KOKKOS_FORCEINLINE_FUNCTION Value beyond(Real const* row, Value const& center) const {
     return row_.periodic_x ? Value(scalar_type(row[Direction == 0 ? row_.nx - 1 : 0])) : center;
@@ -107,7 +107,7 @@ class SitesOfRow {
   std::ptrdiff_t x_;
 
  private:
-  /// From the first lane to the end of the row.
+  /// Returns the offset from the first lane to the end of the row.
   template <int Direction>
   KOKKOS_FORCEINLINE_FUNCTION std::ptrdiff_t to_end() const {
     return Direction == 0 ? -x_ : row_.nx - 1 - x_;

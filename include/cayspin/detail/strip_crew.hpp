@@ -11,28 +11,27 @@
 #include <immintrin.h>
 #endif
 
-// Threads that work side by side, step by step, each on a strip. A strip waits for its two
-// neighbours alone.
+// Threads that work on adjacent strips, step by step. A strip waits only for its two neighbours.
 namespace cayspin::inline v0_1::detail {
 
-/// Twice the steps that a strip has done, and one more while a thread is at the next. In a place
-/// of its own in the cache.
+/// Progress of a strip: twice the steps done, plus one while a thread works on the next. Each has
+/// its own cache line.
 struct alignas(cache_line_bytes) StripProgress {
   std::atomic<std::int64_t> state = 0;
 };
 
-/// Does `steps` steps of each strip. Step n of a strip begins when its neighbours have done
-/// n - apart steps. The first strip and the last are neighbours, too. Any number of threads does
-/// the work, in any order: one that has to wait for long takes the steps of others. `progress` has
-/// a place more than there are strips, and is 0 before and after.
+/// Crew of threads that do `steps` steps of each strip. Step n of a strip starts when its
+/// neighbours have done n - apart steps. The first strip and the last are neighbours, too. Any
+/// number of threads may work, in any order: a thread that waits for long takes over steps of other
+/// strips. `progress` has one entry more than there are strips, and is 0 before and after.
 struct StripCrew {
   StripProgress* progress;
   std::int32_t strips;
   std::int64_t steps;
   std::int32_t apart;
 
-  /// Calls run(strip, step). Every strip has to call this once, from any thread. Returns when
-  /// strip `own` is done.
+  /// Calls run(strip, step). Each strip must call this once, from any thread. Returns when strip
+  /// `own` is done.
   template <class Run>
   void work(std::int32_t own, Run const& run) const {
     int waited = 0;
@@ -50,14 +49,14 @@ struct StripCrew {
   }
 
  private:
-  /// Some microseconds: helping moves a strip into the cache of another core.
+  /// Some microseconds: helping moves a strip into another core's cache.
   static constexpr int patience = 256;
 
   std::int64_t done(std::int32_t strip) const {
     return progress[strip].state.load(std::memory_order_acquire) / 2;
   }
 
-  /// Does the next step of a strip, if it can begin and nobody is at it.
+  /// Does the next step of a strip if it can start and no thread works on it.
   template <class Run>
   bool take(std::int32_t strip, Run const& run) const {
     auto& state = progress[strip].state;
@@ -79,7 +78,7 @@ struct StripCrew {
     return false;
   }
 
-  // The last to leave clears the progress for the next time: by then all others are gone.
+  // The last thread to leave clears the progress for next time, when all others have left.
   void leave() const {
     if (progress[strips].state.fetch_add(1, std::memory_order_acq_rel) + 1 < strips) return;
     for (std::int32_t i = 0; i <= strips; ++i)

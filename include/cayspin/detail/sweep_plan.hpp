@@ -9,13 +9,13 @@
 #include <cstddef>
 #include <cstdint>
 
-// How a sweep divides a lattice among threads, and each part into blocks of rows whose buffers fit
-// the cache. Seams hold the rows that two blocks share. In a lattice of one plane stages follow
+// Divides the lattice of a sweep among threads, and each part into blocks of rows whose buffers fit
+// the cache. Seams hold the rows that two blocks share. In a lattice of one plane, stages follow
 // each other by rows instead (row_sweep.hpp).
 namespace cayspin::inline v0_1::detail {
 
 /// The planes or rows of one part. At an end inside the lattice, at ghosts or at a periodic end,
-/// each earlier stage goes one plane or row further. The next part computes these sites, too.
+/// each earlier stage works on one more plane or row, which the next part computes, too.
 struct SweepRange {
   std::int32_t begin, end, stages;
   Axis axis;
@@ -28,16 +28,16 @@ struct SweepRange {
   std::int32_t ahead(int stage) const { return stages - 1 - stage; }
 };
 
-/// One buffer: a ring of `planes` planes of rows, and a seam of `seam_rows` rows for each plane of
-/// the part. By rows: a ring of `planes` rows.
+/// A buffer: a ring of `planes` planes of rows, and a seam of `seam_rows` rows for each plane of
+/// the part. If stages follow by rows: a ring of `planes` rows.
 struct SweepBuffer {
   std::int32_t producer = 0, planes = 0, seam_rows = 0;
   std::ptrdiff_t ring = 0, seam = 0;  // offsets in the memory of a strip, in the seams of a part
 };
 
-/// The lattice is cut into parts that know nothing of each other, along z and y. A part may be
-/// cut into strips along y, one for each of several threads. They go through the planes together
-/// and read each other's rows at the seams.
+/// The division of a lattice into independent parts, along z and y. A part may be cut into strips
+/// along y, one for each of several threads. These pass through the planes together and read each
+/// other's rows at the seams.
 struct SweepPlan {
   static constexpr int most_stages = 13;
 
@@ -46,17 +46,19 @@ struct SweepPlan {
   std::int32_t parts_y = 1, parts_z = 1, strips = 1;
   std::int32_t lag = 1;  // planes between a stage and the one before it
   bool by_rows = false;
-  std::int32_t block = 1;  // rows, at least; less than twice as many. By rows: so many at a time
+  std::int32_t block =
+      1;  // least rows per block, which has less than twice as many. By rows: rows per tick
   std::int32_t ring_rows = 0, seam_planes = 0;
-  std::ptrdiff_t pitch = 0, row = 0;  // component to component in a buffer's row, row to row
-  std::ptrdiff_t strip_size = 0, seams_size = 0;  // numbers of memory per strip, of a part's seams
+  std::ptrdiff_t pitch = 0,
+                 row = 0;  // strides of a buffer: from component to component, from row to row
+  std::ptrdiff_t strip_size = 0, seams_size = 0;  // numbers in a strip's memory, in a part's seams
   SweepBuffer buffer[3 * most_stages];
 
   std::int64_t parts() const { return std::int64_t(parts_y) * parts_z; }
   std::int64_t tasks() const { return parts() * strips; }
-  /// The strips of a part, and its seams behind the last of them.
+  /// Returns the size of a part: its strips, then its seams.
   std::ptrdiff_t part_size() const { return strips * strip_size + seams_size; }
-  /// Numbers of memory of the buffers.
+  /// Returns how many numbers all buffers hold.
   std::size_t size() const { return static_cast<std::size_t>(parts() * part_size()); }
 
   SweepRange range_y(std::int64_t part) const {
@@ -67,15 +69,15 @@ struct SweepPlan {
     return range(static_cast<std::int32_t>(part / parts_y), parts_z, layout.own.z_begin,
                  layout.own.nz(), Axis(layout, 2));
   }
-  /// From block to block a seam's planes move on by so many. So planes of the block before are not
-  /// overwritten while they are still needed, by a strip that may be some planes behind.
+  /// Returns by how many planes a seam shifts from block to block, so that planes of the previous
+  /// block are not overwritten while a strip some planes behind still needs them.
   std::int32_t seam_shift(SweepBuffer const& of_stage) const {
     return of_stage.planes + 2 * (lag - 1);
   }
-  /// Blocks of each strip of a part with so many rows.
+  /// Returns the number of blocks of each strip of a part with so many rows.
   std::int32_t blocks(std::int32_t rows) const { return std::max(1, rows / strips / block); }
 
-  /// A plan for so many threads, with blocks of rows whose buffers take up `cache` bytes.
+  /// Makes a plan for so many threads, with blocks of rows whose buffers take `cache` bytes.
   template <class Real, class Buffers>
   static SweepPlan of(RowLayout const& layout, int threads, std::size_t cache) {
     static_assert(Buffers::stages <= most_stages);
@@ -94,7 +96,7 @@ struct SweepPlan {
     };
     auto const rows_in_cache =
         static_cast<std::int32_t>(cache / (static_cast<std::size_t>(plan.row) * sizeof(Real)));
-    // Rows per block, if stages follow each other at so many planes.
+    // Returns rows per block if stages are `apart` planes apart.
     auto const rows_per_block = [&](std::int32_t apart) {
       return std::max(2 * plan.stages, std::min(rows_in_cache / planes_in_use(apart), layout.ny));
     };
@@ -107,10 +109,10 @@ struct SweepPlan {
   }
 
  private:
-  /// A strip reads rows of its neighbours at the plane where it is itself. So a lag of 1 would do.
-  /// Of two, neighbours may be a plane apart, and seldom wait for each other.
+  /// A strip reads rows of its neighbours at its own plane, so a lag of 1 would do. With 2,
+  /// neighbours may be a plane apart, and rarely wait for each other.
   static constexpr std::int32_t lag_of_strips = 2;
-  /// What it costs two strips to wait for each other once, in sites that could be stepped instead.
+  /// Cost of one synchronisation between two strips, in sites that could be stepped instead.
   static constexpr double meeting = 100;
 
   SweepRange range(std::int32_t part, std::int32_t parts, std::int32_t begin, std::int32_t extent,
@@ -121,12 +123,12 @@ struct SweepPlan {
     return {bound(part), bound(part + 1), stages, axis};
   }
 
-  // The division among at most `threads` threads that takes least time. Parts need no strips where
-  // they repeat little. Planes are cut first: the parts are far from each other in memory.
+  // Finds the fastest division among at most `threads` threads. Parts need no strips where they
+  // repeat little work. Planes are cut first, because such parts are far apart in memory.
   void cut(int threads, std::int32_t block_of_parts, std::int32_t block_of_strips) {
     std::int32_t const ny = layout.own.ny(), nz = layout.own.nz();
-    // Of the largest of so many parts, with what it repeats at shared ends: half of stages - 1, and
-    // half as much again, since that moves memory, too.
+    // Returns the cost of the largest of so many parts, with the work repeated at shared ends: half
+    // of stages - 1, and half as much again, since it moves memory, too.
     auto const largest = [&](std::int32_t extent, std::int32_t parts) {
       return (extent + parts - 1) / parts + 0.75 * std::min(parts - 1, 2) * (stages - 1);
     };
@@ -158,7 +160,7 @@ struct SweepPlan {
     }
   }
 
-  // `to_spare`: rows that the cache holds beside those that are in use, row by row.
+  // `to_spare`: rows that the cache holds besides those in use, row by row.
   template <class Buffers>
   void allot_rows(std::int32_t to_spare, std::ptrdiff_t line) {
     by_rows = true;
@@ -175,7 +177,7 @@ struct SweepPlan {
     strip_size += line;
   }
 
-  // Where the buffers lie in the memory of a strip, and the seams behind the last strip of a part.
+  // Places the buffers in the memory of a strip, and the seams after the last strip of a part.
   template <class Buffers>
   void allot(std::ptrdiff_t line) {
     std::int32_t const rows = (layout.ny + parts_y - 1) / parts_y;
@@ -202,8 +204,8 @@ struct SweepPlan {
   }
 };
 
-/// Fills the buffers: the few numbers that belong to no site must not trap or be denormal. One task
-/// per strip, so that the thread of a strip is the first to touch its memory.
+/// Functor that fills the buffers, so that padding numbers neither trap nor are denormal. One task
+/// per strip: a strip's thread touches its memory first.
 template <class Real>
 struct FillSweepBuffers {
   Real* data;
@@ -217,7 +219,7 @@ struct FillSweepBuffers {
   }
 };
 
-/// One strip of one part of a sweep, at one of its blocks.
+/// One strip of one part of a sweep, at one block.
 template <class Real>
 struct SweepPart {
   SweepPlan const& plan;
@@ -234,17 +236,17 @@ struct SweepPart {
         blocks(whole.blocks(y.end - y.begin)),
         steps_per_block(z.end + whole.lag * (whole.stages - 1) - z.low(0)) {}
 
-  /// The steps of a strip: through all planes for each block, each stage at its own plane.
+  /// Returns the steps of a strip: through all planes for each block, each stage at its own plane.
   std::int64_t steps() const { return std::int64_t(blocks) * steps_per_block; }
-  /// The plane of stage 0 at such a step, whose block this is from now on.
+  /// Starts a step and its block, and returns the plane of stage 0.
   std::int32_t begin_step(std::int64_t step) {
     block_ = static_cast<std::int32_t>(step / steps_per_block);
     for (std::int32_t i = 0; i < 3; ++i) bounds_[i] = bound(strip - 1 + i);
     return z.low(0) + static_cast<std::int32_t>(step % steps_per_block);
   }
 
-  /// A stage works on rows low .. high - 1. At the ends of blocks it follows the stage before it at
-  /// one row.
+  /// Returns the first row of a stage, which works on rows low .. high - 1. At the ends of blocks
+  /// it is one row behind the stage before it.
   std::int32_t low(int stage) const {
     if (!begins_block()) return bounds_[1];
     return block_ == 0 ? y.low(stage) : bounds_[1] - stage;
@@ -254,7 +256,7 @@ struct SweepPart {
     return block_ + 1 == blocks ? y.high(stage) : bounds_[2] - stage;
   }
 
-  /// Plane z of a buffer.
+  /// Returns plane z of a buffer.
   CAYSPIN_DETAIL_NOINLINE PlaneRows<Real> rows(int number, std::int32_t at_z) const {
     SweepBuffer const& buffer = plan.buffer[number];
     int const stage = buffer.producer;
@@ -262,13 +264,13 @@ struct SweepPart {
     std::int32_t const first = low(stage);
     bool const ends_at_seam = ends_block() && block_ + 1 < blocks;
     std::int32_t const last = high(stage) - (ends_at_seam ? buffer.seam_rows : 0);
-    // Planes of the block before are not overwritten while a neighbour is still there.
+    // Planes of the previous block are not overwritten while a neighbour still reads them.
     std::int32_t const turn = (from_begin + block_ * steps_per_block) % buffer.planes;
     Real* const ring =
         memory + strip * plan.strip_size + buffer.ring + turn * plan.ring_rows * plan.row;
     Real *before = ring, *after = ring;  // not read at the ends of a part
     if (!begins_block()) {
-      // Only the first strip of a block begins earlier at some stages.
+      // Only the first strip of a block starts earlier at some stages.
       bool const is_second = strip == 1;
       std::int32_t const begin = is_second ? low_of_first(stage) : bounds_[0];
       before = ring - plan.strip_size + (first - begin) * plan.row;
@@ -286,7 +288,7 @@ struct SweepPart {
   bool begins_block() const { return strip == 0; }
   bool ends_block() const { return strip + 1 == plan.strips; }
 
-  /// Where a strip begins in this block.
+  /// Returns the first row of a strip in this block.
   std::int32_t bound(std::int32_t of_strip) const {
     std::int64_t const i = std::int64_t(block_) * plan.strips + of_strip;
     return y.begin +
@@ -305,7 +307,7 @@ struct SweepPart {
   }
 
   std::int32_t block_ = 0;
-  std::int32_t bounds_[3] = {};  // of the strip before, this one and the next
+  std::int32_t bounds_[3] = {};  // of the previous strip, this one and the next
 };
 
 }  // namespace cayspin::inline v0_1::detail

@@ -8,7 +8,7 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// The elements in a memory space; waits.
+/// Returns the elements copied to a memory space; waits.
 template <class MemorySpace, class Element>
 Kokkos::View<Element*, MemorySpace> table_of(std::string const& label,
                                              std::vector<Element> const& elements) {

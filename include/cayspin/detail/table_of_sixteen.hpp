@@ -7,7 +7,7 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// Do registers of such numbers look up a table of sixteen in an instruction or two?
+/// True if registers of such numbers look up a table of sixteen in one or two instructions.
 template <class Numbers>
 #if defined(CAYSPIN_DETAIL_AVX512_OF_INTEGERS)
 inline constexpr bool has_table_of_sixteen = sizeof(Numbers) == 64;
@@ -16,7 +16,7 @@ inline constexpr bool has_table_of_sixteen = false;
 #endif
 
 #if defined(CAYSPIN_DETAIL_AVX512_OF_INTEGERS)
-/// The bits of table[code % 16] for each code.
+/// Returns the bits of table[code % 16] for each code.
 template <class Real, class Numbers>
 KOKKOS_FORCEINLINE_FUNCTION Numbers look_up(Real const (&table)[16], Numbers const& code) {
   static_assert(has_table_of_sixteen<Numbers>);

@@ -13,7 +13,7 @@ KOKKOS_FORCEINLINE_FUNCTION void unrolled(std::integer_sequence<int, I...>, Body
   (body(std::integral_constant<int, I>{}), ...);
 }
 
-/// Calls body(i) for i = 0 .. Count - 1, each known when compiled.
+/// Calls body(i) for i = 0 .. Count - 1, with i a compile-time constant.
 template <int Count, class Body>
 KOKKOS_FORCEINLINE_FUNCTION void unrolled(Body const& body) {
   unrolled(std::make_integer_sequence<int, Count>{}, body);

@@ -45,7 +45,7 @@ class NeighborsOfSite {
   vector_type found_[3][2];
 };
 
-/// The stencil of a site with another spin at its centre than the one in memory.
+/// A site's stencil with a different spin at its centre.
 template <class Neighbors>
 class VariedStencil {
  public:

@@ -5,8 +5,8 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// A term that sees the spin along one axis: H = c (m.e) e, E = -c (m.e)^2 / 2. An axis of the
-/// coordinates is found once, and costs one product instead of seven.
+/// A term that depends on the spin along one axis: H = c (m.e) e, E = -c (m.e)^2 / 2. A coordinate
+/// axis is detected once, and then costs one product instead of seven.
 class AlongAxis {
  public:
   static constexpr int degree = 2;  // H is linear in the spins

@@ -19,10 +19,10 @@
 #include <utility>
 #include <vector>
 
-// The bonds of each site of a cell, seen from that site, in the order in which kernels sum them.
+// The bonds of each site of a cell, in the order in which kernels sum them.
 namespace cayspin::inline v0_1::detail {
 
-/// How far another site's numbers lie, in double and in single precision.
+/// Distance of another site in memory, in numbers of double and of single precision.
 struct OffsetInMemory {
   std::ptrdiff_t of_doubles, of_floats;
 
@@ -31,11 +31,11 @@ struct OffsetInMemory {
     return std::is_same_v<Real, double> ? of_doubles : of_floats;
   }
 };
-/// The way to the other site.
+/// The offset to the other site.
 struct Bond : OffsetInMemory {
   std::int32_t dx, dy, dz;
 };
-/// Bonds of one exchange.
+/// Bonds of equal exchange constant.
 struct Shell {
   std::int32_t first, last;
   double exchange;
@@ -44,7 +44,7 @@ struct Shell {
 struct BondTensor {
   double of[10];
 };
-/// How far bonds reach.
+/// Range of the bonds.
 struct Reach {
   std::int32_t low[3] = {}, high[3] = {};
 
@@ -54,7 +54,7 @@ struct Reach {
       high[axis] = std::max(high[axis], way[axis]);
     }
   }
-  /// Do all bonds of the sites end in rows, or sites of a row, that need no way round?
+  /// Returns true if the bonds of all sites end in rows, or sites of a row, that need no wrapping.
   KOKKOS_FORCEINLINE_FUNCTION bool holds_rows(std::int32_t y, std::int32_t z,
                                               std::int32_t const* extent) const {
     return y >= low[1] && y + high[1] < extent[1] && z >= low[2] && z + high[2] < extent[2];
@@ -65,16 +65,16 @@ struct Reach {
   }
 };
 
-/// Bonds of one site of a cell: those of its shells, and after them those with a tensor.
+/// Bonds of one site of a cell: first those of its shells, then those with a tensor.
 struct BondsOfSite {
   std::int32_t first_shell, last_shell, first_bond, first_tensor, last_bond;
-  std::int32_t to_tensor;  // from the number of a bond to that of its tensor
+  std::int32_t to_tensor;  // from a bond's number to its tensor's number
   std::int32_t first_round;
-  std::int32_t farthest;  // the bond to the row that a pass through the lattice comes to last
+  std::int32_t farthest;  // bond to the row that a pass through the lattice reaches last
   Reach reach;
 };
 
-/// What kernels hold.
+/// The table of bonds for kernels.
 struct BondTable {
   BondsOfSite const* sites;
   Shell const* shells;
@@ -90,21 +90,21 @@ struct BondTable {
   }
 };
 
-/// The tables in the making.
+/// Builder of the tables.
 class BondLists {
  public:
   std::vector<BondsOfSite> sites;
   std::vector<Shell> shells;
   std::vector<Bond> bonds;
   std::vector<BondTensor> tensors;
-  /// All bonds of a site, along x round a periodic lattice, as they are at the first reach.low[0]
-  /// sites of a row and at the last reach.high[0].
+  /// All bonds of a site, wrapped along x on a periodic lattice, at the first reach.low[0] sites of
+  /// a row and at the last reach.high[0].
   std::vector<OffsetInMemory> rounds;
   bool has_biquadratic = false;
-  /// The largest |H| of unit spins at each site of a cell, or an upper bound of it.
+  /// Largest |H| of unit spins at each site of a cell, or an upper bound of it.
   std::vector<double> field_bounds;
 
-  /// Throws std::invalid_argument as PairCouplings does.
+  /// Throws std::invalid_argument like PairCouplings.
   BondLists(Lattice const& lattice, std::vector<Coupling> const& couplings) {
     for (int site = 0; site < static_cast<int>(lattice.cell_sites); ++site) {
       auto seen = seen_from(site, lattice, couplings);
@@ -123,7 +123,7 @@ class BondLists {
     }
   }
 
-  /// Over how many rows along y and cells along z bonds reach.
+  /// Returns how many rows along y and cells along z bonds span.
   std::array<std::int32_t, 2> rows_and_cells() const {
     std::array<std::int32_t, 2> most{};
     auto const of_cell = static_cast<std::int32_t>(sites.size());
@@ -146,7 +146,8 @@ class BondLists {
       return t[0] == t[4] && t[4] == t[8] && t[1] == 0 && t[2] == 0 && t[3] == 0 && t[5] == 0 &&
              t[6] == 0 && t[7] == 0 && t[9] == 0;
     }
-    /// Of |T| by Frobenius, unless it is a multiple of 1, and of what the biquadratic part adds.
+    /// Returns a bound from the Frobenius norm of T, or T itself if it is a multiple of 1, and the
+    /// biquadratic part.
     double bound() const {
       if (is_exchange()) return std::abs(tensor.of[0]);
       double sum = 0;
@@ -185,7 +186,7 @@ class BondLists {
     };
     if (lattice.boundary[0] != Boundary::periodic ||
         std::max(mine.reach.low[0], mine.reach.high[0]) > host_lanes<float>)
-      return;  // nobody asks
+      return;  // not needed
     for (std::int32_t site = 0; site < mine.reach.low[0]; ++site) add_at(site);
     for (std::int32_t site = nx - mine.reach.high[0]; site < nx; ++site) add_at(site);
   }
@@ -260,7 +261,7 @@ class BondLists {
     if (!finite) throw std::invalid_argument("cayspin::PairCouplings: a number is not finite");
   }
 
-  /// Shortens a way round a periodic axis; false where it is longer than an open one.
+  /// Shortens an offset around a periodic axis; returns false if it passes an open end.
   static bool stays(std::array<std::int64_t, 3>& way, Lattice const& of_sites) {
     auto const& lattice = whole(of_sites);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -273,7 +274,7 @@ class BondLists {
   }
 };
 
-/// The same for kernels.
+/// The tables in a kernel's memory space.
 template <class MemorySpace>
 class BondsOfSites {
  public:

@@ -11,7 +11,7 @@ namespace cayspin::inline v0_1 {
 
 namespace detail {
 
-/// What kernels hold of BulkDmi: D / spacing of each axis, or 0.
+/// BulkDmi for kernels: D / spacing of each axis, or 0.
 class UniformBulkDmi {
  public:
   static constexpr int degree = 2;  // H is linear in the spins
@@ -39,7 +39,7 @@ class UniformBulkDmi {
     return field(stencil);
   }
 
-  /// Each site carries half of each of its bonds.
+  /// Returns half the energy of each bond of the site.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
@@ -47,7 +47,7 @@ class UniformBulkDmi {
   }
 
  private:
-  /// h + (D / spacing) (m_next - m_previous) x e
+  /// Returns h + (D / spacing) (m_next - m_previous) x e.
   template <int Axis, class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector bonds(Stencil const& stencil, Vector const& h) const {
     using Value = typename Stencil::value_type;
@@ -66,11 +66,11 @@ class UniformBulkDmi {
 
 }  // namespace detail
 
-/// Dzyaloshinskii-Moriya interaction of a chiral crystal, of energy density D m . curl m. A bond
-/// from spin m along the axis e to its neighbour m' has E = -(D / spacing) (m x m') . e, so that
-/// H = sum over axes of (D / spacing) (m_next - m_previous) x e. A missing neighbour has no bond.
+/// Dzyaloshinskii-Moriya interaction of a chiral crystal, with energy density D m . curl m. A bond
+/// from spin m along the axis e to its neighbour m' has E = -(D / spacing) (m x m') . e, so that H
+/// = sum over axes of (D / spacing) (m_next - m_previous) x e. A missing neighbour has no bond.
 /// With Exchange(lattice, A), a free spiral along e turns about e by atan(D spacing / A) from site
-/// to site. Reduced units, as those of InterfacialDmi. Bak and Jensen 1980.
+/// to site. Reduced units, as in InterfacialDmi. Bak and Jensen 1980.
 class BulkDmi : public detail::TermOnLattice<detail::UniformBulkDmi> {
  public:
   /// Throws std::invalid_argument when the constant is not finite.

@@ -17,7 +17,7 @@
 
 namespace cayspin::inline v0_1 {
 
-/// A number for each site of a crystal's cell, as kernels see it: a prepared term calls
+/// One number for each site of a crystal's cell, for kernels: a prepared term calls
 /// moments.at(stencil.site()).
 struct NumbersOfCell {
   double const* numbers;
@@ -29,13 +29,13 @@ struct NumbersOfCell {
   }
 };
 
-/// The moment mu and the gyromagnetic ratio g of each site of a crystal's cell. A moment of 0 is no
-/// spin.
+/// The moment mu and the gyromagnetic ratio g of each site of a crystal's cell. A site with moment
+/// 0 has no spin.
 template <class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class CellMoments {
  public:
-  /// `gyromagnetic`: none are all 1. Throws std::invalid_argument unless both are a finite number
-  /// for each site of a cell, moments not negative and gyromagnetic ratios positive.
+  /// `gyromagnetic`: if empty, all are 1. Throws std::invalid_argument unless both are one finite
+  /// number for each site of a cell, moments not negative and gyromagnetic ratios positive.
   CellMoments(Lattice const& lattice, std::vector<double> const& moments,
               std::vector<double> const& gyromagnetic = {})
       : lattice_(lattice),
@@ -46,7 +46,7 @@ class CellMoments {
   Lattice const& lattice() const { return lattice_; }
 
   NumbersOfCell moments() const { return numbers(moments_); }
-  /// g / mu, and 0 without a spin.
+  /// Returns g / mu, or 0 without a spin.
   NumbersOfCell factors() const { return numbers(factors_); }
 
  private:

@@ -9,10 +9,10 @@
 #include <string>
 #include <type_traits>
 
-// A coefficient of a term: one number for all sites, or a field with a number on each site.
+// A coefficient of a term: one number for all sites, or a field of numbers.
 namespace cayspin::inline v0_1::detail {
 
-/// What kernels hold of a coefficient.
+/// Returns the coefficient for kernels.
 inline double array_of(double number) { return number; }
 inline Vec3<double> array_of(Vec3<double> const& vector) { return vector; }
 template <class Real, int Components, class MemorySpace>
@@ -20,7 +20,7 @@ SiteArray<Real, Components> array_of(SiteField<Real, Components, MemorySpace> co
   return field.array();
 }
 
-/// A coefficient at a site, as value of a kernel.
+/// Returns a coefficient at a site, as a kernel's value type.
 template <class Value, class Site>
 KOKKOS_FORCEINLINE_FUNCTION Value coefficient(double number, Site const&) {
   return as_value<Value>(number);
@@ -39,7 +39,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value coefficient(SiteArray<Real, 1> const& numbers,
   return site.load(numbers);
 }
 
-/// Kernels address a coefficient as they do the spins, by rows whose pitch depends on the type.
+/// Kernels address a coefficient like the spins, by rows whose pitch depends on the type.
 template <class Spins, class Real, int Components, class MemorySpace>
 constexpr void require_type_of(SiteField<Real, Components, MemorySpace> const&) {
   static_assert(std::is_same_v<typename Spins::value_type, Real> &&
@@ -49,7 +49,7 @@ constexpr void require_type_of(SiteField<Real, Components, MemorySpace> const&) 
 
 template <class Spins, class Number>
 void require_lattice_of(Spins const&, Number const&, char const*) {}
-/// Throws std::invalid_argument when a coefficient is for another lattice.
+/// Throws std::invalid_argument when a coefficient belongs to another lattice.
 template <class Spins, class Real, int Components, class MemorySpace>
 void require_lattice_of(Spins const& spins, SiteField<Real, Components, MemorySpace> const& field,
                         char const* who) {
@@ -57,7 +57,7 @@ void require_lattice_of(Spins const& spins, SiteField<Real, Components, MemorySp
   require_lattice(who, field.lattice(), spins.lattice());
 }
 
-/// Counts sites whose number is not finite, below zero, above zero, and one.
+/// Functor that counts sites whose number is non-finite, negative, positive, or 1.
 template <class Real>
 struct SignsOfSites {
   SiteArray<Real, 1> numbers;

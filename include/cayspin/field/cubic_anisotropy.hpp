@@ -8,18 +8,18 @@
 
 namespace cayspin::inline v0_1 {
 
-/// Cubic anisotropy, with a, b, c the parts of m along the axes e1, e2 and e3 = e1 x e2:
+/// Cubic anisotropy, with components a, b, c of m along the axes e1, e2 and e3 = e1 x e2:
 /// E = Kc (a^2 b^2 + b^2 c^2 + c^2 a^2) per site,
 /// H = -2 Kc [a (b^2 + c^2) e1 + b (c^2 + a^2) e2 + c (a^2 + b^2) e3].
-/// In reduced units, Kc is an energy of a site. Aharoni 2000, Sec. 5.1.2.
+/// In reduced units, Kc is an energy per site. Aharoni 2000, Sec. 5.1.2.
 class CubicAnisotropy {
  public:
   static constexpr bool is_local = true;
   static constexpr double most_skew = 1e-4;
 
-  /// The axes are normalised, and the second one is turned to a right angle with the first. Throws
-  /// std::invalid_argument when the constant is not finite, an axis is zero or not finite, or
-  /// |e1.e2| > 1e-4, more than the rounding of a few digits.
+  /// Normalises the axes and makes the second orthogonal to the first. Throws std::invalid_argument
+  /// when the constant is not finite, an axis is zero or not finite, or |e1.e2| > 1e-4, which is
+  /// more than rounding to a few digits.
   CubicAnisotropy(double constant, Vec3<double> const& axis1, Vec3<double> const& axis2)
       : constant_(detail::finite(constant, "cayspin::CubicAnisotropy: the constant")),
         axes_{normalized(axis1, "cayspin::CubicAnisotropy: the first axis"),
@@ -42,7 +42,7 @@ class CubicAnisotropy {
     return as_value<Value>(-2 * constant_) *
            sum<Value>({m.x * (b + c), m.y * (c + a), m.z * (a + b)});
   }
-  /// With |m|^2 - a^2 for b^2 + c^2, and so on, and without the multiple of m.
+  /// Uses |m|^2 - a^2 for b^2 + c^2, and so on, and omits the multiple of m.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_turning_field(
       Stencil const& stencil, VectorOf<Stencil> const& h) const {
@@ -60,7 +60,8 @@ class CubicAnisotropy {
   }
 
   KOKKOS_FORCEINLINE_FUNCTION double constant() const { return constant_; }
-  /// a, b and c. Where all axes are coordinates, x, y and z: E is the same in any order.
+  /// Returns a, b and c; x, y and z if all axes are coordinates, since E does not depend on their
+  /// order.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> parts(Vec3<Value> const& v) const {
     if (along_coordinates_) [[likely]]
@@ -68,7 +69,7 @@ class CubicAnisotropy {
     return {dot(v, as_value<Value>(axes_[0])), dot(v, as_value<Value>(axes_[1])),
             dot(v, as_value<Value>(axes_[2]))};
   }
-  /// The vector with these parts.
+  /// Returns the vector with these components.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> sum(Vec3<Value> const& v) const {
     if (along_coordinates_) [[likely]]

@@ -13,16 +13,16 @@
 
 namespace cayspin::inline v0_1 {
 
-/// The sum of field terms, composed by type: what is not listed is not computed. A term is a plain
-/// struct with two const, device-callable templates:
+/// The sum of field terms, composed by type, so that terms not listed cost nothing. A term is a
+/// plain struct with two const, device-callable templates:
 /// - `Vec3<Value> field(stencil)`, H at the stencil's centre,
 /// - `Value energy_density(stencil)`, its share of E, with H = -dE/dm,
 ///
-/// where Value = Stencil::value_type. What else a term may say: FieldTerm in concepts.hpp.
+/// where Value = Stencil::value_type. For optional members see FieldTerm in concepts.hpp.
 template <class... Terms>
 class EffectiveField;
 
-/// No terms. What it does not say is that of a field without the spins.
+/// The empty sum, which behaves as a field that does not depend on the spins.
 template <>
 class EffectiveField<> : public Forwarding<EffectiveField<>> {
  public:
@@ -108,7 +108,7 @@ class EffectiveField<First, Rest...>
     return first_.energy_density(stencil) + rest_.energy_density(stencil);
   }
 
-  /// The energy density of each term, in their order.
+  /// Returns the energy density of each term, in order.
   template <class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Stencil const& stencil, Value* energies) const {
     detail::check_energy_density<First, Stencil>();

@@ -11,7 +11,7 @@ namespace cayspin::inline v0_1 {
 
 namespace detail {
 
-/// What kernels hold of Exchange: A / spacing^2 of each axis, or 0.
+/// Exchange for kernels: A / spacing^2 of each axis, or 0.
 class UniformExchange {
  public:
   static constexpr int degree = 2;  // H is linear in the spins
@@ -39,7 +39,7 @@ class UniformExchange {
       return second_difference<0>(stencil,
                                   second_difference<1>(stencil, second_difference<2>(stencil, h)));
     if (is_cubic_) [[likely]] {
-      // As below, exactly zero where all are equal.
+      // Exactly zero where all are equal, as below.
       auto const in_plane =
           multiply_add(Value(-4), stencil.center(), pair<0>(stencil) + pair<1>(stencil));
       auto const across = multiply_add(Value(-2), stencil.center(), pair<2>(stencil));
@@ -50,7 +50,7 @@ class UniformExchange {
     if (couples_[2]) h = second_difference<2>(stencil, h);
     return h;
   }
-  /// H without a multiple of the spin itself; past an open end the neighbour is the spin.
+  /// Returns H without a multiple of the spin itself; past an open end the neighbour is the spin.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_turning_field(Stencil const& stencil,
                                                                   VectorOf<Stencil> h) const {
@@ -66,7 +66,7 @@ class UniformExchange {
     return h;
   }
 
-  /// A sum of neighbours / spacing^2: H without a multiple of the spin itself.
+  /// Returns the sum of neighbours / spacing^2: H without a multiple of the spin itself.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
@@ -98,7 +98,7 @@ class UniformExchange {
     return stencil.template previous<Axis>() + stencil.template next<Axis>();
   }
 
-  // previous + next - 2 center, in a form that is exactly zero where the three are equal.
+  // Returns previous + next - 2 center, in a form that is exactly zero where the three are equal.
   template <int Axis, class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector second_difference(Stencil const& stencil,
                                                        Vector const& sum) const {
@@ -122,7 +122,7 @@ class UniformExchange {
                         sum);
   }
 
-  // Each site carries half of each of its bonds.
+  // Returns half the energy of each bond of the site.
   template <int Axis, class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Value bonds(Stencil const& stencil, Value const& sum) const {
     auto const back = stencil.template previous<Axis>() - stencil.center();
@@ -132,14 +132,14 @@ class UniformExchange {
   }
 
   double coefficient_[3];
-  bool couples_[3];  // is the coefficient of the axis not 0?
-  bool is_cubic_;    // the same coefficient along all axes
+  bool couples_[3];  // true if the axis has a nonzero coefficient
+  bool is_cubic_;    // equal coefficients along all axes
 };
 
 }  // namespace detail
 
 /// Exchange with the nearest neighbours along each axis: H = A Lap(m), the second difference over
-/// existing neighbours, each divided by the axis' spacing squared.
+/// existing neighbours, divided by the axis' spacing squared.
 /// E = sum over bonds of (A/2) |m_q - m_n|^2 / spacing^2.
 class Exchange : public detail::TermOnLattice<detail::UniformExchange> {
  public:

@@ -18,7 +18,7 @@ namespace cayspin::inline v0_1 {
 
 namespace detail {
 
-/// What FieldOfMoments is at one time.
+/// FieldOfMoments at one time, for kernels.
 template <class Field>
 class FieldTimesNumbers : public ForwardingEnergy<FieldTimesNumbers<Field>, Field> {
  public:
@@ -58,7 +58,7 @@ class FieldTimesNumbers : public ForwardingEnergy<FieldTimesNumbers<Field>, Fiel
   NumbersOfCell factors_;
 };
 
-/// What ZeemanOfMoments is in kernels.
+/// ZeemanOfMoments for kernels.
 struct AppliedToMoments {
   static constexpr int degree = 1;  // H does not depend on the spins
   static constexpr bool is_local = true;
@@ -78,13 +78,13 @@ struct AppliedToMoments {
 
 }  // namespace detail
 
-/// The field of spins that have a moment mu and a gyromagnetic ratio g each, by sites of a
-/// crystal's cell: H = -(g / mu) dE/dm with the energies E of the terms inside. All terms have to
-/// stand inside; an applied field is a ZeemanOfMoments there. Without a spin H is 0; the spins of
-/// such sites are to be zero vectors, by which PairCouplings see none there; lattice terms do so in
-/// a FieldWithVacancies. What conserves E without damping conserves it here, but H is not the
-/// derivative of E: EnergyControl and what else follows an energy by its derivative refuse it, and
-/// take the field inside.
+/// The field of spins that each have a moment mu and a gyromagnetic ratio g, by the site of a
+/// crystal's cell: H = -(g / mu) dE/dm with the energies E of the terms inside. All terms must be
+/// inside; for an applied field use ZeemanOfMoments. Sites without a spin have H = 0; their spins
+/// must be zero vectors, so that PairCouplings sees none there. Lattice terms need a
+/// FieldWithVacancies for that.
+/// Without damping, E is conserved as usual. But H is not the derivative of E: EnergyControl, and
+/// others that need H to be that derivative, refuse this field and accept the field inside.
 template <class Field, class MemorySpace>
 class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Field> {
  public:
@@ -114,7 +114,7 @@ class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Fie
   CellMoments<MemorySpace> moments_;
 };
 
-/// A uniform applied field on the moments of a crystal's sites: E = -mu m.H, in a FieldOfMoments.
+/// A uniform field applied to the moments of a crystal's sites: E = -mu m.H, in a FieldOfMoments.
 template <class MemorySpace>
 class ZeemanOfMoments : public detail::PreparedOnce {
  public:

@@ -7,7 +7,7 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// Writes a prepared term's field into an array.
+/// Functor that writes a prepared term's field into an array.
 template <class Term, class Real>
 struct FieldOfSites {
   Term term;

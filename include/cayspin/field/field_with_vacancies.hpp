@@ -20,7 +20,7 @@ inline constexpr bool is_a = false;
 template <template <class> class Wanted, class Argument>
 inline constexpr bool is_a<Wanted, Wanted<Argument>> = true;
 
-/// Is a term, or a part of it at any depth, a Wanted<..>?
+/// True if a term, or a part of it at any depth, is a Wanted<..>.
 template <template <class> class Wanted, class Term>
 constexpr bool holds();
 template <template <class> class Wanted, class... Parts>
@@ -32,7 +32,7 @@ constexpr bool holds() {
   return is_a<Wanted, Term> || any_holds<Wanted>(PartsOfTerm<Term>());
 }
 
-/// A stencil in which a vacant neighbour is a missing one: the spin itself stands for it.
+/// A stencil that treats a vacant neighbour as missing: the spin itself replaces it.
 template <class Stencil, class Real>
 class StencilAmongVacancies {
  public:
@@ -66,7 +66,7 @@ class StencilAmongVacancies {
   template <int Axis, int Direction>
   KOKKOS_FORCEINLINE_FUNCTION vector_type unless_vacant(vector_type const& neighbor,
                                                         vector_type const& missing) const {
-    value_type const zero(0);  // past an open end too, where the neighbour is the spin itself
+    value_type const zero(0);  // also past an open end, where the neighbour is the spin itself
     auto const vacant = site().template neighbor<Axis, Direction>(occupation_, zero) == zero;
     return select<value_type>(vacant, missing, neighbor);
   }
@@ -75,7 +75,7 @@ class StencilAmongVacancies {
   SiteArray<Real, 1> const& occupation_;
 };
 
-/// What FieldWithVacancies is at one time.
+/// FieldWithVacancies at one time, for kernels.
 template <class Field, class Real>
 class FieldAmongVacancies {
   template <class Stencil>
@@ -133,17 +133,17 @@ class FieldAmongVacancies {
 }  // namespace detail
 
 /// A field on a lattice with vacancies. `occupation` is 1 on sites that hold a spin and 0 on vacant
-/// ones. A vacant site has no field and no energy, so that its spin stays as it is; to its
-/// neighbours it is a missing one, as past an open end. Terms of one's own that follow the stencil
-/// need no change. Every term has to stand inside: one beside it still turns the vacant spins.
-/// A HostField's solver is given the vacant spins too, and has to leave them out.
+/// ones. A vacant site has no field and no energy, so its spin does not change; its neighbours see
+/// a missing spin, as past an open end. User terms that use the stencil need no change. Every term
+/// must be inside: a term outside still rotates the vacant spins. A HostField's solver receives the
+/// vacant spins too, and must leave them out.
 template <class Field, class Real, class MemorySpace>
 class FieldWithVacancies : public Forwarding<FieldWithVacancies<Field, Real, MemorySpace>, Field> {
   static_assert(!detail::holds<PairCouplings, Field>(),
                 "PairCouplings read the spins of vacant sites: where these are zero vectors, no "
                 "FieldWithVacancies is needed.");
   static_assert(!detail::holds<detail::SeesAllSpins, Field>(),
-                "Dear evaluates its term for the spins of vacant sites, too: inside "
+                "SlowField evaluates its term for the spins of vacant sites, too: inside "
                 "FieldWithVacancies it takes a HostField or a local term.");
 
  public:

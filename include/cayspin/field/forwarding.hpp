@@ -26,13 +26,13 @@ struct PrepareForRows {
 
 }  // namespace detail
 
-/// The host members of a term or generator that is made of others (CRTP): those that are called
-/// before a kernel are forwarded to its parts from here. Derived has two members:
-///   auto with_parts(make) const    the same, for kernels, around make(part) of each part
-///   bool all_parts(test) const     test(part) holds for every part
-/// Members that Derived has itself come first. What with_parts returns need not have gather
-/// (parts.hpp) and begin_row (detail/row_fields.hpp): without them RedBlack does not split the
-/// field, and it is evaluated spin by spin.
+/// CRTP base with the host members of a term or generator made of others: it forwards the members
+/// that are called before a kernel to the parts. Derived has two members:
+///   auto with_parts(make) const    returns the kernel version, made of make(part) for each part
+///   bool all_parts(test) const     true if test(part) holds for every part
+/// Members that Derived defines take precedence. The result of with_parts may omit gather
+/// (parts.hpp) and begin_row (detail/row_fields.hpp): RedBlack then does not split the field, and
+/// the field is evaluated spin by spin.
 template <class Derived, class... Parts>
 class Forwarding {
  public:
@@ -53,12 +53,12 @@ class Forwarding {
       return derived().prepare(exec, spins, t);
   }
   template <class Exec, class Spins>
-  bool rows_need_time_alone(Exec const& exec, Spins const& spins) const {
+  bool rows_need_only_time(Exec const& exec, Spins const& spins) const {
     return derived().all_parts([&](auto const& part) {
       if constexpr (goes_along_rows<Exec, Spins>())
-        return detail::rows_need_time_alone(part, exec, spins);
+        return detail::rows_need_only_time(part, exec, spins);
       else
-        return detail::needs_time_alone(part, exec, spins);
+        return detail::needs_only_time(part, exec, spins);
     });
   }
   template <class Exec, class Spins>
@@ -67,15 +67,15 @@ class Forwarding {
         [&](auto const& part) { return detail::is_stationary(part, exec, spins); });
   }
   template <class Exec, class Spins>
-  bool needs_time_alone(Exec const& exec, Spins const& spins) const {
+  bool needs_only_time(Exec const& exec, Spins const& spins) const {
     return derived().all_parts(
-        [&](auto const& part) { return detail::needs_time_alone(part, exec, spins); });
+        [&](auto const& part) { return detail::needs_only_time(part, exec, spins); });
   }
 
   friend detail::PartsOf<Parts...> parts_of(Forwarding const*) { return {}; }
 
  private:
-  /// Does what with_parts makes of the parts for rows call begin_row of each?
+  /// True if with_parts of the parts for rows calls begin_row of each part.
   template <class Exec, class Spins>
   static constexpr bool goes_along_rows() {
     using Make = detail::PrepareForRows<Exec, Spins>;
@@ -89,12 +89,12 @@ class Forwarding {
 
 namespace detail {
 
-/// Among the parts of what evaluates Term for all spins, whatever stencil it is given.
+/// True if a part needs all spins to be evaluated, whatever the stencil.
 template <class Term>
 struct SeesAllSpins {};
 
-/// The device members about the energy of a generator that is made of one part with an energy,
-/// which Derived::part() gives.
+/// Device members about the energy of a generator with a single part that has an energy, given by
+/// Derived::part().
 template <class Derived, class Part>
 class ForwardingEnergy {
  public:

@@ -30,16 +30,16 @@ struct StoredField {
 
 }  // namespace detail
 
-/// A field that host code computes from all spins at once, through a mirror copy: the way to bring
-/// any non-local field (an FFT demag, a boundary-element solve). Before each stage the spins are
-/// copied to host memory, `solver(spins, field, t)` fills `field`, and that is copied back. Where
-/// spins live in host memory already, nothing is copied. On a part of a lattice (mpi::Domain) the
-/// solver gets that part, and fills all but its ghosts.
+/// A field that host code computes from all spins at once, through a mirror copy: use it to add any
+/// non-local field (an FFT demag, a boundary-element solver). Before each stage the spins are
+/// copied to host memory, `solver(spins, field, t)` fills `field`, and `field` is copied back. If
+/// the spins are in host memory, nothing is copied. On a part of a lattice (mpi::Domain) the solver
+/// gets that part, and fills all sites but its ghosts.
 ///
 /// Solver: a callable void(SpinField<Real, HostSpace> const& spins, SpinField<Real, HostSpace>
 /// const& field, double t) with a member `degree`: 1 when H does not depend on m (E = -m.H), 2 when
-/// it is linear in m and symmetric (E = -m.H/2). One that can be called as solver(exec, spins,
-/// field, t), with fields in the spins' own memory, is called so, and nothing is copied.
+/// it is linear in m and symmetric (E = -m.H/2). A solver callable as solver(exec, spins, field,
+/// t), with fields in the memory space of the spins, is called that way without copies.
 template <class Spins, class Solver>
 class HostField {
   using Real = typename Spins::value_type;
@@ -64,7 +64,7 @@ class HostField {
       host_field_ = HostSpins("HostField::host_field", lattice);
     }
   }
-  /// For spins like these: their lattice, precision and memory space.
+  /// Uses the lattice, precision and memory space of the spins `like`.
   HostField(Spins const& like, Solver solver) : HostField(like.lattice(), std::move(solver)) {}
 
   template <class Others>
@@ -80,7 +80,7 @@ class HostField {
   template <class Exec, class Others>
   detail::StoredField<Real> prepare(Exec const& exec, Others const& spins, double t) const {
     if constexpr (!std::is_same_v<Others, Spins>) {
-      // check_spins has said so
+      // check_spins has reported it
     } else if constexpr (in_place) {
       solver_(exec, spins, field_, t);
       detail::update_ghosts(exec, field_.lattice(), field_);
@@ -111,7 +111,7 @@ template <class Spins, class Solver>
 inline constexpr bool is_host_field<HostField<Spins, Solver>> = true;
 }  // namespace detail
 
-/// Without spins to go by: double precision in the default memory space.
+/// Deduces double precision in the default memory space when no spins are given.
 template <class Solver>
 HostField(Lattice, Solver) -> HostField<SpinField<double>, Solver>;
 

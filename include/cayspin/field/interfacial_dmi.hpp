@@ -13,7 +13,7 @@ namespace cayspin::inline v0_1 {
 
 namespace detail {
 
-/// What kernels hold of InterfacialDmi: (D / spacing) n x e of each axis e, or 0.
+/// InterfacialDmi for kernels: (D / spacing) n x e of each axis e, or 0.
 class UniformInterfacialDmi {
  public:
   static constexpr int degree = 2;  // H is linear in the spins
@@ -44,7 +44,7 @@ class UniformInterfacialDmi {
     return field(stencil);
   }
 
-  /// Each site carries half of each of its bonds.
+  /// Returns half the energy of each bond of the site.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
@@ -70,16 +70,15 @@ class UniformInterfacialDmi {
 
 }  // namespace detail
 
-/// Interfacial Dzyaloshinskii-Moriya interaction of a film with unit normal n, of energy density
-/// D (m_n div m - m . grad m_n). A bond from spin m along the axis e to its neighbour m' has
-/// E = (D / spacing) (m x m') . (n x e), so that H = sum over axes of
-/// (D / spacing) (n x e) x (m_next - m_previous). A missing neighbour has no bond.
-/// With Exchange(lattice, A), a free spiral along e turns by atan(D spacing / A) from site to site.
-/// Rohart and Thiaville 2013.
+/// Interfacial Dzyaloshinskii-Moriya interaction of a film with unit normal n, with energy density
+/// D (m_n div m - m . grad m_n). A bond from spin m along the axis e to its neighbour m' has E = (D
+/// / spacing) (m x m') . (n x e), so that H = sum over axes of (D / spacing) (n x e) x (m_next -
+/// m_previous). A missing neighbour has no bond. With Exchange(lattice, A), a free spiral along e
+/// turns by atan(D spacing / A) from site to site. Rohart and Thiaville 2013.
 class InterfacialDmi : public detail::TermOnLattice<detail::UniformInterfacialDmi> {
  public:
-  /// `normal` is normalised. Throws std::invalid_argument when it is zero, or the constant not
-  /// finite.
+  /// `normal` is normalised. Throws std::invalid_argument when it is zero, or when the constant is
+  /// not finite.
   InterfacialDmi(Lattice const& lattice, double constant, Vec3<double> const& normal = {0, 0, 1})
       : TermOnLattice("cayspin::InterfacialDmi", lattice,
                       detail::finite(constant, "cayspin::InterfacialDmi: the constant"), normal) {}

@@ -6,13 +6,13 @@
 #include <cstddef>
 #include <span>
 
-// Weights by which values of an expensive field give it at a time x within a step, 0 <= x <= 1.
+// Weights that interpolate values of an expensive field to a time x within a step, 0 <= x <= 1.
 namespace cayspin::inline v0_1::detail {
 
 inline constexpr std::size_t most_multirate_values = 5;
 using MultirateWeights = std::array<double, most_multirate_values>;
 
-/// Those of the polynomial through the values at `nodes`.
+/// Returns the weights of the polynomial through the values at `nodes`.
 inline MultirateWeights interpolating_weights(double x, std::span<double const> nodes) {
   MultirateWeights weights{};
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -23,26 +23,26 @@ inline MultirateWeights interpolating_weights(double x, std::span<double const> 
   return weights;
 }
 
-/// A polynomial of degree 2 in x, by its mean over the step: the mean fixes the order of a method,
-/// the shape its stability.
+/// Returns a polynomial of degree 2 in x with a given mean over the step: the mean fixes the order
+/// of a method, the shape its stability.
 inline double with_mean(double mean, double slope, double curvature, double x) {
   return mean + slope * (x - 0.5) + curvature * (x * x - x + 1.0 / 6);
 }
 
-// The polynomials of Multirate of order 4. A mode that turns by half a turn a step is seen as one
-// that alternates, and its image turns the other way: the polynomial of degree 3 through the last
-// values amplifies both. These keep the conditions of order 4, which are interpolation by degree 1
-// or 2 and one mean. The other 10 numbers come from a search over linear modes m' = (i - damping)
-// (w + D) m with D elliptical: none grows up to the longest step, and linewidths change least.
+// Polynomials of Multirate of order 4. A mode that turns by half a turn per step looks alternating,
+// with an image that turns the other way: the polynomial of degree 3 through the last values
+// amplifies both. The polynomials below keep the conditions of order 4: interpolation of degree 1
+// or 2, and one mean. The other 10 numbers come from a search over linear modes m' = (i - damping)
+// (w + D) m with elliptical D: none grows up to the longest step, and linewidths change least.
 
-/// Predicts: values at 0, -1, -2, -3.
+/// Returns predictor weights for values at 0, -1, -2, -3.
 inline MultirateWeights damping_predictor(double x, std::span<double const> /*nodes*/) {
   double const second = with_mean(5.0 / 12, -6.58, -0.91, x);
   double const third = with_mean(-0.23, 4.19, 1.32, x);
   return {1 + x + second + third, -x - 2 * second - 3 * third, second + 3 * third, -third, 0};
 }
 
-/// Corrects: values at 1, 0, -1, -2, -3.
+/// Returns corrector weights for values at 1, 0, -1, -2, -3.
 inline MultirateWeights damping_corrector(double x, std::span<double const> /*nodes*/) {
   double const third = with_mean(-1.0 / 24, 0.77, -4.61, x);
   double const fourth = with_mean(0.06, -0.41, 1.8, x);

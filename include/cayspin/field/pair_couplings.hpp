@@ -15,17 +15,17 @@
 
 namespace cayspin::inline v0_1 {
 
-/// Bonds between any sites of a crystal: E = -m.T m' - B (m.m')^2 of each Coupling, so that
-/// H = T m' + 2 B (m.m') m', and T transposed the other way. Bonds past an open end are none. A
-/// periodic axis that is shorter than a bond closes on itself. On a part of a lattice
-/// (mpi::Domain) every evaluation is refused: between the stages of a step nobody updates as many
-/// ghosts as bonds reach.
+/// Bonds between any sites of a crystal: E = -m.T m' - B (m.m')^2 of each Coupling, so that H = T
+/// m' + 2 B (m.m') m' at m, and with T transposed at m'. Bonds past an open end are omitted. A
+/// periodic axis shorter than a bond wraps around repeatedly. On a part of a lattice (mpi::Domain)
+/// every evaluation is refused, because between the stages of a step no ghosts are updated as deep
+/// as bonds reach.
 template <class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class PairCouplings {
  public:
-  /// Throws std::invalid_argument for an invalid lattice, a coupling of sites that no cell has, one
-  /// of a site with itself, a number that is not finite, and a part of a lattice with fewer ghosts
-  /// than bonds reach.
+  /// Throws std::invalid_argument for an invalid lattice, a coupling of sites that no cell has or
+  /// of a site with itself, a non-finite number, and a part of a lattice with fewer ghosts than
+  /// bonds reach.
   PairCouplings(Lattice const& lattice, std::vector<Coupling> const& couplings)
       : PairCouplings(lattice, detail::BondLists(detail::validated(lattice), couplings)) {}
 
@@ -50,12 +50,12 @@ class PairCouplings {
       return prepare(exec, spins, t);
   }
 
-  /// The largest |H| of unit spins at each site of a cell, or an upper bound of it.
+  /// Returns the largest |H| of unit spins at each site of a cell, or an upper bound of it.
   std::vector<double> const& field_bounds() const { return field_bounds_; }
 
-  /// Without biquadratic bonds H is linear in the spins.
+  /// Returns true without biquadratic bonds: H is then linear in the spins.
   bool is_affine() const { return !has_biquadratic(); }
-  /// Is H more than linear in the spins?
+  /// Returns true if H is not linear in the spins.
   bool has_biquadratic() const { return bonds_.table().has_biquadratic; }
 
  private:

@@ -13,8 +13,8 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// What kernels hold of PairCouplings. It sums the bonds of a site, in the order of their table:
-/// spin by spin, or along a row, to the same bits.
+/// PairCouplings for kernels. Sums the bonds of a site in the order of their table, spin by spin or
+/// along a row, with equal bits.
 template <class Real>
 class PairField {
  public:
@@ -25,7 +25,7 @@ class PairField {
     return table_.site_of_plane(z);
   }
 
-  /// H by its degree in the spins, and the site's energy: each has half of each of its bonds.
+  /// Sums for H, split by its degree in the spins, and for the energy: half that of each bond.
   template <class Value>
   struct Parts {
     Vec3<Value> linear, cubic;
@@ -60,14 +60,14 @@ class PairField {
     return sum_at_edge(of_site, stencil.center(), x, y, z);
   }
 
-  /// H of sites begin .. end - 1 of a row, whole packs.
+  /// Computes H of sites begin .. end - 1 of a row, in whole packs.
   CAYSPIN_DETAIL_NOINLINE void evaluate_row(Row const& row, std::int32_t begin, std::int32_t end,
                                             RowFields<Real> const& to) const {
     auto const& of_site = table_.sites[table_.site_of_plane(row.z)];
     Real const* const own = spins_.array.data + row.offset;
     if (of_site.last_bond - of_site.first_bond > RowsOfBonds::most ||
         Kokkos::max(of_site.reach.low[0], of_site.reach.high[0]) > lanes) {
-      // Past the ends of the first and of the last row a pack may be read, and no more.
+      // At most one pack may be read past the ends of the first and the last row.
       for (std::int32_t x = begin; x < end; x += lanes)
         store(sum_at_edge(of_site, spins_.template load_at<OnHost>(own + x), x, row.y, row.z),
               to.data + (x - begin));
@@ -84,7 +84,7 @@ class PairField {
 
   // The rows to which the bonds of a row's sites lead, shifted along x by the bond.
 
-  /// Where none lies past an end.
+  /// For rows that are all inside.
   struct RowsInPlace {
     static constexpr bool all_there = true;
     Real const* own;
@@ -92,7 +92,7 @@ class PairField {
 
     Real const* operator[](std::int32_t b) const { return own + bonds[b].template offset<Real>(); }
   };
-  /// Null past an open end.
+  /// Rows reached by bonds; null past an open end.
   class RowsOfBonds {
    public:
     static constexpr bool all_there = false;
@@ -129,7 +129,7 @@ class PairField {
     while (x + 4 * lanes <= end) sum(std::integral_constant<int, 4>());
     while (x + 2 * lanes <= end) sum(std::integral_constant<int, 2>());
     while (x < end) sum(std::integral_constant<int, 1>());
-    // Bonds that lead past an end of the row were taken to lead straight on.
+    // So far, bonds past an end of the row were read without wrapping.
     std::int32_t const nx = spins_.extent[0];
     for (x = begin; x < Kokkos::min(of_site.reach.low[0], end); ++x)
       sum_near_end(of_site, rows, x, to + (x - begin));
@@ -186,7 +186,7 @@ class PairField {
         add_tensor(of_site, b, m, spins_.template load_at<OnHost>(rows[b] + x), sums);
     store(sums, to);
   }
-  /// One site, some of whose bonds lead past an end of the row.
+  /// Corrects one site, some of whose bonds lead past an end of the row.
   template <class Rows>
   CAYSPIN_DETAIL_NOINLINE void sum_near_end(BondsOfSite const& of_site, Rows const& rows,
                                             std::int32_t x, Real* to) const {
@@ -270,8 +270,8 @@ class PairField {
   BondTable table_;
 };
 
-/// The same for a loop over rows, which calls begin_row. A type of its own: with H site by site in
-/// the same kernel g++ keeps the spins in memory.
+/// PairCouplings in a loop over rows, which calls begin_row. A separate type, because g++ keeps the
+/// spins in memory if the kernel also has H site by site.
 template <class Real>
 class PairFieldAlongRows : public PairField<Real> {
  public:

@@ -9,17 +9,18 @@
 #include <cstddef>
 #include <utility>
 
-// A field that is made of other terms, as kernels see it. It has
-//   gather(take, stencil)    the sum over its parts of take(part, stencil), as they count in it,
-// where `take` is one of the structs below and says what is wanted of each part. It may also have
-//   energy_terms, energy_densities(stencil, energies)    their number, and the E of each term
-//   energy_magnitude(stencil)    the sum of their absolute values, where it is not the sum of these
-//   local_field_varies()         does the local part of H change with the spin?
-// The local part of H at a site depends on the spin there and on t only; the rest is the neighbour
-// field. RedBlack moves each spin in the field of its neighbours.
+// A field made of other terms, as kernels see it. It has
+//   gather(take, stencil)    the weighted sum over its parts of take(part, stencil),
+// where `take` is one of the structs below and says which quantity of each part is wanted.
+// Optional:
+//   energy_terms, energy_densities(stencil, energies)    the number of terms, and E of each
+//   energy_magnitude(stencil)    sum of absolute energies, if it differs from the sum over these
+//   local_field_varies()         true if the local part of H changes with the spin
+// The local part of H at a site depends only on its spin and t; the rest is the neighbour field.
+// RedBlack rotates each spin about the field of its neighbours.
 namespace cayspin::inline v0_1::detail {
 
-/// The parts of a term or generator that is made of others (Forwarding); none of others.
+/// The parts of a term or generator made of others (Forwarding); empty for any other.
 template <class... Parts>
 struct PartsOf {};
 PartsOf<> parts_of(void const*);
@@ -52,7 +53,7 @@ constexpr bool has_local_part() {
   return is_local<Term> || any_has_local_part(PartsOfTerm<Term>());
 }
 
-// These structs say what a caller wants of each part. `add` returns `h` plus that of one part.
+// These structs select a quantity of each part. `add` returns `h` plus that of one part.
 
 struct WholeField {
   template <class Term>
@@ -110,7 +111,7 @@ struct NeighborField {
   }
 };
 
-/// The rest of H.
+/// The local part of H.
 struct LocalField {
   template <class Term>
   static constexpr bool skips = !has_local_part<Term>();
@@ -158,7 +159,7 @@ KOKKOS_FORCEINLINE_FUNCTION VectorOf<Spin> local_field(Term const& term, Spin co
     return zero<ValueOf<Spin>>();
 }
 
-/// Has a prepared term the neighbour field and the rest of H?
+/// True if a prepared term splits H into a neighbour field and a local part.
 template <class Term, class Stencil>
 constexpr bool comes_in_parts();
 template <class Stencil, class... Parts>
@@ -184,14 +185,14 @@ KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies(Term const& term) {
     return is_local<Term>;
 }
 
-/// The number of terms of which the energy of a term or generator is the sum.
+/// Number of terms summed in the energy of a term or generator.
 template <class Source>
 inline constexpr int energy_terms = [] {
   if constexpr (requires { Source::energy_terms; }) return Source::energy_terms;
   return 1;
 }();
 
-/// The energy of each of them.
+/// Returns the energy of each of these terms.
 template <class Source, class Stencil, class Value>
 KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Source const& source, Stencil const& stencil,
                                                   Value* energies) {
@@ -203,7 +204,7 @@ KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Source const& source, Stencil 
   }
 }
 
-/// The sum of their absolute values.
+/// Returns the sum of their absolute values.
 template <class Source, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_magnitude(Source const& source,
                                                               Stencil const& stencil) {

@@ -12,13 +12,14 @@
 #include <optional>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 namespace cayspin::inline v0_1 {
 
 namespace detail {
 
 /// H_n = sum of A_nq (m_q - m_n) / spacing^2, with A_nq / spacing^2 of the bond to the next site
-/// along each axis; without data: none along that axis.
+/// along each axis; no data: no bonds along that axis.
 template <class Real>
 struct ExchangeOfSites {
   static constexpr int degree = 2;  // H is linear in the spins
@@ -37,7 +38,7 @@ struct ExchangeOfSites {
     return h;
   }
 
-  /// Sum of A_nq m_q / spacing^2: H without a multiple of the spin itself.
+  /// Returns the sum of A_nq m_q / spacing^2: H without a multiple of the spin itself.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
     auto h = zero<ValueOf<Stencil>>();
@@ -47,7 +48,7 @@ struct ExchangeOfSites {
     return h;
   }
 
-  /// Each site carries half of each of its bonds.
+  /// Returns half the energy of each bond of the site.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     ValueOf<Stencil> e(0);
@@ -63,8 +64,8 @@ struct ExchangeOfSites {
     ValueOf<Stencil> on, back;
     VectorOf<Stencil> next, previous;  // from the spin to its neighbours
   };
-  // The bond to the previous site is that site's bond to the next; past an open end it is of no
-  // matter, as what it multiplies is zero there.
+  // The bond to the previous site is stored there as the bond to its next site. Past an open end
+  // its value does not matter, since it multiplies zero.
   template <int Axis, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION BondsOfSite<Stencil> with_differences(Stencil const& stencil) const {
     auto const on = stencil.site().load(bonds[Axis]);
@@ -94,7 +95,7 @@ struct ExchangeOfSites {
   }
 };
 
-/// Finds the constants of the bonds to next sites over the spacing squared.
+/// Functor that computes the constants of the bonds to next sites, over the spacing squared.
 template <class Real>
 struct FindBonds {
   SiteArray<Real, 1> constants;
@@ -123,16 +124,17 @@ struct FindBonds {
 }  // namespace detail
 
 /// Exchange whose constant A differs from site to site. The constant of the bond between sites n
-/// and q is the harmonic mean A_nq = 2 A_n A_q / (A_n + A_q), that of two half cells in series: it
+/// and q is the harmonic mean A_nq = 2 A_n A_q / (A_n + A_q), as for two half cells in series: it
 /// keeps A dm/dx continuous where A jumps, and a site with A = 0 has no bonds.
 /// H_n = sum over neighbours of A_nq (m_q - m_n) / spacing^2,
-/// E = sum over bonds of (A_nq / 2) |m_q - m_n|^2 / spacing^2. A_nq / spacing^2 is kept as a Real.
+/// E = sum over bonds of (A_nq / 2) |m_q - m_n|^2 / spacing^2. A_nq / spacing^2 is stored as a
+/// Real.
 template <class Real, class MemorySpace>
 class SiteDependentExchange : public detail::PreparedOnce {
  public:
-  /// Spacings and boundaries are those of the constants' lattice. The bonds are found here, once:
-  /// of constants that change later make another term. Throws std::invalid_argument when a constant
-  /// is not finite, or when some are positive and some negative.
+  /// Spacings and boundaries are those of the constants' lattice. The bonds are computed once,
+  /// here: if the constants change later, make a new term. Throws std::invalid_argument when a
+  /// constant is not finite, or when some are positive and some negative.
   explicit SiteDependentExchange(ScalarField<Real, MemorySpace> constants)
       : constants_(std::move(constants)) {
     auto const signs =
@@ -153,12 +155,28 @@ class SiteDependentExchange : public detail::PreparedOnce {
   detail::ExchangeOfSites<Real> prepare(Exec const&, Spins const&, double) const {
     return prepared();
   }
-  /// For kernels, of all times alike.
+  /// Returns the term for kernels, which does not depend on time.
   detail::ExchangeOfSites<Real> prepared() const {
     detail::ExchangeOfSites<Real> prepared;
     for (int axis = 0; axis < 3; ++axis)
       if (bonds_[axis]) prepared.bonds[axis] = bonds_[axis]->array();
     return prepared;
+  }
+
+  /// Multiplies the constant of the bond from each site to the next one along an axis; `factors`
+  /// has one number for each own site, x fastest. Throws std::invalid_argument for another number
+  /// of factors.
+  void scale_bonds(int axis, std::vector<double> const& factors) {
+    if (!bonds_[axis]) return;
+    auto const& bonds = *bonds_[axis];
+    auto const constants = copy_to_host(bonds);
+    detail::require_size("cayspin::SiteDependentExchange", factors.size(), bonds.sites());
+    std::vector<double> scaled(constants.begin(), constants.end());
+    for (std::size_t site = 0; site < scaled.size(); ++site) scaled[site] *= factors[site];
+    copy_from_host(scaled, bonds);
+    typename MemorySpace::execution_space const exec;
+    detail::update_ghosts(exec, bonds.lattice(), bonds);
+    exec.fence("cayspin::SiteDependentExchange: bonds scaled");
   }
 
  private:

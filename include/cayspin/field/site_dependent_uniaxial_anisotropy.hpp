@@ -14,7 +14,7 @@ namespace cayspin::inline v0_1 {
 
 namespace detail {
 
-/// Counts sites whose vector is not of length 1, to rounding.
+/// Functor that counts sites whose vector differs from length 1 by more than rounding.
 template <class Real>
 struct NotUnitOfSites {
   SiteArray<Real, 3> vectors;
@@ -28,7 +28,7 @@ struct NotUnitOfSites {
   }
 };
 
-/// H = K (m.e) e with K and e of a site; each is held as one value or as an array.
+/// H = K (m.e) e with K and e of each site; each is stored as one value or as an array.
 template <class Constant, class Axis>
 struct UniaxialAnisotropyOfSites {
   static constexpr int degree = 2;  // H is linear in the spins
@@ -56,7 +56,7 @@ struct UniaxialAnisotropyOfSites {
 /// Uniaxial anisotropy whose constant, axis, or both differ from site to site:
 /// H = K_n (m.e_n) e_n, E = -K_n (m.e_n)^2 / 2.
 /// Constant is double or a ScalarField, Axis a Vec3<double> or a SiteField of three components;
-/// only what differs takes memory.
+/// only a field takes memory.
 template <class Constant, class Axis>
 class SiteDependentUniaxialAnisotropy : public detail::PreparedOnce {
   static constexpr char const* name = "cayspin::SiteDependentUniaxialAnisotropy";
@@ -64,8 +64,8 @@ class SiteDependentUniaxialAnisotropy : public detail::PreparedOnce {
  public:
   static constexpr bool is_local = true;
 
-  /// One axis for all sites is normalised; a field of axes is taken as it is. Throws
-  /// std::invalid_argument when a constant is not finite or an axis of a field not of length 1.
+  /// A single axis is normalised; a field of axes is used as it is. Throws std::invalid_argument
+  /// when a constant is not finite or a field has an axis whose length is not 1.
   SiteDependentUniaxialAnisotropy(std::type_identity_t<Constant> constant,
                                   std::type_identity_t<Axis> axis)
       : constant_(std::move(constant)), axis_(std::move(axis)) {

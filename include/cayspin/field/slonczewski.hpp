@@ -5,11 +5,11 @@
 
 namespace cayspin::inline v0_1 {
 
-/// The torque of a current that is polarised along the unit vector p, t = a m x (p x m) - b m x p,
-/// as the field whose precession it is: H = a m x p + b p, which is m x t but for a multiple of m.
-/// With damping, LandauLifshitz makes t + damping m x t of it. The strengths a (damping-like, which
-/// turns m towards p) and b (field-like) are fields in reduced units. There is no energy:
-/// energy_density is 0, and what needs an energy refuses the term. Slonczewski 1996.
+/// The torque of a current polarised along the unit vector p, t = a m x (p x m) - b m x p. It is
+/// written as a field that precesses the spin accordingly: H = a m x p + b p, which equals m x t up
+/// to a multiple of m. With damping, LandauLifshitz turns it into t + damping m x t. The strengths
+/// a (damping-like, turns m towards p) and b (field-like) are fields in reduced units. There is no
+/// energy: energy_density is 0, and code that needs an energy refuses the term. Slonczewski 1996.
 class Slonczewski {
  public:
   static constexpr bool is_local = true;
@@ -17,7 +17,7 @@ class Slonczewski {
 
   struct Torque {
     double damping_like = 0, field_like = 0;  ///< a and b
-    Vec3<double> polarization;                ///< p, which is normalised
+    Vec3<double> polarization;                ///< p, normalised by the constructor
   };
 
   ///   Slonczewski({.damping_like = 0.1, .polarization = {0, 0, 1}})
@@ -34,14 +34,14 @@ class Slonczewski {
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     return damping_like_field(stencil) + as_value<ValueOf<Stencil>>(field_like_);
   }
-  /// The part of H that is linear in m: a m x p.
+  /// Returns the part of H that is linear in m: a m x p.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> damping_like_field(Stencil const& stencil) const {
     return cross(stencil.center(), as_value<ValueOf<Stencil>>(damping_like_));
   }
   bool is_affine() const { return true; }
 
-  /// It has no energy.
+  /// Returns 0: the term has no energy.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const&) const {
     return ValueOf<Stencil>(0);

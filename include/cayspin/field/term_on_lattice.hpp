@@ -7,8 +7,8 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// A term made for one lattice, the same at all times. Prepared: what kernels hold of it, made from
-/// the lattice and the term's numbers.
+/// A term made for one lattice, constant in time. Prepared: the kernel version, made from the
+/// lattice and the term's numbers.
 template <class Prepared>
 class TermOnLattice : public Prepared, public PreparedOnce {
  public:

@@ -8,8 +8,8 @@
 
 namespace cayspin::inline v0_1 {
 
-/// A uniform applied field: H = applied, E = -m.H per site. What evaluates it throws
-/// std::invalid_argument when it is not finite.
+/// A uniform applied field: H = applied, E = -m.H per site. Evaluation throws std::invalid_argument
+/// when it is not finite.
 struct Zeeman {
   static constexpr int degree = 1;  // H does not depend on the spins
   static constexpr bool is_local = true;
@@ -33,7 +33,7 @@ struct Zeeman {
 };
 
 /// A uniform applied field that changes with time: `applied(t)` is called on the host, once per
-/// stage, at the stage's own time.
+/// stage, at the stage's time.
 template <class Applied>
 class TimeDependentZeeman {
   static_assert(std::is_invocable_r_v<Vec3<double>, Applied const&, double>,

@@ -11,7 +11,7 @@ namespace cayspin::inline v0_1 {
 
 namespace detail {
 
-/// What kernels hold of ZhangLi: velocity / (2 spacing) of each axis, or 0.
+/// ZhangLi for kernels: velocity / (2 spacing) of each axis, or 0.
 class UniformZhangLi {
  public:
   static constexpr bool is_conservative = false;  // H is the derivative of no energy
@@ -33,7 +33,7 @@ class UniformZhangLi {
     return multiply_add(as_value<Value>(-nonadiabaticity_), d, cross(d, stencil.center()));
   }
 
-  /// It has no energy.
+  /// Returns 0: the term has no energy.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const&) const {
     return ValueOf<Stencil>(0);
@@ -53,12 +53,13 @@ class UniformZhangLi {
 
 }  // namespace detail
 
-/// The torque of a current in the plane of a texture, t = -(u.grad) m + xi m x (u.grad) m, as the
-/// field whose precession it is: H = (u.grad) m x m - xi (u.grad) m, which is m x t but for a
-/// multiple of m. With damping, LandauLifshitz makes t + damping m x t of it. (u.grad) m is the
-/// central difference over 2 spacings, where a missing neighbour is the spin itself.
-/// The velocity u is in units of length over units of time; xi has no unit. There is no energy:
-/// energy_density is 0, and what needs an energy refuses the term. Zhang and Li 2004.
+/// The torque of a current in the plane of a texture, t = -(u.grad) m + xi m x (u.grad) m. It is
+/// written as a field that precesses the spin accordingly: H = (u.grad) m x m - xi (u.grad) m,
+/// which equals m x t up to a multiple of m. With damping, LandauLifshitz turns it into t + damping
+/// m x t. (u.grad) m is the central difference over 2 spacings, where the spin itself replaces a
+/// missing neighbour. The velocity u is in units of length over units of time; xi has no unit.
+/// There is no energy: energy_density is 0, and code that needs an energy refuses the term. Zhang
+/// and Li 2004.
 class ZhangLi : public detail::TermOnLattice<detail::UniformZhangLi> {
  public:
   /// Throws std::invalid_argument when a number is not finite.

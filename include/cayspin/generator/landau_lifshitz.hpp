@@ -15,11 +15,11 @@
 
 namespace cayspin::inline v0_1 {
 
-/// m' = -m x H - damping m x (m x H), as A x m with A = H + damping m x H; overdamped, without
-/// precession, A = damping m x H. Reduced units.
-/// Damping is double, or a ScalarField with a number for each site. This is the form of Landau and
-/// Lifshitz: Gilbert's has A / (1 + damping^2), which a unit of time takes up where the damping is
-/// one for all sites, but not where it differs.
+/// m' = -m x H - damping m x (m x H), as A x m with A = H + damping m x H; without precession
+/// (overdamped) A = damping m x H. Reduced units. Damping is double, or a ScalarField with a number
+/// for each site. This is the form of Landau and Lifshitz. Gilbert's has A / (1 + damping^2);
+/// rescaling time converts one into the other if the damping is uniform, but not if it differs
+/// between sites.
 template <class Field, class Damping = double>
 class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
                        public detail::ForwardingEnergy<LandauLifshitz<Field, Damping>, Field> {
@@ -29,12 +29,12 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
       : field_(std::move(field)), damping_(std::move(damping)), precession_(precession) {
     check(damping_);
   }
-  /// Precession is a bool: a number in its place is refused when compiled.
+  /// Precession is a bool: passing a number does not compile.
   LandauLifshitz(Field, std::type_identity_t<Damping>, double) = delete;
 
   KOKKOS_FORCEINLINE_FUNCTION Field const& field() const { return field_; }
   KOKKOS_FORCEINLINE_FUNCTION bool has_precession() const { return precession_; }
-  /// False where the damping is zero on all sites; not looked for where it is a field.
+  /// Returns false where the damping is zero on all sites; a damping field is not searched.
   KOKKOS_FORCEINLINE_FUNCTION bool is_damped() const {
     if constexpr (uniform)
       return damping_ != 0;
@@ -83,15 +83,15 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
     return generator(stencil.site(), stencil.center(), detail::turning_field(field_, stencil));
   }
 
-  /// A in a field H that is known.
+  /// Returns A for a known field H.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> in_field(
       Stencil const& stencil, Vec3<typename Stencil::value_type> const& h) const {
     return generator(stencil.site(), stencil.center(), h);
   }
 
-  /// True where the motion conserves the energy, with A = -dE/dm up to a multiple of m.
-  /// Not looked for where the damping is a field.
+  /// Returns true if the motion conserves the energy: A = -dE/dm up to a multiple of m. A damping
+  /// field is not searched for nonzero values.
   bool conserves_energy() const {
     if constexpr (uniform && detail::is_conservative<Field>)
       return damping_ == 0 && precession_;
@@ -112,7 +112,7 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
       throw std::invalid_argument("cayspin::LandauLifshitz: damping must be >= 0 on every site");
   }
   template <class Real>
-  static void check(SiteArray<Real, 1> const&) {}  // of a field that was checked
+  static void check(SiteArray<Real, 1> const&) {}  // the field was checked by the constructor
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator(Site const& site, Vec3<Value> const& m,

@@ -13,7 +13,7 @@ namespace cayspin::inline v0_1 {
 
 namespace detail {
 
-/// A - (m.A) m
+/// Returns A - (m.A) m.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> orthogonal_part(Vec3<Value> const& a,
                                                         Vec3<Value> const& m) {
@@ -22,7 +22,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> orthogonal_part(Vec3<Value> const& a,
 
 }  // namespace detail
 
-/// A generator without its part along the spin: A_o = A - (m.A) m.
+/// A generator without its component along the spin: A_o = A - (m.A) m.
 template <class Generator>
 class Orthogonal : public Forwarding<Orthogonal<Generator>, Generator>,
                    public detail::ForwardingEnergy<Orthogonal<Generator>, Generator> {
@@ -67,7 +67,7 @@ class Orthogonal : public Forwarding<Orthogonal<Generator>, Generator>,
   }
   KOKKOS_FUNCTION static constexpr bool is_orthogonal() { return true; }
 
-  // Of rigid bodies.
+  // For rigid bodies.
   template <class Value, class Site>
   KOKKOS_FORCEINLINE_FUNCTION auto inverse_inertia(Site const& site) const {
     return generator_.template inverse_inertia<Value>(site);

@@ -7,16 +7,16 @@
 
 namespace cayspin::inline v0_1::isotropy {
 
-/// For rigid bodies: adds dt^p s m to a step's coordinates F. The number s cancels the leading
-/// energy error of LieHeun (p = 3), Rkmk4 and Series4 (p = 4). It is zero for a body at rest.
-/// Lewis and Nigam 2002, Sec. 5.2, here coordinate free and for any symmetric inertia.
+/// Correction for rigid bodies that adds dt^p s m to a step's coordinates F. The number s cancels
+/// the leading energy error of LieHeun (p = 3), Rkmk4 and Series4 (p = 4); it is zero for a body at
+/// rest. Lewis and Nigam 2002, Sec. 5.2, here coordinate free and for any symmetric inertia.
 struct Energy {};
 
 }  // namespace cayspin::inline v0_1::isotropy
 
 namespace cayspin::inline v0_1::detail {
 
-/// The invariants of B = I^-1 and m from which the corrections are computed.
+/// Invariants of B = I^-1 and m that the corrections depend on.
 template <class Value>
 struct BodyInvariants {
   Vec3<Value> bm, v;                 // B m, m x B m
@@ -72,7 +72,7 @@ struct Rkmk4Correction {
   }
 };
 
-/// F + dt^p s m.
+/// Returns F + dt^p s m.
 template <class Correction, class Generator, class Site, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> corrected(Generator const& generator, Site const& site,
                                                   Vec3<Value> const& f, Vec3<Value> const& m,

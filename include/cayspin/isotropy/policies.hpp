@@ -5,11 +5,11 @@
 
 #include <limits>
 
-// An isotropy policy turns the generator's A at a spin m into xi = A + sigma m. The exact flow does
-// not depend on sigma. Methods of finite order do.
+// An isotropy policy turns the generator's A at a spin m into xi = A + sigma m. The exact flow is
+// independent of sigma; methods of finite order are not.
 namespace cayspin::inline v0_1::isotropy {
 
-/// sigma = 0: the generator as it is.
+/// sigma = 0: uses the generator unchanged.
 struct Zero {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> operator()(Vec3<Value> const&,
@@ -18,7 +18,7 @@ struct Zero {
   }
 };
 
-/// The same sigma for every spin, stage and step.
+/// A constant sigma for all spins, stages and steps.
 struct Constant {
   double sigma = 0;
 
@@ -29,18 +29,18 @@ struct Constant {
   }
 };
 
-/// sigma from a forward difference of A_o = A - (m.A) m: xi = A_o + sigma m with
-/// sigma = -<w', w x m> / |w|^2, w = A_o. A second evaluation at cay(dt w) m, t + dt gives w'. It
-/// makes the energy error of LieEuler one order smaller. Lewis and Nigam 2002, Sec. 4.1, with
-/// the sign and the norm corrected. Zero if A_o is zero.
+/// sigma from a forward difference of A_o = A - (m.A) m: xi = A_o + sigma m with sigma = -<w', w x
+/// m> / |w|^2, w = A_o. A second evaluation at cay(dt w) m, t + dt gives w'. It raises the order of
+/// LieEuler's energy error by one. Lewis and Nigam 2002, Sec. 4.1, with the sign and the norm
+/// corrected. Zero if A_o is zero.
 struct FiniteDifference {
-  double cap = std::numeric_limits<double>::infinity();  ///< of |dt sigma|
+  double cap = std::numeric_limits<double>::infinity();  ///< bound on |dt sigma|
 };
 
-/// FiniteDifference with w' = (w_n - w_(n-1)) / dt: one evaluation per step, and a field that keeps
-/// w. The first step takes the forward difference.
+/// FiniteDifference with w' = (w_n - w_(n-1)) / dt: one evaluation per step, and one extra field
+/// for w. The first step uses the forward difference.
 struct FiniteDifferenceBackward {
-  double cap = std::numeric_limits<double>::infinity();  ///< of |dt sigma|
+  double cap = std::numeric_limits<double>::infinity();  ///< bound on |dt sigma|
 };
 
 }  // namespace cayspin::inline v0_1::isotropy

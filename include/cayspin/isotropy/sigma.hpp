@@ -7,7 +7,7 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// numerator / square; zero if the square is below the smallest that is resolved.
+/// Returns numerator / square; zero if the square is too small to be resolved.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value guarded_quotient(Value const& numerator, Value const& square) {
   auto const large_enough = Value(smallest_square<Value>()) < square;
@@ -22,7 +22,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value clamp(Value const& a, Value const& cap) {
   return select<Value>(below < Value(-cap), Value(-cap), below);
 }
 
-/// dt sigma = -<dt w', w x m> / |w|^2, from dt w'.
+/// Returns dt sigma = -<dt w', w x m> / |w|^2, from dt w'.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value turn_from_difference(Vec3<Value> const& dt_times_rate,
                                                        Vec3<Value> const& w, Vec3<Value> const& m,

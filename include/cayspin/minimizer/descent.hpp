@@ -18,8 +18,8 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// The way of a Minimizer down to where the torque vanishes: a line search along the directions of
-/// L-BFGS, and Newton steps where those are slow.
+/// Descent of a Minimizer until the torque vanishes: line searches along L-BFGS directions, and
+/// Newton steps where those are slow.
 template <class Spins>
 class Descent {
   using Real = typename Spins::value_type;
@@ -38,7 +38,7 @@ class Descent {
   Minimum so_far;
 
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
-  /// The least turn, on the way out of a saddle, of the spin that turns most.
+  /// Least turn of the spin that turns most, on leaving a saddle.
   static constexpr double least_turn = 1e-5;
 
   double strongest_field() const { return strongest_field_; }
@@ -78,7 +78,7 @@ class Descent {
     so_far.torque = point.torque;
   }
 
-  /// Until the torque is below the bound: nothing. Otherwise why it ended before.
+  /// Returns nothing once the torque is below the bound, or the reason why it stopped earlier.
   template <class Exec, class Field>
   std::optional<MinimizeEnd> descend(Exec const& exec, Field const& field, Spins& spins,
                                      MinimizeOptions const& options) {
@@ -110,22 +110,22 @@ class Descent {
     return std::nullopt;
   }
 
-  /// Where many modes are soft, L-BFGS takes over again.
+  /// L-BFGS resumes if many modes are soft.
   void begin_newton() {
     takes_newton_ = true;
     newton_until_ = so_far.evaluations + 250;
   }
 
-  /// For spins whose components are rounded independently, and sums in double.
+  /// Assumes independently rounded spin components, and sums in double.
   double round_off(Energy const& energy) const {
     auto const sites = static_cast<double>(is_mobile.lattice().sites());
     double const of_spins = epsilon / std::sqrt(sites);
     return 8 * (of_spins + std::numeric_limits<double>::epsilon()) * energy.magnitude;
   }
 
-  /// Turns the spins along search.direction, by `longest` at most, and by Newton steps across soft
-  /// modes to where the energy is lower than before; otherwise they stay. Along a bent valley of
-  /// the energy it rises before it falls (the watchdog of Chamberlain, Powell, Lemarechal and
+  /// Turns the spins along search.direction, by `longest` at most, and then by Newton steps across
+  /// soft modes to where the energy is lower than before; otherwise restores them. Along a curved
+  /// valley the energy rises before it falls (the watchdog of Chamberlain, Powell, Lemarechal and
   /// Pedersen 1982).
   template <class Exec, class Field>
   bool move_and_correct(Exec const& exec, Field const& field, Spins& spins, double slope,
@@ -155,14 +155,14 @@ class Descent {
         }
         auto const step = find_step(exec, field, spins, options,
                                     {.error = 0.02, .longest = 0.1, .follows_negative = false});
-        // Soft modes are all that is left, or what the step is about to gain is too little.
+        // Only soft modes are left, or the step would gain too little.
         if (!(step.slope < 0) || step.is_cut || rise + step.slope > 0) break;
       }
       copy(exec, spins_before, spins);
       copy(exec, gradient_before, search.gradient);
       copy(exec, direction, search.direction);
       if (factor * longest < least_turn) break;
-      // To the lowest point of the parabola.
+      // Goes to the lowest point of the parabola.
       factor *= std::clamp(0.5 * factor * slope / (factor * slope - rise), 0.1, 0.5);
     }
     return false;
@@ -183,10 +183,10 @@ class Descent {
     return Spins(std::string("Minimizer::") + name, like.lattice());
   }
 
-  /// Could round-off of the fields be all of a torque?
+  /// Returns true if round-off of the fields could cause the whole torque.
   bool may_be_round_off(double torque) const { return torque < 16 * epsilon * strongest_field_; }
 
-  /// One step; false when no step goes down.
+  /// Takes a step; returns false when no step goes down.
   template <class Exec, class Field>
   bool iterate(Exec const& exec, Field const& field, Spins& spins, MinimizeOptions const& options) {
     for (bool const with_pairs : {true, false}) {
@@ -203,8 +203,8 @@ class Descent {
     return false;
   }
 
-  /// Steps that get shorter until one goes down: by the energies, and where round-off hides their
-  /// difference by the slopes at both ends (Hager and Zhang 2005, eq. 4.1).
+  /// Shortens steps until one goes down. It compares energies, or, where round-off hides their
+  /// difference, the slopes at both ends (Hager and Zhang 2005, eq. 4.1).
   template <class Exec, class Field>
   bool search_line(Exec const& exec, Field const& field, Spins& spins, double slope, double step,
                    MinimizeOptions const& options) {
@@ -221,14 +221,14 @@ class Descent {
       swap(search.gradient, search.new_gradient);
       take(there);
       lbfgs.remember(there);
-      // Where the energy is no bowl along the way down, steps of a bowl's size get nowhere.
+      // Where the energy along the step is not convex, steps of the expected size are too short.
       first_step_ = there.curvature > 0 ? 1 : 4 * step;
       return true;
     }
     return false;
   }
 
-  /// Where L-BFGS is slow, soft modes are left: a step of Newton's method to lower energy.
+  /// Where L-BFGS is slow, soft modes are left: takes a Newton step to lower energy.
   template <class Exec, class Field>
   bool take_newton_step(Exec const& exec, Field const& field, Spins& spins,
                         MinimizeOptions const& options) {
@@ -241,7 +241,7 @@ class Descent {
     return move_and_correct(exec, field, spins, step.slope, step.longest, options);
   }
 
-  /// A Newton step into search.direction.
+  /// Writes a Newton step into search.direction.
   template <class Exec, class Field>
   NewtonStep find_step(Exec const& exec, Field const& field, Spins const& spins,
                        MinimizeOptions const& options, NewtonOptions newton) {
@@ -263,9 +263,9 @@ class Descent {
   }
 
   double strongest_field_ = 0, first_step_ = 1;
-  double newton_error_ = 1e-2;  // of the next Newton step, relative
+  double newton_error_ = 1e-2;  // relative error of the next Newton step
   bool takes_newton_ = false;
-  std::int64_t newton_until_ = 0;  // so many evaluations
+  std::int64_t newton_until_ = 0;  // up to this number of evaluations
 };
 
 }  // namespace cayspin::inline v0_1::detail

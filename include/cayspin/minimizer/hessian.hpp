@@ -12,12 +12,12 @@
 #include <limits>
 #include <utility>
 
-// The Hessian of the energy on the tangent planes of mobile spins, P (-dH/dm) P + (H.m), from the
-// field at the spins with a tangent vector added. Immobile spins, zero vectors of vacant sites
-// among them, stay as they are in every spin field at which the field is evaluated.
+// Hessian of the energy on the tangent planes of mobile spins, P (-dH/dm) P + (H.m), from the field
+// at the spins plus a tangent vector. Immobile spins, including the zero vectors of vacant sites,
+// never change in these fields of spins.
 namespace cayspin::inline v0_1::detail {
 
-/// v <- the part of it along which spins move
+/// Functor that sets v to its part along which spins move.
 template <class Real>
 struct KeepTangent {
   SiteArray<Real, 3> spins, vectors;
@@ -33,8 +33,8 @@ struct KeepTangent {
   }
 };
 
-/// The Hessian times v from the change of the field between two sets of spins, m + shift v and
-/// those that `before` is the field of. Sums v.product and v.v.
+/// Functor that computes the Hessian times v from the change of the field between two sets of
+/// spins: m + shift v, and those at which the field is `before`. Sums v.product and v.v.
 template <class Field, class Real>
 struct HessianProduct {
   Field field;
@@ -58,7 +58,7 @@ struct HessianProduct {
   }
 };
 
-/// max |v|^2 of a site.
+/// Functor that finds max |v|^2 over the sites.
 template <class Real>
 struct LargestSquare {
   SiteArray<Real, 3> vectors;
@@ -70,7 +70,7 @@ struct LargestSquare {
   }
 };
 
-/// max |v| of a site; waits.
+/// Returns max |v| over the sites; waits.
 template <class Exec, class Spins>
 double largest_length(Exec const& exec, Spins const& vectors) {
   return std::sqrt(
@@ -78,7 +78,7 @@ double largest_length(Exec const& exec, Spins const& vectors) {
                                LargestSquare<typename Spins::value_type>{vectors.array()})[0]);
 }
 
-/// Memory that products with the Hessian work in.
+/// Work memory for products with the Hessian.
 template <class Spins>
 struct HessianArrays {
   Spins shifted, at_rest, before;
@@ -94,8 +94,8 @@ class Hessian {
     double along, square;  // v.Hv and v.v
   };
 
-  /// At `spins`, which have to stay as they are; a field that is not affine in them is
-  /// differentiated by central differences. Evaluates the field.
+  /// Linearises at `spins`, which must not change afterwards. A field that is not affine in the
+  /// spins is differentiated by central differences. Evaluates the field.
   Hessian(Exec const& exec, Field const& field, double time, Spins const& spins,
           Mobile const& is_mobile, HessianArrays<Spins> const& arrays)
       : exec_(exec),
@@ -111,13 +111,13 @@ class Hessian {
 
   std::int64_t evaluations() const { return evaluations_; }
 
-  /// Bound on the round-off of a quotient v.Hv / v.v, of fields up to `strongest`.
+  /// Returns a bound on the round-off of v.Hv / v.v, for fields up to `strongest`.
   double round_off(double strongest) const {
     constexpr double epsilon = std::numeric_limits<Real>::epsilon();
     return (is_affine_ ? 64 : std::max(64.0, 2 / longest_shift())) * epsilon * strongest;
   }
 
-  /// hv <- H v of a tangent v.
+  /// Computes hv = H v for a tangent v.
   Product multiply(Spins const& v, Spins const& hv) {
     auto const& [shifted, at_rest, before] = arrays_;
     combine(exec_, 0, v, 0, v, shifted);
@@ -140,7 +140,7 @@ class Hessian {
     return {along, square};
   }
 
-  /// v <- its tangent part on mobile sites
+  /// Sets v to its tangent part on mobile sites.
   void keep_tangent(Spins const& v) const {
     for_each_site<Real>(
         exec_, "cayspin::minimize::keep_tangent", spins_.layout(),
@@ -148,7 +148,7 @@ class Hessian {
   }
 
  private:
-  /// Balances the errors of a central difference: round-off over the shift, and its square.
+  /// Balances the errors of a central difference: round-off over the shift, and the squared shift.
   static double longest_shift() { return 4 * std::cbrt(std::numeric_limits<Real>::epsilon()); }
 
   Exec const& exec_;

@@ -35,15 +35,15 @@ class Lbfgs {
   /// Memory that `find` overwrites.
   Spins const& scratch() const { return preconditioned_; }
 
-  /// Keeps the pair of a step, unless the energy's curvature along it is not clearly positive.
+  /// Stores the pair of a step, unless the curvature along it is not clearly positive.
   void remember(PointOnPath const& there) {
     if (!(there.curvature > 1e-12 * std::sqrt(there.step_square * there.change_square))) return;
     pairs_.keep(there.curvature);
     step_square_ = there.step_square;
   }
 
-  /// Writes search.direction, from the gradient in `search`, the largest of which is `torque`, and
-  /// what is remembered.
+  /// Writes search.direction from the gradient in `search` and the stored pairs. `torque`: the
+  /// largest gradient of a spin.
   template <class Exec>
   Direction find(Exec const& exec, Spins const& spins, Mobile const& is_mobile,
                  SearchArrays<Spins> const& search, double torque) {
@@ -91,7 +91,7 @@ class Lbfgs {
   }
 
  private:
-  /// Of what is preconditioned.
+  /// Preconditions a vector.
   template <class Exec>
   auto products_with_changes(Exec const& exec, Spins const& spins) const {
     return reduce_sites<Sum, static_cast<int>(pairs_kept)>(
@@ -100,7 +100,7 @@ class Lbfgs {
                                   static_cast<int>(pairs_.count())});
   }
 
-  /// s.y / y.P y of the last pair.
+  /// Returns s.y / y.P y of the last pair.
   template <class Exec>
   double scale_of_preconditioner(Exec const& exec, Spins const& spins) {
     std::size_t const last = pairs_.count() - 1;

@@ -12,11 +12,12 @@
 #include <tuple>
 #include <utility>
 
-// The lowest curvature of the energy at an equilibrium: the least eigenvalue of the Hessian.
-// Negative at a saddle. The locally optimal preconditioned conjugate gradients of Knyazev (2001).
+// Lowest curvature of the energy at an equilibrium: the least eigenvalue of the Hessian, negative
+// at a saddle. Computed by the locally optimal preconditioned conjugate gradients of Knyazev
+// (2001).
 namespace cayspin::inline v0_1::detail {
 
-/// The least eigenvalue of a symmetric matrix, and its eigenvector: by Jacobi's rotations.
+/// Least eigenvalue of a symmetric matrix, and its eigenvector, by Jacobi rotations.
 struct LowestOfThree {
   double value, vector[3];
 
@@ -46,27 +47,29 @@ struct LowestOfThree {
   }
 };
 
-/// Memory that a search for the lowest curvature works in.
+/// Work memory for a search for the lowest curvature.
 template <class Spins>
 struct CurvatureArrays {
   Spins vector, product, residual, its_product, direction, direction_product;
 };
 
 struct LowestCurvature {
-  double value = std::numeric_limits<double>::infinity();  // at most this
+  double value = std::numeric_limits<double>::infinity();  // upper bound
   bool is_negative = false;                                // beyond round-off
 };
 
 struct CurvatureSearch {
-  double scale;         // of fields other than exchange
-  double tolerance;     // curvatures above -tolerance are not negative
-  double error;         // of the curvature, unless it is negative; infinity: its sign is enough
-  std::int64_t stream;  // of the random vector that it starts from
+  double scale;            // strength of fields other than exchange
+  double tolerance;        // curvatures above -tolerance count as not negative
+  double error;            // of the curvature, unless negative; infinity: only its sign is needed
+  std::int64_t stream;     // of the random start vector
+  bool has_start = false;  // arrays.vector holds the start
 };
 
-/// Ends when the quotient is below -tolerance, or when it is not about to fall below zero.
-/// One stream that led out of a saddle is blind to what lies across it.
-/// `precondition(from, to)`. Leaves the vector in arrays.vector.
+/// Returns the lowest curvature found. Stops when the Rayleigh quotient is below -tolerance, or
+/// will not fall below zero. Each saddle needs a new random stream: a start that led out of one
+/// saddle can be orthogonal to the descent from the next. Calls `precondition(from, to)`. Leaves
+/// the vector in arrays.vector.
 template <class AnyHessian, class Exec, class Spins, class Precondition>
 LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
                                       CurvatureArrays<Spins> const& arrays,
@@ -75,12 +78,13 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
   using Real = typename Spins::value_type;
   bool const is_exact = std::isfinite(search.error);
   int const most_steps = is_exact ? 1000 : 40;
-  auto const [scale, tolerance, error, stream] = search;
+  auto const [scale, tolerance, error, stream, has_start] = search;
   LowestCurvature found;
   Spins const &x = arrays.vector, &hx = arrays.product, &w = arrays.residual,
               &hw = arrays.its_product, &p = arrays.direction, &hp = arrays.direction_product;
   auto const multiply = [&](double factor, Spins const& v) { combine(exec, factor, v, 0, v, v); };
-  // To length 1 and normal to x and, if wanted, to p. False where little but round-off is left.
+  // Makes v of length 1 and normal to x and, if wanted, to p. Returns false if little but round-off
+  // is left.
   auto const make_normal = [&](Spins const& v, bool to_p) {
     for (int round = 0; round < 2; ++round) {
       double const before = length(exec, v);
@@ -94,11 +98,13 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
     return true;
   };
 
-  auto const& shape = x.lattice().shape;
-  for_each_site<Real>(exec, "cayspin::minimize::random_signs", x.layout(),
-                      RandomSigns<Real>{shape[0], shape[1], stream, 1, w.output(false)});
-  hessian.keep_tangent(w);
-  precondition(w, x);
+  if (!has_start) {
+    auto const& shape = x.lattice().shape;
+    for_each_site<Real>(exec, "cayspin::minimize::random_signs", x.layout(),
+                        RandomSigns<Real>{shape[0], shape[1], stream, 1, w.output(false)});
+    hessian.keep_tangent(w);
+    precondition(w, x);
+  }
   hessian.keep_tangent(x);
   double const size = length(exec, x);
   if (!(size > 0)) return found;
@@ -106,14 +112,14 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
   found.value = hessian.multiply(x, hx).along;
   for (int step = 0;; ++step) {
     if (found.value < -tolerance) {
-      // Once more from the field: round-off of the steps so far is left behind.
+      // Recomputed from the field to discard accumulated round-off.
       auto const [along, square] = hessian.multiply(x, hx);
       found.value = along / square;
       found.is_negative = found.value < -tolerance;
       if (found.is_negative) break;
     }
     if (step == most_steps) break;
-    // w, the preconditioned residual; and by how much it is about to lower the quotient.
+    // w, the preconditioned residual, and an estimate of how much it will lower the quotient.
     combine(exec, 1, hx, -found.value, x, hw);
     double const rest = length(exec, hw);
     precondition(hw, w);
@@ -130,7 +136,7 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
     if (!(decrease > 0) || is_clear) break;
     bool const has_p = step > 0;
     if (!make_normal(w, has_p)) break;
-    double of_pairs[3][3] = {{found.value}};  // v.Hv of x, w and p, the step before
+    double of_pairs[3][3] = {{found.value}};  // v.Hv of x, w and p, the previous step
     auto const set = [&](int i, int j, double value) { of_pairs[i][j] = of_pairs[j][i] = value; };
     set(1, 1, hessian.multiply(w, hw).along);
     set(0, 1, inner_product(exec, x, hw));
@@ -145,7 +151,7 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
     auto const [of_x, of_w, of_p] = lowest.vector;
     double const sideways = std::hypot(of_w, of_p);
     if (!std::isfinite(lowest.value) || !(sideways > 0)) break;
-    // x <- of_x x + (of_w w + of_p p), and p normal to that.
+    // Sets x to of_x x + (of_w w + of_p p), and p normal to it.
     for (auto const& [x_or_hx, w_or_hw, p_or_hp] : {std::tie(x, w, p), std::tie(hx, hw, hp)}) {
       if (has_p)
         combine(exec, of_w, w_or_hw, of_p, p_or_hp, w_or_hw);

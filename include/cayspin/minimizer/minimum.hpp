@@ -14,9 +14,8 @@ namespace cayspin::inline v0_1 {
 
 /// Why a minimisation ended.
 enum class MinimizeEnd {
-  converged,         ///< max |m x H| is below the bound, and no direction was found to go down;
-                     ///< with keep_saddles none was looked for
-  stagnated,         ///< round-off keeps max |m x H| above the bound
+  converged,  ///< max |m x H| is below the bound, at a minimum (with keep_saddles also at a saddle)
+  stagnated,  ///< round-off keeps max |m x H| above the bound
   evaluation_limit,  ///< the largest number of evaluations was reached
   interrupted        ///< the observer said Next::stop
 };
@@ -41,29 +40,29 @@ class FieldNotFinite : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// How far a minimisation has come, and at the end its result.
+/// Progress of a minimisation, and its result at the end.
 struct Minimum {
   MinimizeEnd end = MinimizeEnd::evaluation_limit;
   double torque = std::numeric_limits<double>::infinity();  ///< max |m x H|
   Energy energy = {};
   std::int64_t iterations = 0, evaluations = 0;  ///< evaluations of the field over all sites
-  std::int64_t saddles = 0;                      ///< that were left on the way
-  /// An upper bound of the least eigenvalue of the energy's Hessian on the tangent planes of the
-  /// spins that move, of a converged state; the eigenvalue itself with lowest_curvature.
+  std::int64_t saddles = 0;                      ///< saddles left on the way
+  /// Upper bound of the least eigenvalue of the energy's Hessian on the tangent planes of mobile
+  /// spins, for a converged state; with lowest_curvature, the eigenvalue.
   double curvature = std::numeric_limits<double>::infinity();
 };
 
 /// Options of minimize.
 struct MinimizeOptions {
   double torque = 1e-6;  ///< bound on max |m x H|, in the units of H
-  /// At most so many, and those of one more iteration and one search for a way out of a saddle.
+  /// At most this many, plus those of one more iteration and one search for a way out of a saddle.
   std::int64_t evaluations = 10000;
-  double time = 0;             ///< at which H is taken
-  bool preconditioned = true;  ///< by the exchange that the field is found to have
-  bool keep_saddles = false;   ///< a state without torque is enough, a saddle too
-  /// Minimum::curvature to 1e-6 of the strongest field; otherwise its sign is enough.
+  double time = 0;             ///< time at which H is evaluated
+  bool preconditioned = true;  ///< by the exchange measured on the field
+  bool keep_saddles = false;   ///< accept any state without torque, also a saddle
+  /// Compute Minimum::curvature to 1e-6 of the strongest field; otherwise only its sign.
   bool lowest_curvature = false;
-  std::function<Next(Minimum const&)> observer = {};  ///< after each iteration
+  std::function<Next(Minimum const&)> observer = {};  ///< called after each iteration
 };
 
 }  // namespace cayspin::inline v0_1

@@ -6,29 +6,29 @@
 
 #include <cmath>
 
-// Steps of Newton's method by preconditioned conjugate gradients, ended early where the curvature
-// is negative or a spin turns too far (Nocedal and Wright 2006, Alg. 7.1 and 7.2).
+// Newton steps by preconditioned conjugate gradients, stopped early at negative curvature or when a
+// spin turns too far (Nocedal and Wright 2006, Alg. 7.1 and 7.2).
 namespace cayspin::inline v0_1::detail {
 
-/// Memory that `find_newton_step` works in.
+/// Work memory of `find_newton_step`.
 template <class Spins>
 struct NewtonArrays {
   Spins residual, preconditioned, direction, product;
 };
 
 struct NewtonOptions {
-  double error = 0;              // of the step, relative
-  double longest = 0;            // turn of a spin
-  double residual = 0;           // the largest of a site that is small enough
-  bool follows_negative = true;  // leaves along a direction of negative curvature
+  double error = 0;              // relative error of the step
+  double longest = 0;            // largest turn of a spin
+  double residual = 0;           // largest residual of a site that is small enough
+  bool follows_negative = true;  // follows a direction of negative curvature
 };
 
 struct NewtonStep {
   double slope = 0, longest = 0;  // g.p, and the largest |p| of a spin
-  bool is_cut = false;            // by a negative curvature or the longest turn
+  bool is_cut = false;            // by negative curvature or the longest turn
 };
 
-/// Writes p, about -H^-1 g, into `step`. `precondition(from, to)`.
+/// Writes p, about -H^-1 g, into `step`. Calls `precondition(from, to)`.
 template <class AnyHessian, class Exec, class Spins, class Precondition>
 NewtonStep find_newton_step(AnyHessian& hessian, Exec const& exec, Spins const& gradient,
                             Spins const& step, NewtonArrays<Spins> const& arrays,

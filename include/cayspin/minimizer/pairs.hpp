@@ -9,17 +9,17 @@
 #include <cstddef>
 #include <string>
 
-// The last steps s and changes y of the gradient, from which L-BFGS approximates the inverse of the
-// Hessian (Nocedal and Wright 2006, Sec. 7.2). Both are tangent where they were made, and are
-// projected to the present tangent planes where they are used. All inner products of an iteration
-// come from two passes, and the recursion goes over numbers alone.
+// The last steps s and gradient changes y, from which L-BFGS approximates the inverse Hessian
+// (Nocedal and Wright 2006, Sec. 7.2). Both are tangent where they were made, and are projected to
+// the current tangent planes where they are used. Two passes give all inner products of an
+// iteration; the recursion then needs only numbers.
 namespace cayspin::inline v0_1::detail {
 
 inline constexpr std::size_t pairs_kept = 6;
 
 template <class Number>
 using OfPairs = Kokkos::Array<Number, pairs_kept>;
-/// Arrays of the pairs, oldest first. Behind the last one stand others, which `count` leaves out.
+/// Arrays of the pairs, oldest first. Entries from `count` on are unused.
 template <class Real>
 using PairArrays = OfPairs<SiteArray<Real, 3>>;
 
@@ -36,13 +36,13 @@ struct ProductsOfPairs {
   SiteArray<Real, 3> spins, gradient;
   PairArrays<Real> steps, changes;
   int count;
-  Kokkos::Array<double, 3> couplings;  // where negative, of neighbours that want to be opposite
+  Kokkos::Array<double, 3> couplings;  // negative if neighbours prefer to be opposite
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
     Vec3<Value> const m = site.load(spins), g = site.load(gradient);
     for (int i = 0; i < count_of_values; ++i) values[i] = Value(0.0);
-    // Constant indices: devices keep the values in registers.
+    // Constant indices keep the values in registers on devices.
     unrolled<pairs>([&](auto j) {
       if (j() >= count) return;
       values[j()] = dot(Vec3<Value>(site.load(steps[j()])), g);
@@ -67,7 +67,7 @@ struct ProductsOfPairs {
   }
 };
 
-/// q = the tangent part of g - sum of weights y
+/// Functor that sets q to the tangent part of g - sum of weights y.
 template <class Real>
 struct WithoutChanges {
   SiteArray<Real, 3> spins, gradient;
@@ -86,7 +86,7 @@ struct WithoutChanges {
   }
 };
 
-/// y_i.z of the tangent part of z
+/// Functor that computes y_i.z for the tangent part of z.
 template <class Real>
 struct ProductsWithChanges {
   static constexpr int pairs = static_cast<int>(pairs_kept);
@@ -102,7 +102,8 @@ struct ProductsWithChanges {
   }
 };
 
-/// d = -(scale z + sum of weights s), tangent and zero where spins do not move; g.d and max |d|^2.
+/// Functor that sets d = -(scale z + sum of weights s), tangent and zero where spins do not move;
+/// finds g.d and max |d|^2.
 template <class Real>
 struct DirectionWithSteps {
   SiteArray<Real, 3> spins, gradient, vectors;
@@ -136,13 +137,13 @@ class Pairs {
       : steps_(numbered_fields<Spins, pairs_kept + 1>(name + "::step", lattice)),
         changes_(numbered_fields<Spins, pairs_kept + 1>(name + "::change", lattice)) {}
 
-  /// Room for a pair that may be kept or not.
+  /// Returns memory for a pair that may be kept or discarded.
   Spins const& next_step() const { return steps_[count_]; }
   Spins const& next_change() const { return changes_[count_]; }
 
   std::size_t count() const { return count_; }
   void forget() { count_ = 0; }
-  /// Keeps what is in next_step and next_change, of that product.
+  /// Keeps next_step and next_change as a pair with this product.
   void keep(double product) {
     products_[count_] = product;
     if (count_ < pairs_kept) {
@@ -154,7 +155,7 @@ class Pairs {
     std::rotate(products_.begin(), products_.begin() + 1, products_.end());
   }
 
-  /// Step `i`, and the product s.y of its pair.
+  /// Return step `i`, and the product s.y of its pair.
   double product(std::size_t i) const { return products_[i]; }
   Spins const& step(std::size_t i) const { return steps_[i]; }
   Spins const& change(std::size_t i) const { return changes_[i]; }

@@ -10,8 +10,7 @@
 #include <cstddef>
 #include <optional>
 
-// A first guess of the inverse Hessian: (K + c)^-1 with the exchange K that a field is found to
-// have.
+// First approximation of the inverse Hessian: (K + c)^-1 with the measured exchange K of a field.
 namespace cayspin::inline v0_1::detail {
 
 template <class Spins>
@@ -19,7 +18,7 @@ class Preconditioner {
   using Real = typename Spins::value_type;
 
  public:
-  /// Allocates. Without exchange it is 1 / c.
+  /// Allocates. Without exchange the preconditioner is 1 / c.
   void set(Lattice const& lattice, FieldStrengths const& found, bool with_exchange) {
     couplings_ = with_exchange ? found.couplings : std::array<double, 3>{};
     exchange_.emplace("Minimizer::exchange", lattice, couplings_);
@@ -30,21 +29,21 @@ class Preconditioner {
 
   std::array<double, 3> const& couplings() const { return couplings_; }
 
-  /// The curvature along the last step, of square length `step_square`, that exchange does not
-  /// explain becomes the constant. Small constants make long steps far from rest: waves as long as
-  /// the lattice are gone before walls and vortices form, which move by a cell an iteration. Near
-  /// rest they make the stiffest long waves the hardest to settle.
+  /// Sets the constant to the curvature along the last step (of square length `step_square`) that
+  /// exchange does not explain. Far from equilibrium, a small constant makes long steps: waves as
+  /// long as the lattice vanish before walls and vortices form, which move by a cell per iteration.
+  /// Near equilibrium it slows the convergence of the stiffest long waves.
   void follow_curvature(double product, double exchange_energy, double step_square, double torque) {
     double const rest = (product - exchange_energy) / step_square;
     if (!std::isfinite(rest)) return;
     double const least = torque < first_shift_ ? first_shift_ : 1e-6 * first_shift_;
     shift_ = std::clamp(std::max(rest, 0.25 * shift_), least, 30 * first_shift_);
   }
-  /// As it is before any step.
+  /// Resets to the state before any step.
   void forget_curvature() { shift_ = first_shift_; }
   double first_shift() const { return first_shift_; }
 
-  /// to <- (K + c)^-1 from
+  /// Computes to = (K + c)^-1 from.
   template <class Exec>
   void apply(Exec const& exec, Spins const& from, Spins const& to) {
     exchange_->solve(exec, shift_, Real(1), from, to);

@@ -15,11 +15,11 @@
 #include <cstddef>
 #include <cstdint>
 
-// What a minimiser wants to know of a field of which it knows nothing: how strong the exchange is
-// along each axis, how strong the rest is, and which spins it leaves alone.
+// Measures an unknown field for a minimiser: the strength of exchange along each axis, the strength
+// of the rest, and which spins see no field.
 namespace cayspin::inline v0_1::detail {
 
-/// The same direction everywhere, or reversed from site to site.
+/// A uniform direction, or one that is reversed from site to site.
 template <class Real>
 struct AlternateSpins {
   AlternatingSigns signs;
@@ -28,14 +28,14 @@ struct AlternateSpins {
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     using Value = typename Site::value_type;
-    // In no plane of symmetry.
+    // A direction in no plane of symmetry.
     Vec3<Value> const m{Value(Real(0.26726124)), Value(Real(0.53452248)), Value(Real(0.80178373))};
     site.store(signs.template at<Value>(site) * m, output);
   }
 };
 
-/// Components of random sign, and of sizes that differ by up to `scatter`: a direction in no
-/// symmetry, another for each `stream`.
+/// Components of random sign, with sizes that differ by up to `scatter`: a direction without
+/// symmetry, different for each `stream`.
 template <class Real>
 struct RandomSigns {
   std::int64_t nx, ny, stream;
@@ -84,8 +84,8 @@ struct WithoutVacancies {
   }
 };
 
-/// Sums over the occupied sites of a pattern, whose vacant ones hold the zero vector; keeps 1 where
-/// H is not zero, and finds whether a spin never saw a field.
+/// Functor that sums over the occupied sites of a pattern, whose vacant sites hold the zero vector.
+/// Marks sites with H nonzero by 1, and finds whether any spin saw no field.
 template <class Field, class Real>
 struct FieldAlongSpins {
   enum { along, along_square, square, sites, opposed_neighbors, rests, values };
@@ -125,15 +125,15 @@ struct FieldAlongSpins {
   }
 };
 
-/// What is found.
+/// Measured strengths of a field.
 struct FieldStrengths {
-  /// Mean J of a bond along each axis: H = J (m' - m). Those below zero are left out where an odd
-  /// ring keeps spins from alternating: they lie in no pattern that is known beforehand.
+  /// Mean J of a bond along each axis: H = J (m' - m). Negative ones are omitted where an odd ring
+  /// keeps spins from alternating, since the pattern of their order is not known beforehand.
   std::array<double, 3> couplings{};
-  double rest = 0;  ///< the root mean square of |H| of spins that are parallel
+  double rest = 0;  ///< root mean square of |H| for parallel spins
   int evaluations = 0;
 
-  /// About the largest |H|.
+  /// Returns an estimate of the largest |H|.
   double strongest() const {
     double sum = rest;
     for (double const coupling : couplings) sum += 4 * std::abs(coupling);
@@ -141,8 +141,9 @@ struct FieldStrengths {
   }
 };
 
-/// The mean |H|^2 of parallel spins, from sums over `sites`. Couplings H = J m' give them a field
-/// that does not hold them, J (m' - m) gives none: the `isotropic` part of the first is left out.
+/// Returns the mean |H|^2 of parallel spins, from sums over `sites`. Couplings H = J m' give
+/// parallel spins a field without torque; J (m' - m) gives none. So the `isotropic` part of the
+/// first is subtracted.
 inline double rest_of_parallel(double square, double along_square, double along, double isotropic,
                                double sites) {
   bool const is_along = square - along_square < 0.1 * square;
@@ -152,9 +153,9 @@ inline double rest_of_parallel(double square, double along_square, double along,
   return std::max(0.0, square - 2 * j * along + j * j * sites) / sites;
 }
 
-/// Evaluates the field for parallel spins and for spins that alternate along each axis, on the
-/// sites that hold a spin: where `spins` is not the zero vector. `pattern` is overwritten.
-/// `is_mobile` becomes 1 where a spin sees a field, and stays where there is none.
+/// Evaluates the field for parallel spins and for spins that alternate along each axis, on occupied
+/// sites: where `spins` is not the zero vector. Overwrites `pattern`. Sets `is_mobile` to 1 where a
+/// spin sees a field.
 template <class Exec, class Field, class Spins>
 FieldStrengths probe(
     Exec const& exec, Field const& field, double time, Spins const& spins, Spins const& pattern,

@@ -13,11 +13,11 @@
 #include <cmath>
 #include <utility>
 
-// A point along the path m(a) = cay(a m x d) m of a line search, and all that is known of it from
-// one evaluation of the field. Spins turn on great circles from m towards d.
+// A point along the path m(a) = cay(a m x d) m of a line search, and what one evaluation of the
+// field gives there. Spins turn on great circles from m towards d.
 namespace cayspin::inline v0_1::detail {
 
-/// v without its part along m.
+/// Returns v without its component along m.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> tangent(Vec3<Value> const& m, Vec3<Value> const& v) {
   return multiply_add(Value(-dot(m, v)), m, v);
@@ -34,15 +34,15 @@ struct TurnTowards {
     using Value = typename Site::value_type;
     Vec3<Value> const m = site.load(spins), d = site.load(direction);
     Vec3<Value> const turned = Cayley::rotate(cross(m, Vec3<Value>(Value(step) * d)), m);
-    // A Newton step towards |m| = 1: round-off does not add up.
+    // A Newton step towards |m| = 1, so that round-off does not accumulate.
     Value const half_excess = Value(Real(0.5)) * (Value(1) - dot(turned, turned));
     site.store(select<Value>(dot(d, d) == Value(0), m, multiply_add(half_excess, turned, turned)),
                output);
   }
 };
 
-/// At m(a): the gradient g = -(H - (H.m) m), and the pair of step and change of the gradient,
-/// carried there along the path.
+/// Functor that computes at m(a) the gradient g = -(H - (H.m) m), and the pair of step and change
+/// of the gradient, transported there along the path.
 template <class Field, class Real>
 struct LookAtTrial {
   enum { energy, magnitude, slope, curvature, step_square, change_square, torque, values };
@@ -75,7 +75,7 @@ struct LookAtTrial {
   }
 };
 
-/// What is known of a point.
+/// Values at a point of the path.
 struct PointOnPath {
   Energy energy;
   double slope = 0;                                          // dE/da
@@ -90,7 +90,7 @@ struct SearchArrays {
   Spins trial, gradient, new_gradient, direction;
 };
 
-/// Turns `spins` by `step` into `search.trial` and looks at it.
+/// Turns `spins` by `step` into `search.trial` and evaluates there.
 template <class Exec, class Field, class Spins>
 PointOnPath look_along(Exec const& exec, Field const& field, double time, Spins const& spins,
                        double step, SearchArrays<Spins> const& search, Spins const& moved,

@@ -10,13 +10,13 @@
 
 namespace cayspin::inline v0_1::mpi {
 
-/// Numbers of parts along y and z. Rows along x stay whole.
+/// Number of parts along y and z. Rows along x are not divided.
 struct Division {
   int y = 1, z = 1;
   friend bool operator==(Division const&, Division const&) = default;
 };
 
-/// The rows along y and planes along z that a part has of each of its neighbours.
+/// Ghost rows along y and ghost planes along z that a part has from each neighbour.
 struct Depth {
   int y, z;
   Depth(int of_both) : y(of_both), z(of_both) {}
@@ -24,13 +24,13 @@ struct Depth {
   friend bool operator==(Depth const&, Depth const&) = default;
 };
 
-/// Parts and their ghosts hold whole cells: of a crystal, the planes along z of all its sites.
+/// Rounds up to whole cells: the planes along z of all sites of a crystal's cell.
 inline Depth in_whole_cells(Depth const& depth, Lattice const& lattice) {
   auto const of_cell = static_cast<int>(lattice.cell_sites);
   return {depth.y, (depth.z + of_cell - 1) / of_cell * of_cell};
 }
 
-/// Can each part send the rows or planes of its own that its neighbours need?
+/// Returns true if each part has the rows or planes that its neighbours need.
 inline bool can_divide(Lattice const& lattice, Depth const& depth, Division const& division) {
   auto const fits = [](std::int64_t extent, int needed, int parts) {
     return parts == 1 || (parts > 1 && extent / parts >= needed);
@@ -41,13 +41,13 @@ inline bool can_divide(Lattice const& lattice, Depth const& depth, Division cons
               static_cast<int>(in_whole_cells(depth, lattice).z / of_cell), division.z);
 }
 
-/// Such parts in words.
+/// Describes the depth in words.
 inline std::string to_text(Depth const& depth) {
   if (depth.y == depth.z) return std::to_string(depth.y) + " rows or planes";
   return std::to_string(depth.y) + " rows or " + std::to_string(depth.z) + " planes";
 }
 
-/// The division into so many parts that repeats least work; along z where two are alike.
+/// Returns the division into this many parts that repeats least work; along z if two are equal.
 /// Throws std::invalid_argument when there is none.
 inline Division divide(Lattice const& lattice, Depth const& depth, int parts) {
   Division best{0, 0};
@@ -69,7 +69,7 @@ inline Division divide(Lattice const& lattice, Depth const& depth, int parts) {
   return best;
 }
 
-/// Throws std::invalid_argument unless the division is one into `parts` parts that fit.
+/// Throws std::invalid_argument unless the division gives `parts` parts that fit.
 inline void require_division(Lattice const& lattice, Depth const& depth, Division const& division,
                              int parts) {
   if (depth.y < 1 || depth.z < 1)

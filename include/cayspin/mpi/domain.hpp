@@ -19,18 +19,18 @@
 namespace cayspin::inline v0_1::mpi {
 
 /// A lattice divided among the ranks of a communicator, along y and z. Each rank holds its part,
-/// with `depth` ghosts at each end that is inside the lattice. Fields on local() are like any
-/// others: steppers, terms and sums take them, and give the bits of one rank.
-/// One step needs as many ghosts as it has stages. Parts of a crystal hold whole cells, and so do
-/// their ghosts. Outlives its fields and steppers.
+/// with `depth` ghosts at each end inside the lattice. Fields on local() work like any others with
+/// steppers, terms and sums, and give the bits of a single rank. A step needs as many ghosts as it
+/// has stages. Parts of a crystal, and their ghosts, hold whole cells. The Domain must outlive its
+/// fields and steppers.
 class Domain final : public Part {
  public:
-  /// All ranks of `comm` call it. Throws std::invalid_argument on every rank when the lattices or
-  /// depths of ranks differ, or the lattice cannot be divided.
+  /// Collective on `comm`. Throws std::invalid_argument on every rank when the lattices or depths
+  /// of ranks differ, or the lattice cannot be divided.
   Domain(MPI_Comm comm, Lattice const& lattice, Depth const& depth)
       : Domain(comm, lattice, depth, divide(agreed(comm, lattice, depth), depth, size_of(comm))) {}
 
-  /// With this division: the product of its numbers is the number of ranks.
+  /// Uses this division; the product of its numbers must be the number of ranks.
   Domain(MPI_Comm comm, Lattice const& lattice, Depth const& depth, Division const& division)
       : whole_(agreed(comm, lattice, depth, division)),
         division_(division),
@@ -52,7 +52,7 @@ class Domain final : public Part {
     if (!finalized) MPI_Comm_free(&comm_);
   }
 
-  /// This rank's part, ghosts included: what fields, terms and steppers are made for.
+  /// Returns this rank's part, ghosts included. Make fields, terms and steppers for it.
   Lattice const& local() const { return local_; }
   Lattice const& whole() const override { return whole_; }
   std::array<std::int64_t, 3> begin() const override { return begin_; }
@@ -66,15 +66,15 @@ class Domain final : public Part {
   void sum(std::span<std::int64_t> words) const override { combine(words, MPI_SUM); }
   void maximum(std::span<std::int64_t> words) const override { combine(words, MPI_MAX); }
 
-  /// One message per face and direction, or one per component of a large face: planes along z
-  /// first, and then rows along y with the ghosts along z, which are theirs to pass on.
+  /// Sends one message per face and direction, or one per component of a large face. Planes along z
+  /// come first, then rows along y, including the ghosts just received along z.
   void update_ghosts(std::span<FieldNumbers const> fields) const override {
     Kokkos::Profiling::ScopedRegion const region("cayspin::mpi::update_ghosts");
     for_each_axis([&](std::size_t axis, detail::GhostMessages& messages) {
       messages.exchange(comm_, fields, faces(axis), neighbor_[axis]);
     });
   }
-  /// The same as for fields on a device, also for others.
+  /// Updates ghosts through buffers, as for fields on a device; works for host fields, too.
   void update_ghosts_packed(std::span<FieldNumbers const> fields) const {
     for_each_axis([&](std::size_t axis, detail::GhostMessages& messages) {
       messages.exchange_packed(comm_, fields, faces(axis), neighbor_[axis]);
@@ -87,11 +87,11 @@ class Domain final : public Part {
   }
 
  private:
-  /// `lattice`, if all ranks were given the same.
+  /// Returns `lattice` if all ranks were given equal ones.
   static Lattice const& agreed(MPI_Comm comm, Lattice const& lattice, Depth const& depth,
                                Division const& division = {}) {
     constexpr std::size_t count = 14;
-    std::array<std::int64_t, 2 * count> given{};  // numbers, and then their complements
+    std::array<std::int64_t, 2 * count> given{};  // numbers, followed by their complements
     given[0] = lattice.cell_sites;
     given[1] = division.y;
     given[2] = division.z;
@@ -126,7 +126,7 @@ class Domain final : public Part {
     detail::wait_for(request);
   }
 
-  /// Of those that are divided.
+  /// Calls work for the divided axes.
   template <class Work>
   void for_each_axis(Work const& work) const {
     for (std::size_t const axis : {2UL, 1UL})
@@ -136,7 +136,7 @@ class Domain final : public Part {
 
   int depth_along(std::size_t axis) const { return axis == 1 ? depth_.y : depth_.z; }
 
-  /// Part number `index` of `parts` along an axis, in multiples of `unit`.
+  /// Sets part number `index` of `parts` along an axis, in multiples of `unit`.
   void divide_axis(std::size_t axis, int parts, int index, std::int64_t unit) {
     neighbor_[axis] = {MPI_PROC_NULL, MPI_PROC_NULL};
     if (parts == 1) return;
@@ -158,7 +158,7 @@ class Domain final : public Part {
     if (after) neighbor_[axis][1] = rank_at(index + 1);
   }
 
-  /// What goes to the neighbours along an axis, and where what comes from them goes.
+  /// Returns the boxes to send to the neighbours along an axis, and the boxes to receive into.
   detail::Faces faces(std::size_t axis) const {
     auto const& ghosts = local_.ghosts[axis];
     std::int64_t const end = local_.shape[axis] - ghosts.after, depth = depth_along(axis);

@@ -24,7 +24,8 @@ namespace cayspin::inline v0_1 {
 
 namespace detail {
 
-/// E and the sum of |A_o|^2; keeps m x A, which is A_o turned by a right angle, for the rotation.
+/// Functor that computes E and the sum of |A_o|^2; stores m x A (A_o turned by a right angle) for
+/// the rotation.
 template <class Generator, class Real>
 struct EnergyAndSlope {
   Generator generator;
@@ -40,7 +41,7 @@ struct EnergyAndSlope {
   }
 };
 
-/// m <- cay(kappa axis) m
+/// Functor that sets m to cay(kappa axis) m.
 template <class Real>
 struct TurnAboutAxes {
   SiteArray<Real, 3> spins, axes;
@@ -59,23 +60,25 @@ struct TurnAboutAxes {
 
 /// Options of EnergyControl. Its constructor throws std::invalid_argument when one is out of range.
 struct EnergyControlOptions {
-  std::int64_t period = 1;  // steps from one correction to the next
-  /// A correction turns no spin by more than this fraction of the angle that a step turns it by.
+  std::int64_t period = 1;  // steps between corrections
+  /// Largest turn of a spin in a correction, as a fraction of its turn in a step.
   double largest_fraction = 0.1;
-  std::optional<double> energy = {};  // what is held; otherwise the energy at the first call
+  std::optional<double> energy = {};  // the energy to hold; default: that of the first call
 };
 
-/// Lagged energy control, an observer for runs without damping, with any one-step or multistep
-/// method and at any of its steps' ends: the spins turn towards or away from the field, by one
-/// number for all of them, m <- cay(kappa m x A) m with kappa = (E - E_0) / sum |A_o|^2, a Newton
-/// step to the energy that the run began with. What a step does to the energy is undone before the
-/// next one, and so does not add up. A is that of a generator which conserves an energy and has
-/// no t, and kappa of the order of the method, so that its order stays.
-/// Costs one evaluation of the generator at each correction, two passes and a field of memory:
+/// Lagged energy control: an observer for undamped runs with any one-step or multistep method,
+/// called at the end of any step. Spins turn towards or away from the field, m <- cay(kappa m x A)
+/// m with the same kappa = (E - E_0) / sum |A_o|^2 for all of them: a Newton step to the initial
+/// energy. Each energy error is thus corrected before the next step and does not accumulate. The
+/// generator A must conserve an energy and not depend on t. kappa is of the order of the method, so
+/// the method keeps its order.
+///
+/// Each correction costs one evaluation of the generator and two passes; the memory cost is one
+/// field:
 ///   EnergyControl control(spins, generator);
 ///   integrate(exec, stepper, generator, spins, times, control);
-/// Other observers see the spins as they are before or after it, in the order of the arguments.
-/// Refused when compiled with an AdaptiveStepper, which goes on from a state of its own.
+/// Other observers see the spins before or after the correction, in the order of the arguments.
+/// Does not compile with an AdaptiveStepper, which continues from an internal state.
 template <class Spins, class Generator>
 class EnergyControl {
   static_assert(
@@ -89,8 +92,8 @@ class EnergyControl {
   using Real = typename Spins::value_type;
   static constexpr bool changes_spins = true;
 
-  /// Throws std::invalid_argument when the generator does not conserve its energy, and for options
-  /// that cannot be.
+  /// Throws std::invalid_argument when the generator does not conserve its energy, and for invalid
+  /// options.
   EnergyControl(Spins const& like, Generator generator, EnergyControlOptions const& options = {})
       : generator_(std::move(generator)),
         options_(options),
@@ -109,17 +112,17 @@ class EnergyControl {
   }
 
   std::size_t work_bytes() const { return axes_.bytes(); }
-  /// The energy that is held; none before the first call, where the options name none.
+  /// Returns the held energy; empty before the first call unless the options give it.
   std::optional<double> energy() const { return energy_; }
-  /// What the energy was above it at the last call, before the correction.
+  /// Returns by how much the energy exceeded it at the last call, before the correction.
   double excess() const { return excess_; }
   /// Evaluations of the generator so far.
   std::int64_t evaluations_done() const { return evaluations_done_; }
 
-  /// Forgets the energy: the next call takes the spins' own, or that of the options.
+  /// Forgets the energy: the next call holds that of its spins, or that of the options.
   void reset() { energy_ = options_.energy; }
 
-  /// For cayspin::exchange_memory.
+  /// For cayspin::serialize.
   template <class Visit>
   void visit_memory(Visit const& visit) {
     bool holds = energy_.has_value();
@@ -132,8 +135,8 @@ class EnergyControl {
 
   bool due(Step const& step) const { return !energy_ || step.number % options_.period == 0; }
 
-  /// Changes `spins` in place. Throws std::invalid_argument when they are not of the lattice given
-  /// at construction. Where the energy is not finite, the spins stay as they are.
+  /// Changes `spins` in place. Throws std::invalid_argument when they are not on the lattice given
+  /// at construction. If the energy is not finite, the spins do not change.
   template <class Exec>
   void operator()(Exec const& exec, Step const& step, Spins const& spins) {
     detail::check_access<Exec, typename Spins::memory_space>();

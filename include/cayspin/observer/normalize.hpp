@@ -23,7 +23,7 @@ struct NewtonNormalize {
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     auto const m = site.load(spins);
     using Value = typename decltype(m)::value_type;
-    // As m plus a small change: the change is lost below an epsilon, and m then stays to the bit.
+    // Written as m plus a small change: below an epsilon it is lost, and m keeps its bits.
     Value const half_excess = Value(0.5) * (Value(1) - dot(m, m));
     site.store(multiply_add(half_excess, m, m), output);
   }
@@ -31,9 +31,9 @@ struct NewtonNormalize {
 
 }  // namespace detail
 
-/// One Newton step towards |m| = 1 for every spin, m <- m (3 - m.m) / 2, without a root or a
-/// division: a length 1 + d becomes 1 - 3/2 d^2, to round-off. It finds 1 from lengths below
-/// sqrt(3); spins that are not finite stay so.
+/// Takes one Newton step towards |m| = 1 for every spin, m <- m (3 - m.m) / 2, without a root or a
+/// division: a length 1 + d becomes 1 - 3/2 d^2, to round-off. Repeated calls converge to 1 from
+/// lengths below sqrt(3); non-finite spins stay non-finite.
 template <class Exec, class Real, class MemorySpace>
 void normalize(Exec const& exec, SpinField<Real, MemorySpace> const& spins) {
   detail::check_access<Exec, MemorySpace>();
@@ -43,8 +43,8 @@ void normalize(Exec const& exec, SpinField<Real, MemorySpace> const& spins) {
 }
 
 /// Throws std::invalid_argument when a spin's length differs from 1 by more than `tolerance`, or is
-/// not a number; waits. The default takes spins that were rounded to single precision. For spins of
-/// one's own, before a run: steppers keep the lengths that they are given.
+/// not a number; waits. The default accepts spins rounded to single precision. Call it for your own
+/// spins before a run: steppers preserve the lengths that they are given.
 template <class Exec, class Real, class MemorySpace>
 void require_unit_spins(Exec const& exec, SpinField<Real, MemorySpace> const& spins,
                         double tolerance = 1e-6) {
@@ -59,8 +59,8 @@ void require_unit_spins(Exec const& exec, SpinField<Real, MemorySpace> const& sp
   throw std::invalid_argument(message.str());
 }
 
-/// normalize as an observer, for runs of so many steps that round-off in |m| adds up:
-/// integrate(..., Every(1000, Normalize{})). Refused when compiled with an AdaptiveStepper.
+/// Observer that calls normalize, for runs so long that round-off in |m| accumulates:
+/// integrate(..., Every(1000, Normalize{})). Does not compile with an AdaptiveStepper.
 struct Normalize {
   static constexpr bool changes_spins = true;
 

@@ -19,14 +19,14 @@ struct Sample {
   Energy energy;
   double norm_defect = 0;
   Vec3<double> magnetization{0, 0, 0};
-  double largest_rate = 0;  // where a generator was given for it
+  double largest_rate = 0;  // if a generator was given for it
 };
 
 namespace detail {
 
 struct NoGenerator {};
 
-/// All that a Sample holds, from one look at each spin.
+/// Functor that computes all values of a Sample in one pass over the spins.
 template <class Source, class Generator, class Real>
 struct SampleOfSites {
   static constexpr bool with_rate = !std::is_same_v<Generator, NoGenerator>;
@@ -50,10 +50,9 @@ struct SampleOfSites {
 
 }  // namespace detail
 
-/// A Sample of `spins`, in one pass. `source`: what the energy is taken from (an EffectiveField, a
-/// field term or a generator); `generator`: what the largest rate is taken from, where it is asked
-/// for. Each of the two costs one evaluation of its field beside those of the steps: an expensive
-/// one (HostField) is worth an Every of a longer period.
+/// Returns a Sample of `spins`, in one pass. `source` gives the energy (an EffectiveField, a field
+/// term or a generator); the optional `generator` gives the largest rate. Each of them costs one
+/// more evaluation of its field: for an expensive one (HostField), use Every with a longer period.
 template <class Exec, class Source, class Real, class MemorySpace,
           class Generator = detail::NoGenerator>
 Sample sample(Exec const& exec, Source const& source, Step const& step,
@@ -73,8 +72,8 @@ Sample sample(Exec const& exec, Source const& source, Step const& step,
   return sample;
 }
 
-/// An observer that keeps a Sample for each call; wrap it in Every to thin it out.
-/// `source`: what the energy is taken from (an EffectiveField or a generator).
+/// An observer that stores a Sample for each call; wrap it in Every to call it less often. `source`
+/// gives the energy (an EffectiveField or a generator).
 template <class Source>
 class Record {
  public:

@@ -3,6 +3,8 @@
 
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/random_bits.hpp>
+#include <cayspin/detail/reduce_sites.hpp>
+#include <cayspin/field/coefficient.hpp>
 #include <cayspin/integrate.hpp>
 #include <cayspin/part.hpp>
 #include <cayspin/rotation/random_turn.hpp>
@@ -14,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -21,7 +24,7 @@ namespace cayspin::inline v0_1 {
 
 namespace detail {
 
-/// One turn for all sites.
+/// A single turn for all sites.
 template <class Real, bool OnHost>
 struct OneTurn {
   RandomTurn<Real, OnHost> turn;
@@ -36,12 +39,12 @@ struct OneTurn {
   }
 };
 
-/// One for each site of a crystal's cell, and none where a spin does not move.
+/// One turn for each site of a crystal's cell; none where a spin does not move.
 template <class Real, bool OnHost>
 struct TurnOfCellSite {
   RandomTurn<Real, OnHost> const* turns;
   std::int32_t cell_sites;
-  SiteArray<Real, 1> moves;  // without data: all do
+  SiteArray<Real, 1> moves;  // without data: all move
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION RandomTurn<Real, OnHost> const& at(Site const& site) const {
@@ -56,8 +59,37 @@ struct TurnOfCellSite {
   }
 };
 
-/// The turns of a cell's sites, made for the length of step that was asked for last. A copy has its
-/// own.
+/// One turn for each site of a lattice.
+template <class Real>
+struct TurnOfSite {
+  Real u;
+  SiteArray<Real, 1> factors;  // factors of u; 0 where a spin does not move
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION auto at(Site const& site) const {
+    using Value = typename Site::value_type;
+    Value const own = Value(u) * site.load(factors);
+    return RandomTurnOfSites<Real, Value>(own - own * own * Value(Real(1.0 / 12)));
+  }
+  template <class Site, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector kept(Site const& site, Vector const& before,
+                                          Vector const& after) const {
+    using Value = typename Site::value_type;
+    return select<Value>(site.load(factors) == Value(0), before, after);
+  }
+};
+
+template <class Real>
+struct LargestNumber {
+  SiteArray<Real, 1> numbers;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* largest) const {
+    largest[0] = site.load(numbers);
+  }
+};
+
+/// The turns of a cell's sites for the last requested length of step. A copy has separate turns.
 template <class Real, class MemorySpace>
 class CellTurns {
   static constexpr bool on_host = is_host_execution<typename MemorySpace::execution_space>;
@@ -76,7 +108,7 @@ class CellTurns {
   }
   ~CellTurns() = default;
 
-  /// turn_of(site) of each site of a cell, unless they were made for `u` before; then waits.
+  /// Computes turn_of(site) for each site of a cell, unless already made for `u`; then waits.
   template <class Exec, class TurnOf>
   TurnOfCellSite<Real, on_host> get(Exec const& exec, double u, TurnOf const& turn_of) {
     if (u != made_for_) {
@@ -95,16 +127,17 @@ class CellTurns {
   double made_for_ = -1;
 };
 
-/// Both halves of the noise between two steps, or one of them.
+/// Functor that applies one or both halves of the noise between two steps.
 template <class Real, bool OnHost, class Turns = OneTurn<Real, OnHost>>
 struct TurnAtRandom {
   SiteArray<Real, 3> spins;
   OutputArray<Real, 3> output;
   RandomBits<OnHost> random;
   Turns turns;
-  bool after, before;                     // which halves
-  std::int64_t first_y, first_z, ny, nz;  // of the part in the whole lattice, and that
-  std::uint64_t places;                   // for random bits, in a row
+  bool after, before;  // which halves
+  std::int64_t first_y, first_z, ny,
+      nz;                // the part's place in the whole lattice, and the extents of that
+  std::uint64_t places;  // for random bits, in a row
 
   static std::uint64_t places_of_row(std::int64_t nx) {
     constexpr auto lanes = RandomBits<OnHost>::most_lanes;
@@ -123,7 +156,7 @@ struct TurnAtRandom {
     Vec3<Value> const found = site.load(spins);
     Vec3<Value> m = found;
     if (after) {
-      // The turn's own round-off is the same in each step: left alone, lengths would drift.
+      // The turn's round-off repeats in each step: without this, lengths would drift.
       m = turn.template turned<0>(bits, m);
       m = multiply_add(Value(Real(-0.5)), dot(m, m), Value(Real(1.5))) * m;
     }
@@ -142,26 +175,25 @@ struct TurnAtRandom {
 
 /// Options of ThermalNoise.
 struct ThermalNoiseOptions {
-  double temperature = 0;  ///< in units of moment times field: kB T over the energy of a site
+  double temperature = 0;  ///< in units of moment times field: kB T over the energy unit of a site
   std::uint64_t seed = 0;
-  /// The gyromagnetic ratio over the moment of each site of a crystal's cell, and 0 without a spin.
-  /// Empty: all 1.
+  /// Gyromagnetic ratio over moment for each site of a crystal's cell, and 0 without a spin. Empty:
+  /// all 1.
   std::vector<double> cell_sites = {};
 };
 
-/// The noise of a temperature around the steps of any one-step method for LandauLifshitz with
-/// damping: half of it before each step and half after. A half turns each spin by a random angle
-/// about a random axis, of which the variance per component is s^2 = u - u^2/12 with
-/// u = damping temperature dt. Spins without a field then diffuse with an error of the third order
-/// in u. The whole is a splitting of second order. It tends to Boltzmann's distribution of
-/// E / temperature.
+/// Thermal noise for LandauLifshitz with damping and any one-step method: half of it is applied
+/// before each step and half after. A half turns each spin by a random angle about a random axis,
+/// with a variance per component of s^2 = u - u^2/12, u = damping temperature dt. Spins without a
+/// field then diffuse with an error of third order in u. With the step this is a splitting of
+/// second order, which samples Boltzmann's distribution of E / temperature.
 ///   ThermalNoise const noise(spins, damping, {.temperature = 0.5, .seed = 1});
 ///   integrate(exec, stepper, generator, spins, times, noise.after_steps(times), observers...,
 ///             noise.before_steps());
-/// Without observers in between, noise.between_steps(times) does both at once. The random numbers
-/// are those of Philox by seed, site and step: the bits do not depend on threads, host spaces or
-/// ranks, nor on where a run is cut. Costs no memory and two passes a step. Refused when compiled
-/// with an AdaptiveStepper. Methods that remember steps lose their order.
+/// Without observers in between, noise.between_steps(times) applies both halves at once. Random
+/// numbers come from Philox by seed, site and step: the bits do not depend on threads, host spaces
+/// or ranks, nor on where a run is interrupted. Costs no memory and two passes a step. Does not
+/// compile with an AdaptiveStepper. Multistep methods lose their order.
 template <class Spins>
 class ThermalNoise {
   using Real = typename Spins::value_type;
@@ -186,68 +218,100 @@ class ThermalNoise {
             "cayspin::ThermalNoise: the numbers of a cell's sites must be finite and >= 0");
     cell_turns_ = CellTurns(options.cell_sites.size());
   }
-  /// The same, without noise where `moves` is 0.
+  /// Multiplies damping times temperature at each site by a factor, which may contain the damping,
+  /// the temperature, or one over the moment; 0 where a spin does not move. Factors other than 0
+  /// and 1 replace options.cell_sites. Throws std::invalid_argument for a negative or non-finite
+  /// factor, and if both are given.
   ThermalNoise(Spins const& like, double damping, ThermalNoiseOptions const& options,
-               ScalarField<Real, typename Spins::memory_space> const& moves)
+               ScalarField<Real, typename Spins::memory_space> const& factors)
       : ThermalNoise(like, damping, options) {
-    require_lattice("cayspin::ThermalNoise", lattice_, moves.lattice());
-    moves_ = moves;
-    if (options_.cell_sites.empty()) {
+    require_lattice("cayspin::ThermalNoise", lattice_, factors.lattice());
+    auto const signs = detail::signs_of(factors, "cayspin::ThermalNoise: the factors");
+    if (signs.negative)
+      throw std::invalid_argument("cayspin::ThermalNoise: the factors must be >= 0 on every site");
+    factors_ = factors;
+    if (!signs.zero_or_one) {
+      if (!options.cell_sites.empty())
+        throw std::invalid_argument(
+            "cayspin::ThermalNoise: factors of sites beside numbers of a cell's sites: one of the "
+            "two");
+      typename Spins::memory_space::execution_space const exec;
+      largest_factor_ = detail::reduce_sites<detail::Maximum, 1>(
+          exec, "cayspin::ThermalNoise::largest_factor", factors.layout(),
+          detail::LargestNumber<Real>{factors.array()})[0];
+    } else if (options_.cell_sites.empty()) {
       options_.cell_sites.assign(static_cast<std::size_t>(lattice_.cell_sites), 1);
       cell_turns_ = CellTurns(options_.cell_sites.size());
     }
   }
 
-  /// The noise before or after step number `step`, of length dt, also of ghosts.
-  /// Throws std::invalid_argument where half of a step would turn spins by more than a radian, and
-  /// for spins on another lattice.
+  /// Sets the temperature from the next turn on, for temperatures that change in time. Throws
+  /// std::invalid_argument if it is negative or not finite.
+  void set_temperature(double temperature) {
+    if (!(temperature >= 0) || !std::isfinite(temperature))
+      throw std::invalid_argument("cayspin::ThermalNoise: the temperature must be finite and >= 0");
+    options_.temperature = temperature;
+  }
+
+  /// Applies the noise before or after step number `step`, of length dt, also to ghosts. Throws
+  /// std::invalid_argument if half a step would turn spins by more than a radian, and for spins on
+  /// another lattice.
   template <class Exec>
   void turn(Exec const& exec, std::int64_t step, Half half, double dt, Spins const& spins) const {
     bool const after = half == Half::after;
     turn_between(exec, after ? step : step - 1, after, !after, dt, spins);
   }
 
-  /// The noise after step number `step` and before the next one, in one pass: the bits of two calls
-  /// of turn. Throws as turn does.
+  /// Applies the noise after step number `step` and before the next one, in one pass, with the bits
+  /// of two calls of turn. Throws like turn.
   template <class Exec>
   void turn_between_steps(Exec const& exec, std::int64_t step, double dt,
                           Spins const& spins) const {
     turn_between(exec, step, true, true, dt, spins);
   }
 
-  /// An observer: the second half of each step. The first among the observers, so that the others
-  /// see the spins as they are after it.
+  /// Returns an observer for the second half of each step. Put it first, so that other observers
+  /// see the spins after it.
   auto after_steps(Times const& times) const {
     return BetweenSteps<true, false>{*this, times.first};
   }
-  /// An observer: the first half of the step that follows. The last among the observers: one that
-  /// may stop the run is refused after it when compiled.
+  /// Returns an observer for the first half of the next step. Put it last: a later observer that
+  /// may stop the run does not compile.
   auto before_steps() const { return BetweenSteps<false, true>{*this}; }
-  /// Both in one pass, where no observer is between them; refused as before_steps.
+  /// Returns an observer for both halves in one pass, if no observer is between them; restricted
+  /// like before_steps.
   auto between_steps(Times const& times) const {
     return BetweenSteps<true, true>{*this, times.first};
   }
 
  private:
-  /// Between a step and the next one: the half after that step, the one before the next, or both.
+  /// Applies noise between two steps: the half after the first, the half before the second, or
+  /// both.
   template <class Exec>
   void turn_between(Exec const& exec, std::int64_t step, bool after, bool before, double dt,
                     Spins const& spins) const {
     detail::check_access<Exec, typename Spins::memory_space>();
     require_lattice("cayspin::ThermalNoise", lattice_, spins.lattice());
     double const u = damping_ * options_.temperature * std::abs(dt);
-    double const largest = options_.cell_sites.empty() ? 1 : std::ranges::max(options_.cell_sites);
+    double const largest = largest_factor_               ? *largest_factor_
+                           : options_.cell_sites.empty() ? 1
+                                                         : std::ranges::max(options_.cell_sites);
     if (!(largest * u <= 1))
       throw std::invalid_argument(
           "cayspin::ThermalNoise: damping temperature dt must be at most 1: a smaller dt");
     if (u == 0) return;
+    if (largest_factor_) {
+      run(exec, step, after, before, spins,
+          detail::TurnOfSite<Real>{static_cast<Real>(u), factors_.array()});
+      return;
+    }
     if (options_.cell_sites.empty()) {
       run(exec, step, after, before, spins, detail::OneTurn<Real, on_host<Exec>>{turn_of<Exec>(u)});
       return;
     }
     auto turns = cell_turns_.get(
         exec, u, [&](std::size_t site) { return turn_of<Exec>(u * options_.cell_sites[site]); });
-    if (moves_.lattice() == lattice_) turns.moves = moves_.array();
+    if (factors_.lattice() == lattice_) turns.moves = factors_.array();
     run(exec, step, after, before, spins, turns);
   }
 
@@ -278,7 +342,7 @@ class ThermalNoise {
     detail::for_each_site<Real>(exec, "cayspin::ThermalNoise", spins.layout(), kernel);
   }
 
-  /// Of the two halves between steps, those that are wanted.
+  /// Observer for the selected halves between steps.
   template <bool After, bool Before>
   struct BetweenSteps {
     static constexpr bool changes_spins = true, begins_step = Before;
@@ -287,7 +351,7 @@ class ThermalNoise {
 
     template <class Exec>
     void operator()(Exec const& exec, Step const& step, Spins const& spins) const {
-      // A run that is stopped may go on: that begins with this half.
+      // A stopped run may be continued, and then starts with this half.
       bool const ends = After && step.number > first, begins = Before && !step.last && !step.stops;
       if (ends || begins) noise.turn_between(exec, step.number, ends, begins, step.dt, spins);
     }
@@ -298,7 +362,8 @@ class ThermalNoise {
   Lattice lattice_;
   double damping_;
   ThermalNoiseOptions options_;
-  ScalarField<Real, typename Spins::memory_space> moves_;
+  ScalarField<Real, typename Spins::memory_space> factors_;
+  std::optional<double> largest_factor_;  // if any factor is not 0 or 1
   mutable CellTurns cell_turns_;
 };
 

@@ -25,9 +25,10 @@ struct SpinAndLength {
       : m(spin), length(square_root(dot(spin, spin))) {}
 };
 
-/// Half the solid angle that three spins enclose, within -pi .. pi (van Oosterom and Strackee
-/// 1983): tan of it is a.(b x c) / (1 + a.b + b.c + c.a) for unit vectors. 0 for spins that are in
-/// one plane to round-off: in antiparallel ones the quotient would be that of two errors.
+/// Returns half the solid angle that three spins enclose, within -pi .. pi (van Oosterom and
+/// Strackee 1983): its tan is a.(b x c) / (1 + a.b + b.c + c.a) for unit vectors. Returns 0 for
+/// spins that are coplanar to round-off: for antiparallel ones the quotient would be that of two
+/// errors.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value half_solid_angle(SpinAndLength<Value> const& a,
                                                    SpinAndLength<Value> const& b,
@@ -41,8 +42,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value half_solid_angle(SpinAndLength<Value> const& a
                        Value(Kokkos::atan2(volume, rest)));
 }
 
-/// The two triangles at a site, with its next neighbours along x and y and with its previous ones.
-/// Together those of all sites cover the plaquettes: each has one of both kinds.
+/// The two triangles at a site, one with its next neighbours along x and y and one with its
+/// previous ones. Over all sites they cover each plaquette with one triangle of each kind.
 template <class Real>
 struct SolidAngleOfSites {
   SiteArray<Real, 3> spins;
@@ -60,7 +61,7 @@ struct SolidAngleOfSites {
   }
 };
 
-/// The sum over the sites of `layout` that are its part's own.
+/// Returns the sum over the part's own sites of `layout`.
 template <class Exec, class Real, class MemorySpace>
 double charge_of(Exec const& exec, SpinField<Real, MemorySpace> const& spins,
                  RowLayout const& layout) {
@@ -76,23 +77,25 @@ double charge_of(Exec const& exec, SpinField<Real, MemorySpace> const& spins,
 
 }  // namespace detail
 
-/// The topological charge of the planes (x, y), Q = sum m.(d_x m x d_y m) / (4 pi), added up over
-/// all z: the solid angles of the triangles of neighbouring spins, two of each plaquette, over
-/// 4 pi (Berg and Luescher 1981). Axes and planes are those of the lattice, also of a crystal's;
-/// lengths of spins do not matter, and one of length 0 encloses no angle.
-/// A skyrmion whose core points down, among spins up, has Q = -1, of Neel's and of Bloch's kind; an
-/// antiskyrmion of that core +1. The charge of a periodic plane is a whole number, to round-off.
-/// At open ends the plaquettes end: a vortex in a film has +-1/2. Three spins in one plane and all
-/// around it have no sign, and count 0.
-/// Sums are in double. On host spaces they have the same bits for any number of threads. Throws
+/// Returns the topological charge of the planes (x, y), Q = sum m.(d_x m x d_y m) / (4 pi), summed
+/// over all z: the solid angles of the triangles of neighbouring spins, two in each plaquette, over
+/// 4 pi (Berg and Luescher 1981). Axes and planes are those of the lattice, also for a crystal.
+/// Lengths of spins do not matter; a spin of length 0 encloses no angle.
+///
+/// A skyrmion with its core down among spins up has Q = -1, of Neel or Bloch type; an antiskyrmion
+/// with that core has +1. The charge of a periodic plane is an integer, to round-off. At open ends
+/// the plaquettes end: a vortex in a film has +-1/2. Three spins that lie in a plane and point all
+/// around it have no sign, and count as 0.
+///
+/// Sums are in double. On host spaces their bits do not depend on the number of threads. Throws
 /// std::invalid_argument for spins without sites.
 template <class Exec, class Real, class MemorySpace>
 double topological_charge(Exec const& exec, SpinField<Real, MemorySpace> const& spins) {
   return detail::charge_of(exec, spins, spins.layout());
 }
 
-/// That of plane number z alone, of the whole lattice. Throws std::invalid_argument when there is
-/// none.
+/// Returns the charge of plane number z of the whole lattice only. Throws std::invalid_argument
+/// when there is no such plane.
 template <class Exec, class Real, class MemorySpace>
 double topological_charge(Exec const& exec, SpinField<Real, MemorySpace> const& spins,
                           std::int64_t z) {
@@ -104,7 +107,7 @@ double topological_charge(Exec const& exec, SpinField<Real, MemorySpace> const& 
                                 std::to_string(planes - 1));
   auto layout = spins.layout();
   auto const first = layout.part == nullptr ? 0 : layout.part->begin()[2];
-  auto& own = layout.own;  // of another part none
+  auto& own = layout.own;  // empty if the plane belongs to another part
   auto const begin = std::clamp<std::int64_t>(z - first, own.z_begin, own.z_end);
   auto const end = std::clamp<std::int64_t>(z - first + 1, own.z_begin, own.z_end);
   own.z_begin = static_cast<std::int32_t>(begin);

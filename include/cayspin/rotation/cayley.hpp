@@ -7,17 +7,17 @@
 
 namespace cayspin::inline v0_1 {
 
-/// The Cayley map of so(3). Coordinates f rotate about f, by the angle 2 atan(|f|/2).
-/// Lewis and Nigam 2002, Sec. 2; right-trivialised differential.
+/// The Cayley map of so(3). Coordinates f rotate about f, by the angle 2 atan(|f|/2). Lewis and
+/// Nigam 2002, Sec. 2; right-trivialised differential.
 struct Cayley {
-  /// cay(f) m, to a few ulp, for |f| up to about 1e150 (double) or 1e18 (float).
+  /// Returns cay(f) m, to a few ulp, for |f| up to about 1e150 (double) or 1e18 (float).
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> rotate(Vec3<Value> const& f,
                                                         Vec3<Value> const& m) {
-    // Written as m plus a small change: the quotient form of the same map drifts off the sphere.
+    // Written as m plus a small change: the equivalent quotient form drifts off the sphere.
     return displacement(f, m).from(m);
   }
-  /// cay(f) m - m
+  /// Returns cay(f) m - m.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Displacement<Value> displacement(Vec3<Value> const& f,
                                                                       Vec3<Value> const& m) {
@@ -27,7 +27,7 @@ struct Cayley {
     return {detail::quotient(Value(4), four_and_f2), multiply_add(Value(0.5), cross(f, c), c)};
   }
 
-  /// dcay_f y = (y + f x y / 2) / (1 + |f|^2 / 4)
+  /// Returns dcay_f y = (y + f x y / 2) / (1 + |f|^2 / 4).
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> differential(Vec3<Value> const& f,
                                                               Vec3<Value> const& y) {
@@ -35,7 +35,7 @@ struct Cayley {
     return Value(Value(1) / (Value(1) + dot(h, h))) * (y + cross(h, y));
   }
 
-  /// dcay_f^-1 y = y - f x y / 2 + f <f, y> / 4
+  /// Returns dcay_f^-1 y = y - f x y / 2 + f <f, y> / 4.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> inverse_differential(Vec3<Value> const& f,
                                                                       Vec3<Value> const& y) {

@@ -9,15 +9,15 @@ namespace cayspin::inline v0_1 {
 
 /// The exponential map of so(3) (Rodrigues' rotation): about f, by the angle |f|. It calls no
 /// library sine, so it vectorises. The result is on the sphere for every finite f. The angle has an
-/// error of about eps |f|: beyond |f| = 1/eps the result is some point on the circle.
+/// error of about eps |f|: beyond |f| = 1/eps the result is an arbitrary point on the circle.
 struct Exponential {
-  /// exp(f) m
+  /// Returns exp(f) m.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> rotate(Vec3<Value> const& f,
                                                         Vec3<Value> const& m) {
     return displacement(f, m).from(m);
   }
-  /// exp(f) m - m
+  /// Returns exp(f) m - m.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Displacement<Value> displacement(Vec3<Value> const& f,
                                                                       Vec3<Value> const& m) {
@@ -28,7 +28,7 @@ struct Exponential {
     return {Value(2), multiply_add(half.cosine, c, cross(v, c))};
   }
 
-  /// dexp_f^-1 y = y - f x y / 2 + (1 - (n/2) cot(n/2)) / n^2 f x (f x y), n = |f| < 2 pi
+  /// Returns dexp_f^-1 y = y - f x y / 2 + (1 - (n/2) cot(n/2)) / n^2 f x (f x y), n = |f| < 2 pi.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> inverse_differential(Vec3<Value> const& f,
                                                                       Vec3<Value> const& y) {

@@ -13,14 +13,101 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// m <- exp(v) m for a random v made of five bits. Of the 32 cases v is 0 in 12, +-2 s along one of
-/// the axes in 12, and sqrt(2) s (+-1, +-1, +-1) in 8. These have the moments of normal numbers of
-/// deviation s up to the fifth, which is all that a step of weak order 2 knows of them (Kloeden and
-/// Platen 1992, Sec. 14.2).
+/// exp(v) m = m + factor tangent x (m + tangent x m): tangent is tan(|v| / 2) v / |v|, and factor
+/// 2 cos^2(|v| / 2).
+template <class Value>
+struct TurnByTangent {
+  Vec3<Value> tangent;
+  Value factor;
+
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> operator()(Vec3<Value> const& m) const {
+    auto const& b = tangent;
+    Vec3<Value> const half{plus_cross(m.x, b.y, m.z, b.z, m.y), plus_cross(m.y, b.z, m.x, b.x, m.z),
+                           plus_cross(m.z, b.x, m.y, b.y, m.x)};
+    return multiply_add(factor, cross(b, half), m);
+  }
+
+ private:
+  /// Returns a + b1 m1 - b2 m2.
+  KOKKOS_FORCEINLINE_FUNCTION static Value plus_cross(Value const& a, Value const& b1,
+                                                      Value const& m1, Value const& b2,
+                                                      Value const& m2) {
+    return multiply_subtract(b1, m1, multiply_subtract(b2, m2, a));
+  }
+};
+
+/// Selection of one of the 32 turns by five bits. Numbers: words of Bits, one for each lane.
+template <class Real>
+struct ChoiceOfTurn {
+  using Bits = std::conditional_t<sizeof(Real) == 8, std::uint64_t, std::uint32_t>;
+
+  /// Bits 2 and 3 are 0 for a turn about a diagonal. Otherwise they choose an axis, and bit 0 is
+  /// set for a turn about it. The other bits are signs. The four numbers are words, too.
+  template <class Value, class Numbers, class Words>
+  KOKKOS_FORCEINLINE_FUNCTION static TurnByTangent<Value> of(Numbers const& code,
+                                                             Words const& axial,
+                                                             Words const& diagonal,
+                                                             Words const& axial_factor,
+                                                             Words const& diagonal_factor) {
+    Numbers const is_diagonal = mask<Numbers>((code & 12) == 0);
+    Numbers const sign = sign_if<4>(code);
+    return {{value<Value>(Numbers(sign ^ tangent<5>(code, is_diagonal, axial, diagonal))),
+             value<Value>(
+                 Numbers(sign ^ sign_if<0>(code) ^ tangent<9>(code, is_diagonal, axial, diagonal))),
+             value<Value>(Numbers(sign ^ sign_if<1>(code) ^
+                                  tangent<13>(code, is_diagonal, axial, diagonal)))},
+            value<Value>(Numbers((is_diagonal & diagonal_factor) | (~is_diagonal & axial_factor)))};
+  }
+
+  /// Returns the sign bit where this bit of a code is 1.
+  template <int Bit, class Numbers>
+  KOKKOS_FORCEINLINE_FUNCTION static Numbers sign_if(Numbers const& code) {
+    constexpr int top = 8 * sizeof(Bits) - 1;
+    return (code << (top - Bit)) & (Bits{1} << top);
+  }
+  template <class Value, class Numbers>
+  KOKKOS_FORCEINLINE_FUNCTION static Value value(Numbers const& bits) {
+    Real numbers[std::size_t{lanes_of<Value>}];
+    std::memcpy(numbers, &bits, sizeof numbers);
+    return load<Value>(numbers);
+  }
+  template <class Numbers, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Numbers bits(Value const& value) {
+    Real numbers[std::size_t{lanes_of<Value>}];
+    store(value, numbers);
+    Numbers bits;
+    std::memcpy(&bits, numbers, sizeof numbers);
+    return bits;
+  }
+
+ private:
+  template <int Axis, class Numbers, class Words>
+  KOKKOS_FORCEINLINE_FUNCTION static Numbers tangent(Numbers const& code,
+                                                     Numbers const& is_diagonal, Words const& axial,
+                                                     Words const& diagonal) {
+    Numbers const is_axial = mask<Numbers>((code & 13) == Axis);
+    return (is_diagonal & diagonal) | (is_axial & axial);
+  }
+  /// Returns a word of ones where a condition holds.
+  template <class Numbers, class Condition>
+  KOKKOS_FORCEINLINE_FUNCTION static Numbers mask(Condition const& condition) {
+    if constexpr (std::is_same_v<Condition, bool>)
+      return condition ? ~Numbers{0} : Numbers{0};
+    else
+      return reinterpret_cast<Numbers>(condition);
+  }
+};
+
+/// Random rotation: sets m to exp(v) m for a random v made of five bits. Of the 32 cases v is 0 in
+/// 12, +-2 s along an axis in 12, and sqrt(2) s (+-1, +-1, +-1) in 8. These have the moments of
+/// normal numbers of deviation s up to the fifth, and a step of weak order 2 depends on no others
+/// (Kloeden and Platen 1992, Sec. 14.2).
 template <class Real, bool OnHost>
 class RandomTurn {
+  using Choice = ChoiceOfTurn<Real>;
+
  public:
-  using Bits = std::conditional_t<sizeof(Real) == 8, std::uint64_t, std::uint32_t>;
+  using Bits = typename Choice::Bits;
 
   RandomTurn() = default;
   /// s^2: the variance of each component.
@@ -40,92 +127,79 @@ class RandomTurn {
       }
   }
 
-  /// By the five bits from `First` on.
+  /// Turns m by the five bits from `First` on.
   template <int First, class Value, class Numbers>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> turned(Numbers const& numbers,
                                                  Vec3<Value> const& m) const {
-    auto const [b, factor] = turn_of<Value>(Numbers(numbers >> First));
-    Vec3<Value> const half{plus_cross(m.x, b.y, m.z, b.z, m.y), plus_cross(m.y, b.z, m.x, b.x, m.z),
-                           plus_cross(m.z, b.x, m.y, b.y, m.x)};
-    return multiply_add(factor, cross(b, half), m);
+    return turn_of<Value>(Numbers(numbers >> First))(m);
   }
 
  private:
-  /// exp(v) m = m + factor tangent x (m + tangent x m): tangent is tan(|v| / 2) v / |v|, and factor
-  /// 2 cos^2(|v| / 2).
-  template <class Value>
-  struct Turn {
-    Vec3<Value> tangent;
-    Value factor;
-  };
-
-  /// a + b1 m1 - b2 m2
-  template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION static Value plus_cross(Value const& a, Value const& b1,
-                                                      Value const& m1, Value const& b2,
-                                                      Value const& m2) {
-    return multiply_subtract(b1, m1, multiply_subtract(b2, m2, a));
-  }
-
   template <class Value, class Numbers>
-  KOKKOS_FORCEINLINE_FUNCTION Turn<Value> turn_of(Numbers const& code) const {
+  KOKKOS_FORCEINLINE_FUNCTION TurnByTangent<Value> turn_of(Numbers const& code) const {
     if constexpr (OnHost && has_table_of_sixteen<Numbers>) {
-      Numbers const sign = sign_if<4>(code);
-      return {{value<Value>(look_up(tables_.x, code) ^ sign),
-               value<Value>(look_up(tables_.y, code) ^ sign),
-               value<Value>(look_up(tables_.z, code) ^ sign)},
-              value<Value>(look_up(tables_.factor, code))};
+      Numbers const sign = Choice::template sign_if<4>(code);
+      return {{Choice::template value<Value>(Numbers(look_up(tables_.x, code) ^ sign)),
+               Choice::template value<Value>(Numbers(look_up(tables_.y, code) ^ sign)),
+               Choice::template value<Value>(Numbers(look_up(tables_.z, code) ^ sign))},
+              Choice::template value<Value>(look_up(tables_.factor, code))};
     }
     return computed<Value>(code);
   }
-
-  /// Bits 2 and 3 are 0 for a turn about a diagonal; otherwise they choose an axis, with bit 0 for
-  /// a turn about it. The others are signs.
   template <class Value, class Numbers>
-  KOKKOS_FORCEINLINE_FUNCTION Turn<Value> computed(Numbers const& code) const {
-    Numbers const is_diagonal = mask<Numbers>((code & 12) == 0);
-    Numbers const sign = sign_if<4>(code);
-    return {{value<Value>(sign ^ tangent<5>(code, is_diagonal)),
-             value<Value>(sign ^ sign_if<0>(code) ^ tangent<9>(code, is_diagonal)),
-             value<Value>(sign ^ sign_if<1>(code) ^ tangent<13>(code, is_diagonal))},
-            value<Value>((is_diagonal & Kokkos::bit_cast<Bits>(diagonal_factor_)) |
-                         (~is_diagonal & Kokkos::bit_cast<Bits>(axial_factor_)))};
-  }
-  template <int Axis, class Numbers>
-  KOKKOS_FORCEINLINE_FUNCTION Numbers tangent(Numbers const& code,
-                                              Numbers const& is_diagonal) const {
-    Numbers const is_axial = mask<Numbers>((code & 13) == Axis);
-    return (is_diagonal & Kokkos::bit_cast<Bits>(diagonal_)) |
-           (is_axial & Kokkos::bit_cast<Bits>(axial_));
-  }
-  /// The bit of a minus where this bit of a code is 1.
-  template <int Bit, class Numbers>
-  KOKKOS_FORCEINLINE_FUNCTION static Numbers sign_if(Numbers const& code) {
-    constexpr int top = 8 * sizeof(Bits) - 1;
-    return (code << (top - Bit)) & (Bits{1} << top);
-  }
-  /// All bits where a condition holds.
-  template <class Numbers, class Condition>
-  KOKKOS_FORCEINLINE_FUNCTION static Numbers mask(Condition const& condition) {
-    if constexpr (std::is_same_v<Condition, bool>)
-      return condition ? ~Numbers{0} : Numbers{0};
-    else
-      return reinterpret_cast<Numbers>(condition);
-  }
-  template <class Value, class Numbers>
-  KOKKOS_FORCEINLINE_FUNCTION static Value value(Numbers const& bits) {
-    Real numbers[std::size_t{lanes_of<Value>}];
-    std::memcpy(numbers, &bits, sizeof numbers);
-    return load<Value>(numbers);
+  KOKKOS_FORCEINLINE_FUNCTION TurnByTangent<Value> computed(Numbers const& code) const {
+    return Choice::template of<Value>(
+        code, Kokkos::bit_cast<Bits>(axial_), Kokkos::bit_cast<Bits>(diagonal_),
+        Kokkos::bit_cast<Bits>(axial_factor_), Kokkos::bit_cast<Bits>(diagonal_factor_));
   }
 
   struct Tables {
-    alignas(64) Real x[16] = {}, y[16] = {}, z[16] = {}, factor[16] = {};  // of codes below 16
+    alignas(64) Real x[16] = {}, y[16] = {}, z[16] = {}, factor[16] = {};  // for codes below 16
   };
   struct Nothing {};
 
   Real axial_ = 0, diagonal_ = 0, axial_factor_ = 0, diagonal_factor_ = 0;
   std::conditional_t<OnHost, Tables, Nothing> tables_;
+};
+
+/// RandomTurn for sites with different variances, at most 1. Tangents are quotients of polynomials,
+/// accurate to 1e-6 at variance 1 and to rounding below 0.04: v is longer by O(s^11), and its
+/// moments still suffice for weak order 2.
+template <class Real, class Value>
+class RandomTurnOfSites {
+  using Choice = ChoiceOfTurn<Real>;
+
+ public:
+  KOKKOS_FORCEINLINE_FUNCTION explicit RandomTurnOfSites(Value const& variance)
+      : axial_(tangent_of_root(variance)),
+        diagonal_(tangent_of_root(Value(Value(Real(1.5)) * variance))) {}
+
+  template <int First, class Numbers>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> turned(Numbers const& numbers,
+                                                 Vec3<Value> const& m) const {
+    Value const along_axis(Real(0.57735026918962576));  // components of a unit diagonal
+    return Choice::template of<Value>(Numbers(numbers >> First), bits<Numbers>(axial_),
+                                      bits<Numbers>(Value(along_axis * diagonal_)),
+                                      bits<Numbers>(factor(axial_)),
+                                      bits<Numbers>(factor(diagonal_)))(m);
+  }
+
+ private:
+  template <class Numbers>
+  KOKKOS_FORCEINLINE_FUNCTION static Numbers bits(Value const& value) {
+    return Choice::template bits<Numbers>(value);
+  }
+  /// Returns tan(sqrt(x)), to x^5 in the numbers of its continued fraction.
+  KOKKOS_FORCEINLINE_FUNCTION static Value tangent_of_root(Value const& x) {
+    Value const numerator = (x - Value(Real(105))) * x + Value(Real(945));
+    Value const denominator = (Value(Real(15)) * x - Value(Real(420))) * x + Value(Real(945));
+    return Kokkos::sqrt(x) * numerator / denominator;
+  }
+  KOKKOS_FORCEINLINE_FUNCTION static Value factor(Value const& tangent) {
+    return Value(Real(2)) / (Value(Real(1)) + tangent * tangent);
+  }
+
+  Value axial_, diagonal_;
 };
 
 }  // namespace cayspin::inline v0_1::detail

@@ -20,7 +20,7 @@ struct AlternatingSigns {
   }
   bool any() const { return along[0] || along[1] || along[2]; }
 
-  /// Of site 0 of a row.
+  /// Returns the sign of site 0 of a row.
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Real first_of_row(std::int32_t y, std::int32_t z) const {
     return ((along[1] ? y : 0) + (along[2] ? z : 0)) % 2 == 0 ? Real(1) : Real(-1);
@@ -38,8 +38,8 @@ struct AlternatingSigns {
   }
 };
 
-/// The bonds along an axis between sites of other signs, where signs alternate along it: all of
-/// them, but for those that close an odd ring.
+/// Returns how many bonds along an axis join opposite signs, if signs alternate along it: all bonds
+/// except those that close an odd ring.
 inline double opposed_bonds(Lattice const& lattice, int axis) {
   auto const extent = lattice.shape[static_cast<std::size_t>(axis)];
   bool const closes =

@@ -22,7 +22,8 @@ class CellAxis {
 
   std::size_t cells() const { return widths_.size(); }
   std::size_t coarse_cells() const { return std::max<std::size_t>(cells() / 2, 1); }
-  /// The coarse cell that holds a cell: pairs, and three in the last one where the number is odd.
+  /// Returns the coarse cell that holds a cell: two cells each, and three in the last one if the
+  /// number is odd.
   std::size_t parent(std::size_t cell) const { return std::min(cell / 2, coarse_cells() - 1); }
 
   CellAxis coarser() const {
@@ -41,7 +42,7 @@ class CellAxis {
     if (cells() == 1 || (!periodic_ && i == 0)) return 0;
     return 2 / (widths_[i] * (widths_[i] + widths_[(i + cells() - 1) % cells()]));
   }
-  /// The largest sum of both, half of which bounds the frequencies from one side.
+  /// Returns the largest sum of both; its half bounds the frequencies from one side.
   double largest_sum() const {
     double largest = 0;
     for (std::size_t i = 0; i < cells(); ++i)
@@ -49,8 +50,8 @@ class CellAxis {
     return largest;
   }
 
-  /// A cell's value from coarse ones, by linear interpolation between centres:
-  /// (1 - share) of its parent's and `share` of the coarse cell `beside` it.
+  /// Weights that interpolate a cell's value linearly between centres of coarse cells: (1 - share)
+  /// of its parent's value and `share` of that of the coarse cell `beside` it.
   struct Interpolation {
     std::size_t beside;
     double share;
@@ -67,8 +68,8 @@ class CellAxis {
     return {beside, 2 * std::abs(way) / (coarse.widths_[own] + coarse.widths_[beside])};
   }
 
-  /// Restriction: the interpolation's transpose, scaled by widths. A coarse value is the sum over
-  /// `reach` cells, from 2 coarse - 1 on and around the end, with these weights.
+  /// Restriction: the transpose of the interpolation, scaled by widths. A coarse value is the
+  /// weighted sum over `reach` cells, starting at 2 coarse - 1 and wrapping around.
   static constexpr std::size_t reach = 5;
   std::vector<std::array<double, reach>> restriction() const {
     CellAxis const coarse = coarser();
@@ -93,17 +94,17 @@ class CellAxis {
   bool periodic_;
 };
 
-/// The numbers of an axis as kernels take them.
+/// Arrays of an axis for kernels.
 template <class Real>
 struct CellAxisArrays {
-  Real const *to_previous = nullptr, *to_next = nullptr;  // with the coupling
+  Real const *to_previous = nullptr, *to_next = nullptr;  // multiplied by the coupling
   Real const *share = nullptr, *weights = nullptr;        // weights[k coarse_cells + coarse]
-  Real const* mean = nullptr;                             // that times the weights sums up to 1
+  Real const* mean = nullptr;                             // its products with the weights sum to 1
   std::int32_t const* beside = nullptr;
   std::int32_t coarse_cells = 0;
 };
 
-/// Their memory.
+/// Memory of these arrays.
 template <class Real, class MemorySpace>
 class CellAxisTables {
  public:

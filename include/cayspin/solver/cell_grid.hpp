@@ -15,12 +15,12 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// Row y of plane z, from cell x on.
+/// Row y of plane z, starting at cell x.
 struct CellPlace {
   std::int32_t x, y, z;
 };
 
-/// A field as the passes of a solver see it, whatever its precision.
+/// A field for the kernels of a solver, in any precision.
 template <class Real, int Components>
 struct CellArray {
   Real* data = nullptr;
@@ -29,14 +29,14 @@ struct CellArray {
   KOKKOS_FORCEINLINE_FUNCTION Real* at(CellPlace const& place) const {
     return data + (place.z * plane + place.y * pitch + place.x);
   }
-  /// Three components, the first of them `component`.
+  /// Loads three components, starting at `component`.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load(CellPlace const& place, int component = 0) const {
     Real const* const from = at(place) + component * stride;
     return {detail::load<Value>(from), detail::load<Value>(from + stride),
             detail::load<Value>(from + 2 * stride)};
   }
-  /// To cells before `end` alone.
+  /// Stores only to cells before `end`.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION void store(Vec3<Value> const& value, CellPlace const& place,
                                          std::int32_t end, int component = 0) const {
@@ -64,7 +64,7 @@ struct CellArray {
   }
 };
 
-/// Components `first` and those after it.
+/// Returns an array that starts at component `first`.
 template <int Components, class Real, int All, class MemorySpace>
 CellArray<Real, Components> cells_of(SiteField<Real, All, MemorySpace> const& field,
                                      int first = 0) {
@@ -73,7 +73,7 @@ CellArray<Real, Components> cells_of(SiteField<Real, All, MemorySpace> const& fi
   return {array.data + first * array.stride, array.stride, layout.pitch, layout.plane};
 }
 
-/// Where the cells of a grid lie, and how they couple.
+/// Memory layout of the cells of a grid, and their couplings.
 template <class Real>
 struct CellGrid {
   std::int32_t extent[3];
@@ -81,7 +81,7 @@ struct CellGrid {
   CellAxisArrays<Real> axis[3];
 };
 
-/// The passes of a solver on hosts: a task is a row. A functor takes packs of cells as
+/// Kernel loop of a solver on hosts: a task is a row. A functor takes packs of cells as
 /// functor.template operator()<Value>(place), or rows as functor.row(place, begin, end).
 template <class Real, class Functor>
 struct RowOfCells {
@@ -96,7 +96,7 @@ struct RowOfCells {
     } else {
       for (; place.x < nx; place.x += host_lanes<Real>)
         local.template operator()<Pack<Real>>(place);
-      // Packs do not look around the ends of a row.
+      // Packs do not wrap around the ends of a row.
       if constexpr (requires { local.goes_around; })
         if (local.goes_around)
           for (std::int32_t const x : {0, nx - 1}) {
@@ -107,7 +107,7 @@ struct RowOfCells {
   }
 };
 
-/// The same on devices: a task is a cell.
+/// Kernel loop on devices: a task is a cell.
 template <class Real, class Functor>
 struct OneCell {
   Functor functor;
@@ -121,10 +121,10 @@ struct OneCell {
   }
 };
 
-/// What a pass over these cells costs, in sites of an evaluation of a field.
+/// Returns the cost of a pass over these cells, in sites of a field evaluation.
 inline std::int64_t sites_worth(RowLayout const& layout) { return layout.sites() / 4; }
 
-/// Calls functor for all cells of a grid, in a kernel of its own.
+/// Launcher that calls functor for all cells of a grid, in a separate kernel.
 template <class Exec>
 struct LaunchEach {
   Exec const& exec;
@@ -140,7 +140,8 @@ struct LaunchEach {
   }
 };
 
-/// The same from inside of a kernel of a host: many small passes take one launch.
+/// Launcher that calls functor for all cells inside a host kernel, so that many small passes take
+/// one launch.
 struct RunInside {
   template <class Real, class Functor>
   void run(std::string const&, RowLayout const& layout, Functor const& functor) const {

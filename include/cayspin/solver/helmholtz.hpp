@@ -14,20 +14,20 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// Approximates z = (c + b K)^-1 r for fields of vectors, with K = -J Lap over the neighbours of a
-/// lattice, b >= 0 and c > 0. Along an axis with J < 0 it takes the sum with a neighbour in place
-/// of the difference, which is |J| between vectors of alternating sign: K >= 0. Where one axis
-/// alone couples, z is the solution. Otherwise it is one multigrid cycle V(2, 2) in single
-/// precision, which leaves a fifth to a half of the residual. A cycle is a linear map, symmetric to
-/// its round-off, and positive definite.
+/// Solver that approximates z = (c + b K)^-1 r for fields of vectors, with K = -J Lap over the
+/// neighbours of a lattice, b >= 0 and c > 0. Along an axis with J < 0 the difference to a
+/// neighbour becomes the sum, as |J| gives between vectors of alternating sign, so that K >= 0. If
+/// only one axis couples, z is the exact solution. Otherwise it is one multigrid cycle V(2, 2) in
+/// single precision, which leaves a fifth to a half of the residual. A cycle is a linear map,
+/// symmetric to its round-off, and positive definite.
 template <class Real, class MemorySpace>
 class Helmholtz {
  public:
   using Field = SiteField<Real, 3, MemorySpace>;
 
   Helmholtz() = default;
-  /// `couplings`: J of each axis, A / spacing^2 for exchange, not negative on an odd ring; those of
-  /// axes without neighbours are left out. Throws std::invalid_argument for a part of a lattice.
+  /// `couplings`: J of each axis, A / spacing^2 for exchange, not negative on an odd ring; ignored
+  /// along axes without neighbours. Throws std::invalid_argument for a part of a lattice.
   Helmholtz(std::string const& name, Lattice const& lattice, std::array<double, 3> couplings)
       : scale_label_("cayspin::" + name + "::scale"), signs_label_("cayspin::" + name + "::signs") {
     require_whole("cayspin::Helmholtz", lattice);

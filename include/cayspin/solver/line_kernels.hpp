@@ -11,10 +11,10 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// Lines are solved from both ends, with the same factors for either half:
-/// y_i = inverse_i r_i + ratio_i y_(i-1) towards the middle, z_i = y_i + ratio_i z_(i+1) back. In
-/// the middle z = same y + other y' + inverse r, where y' is the other half's, and r belongs to the
-/// site in the middle of an odd line. On a periodic line z + closing (z + sign z') comes last.
+/// Coefficients of lines that are solved from both ends, with equal factors for both halves: y_i =
+/// inverse_i r_i + ratio_i y_(i-1) towards the middle, z_i = y_i + ratio_i z_(i+1) back. In the
+/// middle z = same y + other y' + inverse r, where y' belongs to the other half, and r to the site
+/// in the middle of an odd line. A periodic line finally adds closing (z + sign z').
 template <class Scalar>
 struct LineFactors {
   Scalar const *inverse = nullptr, *ratio = nullptr, *closing = nullptr;
@@ -22,13 +22,13 @@ struct LineFactors {
   int sign = 0;  // 0 on an open line
 };
 
-/// Where a number lies, and how far from there its mirror image.
+/// Offset of a number, and the distance to its mirror image.
 struct LinePlace {
   std::ptrdiff_t at, to_mirror;
 };
 
 /// Three components at a place and three at its mirror image: of as many lines as Value has lanes,
-/// neighbours along x, or InLanes of packs, of one line.
+/// adjacent along x; or of one line, if InLanes.
 template <class Value, int Parts, bool InLanes>
 struct LineEnds {
   using Real = scalar_t<Value>;
@@ -74,14 +74,14 @@ struct LineEnds {
     }
   }
 
-  /// The imaginary part times sign.
+  /// Multiplies the imaginary part by sign.
   KOKKOS_FORCEINLINE_FUNCTION LineEnds with_imaginary(Real sign) const {
     LineEnds ends = *this;
     if constexpr (Parts == 2)
       for (auto& value : ends.values) value[1] = Value(sign) * value[1];
     return ends;
   }
-  /// += a x
+  /// Adds a x.
   template <class Scalar, int XParts>
   KOKKOS_FORCEINLINE_FUNCTION void add(Scalar const& a, LineEnds<Value, XParts, InLanes> const& x) {
     for (int i = 0; i < count; ++i) multiply_add_to(a, x.values[i], values[i]);
@@ -94,7 +94,7 @@ struct LineEnds {
   }
 };
 
-/// Solves the lines along an axis.
+/// Functor that solves the lines along an axis.
 template <class Scalar, int RightHandComponents>
 struct SolveLines {
   using Real = real_part_t<Scalar>;
@@ -107,7 +107,7 @@ struct SolveLines {
   SiteArray<Real, 3 * parts> z;
   Real imaginary_sign;  // of r
 
-  /// A task is a line along x, or as many lines as there are lanes.
+  /// Returns the number of tasks: a task is a line along x, or as many lines as there are lanes.
   KOKKOS_FUNCTION std::int64_t tasks_across(int lanes) const {
     return axis == 0 ? 1 : (layout.nx + lanes - 1) / lanes;
   }
@@ -134,7 +134,7 @@ struct SolveLines {
     auto const place = [&](std::int32_t i) {
       return LinePlace{begin + i * step, (count - 1 - 2 * i) * step};
     };
-    // Short lines keep y as packs, rather than take them apart twice.
+    // Short lines store y as packs, rather than unpack them twice.
     constexpr std::int32_t most_kept = InLanes ? 512 : 1;
     Ends kept[std::size_t{most_kept}];
     bool const keeps = InLanes && half <= most_kept;
@@ -175,7 +175,7 @@ struct SolveLines {
   }
 };
 
-/// The body of host tasks.
+/// Body of the host tasks.
 template <class Lines>
 struct SolveLinesOnHost {
   Lines lines;

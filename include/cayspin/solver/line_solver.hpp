@@ -13,8 +13,8 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// The axis along which alone a lattice couples, or any one where none does. Couplings of axes
-/// without neighbours become 0.
+/// Returns the only axis along which a lattice couples, or any axis if none does; nothing if
+/// several do. Sets couplings of axes without neighbours to 0.
 inline std::optional<int> only_coupled_axis(Lattice const& lattice,
                                             std::array<double, 3>& couplings) {
   int only = 0, count = 0;
@@ -28,9 +28,9 @@ inline std::optional<int> only_coupled_axis(Lattice const& lattice,
   return count <= 1 ? std::optional(only) : std::nullopt;
 }
 
-/// z = (c + b K)^-1 r, K as Helmholtz has it, where one axis alone couples: tridiagonal lines, the
-/// bond that closes a periodic one by Sherman and Morrison. Factors are kept for the last few pairs
-/// (c, b).
+/// Solver of z = (c + b K)^-1 r, with K as in Helmholtz, where only one axis couples: tridiagonal
+/// lines, with the bond that closes a periodic line by Sherman and Morrison. Caches factors for the
+/// last few pairs (c, b).
 template <class Scalar, class MemorySpace>
 class LineSolver {
   using Real = real_part_t<Scalar>;
@@ -94,7 +94,7 @@ class LineSolver {
       return {static_cast<Real>(value.real()), static_cast<Real>(value.imag())};
   }
 
-  // std::complex divides slowly, for the sake of numbers beyond 1e154.
+  // std::complex divides slowly, to support numbers beyond 1e154.
   static Number inverse_of(Number const& value) {
     if constexpr (parts == 1)
       return 1 / value.real();
@@ -114,10 +114,10 @@ class LineSolver {
   void factorize(Kept& kept, double c, Scalar b) const {
     double const sign = coupling_ < 0 ? -1 : 1;
     Number const e = number(b) * std::abs(coupling_),
-                 beside = sign * e;  // less what is beside the diagonal
+                 beside = sign * e;  // without the off-diagonal part
     auto const half = count_ / 2;
     std::vector<Number> inverse(half), ratio(half), closing(half);
-    Number reduced = count_ > 1 ? c + e : c;  // the diagonal, less what elimination takes from it
+    Number reduced = count_ > 1 ? c + e : c;  // diagonal after elimination
     for (std::size_t i = 0; i < half; ++i) {
       inverse[i] = inverse_of(reduced);
       ratio[i] = beside * inverse[i];

@@ -15,7 +15,7 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// z + amplitude sign x where there is a spin, 0 on vacant sites.
+/// Functor that computes z + amplitude sign x where there is a spin, 0 on vacant sites.
 template <class Real>
 struct FillWaves {
   AlternatingSigns signs;
@@ -34,7 +34,8 @@ struct FillWaves {
   }
 };
 
-/// The bonds along each axis between spins whose waves have opposite signs, counted at both ends.
+/// Functor that counts the bonds along each axis between spins whose waves have opposite signs, at
+/// both ends.
 template <class Real>
 struct OpposedBonds {
   SiteArray<Real, 3> waves;
@@ -59,7 +60,7 @@ struct OpposedBonds {
   }
 };
 
-/// A along the waves, and along their rotation about z.
+/// Functor that sums A along the waves, and along the waves rotated about z.
 template <class Generator, class Real>
 struct ResponseToWaves {
   Generator generator;
@@ -74,17 +75,18 @@ struct ResponseToWaves {
   }
 };
 
-/// How a generator A = precession H + damping m x H answers to the shortest waves of each axis
-/// beside uniform spins: as an exchange field H = sum of couplings times second differences would.
-/// What is local cancels out. Constants that differ between sites give means over the bonds between
-/// spins. (For minimisers `probe` takes m.H instead: couplings of either sign, of a field alone.)
+/// Measured exchange in a generator A = precession H + damping m x H, from its response to the
+/// shortest waves along each axis on uniform spins: the couplings of H = sum of couplings times
+/// second differences. Local terms cancel. Site-dependent constants give means over the bonds
+/// between spins. (For minimisers `probe` uses m.H of a field instead, and finds couplings of
+/// either sign.)
 struct MeasuredExchange {
   std::array<double, 3> couplings{};
   double precession = 1, damping = 0;
   bool known = false;
 
-  /// Evaluates the generator 2 + 2 axes times, on `work`, which gets waves where `spins` are not
-  /// zero; returns that number. Waits.
+  /// Evaluates the generator 2 + 2 axes times and returns that number. Overwrites `work` with waves
+  /// where `spins` are not zero. Waits.
   template <class Exec, class Generator, class Spins>
   int measure(Exec const& exec, std::string const& label, Generator const& generator,
               Spins const& spins, Spins const& work, double t) {
@@ -128,7 +130,7 @@ struct MeasuredExchange {
     return counts;
   }
 
-  // Half the difference between waves of either sign, which cancels what is not linear in them.
+  // Half the difference between waves of opposite sign, which cancels even terms.
   template <class Exec, class Generator, class Spins>
   static std::array<double, 2> response(Exec const& exec, std::string const& label,
                                         Generator const& generator, Spins const& spins,

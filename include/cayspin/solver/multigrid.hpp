@@ -18,9 +18,9 @@
 namespace cayspin::inline v0_1::detail {
 
 /// One multigrid cycle on cell-centred grids for an Operation, ShiftedExchange or ShiftedSpinWaves,
-/// in numbers of type Real. It relaxes after the correction by a coarser grid, and where it
-/// IsSymmetric as often before: then it is a symmetric map. Small grids run in one kernel of one
-/// thread of a host. Bits do not depend on threads or host spaces.
+/// in precision Real. It relaxes after the coarse-grid correction, and if IsSymmetric as often
+/// before, which makes it a symmetric map. Small grids run in a single kernel on one host thread.
+/// Bits do not depend on threads or host spaces.
 template <class Operation, int Relaxations, bool IsSymmetric, class Real, class MemorySpace>
 class Multigrid {
   static constexpr int right_components = Operation::right_components;
@@ -48,10 +48,10 @@ class Multigrid {
     while (!levels_.back().coarsened.empty());
   }
 
-  /// Where the right side has to be; numbers beside its rows are zero.
+  /// Returns the right side to be filled; padding of its rows is zero.
   Right const& right() const { return levels_.front().right; }
 
-  /// `same_directions`: coarse grids keep theirs of the call before. Does not wait.
+  /// `same_directions`: coarse grids keep their directions from the previous call. Does not wait.
   template <class Exec, class OutReal>
   void solve(Exec const& exec, Coefficient b, CellArray<OutReal, 3> const& out,
              bool same_directions = false) const {
@@ -77,7 +77,7 @@ class Multigrid {
   };
   struct Inside {};
 
-  /// The cycle from this level on.
+  /// Runs the cycle from this level on.
   template <class Exec, class Launch, class OutReal>
   void solve_from(Exec const& exec, Launch const& launch, Shift const& shift,
                   CellArray<OutReal, 3> const& out, std::size_t number) const {
@@ -90,7 +90,7 @@ class Multigrid {
     cycle(exec, launch, shift, out, number);
   }
 
-  // What the last relaxation reads, and where coarser grids leave their solution.
+  // Returns what the last relaxation reads, and where coarser grids leave their solution.
   static Field const& last_of(Level const& level) {
     return Relaxations % 2 == 0 ? level.other : level.one;
   }
@@ -98,7 +98,8 @@ class Multigrid {
     return Relaxations % 2 == 0 ? level.one : level.other;
   }
 
-  // At a zero of Chebyshev's polynomial of degree `count` on [least, largest].
+  // Returns the relaxation at zero `k` of Chebyshev's polynomial of degree `count` on [least,
+  // largest].
   static Operation relaxation(Coefficient b, double least, double largest, int count, int k) {
     double const angle = std::numbers::pi * (2 * k + 1) / (2 * count);
     return Operation::relaxing(b,

@@ -11,7 +11,7 @@
 // Relaxation on one grid. K = -J Lap >= 0 over the neighbours of a lattice.
 namespace cayspin::inline v0_1::detail {
 
-/// 1 + b K, and the weight of a relaxation.
+/// The operator 1 + b K, and the weight of a relaxation.
 template <class Real>
 struct ShiftedExchange {
   using Coefficient = double;
@@ -19,7 +19,7 @@ struct ShiftedExchange {
 
   Real b, weight;
 
-  /// The weight that solves for waves of frequency s of K.
+  /// Returns the weight that solves exactly for waves of frequency s of K.
   static ShiftedExchange relaxing(double b, double s) {
     return {static_cast<Real>(b), static_cast<Real>(1 / (1 + b * s))};
   }
@@ -36,16 +36,16 @@ struct ShiftedExchange {
                                                    CellPlace const& place) const {
     return multiply_add(Value(Real(-b)), ku, right.template load<Value>(place) - u);
   }
-  /// The relaxation of zero.
+  /// Relaxes from zero.
   template <class Value, class Right>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> first(Right const& right, CellPlace const& place) const {
     return Value(weight) * right.template load<Value>(place);
   }
 };
 
-/// The same with a complex b, where i stands for m x: spin waves about directions m, which follow
-/// the right side. For vectors across m. Where a coarse m is short, the mean of many, it is
-/// 1 + |b| K instead.
+/// The operator 1 + b K with a complex b, where i stands for m x: spin waves about directions m,
+/// which are stored after the right side. For vectors normal to m. Where a coarse m is short, being
+/// the mean of many, the operator is 1 + |b| K instead.
 template <class Real>
 struct ShiftedSpinWaves {
   using Coefficient = std::complex<double>;
@@ -68,7 +68,7 @@ struct ShiftedSpinWaves {
     Vec3<Value> const f = right.template load<Value>(place),
                       m = right.template load<Value>(place, 3), turned_ku = cross(m, ku);
     Value const shortness = multiply_add(Value(magnitude), dot(m, m), Value(Real(-magnitude)));
-    // m x (m x .) is -1 across m.
+    // m x (m x .) is -1 on vectors normal to m.
     Vec3<Value> const rest =
         multiply_add(shortness, ku,
                      multiply_add(Value(along), cross(m, turned_ku),
@@ -89,7 +89,7 @@ struct ShiftedSpinWaves {
   }
 };
 
-/// out = u after a relaxation, or what is left of the right side.
+/// Functor that writes u after a relaxation, or the residual, to out.
 template <class Operation, bool Residual, class Real, class OutReal>
 struct RelaxCells {
   CellGrid<Real> grid;
@@ -97,7 +97,7 @@ struct RelaxCells {
   CellArray<Real, 3> u;
   CellArray<Real, Operation::right_components> right;
   CellArray<OutReal, 3> out;
-  bool goes_around;  // where x is periodic
+  bool goes_around;  // x is periodic
 
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(CellPlace const& place) const {
@@ -118,7 +118,7 @@ struct RelaxCells {
   }
 
  private:
-  // Packs at an open end of a row read a number beside it, for a coupling of zero.
+  // Packs at an open end of a row read padding there, with a coupling of zero.
   template <int Axis, class Value>
   KOKKOS_FORCEINLINE_FUNCTION std::ptrdiff_t to_previous(std::int32_t index) const {
     if (lanes_of<Value> > 1 && Axis == 0) return -1;
@@ -146,7 +146,7 @@ struct RelaxCells {
   }
 };
 
-/// u = what of it is across m, which the equation of ShiftedSpinWaves is about.
+/// Functor that sets u to its part normal to m, the space of the equation of ShiftedSpinWaves.
 template <class Real>
 struct KeepAcross {
   std::int32_t nx;
@@ -161,7 +161,7 @@ struct KeepAcross {
   }
 };
 
-/// out = the relaxation of zero.
+/// Functor that writes the relaxation from zero to out.
 template <class Operation, class Real, class OutReal>
 struct RelaxZero {
   std::int32_t nx;
@@ -175,7 +175,8 @@ struct RelaxZero {
   }
 };
 
-/// to = scale r, with signs; `to` may be r. Beside the rows the solver's numbers stay zero.
+/// Functor that writes scale r, with signs, to `to`, which may be r. The solver's padding stays
+/// zero.
 template <class FromReal, class Real>
 struct ScaleCells {
   CellArray<FromReal, 3> r;
@@ -201,9 +202,9 @@ struct ScaleCells {
   }
 };
 
-/// to = (r x m, m) with m of length 1, or 0 where there is no spin: the right side of
-/// ShiftedSpinWaves whose solution d makes m x d of r. Six components of r are r' + sign m x r''.
-/// `same_directions`: m is there already.
+/// Functor that writes (r x m, m), with m of length 1, or 0 where there is no spin: the right side
+/// of ShiftedSpinWaves, whose solution d gives m x d for r. Six components of r are r' + sign m x
+/// r''. `same_directions`: m is already there.
 template <int Components, class FromReal, class Real>
 struct TurnRightSide {
   std::int32_t nx;

@@ -19,7 +19,7 @@ struct MultigridLevel {
   using Right = SiteField<Real, RightComponents, MemorySpace>;
   using Field = SiteField<Real, 3, MemorySpace>;
 
-  /// `lattice` and `axes` become those of the next level. Axes are coarsened whose coupling is at
+  /// Replaces `lattice` and `axes` by those of the next level. Coarsens axes whose coupling is at
   /// least half the strongest.
   MultigridLevel(std::string const& name, Lattice& lattice, std::array<double, 3> const& couplings,
                  std::vector<CellAxis>& axes, bool smooths_only_after)
@@ -27,7 +27,7 @@ struct MultigridLevel {
         right(name + "::right", lattice),
         one(name + "::one", lattice),
         other(name + "::other", lattice) {
-    std::array<double, 3> strengths{};  // J over the cells' width squared
+    std::array<double, 3> strengths{};  // J over the squared width of the cells
     for (std::size_t axis = 0; axis < 3; ++axis) {
       tables[axis] = {name, axes[axis], couplings[axis]};
       grid.axis[axis] = tables[axis].arrays();
@@ -38,7 +38,7 @@ struct MultigridLevel {
     }
     double const strongest = *std::max_element(strengths.begin(), strengths.end());
     least = largest;
-    // Along x last, where it costs most.
+    // Coarsens x last, where it costs most.
     for (int const number : {2, 1, 0}) {
       auto const axis = static_cast<std::size_t>(number);
       if (strengths[axis] == 0 || strengths[axis] < 0.5 * strongest) continue;
@@ -47,7 +47,7 @@ struct MultigridLevel {
         rights_between.emplace_back(name + "::right_between", lattice);
       }
       coarsened.push_back(number);
-      // Three cells in one hide longer waves than two.
+      // Three cells merged into one hide longer waves than two.
       double const lowest = !smooths_only_after ? 1.5 : axes[axis].cells() % 2 == 1 ? 0.6 : 1.2;
       least = std::min(least, lowest * strengths[axis]);
       axes[axis] = axes[axis].coarser();
@@ -58,11 +58,11 @@ struct MultigridLevel {
   RowLayout layout;
   CellGrid<Real> grid{};
   std::array<CellAxisTables<Real, MemorySpace>, 3> tables;
-  double least = 0, largest = 0;  // frequencies of K, of those that smoothing is for
+  double least = 0, largest = 0;  // range of frequencies of K to smooth
   std::vector<int> coarsened;     // axes
   Right right;
   Field one, other;
-  std::vector<Right> rights_between;  // here and the next level, some axes coarsened
+  std::vector<Right> rights_between;  // right sides with only some axes coarsened
   std::vector<Field> between;
 };
 

@@ -6,17 +6,17 @@
 #include <cstddef>
 #include <cstdint>
 
-// Between a grid and the next coarser one, one axis at a time.
+// Transfers between a grid and the next coarser one, one axis at a time.
 namespace cayspin::inline v0_1::detail {
 
-/// Packs read numbers beside a row, and multiply them by zero.
+/// Packs read padding beside a row and multiply it by zero.
 template <class Real>
 KOKKOS_FORCEINLINE_FUNCTION void clear_beside_row(Real* row, std::int32_t nx) {
   for (std::int32_t x = nx; x % host_lanes<Real> != 0; ++x) row[x] = 0;
 }
 
 /// Restriction along y or z: `to` has about half the cells along the axis. Components from the
-/// fourth one on are means.
+/// fourth on are means.
 template <class Real, int Components>
 struct RestrictRows {
   int axis;
@@ -66,7 +66,7 @@ struct RestrictAlongRows {
       for (std::int32_t i = 1; i < cells - 2; ++i)
         target[i] = w0[i] * source[2 * i - 1] + w1[i] * source[2 * i] + w2[i] * source[2 * i + 1] +
                     w3[i] * source[2 * i + 2];
-      // The last coarse cell may hold three, and the one before it reach into these.
+      // The last coarse cell may hold three cells, some of which the one before it uses, too.
       for (std::int32_t i = cells > 3 ? cells - 2 : 1; i < cells; ++i) target[i] = sum(source, i);
       Real const* const mean = numbers.mean;
       if (component >= 3) {
@@ -95,8 +95,8 @@ struct RestrictAlongRows {
   }
 };
 
-/// Interpolation along y or z: `to` has about twice the cells along the axis. Adds to what is
-/// there, or replaces it.
+/// Interpolation along y or z: `to` has about twice the cells along the axis. Adds to its values or
+/// replaces them.
 template <class Real, bool Adds>
 struct InterpolateRows {
   int axis;
@@ -135,7 +135,8 @@ struct InterpolateAlongRows {
       Real const* const source = from.at(place) + component * from.stride;
       Real* const target = to.at(place) + component * to.stride;
       for (std::int32_t x = 0; x < 2; ++x) put(target[x], value(source, x));
-      // The first cell of a pair is beside the pair before, the second one beside the next.
+      // The first cell of a pair is next to the previous pair, the second next to the following
+      // pair.
       CAYSPIN_DETAIL_INDEPENDENT
       for (std::int32_t i = 1; i < end; ++i) {
         Real const first = share[2 * i], second = share[2 * i + 1], own = source[i];

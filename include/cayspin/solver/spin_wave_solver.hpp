@@ -14,14 +14,15 @@
 namespace cayspin::inline v0_1::detail {
 
 struct SpinWaveOptions {
-  bool conjugated = false;       ///< a right side of 6 components is (r', -r'')
-  bool same_directions = false;  ///< near enough to those of the call before, which stay in use
+  bool conjugated = false;  ///< a right side of 6 components is (r', -r'')
+  bool same_directions =
+      false;  ///< reuse the directions of the previous call, which are close enough
 };
 
-/// Approximates v with v + b K v = r across the directions m, where i of the complex b stands for
-/// m x, and K = -J Lap over the neighbours of a lattice. Where one axis alone couples, by lines,
-/// which are exact for parallel m. Otherwise by one multigrid cycle in single precision, which
-/// follows m and leaves a tenth to three tenths.
+/// Solver that approximates v with v + b K v = r normal to the directions m, where i of the complex
+/// b stands for m x, and K = -J Lap over the neighbours of a lattice. If only one axis couples, it
+/// solves lines, which is exact for parallel m. Otherwise it runs one multigrid cycle in single
+/// precision, which follows m and leaves 0.1 to 0.3 of the residual.
 template <class Real, class MemorySpace>
 class SpinWaveSolver {
   using Vectors = SiteField<Real, 3, MemorySpace>;
@@ -41,11 +42,11 @@ class SpinWaveSolver {
       multigrid_ = {name, lattice, couplings};
   }
 
-  /// Is v' of every solution zero?
-  bool solves_for_turned_alone() const { return !lines_; }
+  /// Returns true if v' of every solution is zero.
+  bool solves_only_rotated_part() const { return !lines_; }
 
-  /// z = (v', v'') with v = v' + m x v''. Always by lines, or never: multigrid leaves v' as it is.
-  /// A right side of 6 components is (r', r'') likewise. Does not wait.
+  /// Computes z = (v', v'') with v = v' + m x v''. Multigrid does not write v'. A right side of 6
+  /// components is likewise (r', r''). Does not wait.
   template <class Exec, int RightComponents>
   void solve(Exec const& exec, std::complex<double> b,
              SiteField<Real, RightComponents, MemorySpace> const& r, Vectors const& m,

@@ -12,30 +12,29 @@
 #include <cstdint>
 #include <type_traits>
 
-// The one list of the arrays of a Runge-Kutta stage. It holds whole fields, planes of them, or
-// rows: a pass goes from fields to rows, a sweep from the planes of its buffers. A new array
-// enters here, and in the kernel that uses it.
+// The list of arrays of a Runge-Kutta stage, as whole fields, planes of them, or rows: a pass
+// converts fields to rows, a sweep the planes of its buffers. Add a new array here and in the
+// kernel that uses it.
 namespace cayspin::inline v0_1::detail {
 
-/// Kind says what an array is: WholeFields, Planes or Rows.
+/// Kind selects the type of the arrays: WholeFields, Planes or Rows.
 template <class Kind, int Stages>
 struct StageArrays {
   static constexpr std::size_t most_increments = Stages > 1 ? Stages - 1 : 1;
   static constexpr std::size_t most_carried = 1;
 
-  typename Kind::Input start;                        // spins at the begin of the step
+  typename Kind::Input start;                        // spins at the start of the step
   typename Kind::Spins level;                        // spins of this stage
   typename Kind::Input increments[most_increments];  // of earlier stages, or spins
-  typename Kind::Input sum_before;                   // of weighted increments
+  typename Kind::Input sum_before;                   // sum of weighted increments so far
   typename Kind::Output sum;
   typename Kind::Output increment;                    // of this stage
   typename Kind::Output next;                         // spins of the next stage, or of the end
-  typename Kind::Input carried_before[most_carried];  // left by the step before
+  typename Kind::Input carried_before[most_carried];  // left by the previous step
   typename Kind::Output carried[most_carried];        // left by this step
 };
 
-/// Finds the arrays of the stage that Flow describes, on the host. `step` knows where each of them
-/// lies.
+/// Returns the arrays of the stage that Flow describes, on the host. `step` locates each of them.
 template <class Flow, class Kind, class Step>
 void find_arrays(Step const& step, StageArrays<Kind, Flow::stages>& arrays) {
   constexpr int stage = Flow::stage;
@@ -66,7 +65,7 @@ void find_arrays(Step const& step, StageArrays<Kind, Flow::stages>& arrays) {
   }
 }
 
-/// The same arrays as another kind: `to` converts an input, the stage's spins, and an output.
+/// Converts the arrays to another kind: `to` converts an input, the stage's spins, or an output.
 template <class Flow, class From, class Convert, class Arrays>
 KOKKOS_FORCEINLINE_FUNCTION void convert(StageArrays<From, Flow::stages> const& from,
                                          Convert const& to, Arrays& arrays) {
@@ -107,7 +106,7 @@ struct WholeFields {
   using Output = OutputArray<Real, 3>;
 };
 
-/// Plane z of each field, wherever its rows lie.
+/// Plane z of each field, wherever its rows are.
 template <class Real>
 struct Planes {
   using Input = PlaneRows<Real>;
@@ -128,7 +127,7 @@ struct Rows {
   using Output = RowOutput<Real>;
 };
 
-/// Fields to their planes z.
+/// Conversion of fields to their planes z.
 template <class Real>
 struct ToPlane {
   RowLayout const& layout;
@@ -148,7 +147,7 @@ struct ToPlane {
   }
 };
 
-/// Planes to their rows `row`.
+/// Conversion of planes to their rows `row`.
 template <class Real>
 struct ToRow {
   Axis y;
@@ -174,8 +173,8 @@ struct ToRow {
   }
 };
 
-/// Asks for what will be read from memory next, `ahead` numbers further. Of the neighbour planes,
-/// the next one comes first.
+/// Functor that prefetches what is read from memory next, `ahead` numbers further. Of the neighbour
+/// planes, the next one comes first.
 template <class Real>
 struct Prefetch {
   std::ptrdiff_t ahead;
@@ -189,7 +188,7 @@ struct Prefetch {
   }
 };
 
-/// Of the increments before number j, how many does a stage read?
+/// Returns how many of the increments before number j a stage reads.
 template <class Flow>
 constexpr int increments_read(int j) {
   int count = 0;
@@ -197,8 +196,8 @@ constexpr int increments_read(int j) {
   return count;
 }
 
-/// What Flow uses of a StageArrays, as the threads of a device find it, and no more: a launch takes
-/// short ways for a kernel of at most 512 bytes.
+/// The members of StageArrays that Flow uses, for device threads. Unused ones are left out, because
+/// a launch is fast for kernels of at most 512 bytes.
 template <class Flow, class Real>
 struct DeviceArrays {
   struct None {};

@@ -3,11 +3,12 @@
 
 #include <cayspin/stage/update_compensated.hpp>
 
-// Which arrays the stages of an explicit Runge-Kutta step read and write. The tableau and the
+// The arrays that the stages of an explicit Runge-Kutta step read and write. The tableau and the
 // update decide, at compile time.
 namespace cayspin::inline v0_1::detail {
 
-/// Every stage starts from the increment before it alone, as in the classical Runge-Kutta methods.
+/// True if every stage uses only the increment before it, as in the classical Runge-Kutta methods
+/// (a chain).
 template <class Tableau>
 constexpr bool is_chain() {
   for (int i = 0; i < Tableau::stages; ++i)
@@ -16,19 +17,19 @@ constexpr bool is_chain() {
   return true;
 }
 
-/// The last stage is at the end of the step, and its generator is the next step's first.
+/// True if the last stage is at the end of the step, so that its generator is the next step's
+/// first.
 template <class Tableau>
 inline constexpr bool is_first_same_as_last = requires { Tableau::first_same_as_last; };
 
-/// Does the error estimate at the end of such a step need increment `source`?
+/// Returns true if the error estimate at the end of such a step needs increment `source`.
 template <class Tableau>
 constexpr bool estimates_with(int source) {
   if constexpr (is_first_same_as_last<Tableau>) return Tableau::error[source] != 0;
   return false;
 }
 
-/// Weights of the rotation that follows the first one, if the tableau has any. Row `stages` is
-/// the end of the step.
+/// Weights of the second rotation, if the tableau has one. Row `stages` is the end of the step.
 template <class Tableau>
 constexpr double second_weight(int row, int column) {
   if constexpr (requires { Tableau::second_a; })
@@ -42,14 +43,14 @@ constexpr bool has_second_rotation(int row) {
   return false;
 }
 
-/// A chain that needs its increments as arguments keeps two arrays: the last increment, and the
+/// A chain that needs its increments as arguments stores two arrays: the last increment, and the
 /// weighted sum, which every second stage updates. No other choice moves less memory.
 template <class Tableau, class Update>
 inline constexpr bool keeps_sum = Tableau::stages > 2 &&
                                   is_chain<Tableau>() && Update::increment_needs_argument;
 
-/// Some chains store spins alone: they compute each increment again from the spins of the stage
-/// after it.
+/// Some chains store only spins: they recompute each increment from the spins of the stage after
+/// it.
 template <class Tableau, class Update>
 constexpr bool recovers_increments() {
   if constexpr (requires { Update::recovers_increments(Tableau::stages); })
@@ -57,7 +58,8 @@ constexpr bool recovers_increments() {
   return false;
 }
 
-/// Does stage `stage` read the increment of stage `source`? The last stage also ends the step.
+/// Returns true if stage `stage` reads the increment of stage `source`. The last stage also ends
+/// the step.
 template <class Tableau, class Update>
 constexpr bool reads_increment(int stage, int source) {
   if (source >= stage || recovers_increments<Tableau, Update>()) return false;
@@ -86,14 +88,14 @@ constexpr bool reads_sum(int stage) {
          (stage % 2 == 1 || stage + 1 == Tableau::stages);
 }
 
-/// Fields of spins that the stages write.
+/// Number of fields of spins that the stages write.
 template <class Tableau, class Update>
 constexpr int level_fields() {
   if (recovers_increments<Tableau, Update>()) return Tableau::stages - 1;
   return Tableau::stages < 3 ? 1 : 2;
 }
 
-/// Fields of three numbers per site that a method needs beside the spins.
+/// Number of fields of three numbers per site that a method needs besides the spins.
 template <class Tableau, class Update>
 constexpr int work_fields() {
   int const levels = level_fields<Tableau, Update>() + carried_fields<Update>();
@@ -104,7 +106,7 @@ constexpr int work_fields() {
   return levels + increments;
 }
 
-/// What stage `Stage` reads and writes beside its own spins.
+/// The arrays that stage `Stage` reads and writes besides its own spins.
 template <class Tableau, class Update, int Stage>
 struct StageDataFlow {
   static constexpr int stages = Tableau::stages;
@@ -117,7 +119,8 @@ struct StageDataFlow {
   static constexpr bool stores_increment =
       !last && detail::stores_increment<Tableau, Update>(Stage);
   static constexpr int carried = last ? carried_fields<Update>() : 0;
-  /// Increment j; a method that recovers increments reads the spins of stage j + 1 instead.
+  /// Returns true if increment j is read; a method that recovers increments reads the spins of
+  /// stage j + 1 instead.
   static constexpr bool reads_increment(int j) {
     return recovers ? last && j + 1 < Stage : detail::reads_increment<Tableau, Update>(Stage, j);
   }

@@ -13,7 +13,7 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// Are the weights before number j 0?
+/// Returns true if all weights before number j are 0.
 template <class Weights>
 KOKKOS_FUNCTION constexpr bool is_first(int j) {
   for (int i = 0; i < j; ++i)
@@ -21,7 +21,7 @@ KOKKOS_FUNCTION constexpr bool is_first(int j) {
   return true;
 }
 
-/// sum of Weights::at(j) * v[j] over those j < Count with a weight.
+/// Returns the sum of Weights::at(j) * v[j] over those j < Count with a weight.
 template <class Weights, int Count, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> weighted_sum(Vec3<Value> const* v) {
   Vec3<Value> sum{Value(0), Value(0), Value(0)};
@@ -53,7 +53,8 @@ struct SecondWeights {
   KOKKOS_FUNCTION static constexpr double at(int j) { return second_weight<Tableau>(Row, j); }
 };
 
-/// A chain's increments, b[i] times each, in terms of the coordinates of the spins after them.
+/// Weights that express sum b[i] increment[i] of a chain in the coordinates of the spins after
+/// them.
 template <class Tableau>
 struct ChartWeights {
   static constexpr double last = Tableau::b[Tableau::stages - 1];
@@ -62,11 +63,11 @@ struct ChartWeights {
   }
 };
 
-/// Are an update's increments made of A x m alone?
+/// True if an update's increments depend only on A x m.
 template <class Update>
 inline constexpr bool needs_turning_alone = requires { requires Update::needs_turning_alone; };
 
-/// isotropy::Energy's formula for a method, specialised beside the methods that have one.
+/// Formula of isotropy::Energy for a method, specialised next to the methods that have one.
 template <class Tableau, class Update>
 struct EnergyCorrection {
   static_assert(std::is_same_v<Tableau, void>,
@@ -75,9 +76,9 @@ struct EnergyCorrection {
 template <class Tableau, class Update>
 using EnergyCorrectionOf = typename EnergyCorrection<Tableau, Update>::type;
 
-/// One stage of an explicit Runge-Kutta step on every site: evaluate the generator at the stage's
-/// spins, form the increment, and move the spins of the step's begin to the next stage, or to the
-/// end of the step.
+/// One stage of an explicit Runge-Kutta step on every site: evaluates the generator at the stage's
+/// spins, forms the increment, and moves the spins at the start of the step to the next stage, or
+/// to the end of the step.
 template <class Tableau, class Update, class Isotropy, int StageIndex, class Generator, class Real>
 struct RungeKuttaStage {
   using Flow = StageDataFlow<Tableau, Update, StageIndex>;
@@ -85,7 +86,7 @@ struct RungeKuttaStage {
   using RowArrays = StageArrays<Rows<Real>, Tableau::stages>;
   static constexpr int stages = Tableau::stages, stages_after = stages - 1 - StageIndex;
   static constexpr bool last = Flow::last, turning_alone = needs_turning_alone<Update>;
-  /// The stage after this one is at the step's end.
+  /// True if the next stage is at the end of the step.
   static constexpr bool arrives = is_first_same_as_last<Tableau> && StageIndex == stages - 2;
 
   Generator generator;
@@ -144,10 +145,10 @@ struct RungeKuttaStage {
     if constexpr (Flow::reads_start)
       return site.load(rows.start);
     else
-      return (m);  // itself: g++ would copy it through memory
+      return (m);  // by reference: g++ would copy a value through memory
   }
 
-  // A, or what turns the spin of it where the update asks for no more.
+  // Returns A, or only the part that turns the spin if the update needs no more.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION auto stage_generator(Stencil const& stencil) const {
     using Vector = typename Stencil::vector_type;
@@ -170,7 +171,7 @@ struct RungeKuttaStage {
     return Value(static_cast<scalar_t<Value>>(b));
   }
 
-  // Moves by the tableau's second rotation, if it has one, to the next stage or the end.
+  // Moves a spin by the tableau's second rotation, if any, to the next stage or the end.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> turned_again(Vec3<Value> const* f,
                                                               Vec3<Value> const& m) {
@@ -217,7 +218,8 @@ struct RungeKuttaStage {
     }
   }
 
-  // The next stage's spins; at the end the step's, with increment j from the spins after stage j.
+  // Returns the next stage's spins; at the end, those of the step, with increment j from the spins
+  // after stage j.
   template <class Site, class Arrays, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> on_chart(Site const& site, Arrays const& rows,
                                                    Vec3<Value> const& a, Vec3<Value> const& m,
@@ -237,7 +239,7 @@ struct RungeKuttaStage {
     }
   }
 
-  // The stored sum plus this increment, and the one before it if an even stage left it out.
+  // Returns the stored sum plus this increment, and the previous one if an even stage left it out.
   template <class Site, class Arrays, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> sum_up_to_here(Site const& site, Arrays const& rows,
                                                          Vec3<Value> const* f) const {

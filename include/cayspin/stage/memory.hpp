@@ -14,8 +14,8 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// The work memory of a Runge-Kutta step: fields for passes, or the buffers of a sweep; and what
-/// one step leaves for the next, which outlives a change from one to the other.
+/// Work memory of a Runge-Kutta step: fields for passes, or the buffers of a sweep; and what one
+/// step leaves for the next, which survives a switch between the two.
 template <class Spins, class Tableau, class Update>
 class StageMemory {
  public:
@@ -49,8 +49,8 @@ class StageMemory {
     free_work_memory();
     levels_[0] = Spins(name + "::next", lattice);
     buffers_ = Buffers("cayspin::" + name, plan);
-    // A sweep reads its output again only one step later. By then other processes may have taken
-    // most of a shared cache.
+    // A sweep reads its output only in the next step. By then other processes may have taken most
+    // of a shared cache.
     streaming_ =
         levels_[0].bytes() + bytes() > std::min(last_level_cache_bytes(), usual_cache_bytes);
   }
@@ -72,14 +72,14 @@ class StageMemory {
     return fields * layout.allocation(3) * sizeof(Real) + Buffers::bytes(plan);
   }
 
-  /// Sets the fields that the step before left to zero.
+  /// Zeroes the fields left by the previous step.
   void forget(std::string const& label) {
     DefaultExec const exec;
     for (auto const& field : carried_) Kokkos::deep_copy(exec, field.allocation(), Real(0));
     exec.fence(label);
   }
 
-  /// Calls visit(name, field) for the fields that the step before left.
+  /// Calls visit(name, field) for the fields left by the previous step.
   template <class Visit>
   void visit_carried(Visit const& visit) const {
     for (std::size_t i = 0; i < carried_.size(); ++i) visit(Update::carried[i], carried_[i]);
@@ -91,16 +91,16 @@ class StageMemory {
     std::apply(action, carried_);
   }
 
-  /// The spins at the end of a step that does not end in place.
+  /// Returns the spins at the end of a step that does not end in place.
   Spins& end() { return levels_[0]; }
 
-  /// The spins at which stage `Stage` evaluates the generator.
+  /// Returns the spins at which stage `Stage` evaluates the generator.
   template <int Stage>
   Spins const& level(Spins const& spins) const {
     return Stage == 0 ? spins : levels_[(Stage + level_count - 1) % level_count];
   }
 
-  /// The fields of one stage of a step from `spins`.
+  /// Returns the fields of one stage of a step from `spins`.
   template <class Flow>
   StageArrays<WholeFields<Real>, stages> arrays(Spins const& spins) const {
     StageArrays<WholeFields<Real>, stages> arrays;
@@ -122,7 +122,7 @@ class StageMemory {
   using Carried = SiteField<Real, 3, typename Spins::memory_space>;
   static constexpr bool on_host = is_host_execution<DefaultExec>;
 
-  /// Where the arrays of a stage lie. Stores go around the caches if the fields exceed them.
+  /// Places of the arrays of a stage in fields. Stores bypass the caches if the fields exceed them.
   struct FieldsOfStep {
     StageMemory const& memory;
     Spins const& first;
@@ -163,7 +163,7 @@ class StageMemory {
     auto carried(std::size_t i) const { return memory.carried_[i].output(false); }
   };
 
-  // All but what steps leave.
+  // Frees all memory but the fields that steps leave.
   void free_work_memory() {
     levels_ = {};
     increments_ = {};
@@ -172,8 +172,8 @@ class StageMemory {
     streaming_ = false;
   }
 
-  std::array<Spins, std::size_t{level_count}> levels_;  // the first one only, in a sweep
-  std::array<Spins, std::size_t{stages}> increments_;   // the same field in all places if keeps_sum
+  std::array<Spins, std::size_t{level_count}> levels_;  // only the first in a sweep
+  std::array<Spins, std::size_t{stages}> increments_;   // all equal if keeps_sum
   Spins sum_;
   std::array<Carried, carried_fields<Update>()> carried_;
   Buffers buffers_;

@@ -12,7 +12,7 @@
 #include <type_traits>
 
 // A Runge-Kutta stage over the whole lattice: on hosts a pack of spins at a time along rows, on
-// devices a site per thread.
+// devices one site per thread.
 namespace cayspin::inline v0_1::detail {
 
 template <class Kernel>
@@ -37,7 +37,7 @@ struct StagePlanes {
 template <class Kernel>
 using PlanesOf = StagePlanes<typename Kernel::Flow, typename Kernel::value_type>;
 
-/// Plane z of the fields.
+/// Returns plane z of the fields.
 template <class Flow, class Real>
 CAYSPIN_DETAIL_NOINLINE StagePlanes<Flow, Real> planes_of_fields(
     StageArrays<WholeFields<Real>, Flow::stages> const& fields, RowLayout const& layout,
@@ -49,8 +49,9 @@ CAYSPIN_DETAIL_NOINLINE StagePlanes<Flow, Real> planes_of_fields(
   return planes;
 }
 
-/// Sites begin .. end - 1 of a row, whole packs. Those at the ends of the row have a loop of their
-/// own, so that the others ask nothing, but where the generator has found them.
+/// Runs the kernel on sites begin .. end - 1 of a row, whole packs. Packs at the ends of the row
+/// have a separate loop, so that the others need no tests; the loop is skipped where the generator
+/// has evaluated the ends.
 template <class Kernel>
 KOKKOS_FORCEINLINE_FUNCTION void run_along(Kernel const& kernel, PlanesOf<Kernel> const& planes,
                                            typename Kernel::RowArrays const& rows, Row const& row,
@@ -74,7 +75,7 @@ KOKKOS_FORCEINLINE_FUNCTION void run_along(Kernel const& kernel, PlanesOf<Kernel
   }
 }
 
-/// The one compiled body of a stage on host spaces: every caller gets the same bits.
+/// The single compiled body of a stage on host spaces, so that every caller gets equal bits.
 template <class Kernel>
 CAYSPIN_DETAIL_NOINLINE void run_stage(Kernel const& kernel, PlanesOf<Kernel> const& planes,
                                        RowLayout const& layout, RowBlock block) {
@@ -96,14 +97,15 @@ CAYSPIN_DETAIL_NOINLINE void run_stage(Kernel const& kernel, PlanesOf<Kernel> co
         if constexpr (FindsRowEnds<decltype(kernel.generator), Real>)
           kernel.generator.find_row_ends({row, rows.level}, x, after, memory.all(),
                                          Kernel::turning_alone);
-        // Copies: of what others know the address of, it would load all again for each pack.
+        // Passes copies, because the compiler would reload anything whose address is known
+        // elsewhere for each pack.
         run_along(local, planes, typename Kernel::RowArrays(rows), Row(row), x, after);
       }
     }
   }
 }
 
-/// The host loop.
+/// Host loop.
 template <class Kernel>
 struct StageRowLoop {
   using Real = typename Kernel::value_type;
@@ -119,7 +121,7 @@ struct StageRowLoop {
         blocks(rows, pack_count<Real>(rows), rows.own_and(Kernel::stages_after)) {}
   std::int64_t tasks() const { return blocks.count(); }
 
-  /// A task with all its pointers found, to be run again and again.
+  /// A task with all pointers resolved, which can run repeatedly.
   struct Task {
     StageRowLoop const& loop;
     RowBlock block;
@@ -155,7 +157,8 @@ struct StageOnSite {
   }
 };
 
-/// The generator for a stage of run_pass. isotropy::Energy looks at energies, which no row has.
+/// Prepares the generator for a stage of run_pass. Rows carry no energies, which isotropy::Energy
+/// needs.
 template <class Isotropy, class Generator, class Exec, class Spins>
 auto prepare_stage(Generator const& generator, Exec const& exec, Spins const& spins, double t) {
   if constexpr (is_host_execution<Exec> && !std::is_same_v<Isotropy, isotropy::Energy>)
@@ -164,13 +167,13 @@ auto prepare_stage(Generator const& generator, Exec const& exec, Spins const& sp
     return prepare_term(generator, exec, spins, t);
 }
 
-/// Is t enough for prepare_stage?
+/// Returns true if prepare_stage needs t but not the spins.
 template <class Isotropy, class Generator, class Exec, class Spins>
-bool stages_need_time_alone(Generator const& generator, Exec const& exec, Spins const& spins) {
+bool stages_need_only_time(Generator const& generator, Exec const& exec, Spins const& spins) {
   if constexpr (is_host_execution<Exec> && !std::is_same_v<Isotropy, isotropy::Energy>)
-    return rows_need_time_alone(generator, exec, spins);
+    return rows_need_only_time(generator, exec, spins);
   else
-    return needs_time_alone(generator, exec, spins);
+    return needs_only_time(generator, exec, spins);
 }
 
 template <class Exec, class Kernel>

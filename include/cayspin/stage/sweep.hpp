@@ -16,11 +16,11 @@
 #include <string>
 #include <tuple>
 
-// All stages of a Runge-Kutta step in one pass through the lattice. Each stage follows the stage
-// before it at a distance of one plane and one row, on numbers that are still in the cache.
+// All stages of a Runge-Kutta step in one pass through the lattice. Each stage is one plane and one
+// row behind the previous one, so that its data are still in the cache.
 namespace cayspin::inline v0_1 {
 
-/// How the stages of a step go through the lattice. Results have the same bits.
+/// Order in which the stages of a step traverse the lattice. Both give equal bits.
 enum class Path {
   pass,  // one kernel per stage
   sweep  // all stages together, on host spaces
@@ -28,12 +28,12 @@ enum class Path {
 
 namespace detail {
 
-/// The memory of a sweep beside fields; none at first.
+/// Memory of a sweep besides fields; initially empty.
 template <class Real, class MemorySpace>
 class SweepBuffers {
  public:
   SweepBuffers() = default;
-  /// `label` begins the labels of the memory.
+  /// `label`: prefix of the labels of the memory.
   SweepBuffers(std::string const& label, SweepPlan const& plan)
       : numbers_(Kokkos::view_alloc(Kokkos::WithoutInitializing, label + "::buffers"), plan.size()),
         progress_(label + "::progress", progress_size(plan)) {
@@ -64,8 +64,8 @@ class SweepBuffers {
   Kokkos::View<StripProgress*, MemorySpace> progress_;
 };
 
-/// The buffers between the stages of a method, by number: spins of stage 1, 2, .., increments of
-/// stage 0, 1, .., weighted sums from stage 0, 1, ..
+/// Buffers between the stages of a method, numbered: spins of stage 1, 2, .., increments of stage
+/// 0, 1, .., weighted sums from stage 0, 1, ..
 template <class Tableau, class Update>
 struct StageBuffers {
   static constexpr int stages = Tableau::stages;
@@ -78,7 +78,7 @@ struct StageBuffers {
 
   static constexpr int producer(int buffer) { return buffer % per_kind; }
 
-  /// The last stage that reads the buffer, or its producer if no stage reads it.
+  /// Returns the last stage that reads the buffer, or its producer if no stage reads it.
   static constexpr int last_reader(int buffer) {
     int const from = producer(buffer);
     int last = from;
@@ -86,14 +86,14 @@ struct StageBuffers {
       if (reads(stage, buffer)) last = stage;
     return last;
   }
-  /// Planes in use at a time, when each stage follows the one before it at `lag` planes. The next
-  /// stage reads neighbours of its spins.
+  /// Returns how many planes are in use at a time, when each stage is `lag` planes behind the
+  /// previous one. The next stage reads neighbours of its spins.
   static constexpr int planes(int buffer, int lag) {
     int const behind = lag * (last_reader(buffer) - producer(buffer));
     if (behind == 0) return 0;
     return buffer < per_kind ? std::max(lag + 2, behind + 1) : behind + 1;
   }
-  /// The stage whose sum a stage continues.
+  /// Returns the stage whose sum a stage continues.
   static constexpr int sum_before(int stage) {
     int from = stage - 1;
     while (from > 0 && !writes_sum<Tableau, Update>(from)) --from;
@@ -111,7 +111,7 @@ struct StageBuffers {
   }
 };
 
-/// Whether and how a method with so many fields of work memory in passes sweeps.
+/// Decision whether and how a method with `WorkFields` fields in passes sweeps.
 template <class Spins, class Tableau, class Update, int WorkFields>
 struct SweepChoice {
   using Real = typename Spins::value_type;
@@ -124,7 +124,7 @@ struct SweepChoice {
   static bool can_sweep(RowLayout const& layout) {
     return possible && (!layout.periodic[1] || layout.ny == 1 || layout.ny >= stages);
   }
-  /// No sweep while all fields fit the caches of the cores, nor where its buffers would take more
+  /// Returns false while all fields fit the cores' caches, and if the buffers would take more
   /// memory than the fields of passes.
   static bool sweeps_by_itself(RowLayout const& layout, int threads) {
     std::size_t const field = layout.allocation(3) * sizeof(Real);
@@ -189,7 +189,7 @@ struct SweepLoop {
   }
 
  private:
-  /// Where the arrays of a stage lie: in the fields, or in the buffers of a part.
+  /// Places of the arrays of a stage: in the fields, or in the buffers of a part.
   template <class Part>
   struct PlaneOfStep {
     using Buffers = StageBuffers<Tableau, Update>;

@@ -9,12 +9,12 @@
 #include <cstddef>
 #include <type_traits>
 
-// The geometry of a Runge-Kutta method: how an increment moves a spin, and which increment a
-// generator gives at a stage. Coordinates f are taken at the spin m0 of the step's begin.
-// increment(f, dt A, m, m0) belongs to the stage's spin m, to which f moves m0. `move` is for
+// The geometry of a Runge-Kutta method: how an increment moves a spin, and the increment from a
+// stage's generator. Coordinates f are relative to m0, the spin at the start of the step.
+// increment(f, dt A, m, m0) belongs to the stage's spin m, which is m0 moved by f. `move` is for
 // stages, `finish` for the end of the step, and displacement(f, m0) is finish(f, m0) - m0.
-// recovers_increments(stages): a chain of so many stages (each starts from the increment before it
-// alone) computes increments again from the spins to which they move m0.
+// recovers_increments(stages): true if a chain of `stages` stages (each uses only the increment
+// before it) recomputes increments from the spins to which they move m0.
 namespace cayspin::inline v0_1::update {
 
 /// Runge-Kutta-Munthe-Kaas: f in the Lie algebra, m = Rotation(f) m0, f' = dRotation_f^-1 (A).
@@ -44,7 +44,7 @@ struct Lie {
   }
 };
 
-/// As Lie, with the generators themselves as increments, without the inverse differential. It keeps
+/// As Lie, but without the inverse differential: the increments are the generators. This preserves
 /// the order of methods up to order 2. Lewis and Nigam 2002, Sec. 4.3.
 template <class Rotation>
 struct LieUncorrected : Lie<Rotation> {
@@ -61,7 +61,8 @@ struct LieUncorrected : Lie<Rotation> {
 /// Classical Runge-Kutta in space: f is a displacement, and |m| drifts.
 struct Classical {
   static constexpr bool increment_needs_argument = false;
-  static constexpr bool needs_turning_alone = true;  // of A: increments are made of A x m
+  static constexpr bool needs_turning_alone =
+      true;  // only the part of A normal to m: increments are made of A x m
 
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> increment(Vec3<Value> const&,
@@ -87,7 +88,7 @@ struct Classical {
 };
 
 /// Classical, with each spin divided by its length at the end of the step, as in most spin codes.
-/// Those store the increments of RK4; longer chains of stages compute theirs again from the spins.
+/// RK4 stores increments; longer chains of stages recompute them from the spins.
 struct Projected : Classical {
   static constexpr bool recovers_increments(int stages) { return stages > 4; }
 
@@ -106,14 +107,14 @@ struct Projected : Classical {
     return {Value(1) / length, multiply_add(Value(Value(0) - along), m0, f)};
   }
 
-  /// move(increment(step a, m, m), m).
+  /// Returns move(increment(step a, m, m), m).
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> advance(Value const& step, Vec3<Value> const& a,
                                                          Vec3<Value> const& m) {
     return advance(step, a, m, m);
   }
 
-  /// move(increment(step a, m, m0), m0).
+  /// Returns move(increment(step a, m, m0), m0).
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> advance(Value const& step, Vec3<Value> const& a,
                                                          Vec3<Value> const& m,
@@ -121,8 +122,8 @@ struct Projected : Classical {
     return multiply_add(step, cross(a, m), m0);
   }
 
-  /// finish(f, m0) with f = sum_j Weights::spin(j) f_j + Weights::last increment(step a, m, m0),
-  /// where f_j moves m0 to spins[j] and m is the last of Count spins.
+  /// Returns finish(f, m0) with f = sum_j Weights::spin(j) f_j + Weights::last increment(step a, m,
+  /// m0), where f_j moves m0 to spins[j] and m is the last of Count spins.
   template <class Weights, int Count, class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> arrive(Value const& step, Vec3<Value> const& a,
                                                         Vec3<Value> const* spins,
@@ -140,7 +141,7 @@ struct Projected : Classical {
 };
 
 /// Classical Runge-Kutta in the stereographic chart at m0: f is normal to m0 and stands for the
-/// rotation cay(2 m0 x f). The coordinates of every stage stay orthogonal to m0. Not in the paper.
+/// rotation cay(2 m0 x f). The coordinates of every stage stay normal to m0. Not in the paper.
 /// Breaks down only if the spin of a stage reaches -m0.
 struct Stereographic {
   static constexpr bool increment_needs_argument = false;
@@ -175,7 +176,7 @@ struct Stereographic {
             multiply_add(Value(Value(0) - s), m0, f)};
   }
 
-  /// move(increment(step a, m, m), m) for a unit spin, with one division.
+  /// Returns move(increment(step a, m, m), m) for a unit spin, with one division.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> advance(Value const& step, Vec3<Value> const& a,
                                                          Vec3<Value> const& m) {
@@ -185,7 +186,7 @@ struct Stereographic {
     return multiply_add(Value(scale * step), u, multiply_add(Value(Value(-2) * scale * s), m, m));
   }
 
-  /// move(increment(step a, m, m0), m0) for unit spins, with one division.
+  /// Returns move(increment(step a, m, m0), m0) for unit spins, with one division.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> advance(Value const& step, Vec3<Value> const& a,
                                                          Vec3<Value> const& m,
@@ -201,9 +202,9 @@ struct Stereographic {
                      multiply_add(detail::multiply_add(minus, reach, along), m0, m0)));
   }
 
-  /// move(f, m0) with f = sum_j Weights::spin(j) f_j + Weights::last increment(step a, m, m0),
-  /// where f_j moves m0 to spins[j] and m is the last of Count spins; with one division. It works
-  /// on differences from m0, so small ones keep their relative precision.
+  /// Returns move(f, m0) with f = sum_j Weights::spin(j) f_j + Weights::last increment(step a, m,
+  /// m0), where f_j moves m0 to spins[j] and m is the last of Count spins; with one division. It
+  /// uses differences from m0, so small ones keep their relative precision.
   template <class Weights, int Count, class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> arrive(Value const& step, Vec3<Value> const& a,
                                                         Vec3<Value> const* spins,

@@ -14,8 +14,8 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// The work memory of an adaptive step, and the state between steps. Passes need one field more,
-/// a sweep its buffers.
+/// Work memory of an adaptive step, and the state between steps. Passes need one more field, a
+/// sweep its buffers.
 template <class Spins, class Tableau>
 struct AdaptiveMemory {
   using Real = typename Spins::value_type;
@@ -71,13 +71,14 @@ struct AdaptiveMemory {
       visit("increment_" + std::to_string(i + 1), increments[i]);
   }
 
-  /// The spins at which a stage of a pass evaluates the generator: `end` for the last stage.
+  /// Returns the spins at which a stage of a pass evaluates the generator: `end` for the last
+  /// stage.
   Spins const& level_of(int stage) const {
     if (stage == 0) return begin;
     return (stages - 1 - stage) % 2 == 0 ? end : level;
   }
 
-  /// The fields of one stage of passes.
+  /// Returns the fields of one stage of passes.
   template <class Flow>
   StageArrays<WholeFields<Real>, stages> arrays() const {
     StageArrays<WholeFields<Real>, stages> arrays;

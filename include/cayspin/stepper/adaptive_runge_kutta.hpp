@@ -32,10 +32,10 @@ using AdaptiveStages = StagedStepper<Spins, tableau::FirstSameAsLast<Embedded>, 
 }  // namespace detail
 
 /// An embedded Runge-Kutta method that chooses its own steps. The error of a step is the largest
-/// angle of any spin between the two solutions, and is kept below the tolerance.
-/// `step(.., t, dt)` returns the spins at t + dt, by the tableau's polynomial in the coordinates of
-/// the group. The method's own steps do not depend on dt. It remembers its state: `spins` and t
-/// must be those at the end of the step before. Otherwise call `reset`.
+/// angle of any spin between the two solutions; it is kept below the tolerance. `step(.., t, dt)`
+/// returns the spins at t + dt, by the tableau's polynomial in the coordinates of the group. The
+/// internal steps do not depend on dt. It remembers its state: `spins` and t must be those at the
+/// end of the previous step. Otherwise call `reset`.
 template <class Spins, class Embedded, class Update, class Isotropy = isotropy::Zero>
 class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update, Isotropy>,
                            public detail::OwnSteps {
@@ -54,10 +54,10 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
         OwnSteps(options, Embedded::embedded_order + 1, StepOptions::least_tolerance<Real>(),
                  "cayspin::" + name) {}
 
-  /// Evaluations of the generator so far.
+  /// Returns the generator evaluations so far.
   std::int64_t evaluations_done() const { return evaluations_done_; }
 
-  /// For cayspin::exchange_memory: the own step under way, and what chooses the next one.
+  /// Visits the internal step in progress and the step size control, for cayspin::serialize.
   template <class Visit>
   void visit_memory(Visit const& visit) {
     visit("evaluations", evaluations_done_);
@@ -66,16 +66,16 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     memory_.visit(visit);
   }
 
-  /// Brings `spins` from t to t + dt under `generator`. Waits.
-  /// Throws StepTooSmall when no step is small enough, std::invalid_argument when `spins` is not of
-  /// the lattice given at construction, dt is negative or options.end is before t + dt.
+  /// Advances `spins` from t to t + dt under `generator`. Waits. Throws StepTooSmall when no step
+  /// is small enough, and std::invalid_argument when `spins` is not on the lattice given at
+  /// construction, dt is negative or options.end is before t + dt.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     step_towards(exec, generator, spins, t, dt, t + dt);
   }
 
-  /// As `step`, towards a later time at which the spins are wanted: until the own steps reach that,
-  /// `spins` stays as it was. Throws as `step` does.
+  /// Like `step`, towards a later time at which the spins are wanted: until the internal steps
+  /// reach that time, `spins` does not change. Throws like `step`.
   template <class Exec, class Generator>
   void step_towards(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
                     double wanted) {
@@ -101,12 +101,13 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
                                 detail::FirstGeneratorStage<Isotropy, decltype(prepared), Real>{
                                     std::move(prepared), isotropy_, start.array(),
                                     memory_.last.output(false), memory_.square.output(false)});
+    detail::update_ghosts(exec, this->lattice_, memory_.last);  // a field in memory has own rows
     ++evaluations_done_;
     begin_run(t, std::sqrt(largest_square(exec)), asked);
     begin_time_ = t;
   }
 
-  /// The next own step, from the end of the last one, towards a time at which spins are wanted.
+  /// Takes the next internal step, towards a time at which spins are wanted.
   template <class Exec, class Generator>
   void take_step(Exec const& exec, Generator const& generator, double wanted) {
     memory_.exchange_begin_and_end();
@@ -117,14 +118,14 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     detail::update_ghosts(exec, this->lattice_, memory_.end, memory_.last);
   }
 
-  /// The error of a step: an angle.
+  /// Returns the error of a step, an angle.
   template <class Exec, class Generator>
   double try_step(Exec const& exec, Generator const& generator, double t, double dt,
                   double wanted) {
     evaluations_done_ += stages - 1;
     bool at_once = false;
     if constexpr (detail::is_host_execution<Exec>) {
-      bool const by_time = detail::stages_need_time_alone<Isotropy>(generator, exec, memory_.begin);
+      bool const by_time = detail::stages_need_only_time<Isotropy>(generator, exec, memory_.begin);
       if (this->path() == Path::sweep && !by_time) this->use(Path::pass);
       if constexpr (Base::Sweeps::possible) {
         if (this->path() == Path::sweep) {
@@ -139,7 +140,8 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     return error(exec);
   }
 
-  /// Does such a step end later? Then the spins that are wanted are made of its increments.
+  /// Returns true if such a step ends later, so that the wanted spins are interpolated from its
+  /// increments.
   static bool ends_beyond(double wanted, double end, double dt) { return end - wanted > 1e-9 * dt; }
 
   template <class Exec>
@@ -147,7 +149,7 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     return 2 * std::asin(std::min(1.0, 0.5 * std::sqrt(largest_square(exec))));
   }
 
-  /// Stage `Stage` with a prepared generator. That of the first stage is known.
+  /// Runs stage `Stage` with a prepared generator. The first stage's is known.
   template <int Stage, class Prepared>
   auto stage(Prepared prepared, double dt) const {
     return detail::RungeKuttaStage<Tableau, Update, Isotropy, Stage, Prepared, Real>{
@@ -164,7 +166,7 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     return detail::EndStage<Tableau, Update, Isotropy, Prepared, Real>{
         std::move(prepared), isotropy_, outputs, static_cast<Real>(dt)};
   }
-  /// The same kernels, for generators that need the time alone: calls run(kernel..).
+  /// Calls run(kernel..) with all stages, for generators that need only the time.
   template <class Exec, class Generator, class Run>
   void with_kernels(Exec const& exec, Generator const& generator, double t, double dt,
                     detail::EndOutputs<Tableau, Real> const& outputs, Run const& run) const {
@@ -190,7 +192,7 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
                  });
   }
 
-  // Few spins: all stages in one launch.
+  // Runs all stages in one launch, for few spins.
   template <class Exec, class Generator>
   void stages_at_once(Exec const& exec, Generator const& generator, double t, double dt) const {
     with_kernels(exec, generator, t, dt, memory_.outputs_of_pass(),
@@ -245,7 +247,7 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
   std::string begin_label_ = this->label("::begin"), end_label_ = this->label("::end"),
               dense_label_ = this->label("::dense_output"), error_label_ = this->label("::error"),
               step_label_ = this->label("::all_stages");
-  double begin_time_ = 0;  // of the last own step
+  double begin_time_ = 0;  // of the last internal step
   std::int64_t evaluations_done_ = 0;
 };
 
@@ -260,7 +262,7 @@ class AdaptiveRkmk : public AdaptiveRungeKutta<Spins, Embedded, update::Lie<Rota
       : AdaptiveRkmk::AdaptiveRungeKutta("AdaptiveRkmk", like, options, isotropy) {}
 };
 
-/// Adaptive Runge-Kutta in the stereographic chart at each step's first spin.
+/// Adaptive Runge-Kutta in the stereographic chart at the spins that start each step.
 template <class Spins, class Embedded = tableau::Tsitouras5>
 class AdaptiveStereographic : public AdaptiveRungeKutta<Spins, Embedded, update::Stereographic> {
  public:
@@ -268,7 +270,7 @@ class AdaptiveStereographic : public AdaptiveRungeKutta<Spins, Embedded, update:
       : AdaptiveStereographic::AdaptiveRungeKutta("AdaptiveStereographic", like, options) {}
 };
 
-/// The adaptive baseline: steps in space, with each spin divided by its length at the end.
+/// Adaptive baseline: steps in space, with each spin divided by its length at the end.
 template <class Spins, class Embedded = tableau::DormandPrince5>
 class AdaptiveProjected : public AdaptiveRungeKutta<Spins, Embedded, update::Projected> {
  public:

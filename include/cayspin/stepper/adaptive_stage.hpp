@@ -9,10 +9,11 @@
 
 #include <cstddef>
 
-// What an adaptive Runge-Kutta step does besides its stages. Tableau is a FirstSameAsLast.
+// Kernels of an adaptive Runge-Kutta step besides its stages. Tableau is a FirstSameAsLast.
 namespace cayspin::inline v0_1::detail {
 
-/// The generator at the begin of a run, and the square of the spin's rate |A x m|.
+/// Functor that computes the generator at the start of a run, and the square of the spin's rate |A
+/// x m|.
 template <class Isotropy, class Generator, class Real>
 struct FirstGeneratorStage {
   Generator generator;
@@ -31,7 +32,7 @@ struct FirstGeneratorStage {
   }
 };
 
-/// The first stage, with the generator from the end of the step before.
+/// The first stage, with the generator from the end of the previous step.
 template <class Real>
 struct KnownGenerator {
   SiteArray<Real, 3> generators;
@@ -48,7 +49,7 @@ struct ErrorWeights {
   KOKKOS_FUNCTION static constexpr double at(int j) { return Tableau::error[j]; }
 };
 
-/// All increments of a step that has been taken.
+/// All increments of a completed step.
 template <class Tableau, class Real>
 struct StepIncrements {
   static constexpr int stages = Tableau::stages;
@@ -63,8 +64,8 @@ struct StepIncrements {
   }
 };
 
-/// What the end of a step leaves in memory. After a sweep these are its spins, too, and its
-/// increments if a time within the step is asked for: those of passes are there already.
+/// Arrays that the end of a step leaves in memory. After a sweep these include its spins, and its
+/// increments if a time within the step is requested; after passes those are already in memory.
 template <class Tableau, class Real>
 struct EndOutputs {
   OutputArray<Real, 3> last;
@@ -73,8 +74,8 @@ struct EndOutputs {
   OutputArray<Real, 3> increments[std::size_t{Tableau::stages - 1}] = {};
 };
 
-/// The generator at the end of a step, and the squared distance of that end from the embedded
-/// solution's.
+/// Functor that computes the generator at the end of a step, and the squared distance of the end
+/// from the embedded solution.
 template <class Tableau, class Update, class Isotropy, class Generator, class Real>
 struct EndStage {
   using Flow = StageDataFlow<Tableau, Update, Tableau::stages - 1>;
@@ -118,7 +119,7 @@ struct EndStage {
   }
 };
 
-/// The spins at a time within a step that has been taken.
+/// Kernel that computes the spins at a time within a completed step.
 template <class Tableau, class Update, class Real>
 struct DenseOutput {
   static constexpr int stages = Tableau::stages;
@@ -128,7 +129,7 @@ struct DenseOutput {
   Real dt;
   Real weights[std::size_t{stages}] = {};
 
-  /// At fraction s of the step.
+  /// Sets the time to fraction s of the step.
   void set_fraction(double s) {
     for (int j = 0; j < stages; ++j) {
       double weight = 0;

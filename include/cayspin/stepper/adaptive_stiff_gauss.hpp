@@ -13,14 +13,15 @@
 
 namespace cayspin::inline v0_1 {
 
-/// StiffGauss2 with steps of its own: long ones where spins come to rest. The error of a step is
-/// the largest angle of any spin that the second derivative of A stands for: a divided difference
-/// over the stages of three steps, multiplied by (1 + b K)^-1 as corrections are, so that what is
-/// left of short spin waves does not count. Where the field depends on t, the end of the step
-/// stands for the earliest of the three. Corrections have K + c, where c is the mean of A.m.
-/// `step(.., t, dt)` returns the spins at t + dt, within an own step by a linear A. The method's
-/// own steps do not depend on dt. It remembers its state: `spins` and t must be those at the end of
-/// the step before. Otherwise call `reset`.
+/// StiffGauss2 with adaptive steps, which become long as spins approach equilibrium. The error of a
+/// step is the largest angle of any spin due to the second derivative of A: a divided difference
+/// over the stages of three steps, multiplied by (1 + b K)^-1 as corrections are, so that residual
+/// short spin waves do not count. If the field depends on t, the end of the step replaces the
+/// earliest of the three. Corrections use K + c for K, where c is the mean of A.m.
+///
+/// `step(.., t, dt)` returns the spins at t + dt; within an internal step A is interpolated
+/// linearly. The internal steps do not depend on dt. It remembers its state: `spins` and t must be
+/// those at the end of the previous step. Otherwise call `reset`.
 template <class Spins>
 class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps {
   using Base = StiffGauss<Spins, 2>;
@@ -41,13 +42,13 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
     this->solving_.iterations = 10;
   }
 
-  /// Forgets the run so far: the next step begins at its own t and spins.
+  /// Forgets the run so far: the next step starts from its t and spins.
   void reset() {
     Base::reset();
     OwnSteps::reset();
   }
 
-  /// For cayspin::exchange_memory.
+  /// For cayspin::serialize.
   template <class Visit>
   void visit_memory(Visit const& visit) {
     Base::visit_memory(visit);
@@ -60,16 +61,16 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
     visit("end_spins", now_);
   }
 
-  /// Brings `spins` from t to t + dt under `generator`. Waits.
-  /// Throws StepTooSmall when no step is small enough, and std::invalid_argument as StiffGauss
-  /// does, when dt is negative, or when options.end is before t + dt.
+  /// Advances `spins` from t to t + dt under `generator`. Waits. Throws StepTooSmall when no step
+  /// is small enough, and std::invalid_argument like StiffGauss, when dt is negative, or when
+  /// options.end is before t + dt.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     step_towards(exec, generator, spins, t, dt, t + dt);
   }
 
-  /// As `step`, towards a later time at which the spins are wanted: until the own steps reach that,
-  /// `spins` stays as it was. Throws as `step` does.
+  /// Like `step`, towards a later time at which the spins are wanted: until the internal steps
+  /// reach that time, `spins` does not change. Throws like `step`.
   template <class Exec, class Generator>
   void step_towards(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
                     double wanted) {
@@ -84,9 +85,10 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
  private:
   static constexpr auto name = "AdaptiveStiffGauss2";
   static constexpr double share_of_corrections = 0.05;  // of the error of a step
-  static constexpr double most_growth = 2;    // beyond it, earlier steps tell nothing of the next
-  static constexpr double fast_enough = 0.4;  // convergence of corrections
-  static constexpr double hardly_changes = 0.1;  // error / tolerance, where A is not extrapolated
+  static constexpr double most_growth = 2;    // above it, earlier steps do not predict the next
+  static constexpr double fast_enough = 0.4;  // convergence factor of corrections
+  static constexpr double hardly_changes =
+      0.1;  // error / tolerance below which A is not extrapolated
 
   template <class Exec, class Generator>
   void begin(Exec const& exec, Generator const& generator, Spins const& spins, double t,
@@ -100,7 +102,7 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
     local_dt_ = 0;
   }
 
-  /// The next own step, from the end of the last one.
+  /// Takes the next internal step.
   template <class Exec, class Generator>
   void take_step(Exec const& exec, Generator const& generator) {
     double error = 0;
@@ -120,10 +122,11 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
     swap(now_, this->end_);
   }
 
-  /// Of a step that has been solved: an angle. 0 for the first two, which are short, or at rest.
+  /// Returns the error of a solved step, an angle. 0 for the first two, which are short, or at
+  /// equilibrium.
   template <class Exec, class Generator>
   double error_of(Exec const& exec, Generator const& generator, double t, double dt) {
-    // The middles of steps may miss what a field does between them.
+    // Midpoints of steps may miss what a field does between them.
     bool const looks_at_end = !detail::is_stationary(generator, exec, now_);
     if (!looks_at_end && this->history_.known() < 2) return 0;
     auto kernel = this->history_.second_difference(this->x_[0], looks_at_end);

@@ -5,7 +5,7 @@
 #include <cayspin/stepper/methods.hpp>
 #include <cayspin/stepper/two_point.hpp>
 
-// Geometric Euler with a sigma that makes its energy error one order smaller.
+// Geometric Euler with a sigma that raises the order of its energy error by one.
 namespace cayspin::inline v0_1 {
 
 /// With sigma from a forward difference; energy error of order 2, two evaluations.

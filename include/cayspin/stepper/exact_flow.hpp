@@ -19,7 +19,8 @@ KOKKOS_FORCEINLINE_FUNCTION Decay<Value> decay(Value const& x) {
   using Scalar = scalar_t<Value>;
   constexpr bool is_double = sizeof(Scalar) == sizeof(double);
   constexpr int terms = is_double ? 13 : 7;
-  // ln 2 as a sum. The first number has few bits: its product with the halvings is exact.
+  // ln 2 as a sum. The first number has few bits, so its product with the number of halvings is
+  // exact.
   constexpr double high = 0x1.62e42fefp-1, low = 0x1.473de6af278edp-34;
   constexpr float high_f = 0x1.62ep-1f, low_f = 0x1.0bfbe8p-15f;
   Value const halvings = nearest<Value>(Value(x * Value(Scalar(1.4426950408889634))));
@@ -61,7 +62,7 @@ struct ExactFlow {
     return select<Value>(near, end, far);
   }
 
-  /// q after dt/2, to first order; q itself if that is too far away.
+  /// Returns q after dt/2, to first order; q itself if that is too far away.
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> middle(Vec3<Value> const& h, Vec3<Value> const& q) const {
     Vec3<Value> const relaxing = damping * cross(q, h);
     Vec3<Value> const a = precession ? h + relaxing : relaxing;
@@ -71,8 +72,8 @@ struct ExactFlow {
   }
 
  private:
-  /// sum of first * x^k / ((Odd + 1) .. (Odd + 2 k)) up to k = Terms - 1, with even and odd k
-  /// apart. This halves the chain of dependent operations.
+  /// Returns the sum of first * x^k / ((Odd + 1) .. (Odd + 2 k)) up to k = Terms - 1. Even and odd
+  /// k are summed separately, which halves the chain of dependent operations.
   template <int Odd, int Terms>
   KOKKOS_FORCEINLINE_FUNCTION static Value series(Value const& x, double first) {
     double coefficient[std::size_t{Terms}] = {first};
@@ -89,8 +90,8 @@ struct ExactFlow {
     return multiply_add(lower, x, multiply_add(upper, square, term(0)));
   }
 
-  /// By entire functions of |f|^2, without a root: |f| < 3/2 and damping |f| < 1/2. The relaxation
-  /// has the form of the aberration of light along f.
+  /// Flows by entire functions of |f|^2, without a root: |f| < 3/2 and damping |f| < 1/2. The
+  /// relaxation has the form of the aberration of light along f.
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> small(Vec3<Value> const& f, Value const& turn2,
                                                 Vec3<Value> const& q) const {
     constexpr bool is_double = sizeof(Scalar) == sizeof(double);
@@ -140,9 +141,9 @@ struct ExactFlow {
     return multiply_add(Value(Scalar(2)), multiply_add(half.cosine, c, cross(v, c)), q);
   }
 
-  /// With p = exp(-damping angle), a = 1 + c and b = 1 - c: q + (1 - p) (a (e - q) + p b (e + q)) /
-  /// (a + p^2 b). The smaller of a and b comes from the part of q normal to e. So a spin nearly
-  /// opposite to the field leaves that direction at the right time.
+  /// Relaxes q: with p = exp(-damping angle), a = 1 + c and b = 1 - c, to q + (1 - p) (a (e - q) +
+  /// p b (e + q)) / (a + p^2 b). The smaller of a and b comes from the part of q normal to e, so
+  /// that a spin nearly opposite to the field leaves that direction at the right time.
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> relax(Value const& angle, Vec3<Value> const& e,
                                                 Vec3<Value> const& q) const {
     constexpr Scalar longest = sizeof(Scalar) == sizeof(double) ? Scalar(340) : Scalar(40);
@@ -162,8 +163,8 @@ struct ExactFlow {
         x == zero);
   }
 
-  /// One Newton step towards length 1. For spins nearly opposite to the field, an error in the
-  /// length would grow like the angle. Spins at rest keep their bits.
+  /// Takes one Newton step towards length 1. For spins nearly opposite to the field, an error in
+  /// the length would grow like the angle. Spins at equilibrium keep their bits.
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> kept_on_sphere(Vec3<Value> const& q,
                                                                 Mask const& rests) {
     Value const factor = multiply_add(Value(Scalar(-0.5)), dot(q, q), Value(Scalar(1.5)));

@@ -45,7 +45,7 @@ struct LargestDifference {
   }
 };
 
-/// to = a x + b y; `to` may be one of them.
+/// Computes to = a x + b y; `to` may be one of them.
 template <class Exec, class Spins>
 void combine(Exec const& exec, double a, Spins const& x, double b, Spins const& y,
              Spins const& to) {
@@ -56,7 +56,7 @@ void combine(Exec const& exec, double a, Spins const& x, double b, Spins const& 
                                               y.array(), to.output(false)});
 }
 
-/// The sum of <x, y> over the sites; waits.
+/// Returns the sum of <x, y> over the sites; waits.
 template <class Exec, class Spins>
 double inner_product(Exec const& exec, Spins const& x, Spins const& y) {
   static std::string const label = "cayspin::field_algebra::inner_product";
@@ -69,7 +69,7 @@ double length(Exec const& exec, Spins const& x) {
   return std::sqrt(inner_product(exec, x, x));
 }
 
-/// The largest |x - y| of any component; NaN when there is one; waits.
+/// Returns the largest |x - y| of any component; NaN when there is one; waits.
 template <class Exec, class Spins>
 double largest_difference(Exec const& exec, Spins const& x, Spins const& y) {
   static std::string const label = "cayspin::field_algebra::largest_difference";

@@ -10,7 +10,7 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// The last Count fields of a run, a ring, and the steps between them.
+/// A ring of the last Count fields of a run, and the steps between them.
 template <class Field, std::size_t Count>
 class FieldHistory {
  public:
@@ -21,12 +21,12 @@ class FieldHistory {
   std::size_t known() const { return known_; }
   void forget() { known_ = 0; }
 
-  /// The field `back` steps before the last one that was stored.
+  /// Returns the field `back` steps before the last stored one.
   Field const& operator[](std::size_t back) const { return fields_[(newest_ + back) % Count]; }
-  /// The place of the next field: that of the oldest.
+  /// Returns the memory for the next field: that of the oldest.
   Field const& following() const { return (*this)[Count - 1]; }
 
-  /// Notes that the next field is stored, and that a step of dt starts from it.
+  /// Records that the next field is stored, and that a step of dt starts from it.
   void remember(double dt) {
     newest_ = (newest_ + Count - 1) % Count;
     known_ = std::min(known_ + 1, Count);
@@ -34,10 +34,10 @@ class FieldHistory {
     steps_[0] = dt;
   }
 
-  /// May a step of dt follow it? It may grow by a factor of 2 at most.
+  /// Returns true if a step of dt may follow: it may grow by a factor of 2 at most.
   bool is_followed_by(double dt) const { return 0 < dt / steps_[0] && dt / steps_[0] <= 2; }
 
-  /// For cayspin::exchange_memory.
+  /// For cayspin::serialize.
   template <class Visit>
   void visit_memory(Visit const& visit) {
     visit.count("known", known_, Count);
@@ -47,8 +47,8 @@ class FieldHistory {
     }
   }
 
-  /// Times of the state after the last step, as 0, and of the Count - 1 fields before it, with
-  /// steps of `unit`.
+  /// Returns times of the state after the last step, as 0, and of the Count - 1 fields before it,
+  /// in steps of `unit`.
   std::array<double, Count> times(double unit) const {
     std::array<double, Count> times{};
     double sum = 0;

@@ -10,16 +10,16 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// Gauss's collocation method for m' = a(t) x m on one site, given f_i = dt a(nodes_i):
-/// Y_i = m + sum_j a_ij f_j x Y_j, m' = m + sum_j b_j f_j x Y_j. The linear equations are solved
-/// exactly, so |m| stays for any f. (Hairer, Lubich, Wanner 2006, Sec. II.1.3 and IV.2.1)
+/// Gauss's collocation method for m' = a(t) x m on one site, given f_i = dt a(nodes_i): Y_i = m +
+/// sum_j a_ij f_j x Y_j, m' = m + sum_j b_j f_j x Y_j. The linear equations are solved exactly, so
+/// |m| is preserved for any f. (Hairer, Lubich, Wanner 2006, Sec. II.1.3 and IV.2.1)
 template <int Stages>
 struct GaussLegendre;
 
 template <>
 struct GaussLegendre<1> {
   static constexpr std::array nodes{0.5};
-  /// Of the matrix a. Its conjugate is the other one, where there are two.
+  /// Eigenvalue of the matrix a. If there are two, its conjugate is the other.
   static constexpr std::complex<double> eigenvalue{0.5, 0};
 
   /// Returns m', which is cay(f) m.
@@ -69,20 +69,20 @@ struct GaussLegendre<2> {
     Vec3<Value> const p2 = cross(v, stage[1]), w = multiply_add(minus, p2, m);
     stage[0] = w + turned_by(s, u, w);
     Vec3<Value> const change = Value(2) * (cross(u, stage[0]) + p2);
-    // Round-off changes the length by |f| epsilon, which this takes back.
+    // Round-off changes the length by |f| epsilon; this reverts it.
     Value const longer = dot(change, multiply_add(Value(0.5), change, m)) / square_to_divide_by(m);
     return m + multiply_add(Value(-longer), m + change, change);
   }
 
  private:
-  /// (s R - 1) w
+  /// Returns (s R - 1) w.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> turned_by(Value const& s, Vec3<Value> const& u,
                                                            Vec3<Value> const& w) {
     Vec3<Value> const c = cross(u, w);
     return s * (c + cross(u, c));
   }
-  /// unit - 4/3 (unit x v) + s/3 (r x v), for a row r of R and unit x v as `beside`.
+  /// Returns unit - 4/3 (unit x v) + s/3 (r x v), for a row r of R and unit x v as `beside`.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> row(Value const& third, Vec3<Value> const& v,
                                                      Vec3<Value> const& r, Vec3<Value> const& unit,

@@ -14,22 +14,23 @@
 
 namespace cayspin::inline v0_1 {
 
-/// An implicit step whose equation was not solved. The spins are those before the step.
+/// Thrown when an implicit step's equation was not solved. The spins are those before the step.
 class NotConverged : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// How an implicit step's equation is solved.
+/// Options of the solver in implicit steps.
 struct ImplicitOptions {
-  double tolerance = 8;  ///< of the last change of any component, in epsilons of the precision
-  int fixed_point = 50;  ///< iterations before Newton's method takes over
-  int newton = 30;       ///< its iterations; 0 leaves it out
+  double tolerance =
+      8;  ///< bound on the last change of any component, in epsilons of the precision
+  int fixed_point = 50;  ///< fixed-point iterations before Newton's method takes over
+  int newton = 30;       ///< Newton iterations; 0 disables it
 };
 
 namespace detail {
 
-/// One iterate of an implicit step, from A at `level`: the estimate of the end or of the middle.
+/// One iterate of an implicit step, from A at `level`: the estimate of the end or of the midpoint.
 template <class Isotropy, class Rotation, class Generator, class Real>
 struct ImplicitStage {
   Generator generator;
@@ -52,8 +53,8 @@ struct ImplicitStage {
   }
 };
 
-/// sigma at the begin of an implicit step, for isotropies that find it from the step's solution and
-/// add it then. Zero and Constant do not.
+/// sigma at the start of an implicit step, for isotropies that compute it from the step's solution.
+/// Zero and Constant do not.
 template <class Spins, class Isotropy>
 struct ImplicitSigma {
   static constexpr bool is_there = false;
@@ -69,7 +70,7 @@ class Implicit : public StepperBase<Spins> {
  public:
   using typename StepperBase<Spins>::Real;
   static constexpr int ghosts =
-      ImplicitSigma<Spins, Isotropy>::ghosts;  // iterations exchange theirs
+      ImplicitSigma<Spins, Isotropy>::ghosts;  // iterations exchange ghosts themselves
   static constexpr int work_fields = 2 + ImplicitSigma<Spins, Isotropy>::work_fields;
 
   Implicit(std::string const& name, Spins const& like, Isotropy isotropy, ImplicitOptions options)
@@ -80,16 +81,16 @@ class Implicit : public StepperBase<Spins> {
         next_(name + "::next", like.lattice()),
         sigma_(name, like.lattice()) {}
 
-  /// Bytes of work memory, without the 16 fields that Newton's method allocates at its first use.
+  /// Returns bytes of work memory, without the 16 fields that Newton's method allocates at its
+  /// first use.
   std::size_t work_bytes() const { return level_.bytes() + next_.bytes() + sigma_.bytes(); }
 
-  /// Evaluations of the generator so far.
+  /// Returns the generator evaluations so far.
   std::int64_t evaluations_done() const { return evaluations_done_; }
 
-  /// Advances `spins` from t to t + dt under `generator`; exchanges their memory with its own, so
-  /// take arrays of `spins` again after a step. Waits.
-  /// Throws NotConverged when no solution was found, std::invalid_argument when `spins` is not of
-  /// the lattice given at construction.
+  /// Advances `spins` from t to t + dt under `generator`. Swaps their memory with its own, so take
+  /// arrays of `spins` again after a step. Waits. Throws NotConverged when no solution was found,
+  /// and std::invalid_argument when `spins` is not on the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
@@ -116,7 +117,7 @@ class Implicit : public StepperBase<Spins> {
     swap(spins, next_);
   }
 
-  /// For cayspin::integrate: the fields whose memory a step may exchange for that of the spins.
+  /// Visits the fields whose memory a step may swap with that of the spins, for cayspin::integrate.
   template <class Visit>
   void visit_exchanged(Visit const& visit) {
     visit(level_);
@@ -178,8 +179,8 @@ class Implicit : public StepperBase<Spins> {
 
 }  // namespace detail
 
-/// Implicit Euler, order 1: m1 = cay(dt xi(m1)) m0, xi = A + sigma m, solved as a fixed point and,
-/// where that fails, by Newton's method. Lewis and Nigam 2002, Sec. 4.2.
+/// Implicit Euler, order 1: m1 = cay(dt xi(m1)) m0, xi = A + sigma m, solved by fixed-point
+/// iteration and, where that fails, by Newton's method. Lewis and Nigam 2002, Sec. 4.2.
 template <class Spins, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class ImplicitLieEuler : public detail::Implicit<Spins, Isotropy, Rotation, false> {
  public:

@@ -10,7 +10,8 @@
 #include <cayspin/stepper/runge_kutta.hpp>
 #include <cayspin/stepper/tableau.hpp>
 
-// The named Runge-Kutta methods of equal steps: each one a tableau, an update and an isotropy.
+// The named Runge-Kutta methods with constant steps. Each combines a tableau, an update and an
+// isotropy.
 namespace cayspin::inline v0_1 {
 
 /// Geometric Euler, order 1: m <- cay(dt xi) m, xi = A(m) + sigma m.
@@ -44,10 +45,9 @@ class Rkmk4 : public RungeKutta<Spins, tableau::Classical4, update::Lie<Rotation
       : Rkmk4::RungeKutta("Rkmk4", like, isotropy) {}
 };
 
-/// Runge-Kutta-Munthe-Kaas with any explicit tableau, of the tableau's order. A new method is a
-/// struct like those in cayspin::tableau.
-/// F_i = D(sum_j a_ij F_j), D(f) = dcay_f^-1 (dt xi(cay(f) m)), m <- cay(sum_i b_i F_i) m.
-/// Lewis and Nigam 2002, Sec. 2.
+/// Runge-Kutta-Munthe-Kaas with any explicit tableau, of the tableau's order. To add a method,
+/// write a struct like those in cayspin::tableau. F_i = D(sum_j a_ij F_j), D(f) = dcay_f^-1 (dt
+/// xi(cay(f) m)), m <- cay(sum_i b_i F_i) m. Lewis and Nigam 2002, Sec. 2.
 template <class Spins, class Tableau, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class Rkmk : public RungeKutta<Spins, Tableau, update::Lie<Rotation>, Isotropy> {
  public:
@@ -55,8 +55,9 @@ class Rkmk : public RungeKutta<Spins, Tableau, update::Lie<Rotation>, Isotropy> 
       : Rkmk::RungeKutta("Rkmk", like, isotropy) {}
 };
 
-/// The same tableaux in the stereographic chart at each step's first spin. All coordinates are
-/// orthogonal to that spin (update::Stereographic). Order of the tableau; takes no sigma.
+/// Runge-Kutta with any explicit tableau in the stereographic chart at the spin that starts each
+/// step. All coordinates are orthogonal to that spin (update::Stereographic). Order of the tableau;
+/// accepts no sigma.
 template <class Spins, class Tableau = tableau::Classical4>
 class StereographicRungeKutta
     : public RungeKutta<Spins, Tableau, update::Stereographic, isotropy::Zero> {
@@ -65,8 +66,8 @@ class StereographicRungeKutta
       : StereographicRungeKutta::RungeKutta("StereographicRungeKutta", like) {}
 };
 
-/// Commutator-free method of order 4 with exact exponentials: no inverse differential, and two
-/// rotations at the last stage and at the end. Celledoni, Marthinsen and Owren 2003.
+/// Commutator-free method of order 4 with exact exponentials: no inverse differential; the last
+/// stage and the end use two rotations. Celledoni, Marthinsen and Owren 2003.
 template <class Spins, class Isotropy = isotropy::Zero>
 class CommutatorFree4 : public RungeKutta<Spins, tableau::CommutatorFree4,
                                           update::LieUncorrected<Exponential>, Isotropy> {
@@ -75,7 +76,7 @@ class CommutatorFree4 : public RungeKutta<Spins, tableau::CommutatorFree4,
       : CommutatorFree4::RungeKutta("CommutatorFree4", like, isotropy) {}
 };
 
-/// A baseline: Runge-Kutta in space, with the same kernels as the geometric methods. |m| drifts.
+/// Baseline: Runge-Kutta in space, with the same kernels as the geometric methods. |m| drifts.
 template <class Spins, class Tableau>
 class ClassicalRungeKutta : public RungeKutta<Spins, Tableau, update::Classical, isotropy::Zero> {
  public:
@@ -83,7 +84,7 @@ class ClassicalRungeKutta : public RungeKutta<Spins, Tableau, update::Classical,
       : ClassicalRungeKutta::RungeKutta("Classical" + std::to_string(Tableau::order), like) {}
 };
 
-/// The baseline that most spin codes use: each step in space ends by dividing by the length.
+/// Baseline used by most spin codes: each step in space ends by dividing each spin by its length.
 template <class Spins, class Tableau>
 class ProjectedRungeKutta : public RungeKutta<Spins, Tableau, update::Projected, isotropy::Zero> {
  public:
@@ -135,12 +136,12 @@ class ProjectedRk4 : public ProjectedRungeKutta<Spins, tableau::Classical4> {
   explicit ProjectedRk4(Spins const& like) : ProjectedRk4::ProjectedRungeKutta(like) {}
 };
 
-/// A Runge-Kutta method with compensated sums, for example Compensated<Rkmk4<Spins>>. It keeps what
-/// rounding takes off the spins at the end of a step, and adds it to the next step (Kahan 1965).
-/// So round-off does not grow with the number of steps. In float it gives most digits of double,
-/// at nearly the cost of float. It takes one field more of work memory, and stores increments.
-/// Not for code compiled with -ffast-math.
-/// It remembers: `spins` must be what the step before left. Otherwise call `reset`.
+/// A Runge-Kutta method with compensated sums, for example Compensated<Rkmk4<Spins>>. It stores the
+/// rounding error of the spins at the end of a step and adds it to the next step (Kahan 1965), so
+/// that round-off does not grow with the number of steps. In float it gives most digits of double,
+/// at nearly the cost of float. It needs one more field of work memory, and stores increments. Do
+/// not compile it with -ffast-math.
+/// It has memory: `spins` must be what the previous step left. Otherwise call `reset`.
 template <class Stepper>
   requires requires {
     typename Stepper::tableau_type;

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cayspin/concepts.hpp>
-#include <cayspin/field/dear.hpp>
 #include <cayspin/field/multirate_weights.hpp>
+#include <cayspin/field/slow_field.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stepper/field_history.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
@@ -23,31 +23,33 @@ namespace cayspin::inline v0_1 {
 
 /// Options of Multirate.
 struct MultirateOptions {
-  std::int64_t substeps = 1;  ///< of the inner method in each step
+  std::int64_t substeps = 1;  ///< steps of the inner method in each step
 };
 
-/// A one-step method in substeps, between which one dear term of the field (Dear) is interpolated
-/// in time: one evaluation of it a step. Of order Order, if the method has that order.
+/// A one-step method in substeps, during which one expensive term of the field (SlowField) is
+/// interpolated in time, so that it is evaluated once a step. Of order Order, if the method has
+/// that order.
 ///
-/// A step predicts the dear field from its last values, takes its substeps, evaluates the dear
-/// field at their end, and takes them again from the begin, between that value and the last ones.
-/// The value is kept for the next step. Without the second pass, feedback through the field
-/// amplifies short waves at any step.
+/// A step predicts the expensive field from its last values, takes its substeps, and evaluates the
+/// expensive field at their end. It then repeats the substeps from the start with the field
+/// interpolated between that value and the last ones. The value is kept for the next step. Without
+/// the second pass, feedback through the field amplifies short waves at any step.
 ///
-/// Order 2 and 3: the polynomials through the last Order - 1 values, then Order of them. A mode of
-/// frequency w that the dear field carries is damped by about (w dt)^4 / 3 more a step.
-/// Order 4: polynomials that were chosen for stability (multirate_weights.hpp), through 4 and 5
-/// values; after steps that differ, the polynomial of degree 3. It changes the damping by (w dt)^6.
+/// Order 2 and 3 interpolate by the polynomials through the last Order - 1 values (first pass) and
+/// Order values (second pass). A mode of frequency w in the expensive field is damped by about (w
+/// dt)^4 / 3 more per step. Order 4 uses polynomials chosen for stability (multirate_weights.hpp),
+/// through 4 and 5 values; after unequal steps, the polynomial of degree 3. It changes the damping
+/// by (w dt)^6.
 ///
-/// With D the largest eigenvalue of the dear field, no linear mode grew up to dt D = .05, .24, .35,
-/// .5 at damping .002, .008, .02, .1 (order 4; .02, .08, .14, .4 at order 3). Without damping short
-/// waves gain energy slowly.
+/// With D the largest eigenvalue of the expensive field, no linear mode grew up to dt D = .05, .24,
+/// .35, .5 at damping .002, .008, .02, .1 (order 4; .02, .08, .14, .4 at order 3). Without damping
+/// short waves gain energy slowly.
 ///
-/// The first step evaluates the dear field in each stage of its substeps. Steps may change, but
-/// grow by a factor of 2 at most; otherwise the method starts again. Work memory beside the
-/// method's: past_fields + 1 fields, and one of Dear.
-/// A predictor-corrector form of the multirate methods of Gear and Wells (BIT 24, 1984).
-template <class Stepper, class DearTerm, int Order = 4>
+/// The first step evaluates the expensive field in each stage of its substeps. Steps may change,
+/// but grow by a factor of 2 at most; otherwise the method restarts. Work memory besides the
+/// method's: past_fields + 1 fields, and one of SlowField. A predictor-corrector form of the
+/// multirate methods of Gear and Wells (BIT 24, 1984).
+template <class Stepper, class SlowTerm, int Order = 4>
 class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   using Base = detail::StepperBase<typename Stepper::spins_type>;
   static_assert(2 <= Order && Order <= 4, "Multirate interpolates to order 2, 3 or 4.");
@@ -59,54 +61,54 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
  public:
   using Spins = typename Stepper::spins_type;
   using typename Base::Real;
-  static_assert(std::is_same_v<Spins, typename DearTerm::spins_type>,
-                "Multirate's method and its dear field were made for different spins.");
+  static_assert(std::is_same_v<Spins, typename SlowTerm::spins_type>,
+                "Multirate's method and its expensive field were made for different spins.");
   static constexpr int order = std::min(Order, Stepper::order);
   static constexpr std::size_t past_fields = Order < 4 ? Order : detail::most_multirate_values;
   static constexpr int work_fields = static_cast<int>(past_fields) + 2 + Stepper::work_fields;
   static constexpr int ghosts = detail::ghosts_of<Stepper>;
 
-  /// `dear`: the Dear in the field of the generator.
-  /// Throws std::invalid_argument when the number of substeps is below 1.
-  Multirate(Spins const& like, Stepper stepper, DearTerm dear, MultirateOptions const& options = {})
+  /// `slow`: the SlowField in the field of the generator. Throws std::invalid_argument when the
+  /// number of substeps is below 1.
+  Multirate(Spins const& like, Stepper stepper, SlowTerm slow, MultirateOptions const& options = {})
       : Base("Multirate", like.lattice(), ghosts),
         stepper_(std::move(stepper)),
-        dear_(std::move(dear)),
+        slow_(std::move(slow)),
         substeps_(options.substeps),
         begin_("Multirate::begin", like.lattice()),
-        past_("Multirate::dear_field", like.lattice()) {
+        past_("Multirate::slow_field", like.lattice()) {
     if (substeps_ < 1)
       throw std::invalid_argument("cayspin::Multirate: the number of substeps is below 1");
-    dear_.check_spins(like);
+    slow_.check_spins(like);
   }
 
-  /// Evaluations of the generator by the inner method so far.
+  /// Returns the generator evaluations by the inner method so far.
   std::int64_t evaluations_done() const { return evaluations_done_; }
-  /// Evaluations of the dear field by steps so far: one a step, and in each start one more and
-  /// those of the method's substeps.
-  std::int64_t dear_evaluations_done() const { return dear_evaluations_done_; }
+  /// Returns the evaluations of the expensive field by steps so far: one a step, plus in each start
+  /// one more and those of the method's substeps.
+  std::int64_t slow_evaluations_done() const { return slow_evaluations_done_; }
   std::size_t work_bytes() const {
     return stepper_.work_bytes() + (past_fields + 2) * begin_.bytes();
   }
 
-  /// Forgets the steps before, so that the next step is a start. Call it when something else has
-  /// changed the spins or the generator. cayspin::integrate calls it for each run.
+  /// Forgets the previous steps, so that the next step is a start. Call it after changing the spins
+  /// or the generator. cayspin::integrate calls it for each run.
   void reset() {
     past_.forget();
     knows_begin_ = false;
   }
 
-  /// For cayspin::exchange_memory.
+  /// For cayspin::serialize.
   template <class Visit>
   void visit_memory(Visit const& visit) {
     past_.visit_memory(visit);
     visit("knows_begin", knows_begin_);
     if (knows_begin_) visit("begin", past_.following());
     visit("evaluations", evaluations_done_);
-    visit("dear_evaluations", dear_evaluations_done_);
+    visit("slow_evaluations", slow_evaluations_done_);
   }
 
-  /// For cayspin::integrate: the fields whose memory a step may exchange for that of the spins.
+  /// Visits the fields whose memory a step may swap with that of the spins, for cayspin::integrate.
   template <class Visit>
   void visit_exchanged(Visit const& visit)
     requires requires(Stepper& inner) { inner.visit_exchanged(visit); }
@@ -115,15 +117,15 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   }
 
   /// Advances `spins` from t to t + dt under `generator`. `spins` must be those at the end of the
-  /// step before. A step may exchange the memory of `spins` with the inner method's. What a field
-  /// throws leaves them as they were before the step, and the next step is a start.
-  /// Throws std::invalid_argument when `spins` is not of the lattice given at construction, or the
-  /// generator has no such dear field.
+  /// previous step. A step may swap the memory of `spins` with the inner method's. If a field
+  /// throws, `spins` are those before the step, and the next step is a start. Throws
+  /// std::invalid_argument when `spins` is not on the lattice given at construction, or the
+  /// generator has no such expensive field.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
     if (dt == 0) return;
-    auto const evaluations_before = dear_.evaluations_done();
+    auto const evaluations_before = slow_.evaluations_done();
     if (knows_begin_ && !past_.is_followed_by(dt)) reset();
     Kokkos::deep_copy(exec, begin_.allocation(), spins.allocation());
     try {
@@ -136,24 +138,24 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
       reset();
       throw;
     }
-    dear_evaluations_done_ += dear_.evaluations_done() - evaluations_before;
+    slow_evaluations_done_ += slow_.evaluations_done() - evaluations_before;
   }
 
  private:
   template <class Exec, class Generator>
   void start(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     past_.forget();
-    dear_.evaluate(exec, spins, t, past_.following());
+    slow_.evaluate(exec, spins, t, past_.following());
     past_.remember(dt);
     take_substeps(exec, generator, spins, t, dt);
-    dear_.evaluate(exec, spins, t + dt, past_.following());
+    slow_.evaluate(exec, spins, t + dt, past_.following());
     knows_begin_ = true;
   }
 
   template <class Exec, class Generator>
   void go_on(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     past_.remember(dt);
-    // At first the value at the end is missing: nodes and values begin with the second.
+    // At first the value at the end is missing: nodes and values start with the second.
     auto nodes = past_.times(dt);
     std::array<Spins, past_fields> values;
     std::size_t known = std::min(past_.known(), past_fields - 1);
@@ -161,7 +163,7 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
       nodes[i] += 1;
       values[i] = i == 0 ? past_.following() : past_[i - 1];
     }
-    typename DearTerm::Weights predict = detail::interpolating_weights, correct = predict;
+    typename SlowTerm::Weights predict = detail::interpolating_weights, correct = predict;
     if constexpr (Order == 4) {
       if (known == past_fields - 1 && are_equal_steps(nodes)) {
         predict = detail::damping_predictor;
@@ -172,29 +174,29 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
     }
     take_substeps_between(exec, generator, spins, t, dt, {values.data() + 1, known},
                           {nodes.data() + 1, known}, predict);
-    dear_.evaluate(exec, spins, t + dt, past_.following());
+    slow_.evaluate(exec, spins, t + dt, past_.following());
     Kokkos::deep_copy(exec, spins.allocation(), begin_.allocation());
     take_substeps_between(exec, generator, spins, t, dt, {values.data(), known + 1},
                           {nodes.data(), known + 1}, correct);
   }
 
-  /// Are the steps between these times as long as the one from 0 to 1?
+  /// Returns true if the steps between these times are as long as the one from 0 to 1.
   static bool are_equal_steps(std::array<double, past_fields> const& nodes) {
     for (std::size_t i = 0; i < past_fields; ++i)
       if (std::abs(nodes[i] - (1 - static_cast<double>(i))) > 1e-9) return false;
     return true;
   }
 
-  /// Between these values of the dear field.
+  /// Takes the substeps with these values of the expensive field.
   template <class Exec, class Generator>
   void take_substeps_between(Exec const& exec, Generator const& generator, Spins& spins, double t,
                              double dt, std::span<Spins const> values,
-                             std::span<double const> nodes, typename DearTerm::Weights weights) {
-    typename DearTerm::Interpolated const interpolated(dear_, values, nodes, t, dt, weights);
+                             std::span<double const> nodes, typename SlowTerm::Weights weights) {
+    typename SlowTerm::Interpolated const interpolated(slow_, values, nodes, t, dt, weights);
     take_substeps(exec, generator, spins, t, dt);
     if (!interpolated.was_read())
       throw std::invalid_argument(
-          this->label("::step: the generator's field does not have the dear term that this "
+          this->label("::step: the generator's field does not have the expensive term that this "
                       "stepper was made with"));
   }
 
@@ -225,12 +227,13 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   }
 
   Stepper stepper_;
-  DearTerm dear_;
+  SlowTerm slow_;
   std::int64_t substeps_;
-  Spins begin_;  // the spins at the begin of a step
+  Spins begin_;  // the spins at the start of a step
   detail::FieldHistory<Spins, past_fields> past_;
-  bool knows_begin_ = false;  // past_.following() is the dear field at the begin of the next step
-  std::int64_t evaluations_done_ = 0, dear_evaluations_done_ = 0;
+  bool knows_begin_ =
+      false;  // past_.following() is the expensive field at the start of the next step
+  std::int64_t evaluations_done_ = 0, slow_evaluations_done_ = 0;
 };
 
 }  // namespace cayspin::inline v0_1

@@ -12,7 +12,7 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// Solves v = g(v) on a field by Newton's method with halved steps. GMRES solves the linear
+/// Solver of v = g(v) on a field by Newton's method with step halving. GMRES solves the linear
 /// systems, with g' times a vector from a difference of g. Allocates 16 fields at its first use.
 template <class Spins>
 class NewtonKrylov {
@@ -22,7 +22,7 @@ class NewtonKrylov {
 
  public:
   /// `g(v, to)` fills `to`. `v` is the first guess and becomes the solution; `image` becomes g(v).
-  /// Returns whether |g(v) - v| came below `tolerance` within `iterations`.
+  /// Returns true if |g(v) - v| fell below `tolerance` within `iterations`.
   template <class Exec, class Map>
   bool solve(Exec const& exec, Map const& g, Spins const& v, Spins const& image, double tolerance,
              int iterations) {
@@ -37,7 +37,7 @@ class NewtonKrylov {
       double scale = 1, before = norm;
       for (;; scale /= 2) {
         bool const is_last = scale < 1e-3;
-        // What is left is round-off.
+        // The rest is round-off.
         if (scale < 1 && largest <= (is_last ? 512 : 8) * tolerance) {
           g(v, image);
           return true;
@@ -69,7 +69,7 @@ class NewtonKrylov {
     return length(exec, basis_[0]);
   }
 
-  // (1 - g') correction = basis_[0], of length norm, to a thousandth.
+  // Solves (1 - g') correction = basis_[0], of length norm, to a thousandth.
   template <class Exec, class Map>
   void solve_linear(Exec const& exec, Map const& g, Spins const& v, Spins const& image,
                     double norm) {

@@ -14,16 +14,18 @@
 namespace cayspin::inline v0_1 {
 
 /// Splitting by the two colours of a checkerboard, of order 2 or 4, for the Landau-Lifshitz
-/// equation with couplings of nearest neighbours. While the spins of one colour move, their
-/// neighbours stay. Each moves by the exact flow of one spin in a fixed field, with precession and
+/// equation with nearest-neighbour couplings. While the spins of one colour move, their neighbours
+/// are fixed. Each moves by the exact flow of one spin in a fixed field, with precession and
 /// damping together. In place: no work memory.
-/// Terms of the spin itself (anisotropy, a local demagnetising field) are taken at the mean of the
-/// spin's begin and end, by iteration. Field terms are therefore also evaluated at spins shorter
-/// than one, and at zero. Without damping, a step of -dt undoes a step of dt.
+///
+/// On-site terms (anisotropy, a local demagnetising field) are evaluated at the mean of the spin
+/// before and after the move, by iteration. Field terms are therefore also evaluated at spins
+/// shorter than one, and at zero. Without damping, a step of -dt undoes a step of dt.
+///
 /// Energies that are quadratic in the spins and do not depend on t: without damping both orders
-/// conserve them to round-off. With damping order 2 never raises them. Order 4 may, because one of
-/// its steps goes backwards. This holds for any dt at which the iteration converges: |dt|
-/// (1 + damping) times the strength of the on-site terms below about 1/2.
+/// conserve them to round-off. With damping, order 2 never raises them; order 4 may, because one of
+/// its steps goes backwards. This holds for any dt at which the iteration converges: |dt| (1 +
+/// damping) times the strength of the on-site terms below about 1/2.
 template <class Spins, int Order>
 class RedBlack : public detail::StepperBase<Spins> {
   static_assert(Order == 2 || Order == 4, "RedBlack is of order 2 or 4.");
@@ -31,10 +33,11 @@ class RedBlack : public detail::StepperBase<Spins> {
  public:
   using typename detail::StepperBase<Spins>::Real;
   static constexpr int order = Order;
-  /// Per step of a long run; a pass over one colour counts as half of one. Steps that are taken
-  /// together share the passes at which they meet. evaluations_done() counts the passes made.
+  /// Evaluations per step of a long run, where a pass over one colour counts as half. Consecutive
+  /// steps in a batch share the passes at which they meet. evaluations_done() counts the actual
+  /// passes.
   static constexpr int evaluations = Order == 2 ? 1 : 5;
-  static constexpr int ghosts = 1;  // each pass exchanges its own
+  static constexpr int ghosts = 1;  // each pass exchanges ghosts itself
   static constexpr int work_fields = 0;
 
   /// Throws std::invalid_argument when a periodic axis has an odd number of sites above one.
@@ -54,22 +57,22 @@ class RedBlack : public detail::StepperBase<Spins> {
 
   std::size_t work_bytes() const { return 0; }
 
-  /// Evaluations of the generator so far, rounded up to whole ones.
+  /// Returns the generator evaluations so far, rounded up.
   std::int64_t evaluations_done() const { return (passes_done_ + 1) / 2; }
 
-  /// For cayspin::exchange_memory.
+  /// For cayspin::serialize.
   template <class Visit>
   void visit_memory(Visit const& visit) {
     visit("passes", passes_done_);
   }
 
   /// Advances `spins` from t to t + dt, in place, under `generator`: a LandauLifshitz, or a
-  /// generator whose prepare returns one. Throws std::invalid_argument when `spins` is not of the
+  /// generator whose prepare returns one. Throws std::invalid_argument when `spins` is not on the
   /// lattice given at construction, and when the field needs all spins beforehand.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
-    if (!detail::needs_time_alone(generator, exec, spins))
+    if (!detail::needs_only_time(generator, exec, spins))
       throw std::invalid_argument(
           "cayspin::RedBlack::step: a term of the field needs all spins beforehand, but red-black "
           "steps change the neighbours of a spin while they move it");
@@ -86,13 +89,13 @@ class RedBlack : public detail::StepperBase<Spins> {
     }
   }
 
-  /// Can `batch` take several steps? Under a generator that is the same at each.
+  /// Returns true if `batch` can take several steps: the generator must not change between them.
   template <class Exec, class Generator>
   bool takes_batches(Exec const& exec, Generator const& generator, Spins const& spins) const {
     return detail::is_stationary(generator, exec, spins);
   }
 
-  /// `count` steps that share the passes at which they meet, to the same bits as one by one.
+  /// Takes `count` steps that share the passes at which they meet, with the bits of single steps.
   template <class Exec, class Generator>
   void batch(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
              std::int64_t count) {
@@ -115,7 +118,7 @@ class RedBlack : public detail::StepperBase<Spins> {
         {std::move(first), std::move(second)}, spins.array(), changes, {}, 1, 0, false};
   }
 
-  /// Steps under a generator that is the same at each of them.
+  /// Takes steps under a generator that does not change between them.
   template <class Exec, class Generator>
   void take_steps(Exec const& exec, Generator const& generator, Spins const& spins, double t,
                   double dt, std::int64_t count) {

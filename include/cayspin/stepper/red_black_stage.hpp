@@ -17,18 +17,18 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// One pass over a colour, for parts of a step's length: one flow of every spin, or two flows where
-/// two steps meet. `length` and `middle` of each flow are in steps, from the begin of the step.
+/// One pass over a colour, for fractions of a step: one flow of every spin, or two flows where two
+/// steps meet. `length` and `middle` of each flow are in steps, from the start of the step.
 struct ColourPass {
   std::int32_t colour = 0, flows = 1;
   bool of_one_step = true;
   double length[2] = {0, 0}, middle[2] = {0, 0};
 };
 
-/// Half of colour 0, colour 1, half of colour 0; for order 4 five times, over a, a, 1 - 4 a, a, a
-/// of the step with a = 1/(4 - 4^(1/3)) (Suzuki 1990). Halves that meet share a pass. They stay
-/// two flows if the field changes with the spin itself. Such a flow is of order 2, and its errors
-/// cancel within its own step.
+/// Order 2: half of colour 0, colour 1, half of colour 0. Order 4: this five times, over a, a, 1 -
+/// 4 a, a, a of the step with a = 1/(4 - 4^(1/3)) (Suzuki 1990). Adjacent halves share a pass. They
+/// stay two flows if the field changes with the spin itself: such a flow is of order 2, and its
+/// errors cancel within its own step.
 template <int Order>
 constexpr auto colour_passes() {
   constexpr std::size_t steps = Order == 2 ? 1 : 5;
@@ -51,7 +51,7 @@ constexpr auto colour_passes() {
 }
 
 /// Calls visit(pass) for the passes of `count` steps. Where two steps meet, the last flow of one
-/// and the first of the next share a pass, to the same bits.
+/// and the first of the next share a pass, with equal bits.
 template <int Order, class Visit>
 void for_each_colour_pass(std::int64_t count, Visit const& visit) {
   constexpr auto passes = colour_passes<Order>();
@@ -69,21 +69,21 @@ KOKKOS_FORCEINLINE_FUNCTION Value largest_component(Vec3<Value> const& v) {
   return maximum<Value>(Kokkos::abs(v.x), maximum<Value>(Kokkos::abs(v.y), Kokkos::abs(v.z)));
 }
 
-/// The spins of one colour move in the fields of their neighbours.
+/// Functor that moves the spins of one colour in the fields of their neighbours.
 ///
 /// H at a site is N + D(q): the field of the neighbours, and the part that depends on the spin
-/// itself. Multiples of the spin are left out, because they do not move it. The spin moves by the
-/// exact flow in the fixed field N + D(mean), mean = (q + q')/2 of its own begin q and end q';
-/// solved by iteration. Then (q' - q).(N + D(mean)) is zero without damping and positive with
+/// itself. Multiples of the spin are omitted, because they do not move it. The spin moves by the
+/// exact flow in the fixed field N + D(mean), mean = (q + q')/2 of the spin before (q) and after
+/// (q'); solved by iteration. Then (q' - q).(N + D(mean)) is zero without damping and positive with
 /// damping. An energy that is quadratic in the spins falls by exactly this number in every step.
 template <class Generator, class Real>
 struct RedBlackStage {
-  Generator generators[2];  // prepared for the middles of the flows
+  Generator generators[2];  // prepared for the midpoints of the flows
   SiteArray<Real, 3> spins;
-  bool changes;  // from one of them to the other
+  bool changes;  // between the two
   Real dt[2];
   std::int32_t flows, colour;
-  bool joined;  // flows in one field are one flow
+  bool joined;  // flows in equal fields become one flow
 
   void set(ColourPass const& pass, double step) {
     for (int flow = 0; flow < 2; ++flow) dt[flow] = static_cast<Real>(pass.length[flow] * step);
@@ -94,7 +94,7 @@ struct RedBlackStage {
 
   static constexpr bool takes_pairs = true;
 
-  /// Moves one pack of spins, or alternately two.
+  /// Moves one pack of spins, or two alternately.
   template <class Site, class... Second>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Second const&... second) const {
     Moving<Site> of_site(*this, site);
@@ -105,7 +105,7 @@ struct RedBlackStage {
         (moving.begin(*this, which, step), ...);
         bool const varies = (moving.varies(*this) || ...);
         (moving.turn(), ...);
-        // & without short cut: each pack has to take its own next iterate.
+        // & does not short-circuit: each pack must take its next iterate.
         for (int i = 0; varies && !(int{moving.settles()} & ...) && i < most_iterations; ++i)
           (moving.turn(), ...);
         (moving.arrive(), ...);
@@ -169,8 +169,8 @@ struct RedBlackStage {
     }
 
     KOKKOS_FORCEINLINE_FUNCTION void turn() { end_ = flow_(of_neighbors_ + d_, q_, outside()); }
-    /// Has the field at the mean converged? Each lane stops by itself, so that its result does not
-    /// depend on the other lanes.
+    /// Returns true when the field at the mean has converged. Each lane stops independently, so
+    /// that its result does not depend on the other lanes.
     KOKKOS_FORCEINLINE_FUNCTION bool settles() {
       Vector const next = own(Value(Real(0.5)) * (q_ + end_));
       Mask const rests = largest_component(next - d_) < enough_;
@@ -183,14 +183,14 @@ struct RedBlackStage {
     }
 
    private:
-    /// What depends on the spin itself.
+    /// Returns the part of the field that depends on the spin itself.
     KOKKOS_FORCEINLINE_FUNCTION Vector own(Vector const& m) const {
       if constexpr (in_parts)
         return local_field(*field_, SpinAlone<Site>(site_, m));
       else
         return across(field_->field(VariedStencil(neighbors_, m)) - of_neighbors_, m);
     }
-    /// The lanes that are no sites.
+    /// Returns the lanes that are not sites.
     KOKKOS_FORCEINLINE_FUNCTION Mask outside() const {
       if constexpr (Site::lanes == 1)
         return false;
@@ -206,7 +206,7 @@ struct RedBlackStage {
     std::conditional_t<in_parts, Nothing, NeighborsOfSite<Site, Real>> neighbors_;
   };
 
-  /// d without its part along m.
+  /// Returns d without its part along m.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> across(Vec3<Value> const& d,
                                                         Vec3<Value> const& m) {
@@ -216,7 +216,7 @@ struct RedBlackStage {
   }
 };
 
-/// Steps of few spins on a host, in one launch.
+/// Functor that takes steps of few spins on a host, in one launch.
 template <int Order, class Stage, class Real>
 struct RedBlackSteps {
   ColourRowLoop<Real, Stage> loop;

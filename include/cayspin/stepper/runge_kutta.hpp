@@ -19,7 +19,7 @@
 namespace cayspin::inline v0_1 {
 
 /// An explicit one-step method on a spin field: a tableau, and an update that moves spins by
-/// increments (cayspin::update). Holds all work memory.
+/// increments (cayspin::update). Owns all work memory.
 template <class Spins, class Tableau, class Update, class Isotropy>
 class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy,
                                                 detail::StageMemory<Spins, Tableau, Update>> {
@@ -32,22 +32,22 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
   using update_type = Update;
   using isotropy_type = Isotropy;
   static constexpr int order = Tableau::order;
-  static constexpr int evaluations = Tableau::stages;  // of the generator, per step
+  static constexpr int evaluations = Tableau::stages;  // generator evaluations per step
 
   /// Allocates work memory for fields shaped like `like`. `name` labels kernels and memory.
   explicit RungeKutta(std::string const& name, Spins const& like, Isotropy isotropy = {})
       : Base(name, like, isotropy, {name, like.lattice()}) {}
 
-  /// Advances `spins` from t to t + dt under `generator`. A step may exchange the memory of
-  /// `spins` with its own, so take arrays of `spins` again after it.
-  /// Throws std::invalid_argument when `spins` is not of the lattice given at construction.
+  /// Advances `spins` from t to t + dt under `generator`. A step may swap the memory of `spins`
+  /// with its own, so take arrays of `spins` again after it. Throws std::invalid_argument when
+  /// `spins` is not on the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
     if (exchanges()) this->require_other_memory(spins, memory_.end());
     if constexpr (Base::Sweeps::possible && detail::is_host_execution<Exec>) {
       if (this->path() == Path::sweep) {
-        if (detail::stages_need_time_alone<Isotropy>(generator, exec, spins)) {
+        if (detail::stages_need_only_time<Isotropy>(generator, exec, spins)) {
           sweep(exec, generator, spins, t, dt);
           return update_ghosts(exec, spins);
         }
@@ -66,7 +66,7 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
     memory_.forget(this->label("::reset"));
   }
 
-  /// For cayspin::exchange_memory.
+  /// For cayspin::serialize.
   template <class Visit>
   void visit_memory(Visit const& visit)
     requires(detail::carried_fields<Update>() > 0)
@@ -74,14 +74,14 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
     memory_.visit_carried(visit);
   }
 
-  /// For cayspin::integrate: the field whose memory a step may exchange for that of the spins.
+  /// Visits the field whose memory a step may swap with that of the spins, for cayspin::integrate.
   template <class Visit>
   void visit_exchanged(Visit const& visit) {
     visit(memory_.end());
   }
 
-  /// Can `batch` take these steps? Few spins on a host space, under a generator that is the same at
-  /// every step.
+  /// Returns true if `batch` can take these steps: few spins on a host space, under a generator
+  /// that does not change between steps.
   template <class Exec, class Generator>
   bool takes_batches(Exec const& exec, Generator const& generator, Spins const& spins) const {
     return this->path() == Path::pass && this->lattice_.part == nullptr &&
@@ -89,8 +89,8 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
            detail::is_stationary(generator, exec, spins);
   }
 
-  /// `count` steps in one launch, to the same bits as one by one.
-  /// Throws std::invalid_argument as `step` does, and where takes_batches is false.
+  /// Takes `count` steps in one launch, with the bits of single steps. Throws std::invalid_argument
+  /// like `step`, and if takes_batches is false.
   template <class Exec, class Generator>
     requires detail::is_host_execution<Exec>
   void batch(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
@@ -102,7 +102,7 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
     if (!takes_batches(exec, generator, spins))
       throw std::invalid_argument(
           this->label("::batch: these steps have to be taken one by one (takes_batches)"));
-    constexpr int steps = stages == 1 ? 2 : 1;  // of one pass through the kernels
+    constexpr int steps = stages == 1 ? 2 : 1;  // in one pass through the kernels
     detail::repeat_on_calling_thread(batch_label_, count / steps,
                                      loops_of_steps(prepared, spins, dt));
     if (count % steps != 0) step(exec, generator, spins, t, dt);
@@ -118,7 +118,7 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
     });
   }
 
-  /// Does a step exchange the memory of the spins?
+  /// Returns true if a step swaps the memory of the spins.
   bool exchanges() const { return stages == 1 || this->path() == Path::sweep; }
 
   template <int Stage, class Prepared>
@@ -157,7 +157,7 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
     swap(spins, memory_.end());
   }
 
-  // The kernels of one step; those of two if each step exchanges the memory of spins and level.
+  // Runs the kernels of one step; of two if each step swaps the memory of spins and level.
   template <class Prepared>
   auto loops_of_steps(Prepared const& prepared, Spins& spins, double dt) {
     auto const loop = [&]<int Stage>(std::integral_constant<int, Stage>) {

@@ -15,29 +15,29 @@
 
 namespace cayspin::inline v0_1 {
 
-/// A run whose work memory a stepper predicts.
+/// Parameters of a run that determine a stepper's work memory.
 struct PredictedRun {
   int threads = 1;
-  bool by_time_alone = true;  ///< the generator needs the time alone to be made ready (Generator)
+  bool by_time_only = true;  ///< the generator is prepared from the time, not the spins (Generator)
 };
 
 namespace detail {
 
-/// A stepper of Runge-Kutta stages, equal steps or adaptive. A large field on a host is swept
-/// through once per step, unless the generator needs all spins of a stage beforehand (a nonlocal
-/// field). Otherwise there is one fused kernel per stage. Memory holds the fields that passes need
-/// or the buffers of a sweep.
+/// Base class of steppers with Runge-Kutta stages, for constant or adaptive steps. On a host, a
+/// step sweeps through a large field once, unless the generator needs all spins of a stage
+/// beforehand (a nonlocal field). Otherwise each stage is one fused kernel. Memory holds the fields
+/// that passes need or the buffers of a sweep.
 template <class Spins, class Tableau, class Update, class Isotropy, class Memory>
 class StagedStepper : public StepperBase<Spins> {
  public:
   using typename StepperBase<Spins>::Real;
   static constexpr int ghosts = Tableau::stages;
-  /// Fields of three numbers per site beside the spins, when stages go one by one.
+  /// Fields of three numbers per site besides the spins, when stages run one by one.
   static constexpr int work_fields = Memory::fields_of_passes;
 
-  /// Takes this path from now on instead of the automatic choice, and allocates its memory. What
-  /// a step leaves for the next one stays.
-  /// Throws std::invalid_argument when the fields cannot be swept.
+  /// Uses this path from now on instead of the automatic choice, and allocates its memory. Keeps
+  /// what a step leaves for the next one. Throws std::invalid_argument when the fields cannot be
+  /// swept.
   void use(Path path) {
     if (path == Path::sweep) Sweeps::require(plan_.layout, this->label("::use"));
     path_ = path;
@@ -48,12 +48,12 @@ class StagedStepper : public StepperBase<Spins> {
   }
   Path path() const { return path_; }
 
-  /// Bytes of work memory.
+  /// Returns the bytes of work memory.
   std::size_t work_bytes() const { return memory_.bytes(); }
-  /// Predicted bytes of work memory.
+  /// Returns the predicted bytes of work memory.
   static std::size_t work_bytes(Lattice const& lattice, PredictedRun const& run) {
     auto const layout = RowLayout::of<Real>(lattice);
-    if (!run.by_time_alone || !Sweeps::sweeps_by_itself(layout, run.threads))
+    if (!run.by_time_only || !Sweeps::sweeps_by_itself(layout, run.threads))
       return Memory::bytes_of_passes(layout);
     return Memory::bytes_of_sweep(layout, Sweeps::plan(layout, run.threads));
   }
@@ -72,7 +72,7 @@ class StagedStepper : public StepperBase<Spins> {
                                                                              : Path::pass);
   }
 
-  /// All stages from the spins `start`, in one pass through the lattice.
+  /// Runs all stages from the spins `start`, in one pass through the lattice.
   template <class Exec, class... Kernel>
   void sweep_through(Exec const& exec, Spins const& start,
                      std::tuple<Kernel...> const& kernels) const {

@@ -10,23 +10,22 @@
 
 namespace cayspin::inline v0_1 {
 
-/// A span of time in which steps are at most max_dt long; a longer step ends where it begins.
-/// max_dt = 0 is a jump of the field between `begin` and `end`, a few roundings of t apart: steps
-/// end at `begin`, and a new run begins at `end` with the same spins.
+/// A time interval in which steps are at most max_dt long; a longer step that reaches it ends at
+/// its start. max_dt = 0 is a jump of the field between `begin` and `end`, a few roundings of t
+/// apart: steps end at `begin`, and a new run starts at `end` with the same spins.
 struct StepBound {
   double begin = 0, end = 0, max_dt = 0;
 };
 
 namespace detail {
 
-/// A step of dt, where `left` is left to the end: one that reaches the end exactly, without a very
-/// short last step.
+/// Returns dt, adjusted to reach the end (`left` away) exactly without a very short last step.
 inline double step_within(double left, double dt) {
   if (dt >= left * (1 - 1e-9)) return left;
   return 2 * dt > left ? 0.5 * left : dt;
 }
 
-/// Where steps have to be shorter than their error asks for.
+/// Bounds on the length of steps beyond their error control.
 class StepBounds {
  public:
   /// Throws std::invalid_argument unless the bounds are ascending and do not overlap.
@@ -40,16 +39,16 @@ class StepBounds {
     }
   }
 
-  /// t, or the end of the jump at t.
+  /// Returns t, or the end of the jump at t.
   double after_jump(double t) const {
     auto const at = first_that_ends_after(t);
     return at != all_.end() && at->max_dt == 0 && at->begin <= t ? at->end : t;
   }
 
   struct Step {
-    double dt, end;  // end: t + dt, or exactly where a bound begins
+    double dt, end;  // end: t + dt, or exactly the start of a bound
   };
-  /// A step from t, at most `dt` long and not beyond `end`.
+  /// Returns a step from t, at most `dt` long and not beyond `end`.
   Step step(double t, double dt, double end) const {
     double stop = end;
     for (auto at = first_that_ends_after(t); at != all_.end() && at->begin < t + 2 * dt; ++at) {

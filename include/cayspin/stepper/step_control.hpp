@@ -14,24 +14,25 @@
 
 namespace cayspin::inline v0_1 {
 
-/// Thrown when an adaptive step would have to be shorter than min_dt or than the resolution of t.
-/// The numbers are not finite, or the field is not smooth. The spins are those before the step,
-/// under integrate() those that observers were due to see last or later ones, and the next step
-/// begins a run from them.
+/// Thrown when an adaptive step would have to be shorter than min_dt or than the resolution of t:
+/// the values are not finite, or the field is not smooth. The spins are those before the step;
+/// under integrate() they are those last due for observers, or later ones. The next step starts a
+/// run from them.
 class StepTooSmall : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// How an adaptive method chooses its steps.
+/// Options for the steps of an adaptive method.
 struct StepOptions {
-  double tolerance = 1e-6;  ///< of the error of a run: the largest angle of any spin, in radians
-  double first_dt = 0;      ///< 0: chosen from the largest rate and the tolerance
-  double min_dt = 0;        ///< a step that would be shorter throws StepTooSmall
+  double tolerance =
+      1e-6;             ///< bound on the error of a run: the largest angle of any spin, in radians
+  double first_dt = 0;  ///< 0: chosen from the largest rate and the tolerance
+  double min_dt = 0;    ///< a step that would be shorter throws StepTooSmall
   double max_dt = std::numeric_limits<double>::infinity();
-  double end = std::numeric_limits<double>::infinity();  ///< no stage looks beyond this time
-  /// Where the field jumps, or changes within less than a step might be long: stages alone may miss
-  /// what it does between them. Ascending, apart.
+  double end = std::numeric_limits<double>::infinity();  ///< no stage is evaluated after this time
+  /// Intervals in which the field jumps or changes faster than the steps could detect: stages may
+  /// miss what happens between them. Ascending, disjoint.
   std::vector<StepBound> bounds = {};
 
   /// The smallest tolerance: below it, round-off hides the error of a step.
@@ -43,9 +44,9 @@ struct StepOptions {
 
 namespace detail {
 
-/// A proportional-integral controller (Hairer and Wanner, Solving ODEs II, IV.2): the next dt from
-/// the errors of this step and the one before. Plain host arithmetic on a maximum over sites, so
-/// the sequence of steps is the same on every host space.
+/// A proportional-integral controller (Hairer and Wanner, Solving ODEs II, IV.2): computes the next
+/// dt from the errors of this step and the previous one. Plain host arithmetic on a maximum over
+/// sites, so the sequence of steps is equal on every host space.
 class StepController {
  public:
   /// `error_order`: the error estimate is proportional to this power of dt.
@@ -60,13 +61,15 @@ class StepController {
     if (!(options.first_dt >= 0)) refuse(": first_dt must not be negative");
   }
 
-  /// The largest error of one step, in radians, because errors of steps add up. Calibrated on
-  /// switching, films and Heisenberg lattices (docs/reports/trade.md): low orders take more steps.
+  /// Returns the largest allowed error of one step, in radians; smaller than that of the run
+  /// because errors add up. Calibrated on switching, films and Heisenberg lattices
+  /// (docs/reports/trade.md): low orders take more steps.
   double step_tolerance() const {
     return options_.tolerance * (exponent_ < 0.25 ? 1.0 / 12 : 1.0 / 160);
   }
 
-  /// The first dt for spins that turn by at most `rate` per unit of time; `asked` if none turns.
+  /// Returns the first dt for spins that turn by at most `rate` per unit of time; `asked` if none
+  /// turns.
   double first_dt(double rate, double asked) const {
     double const angle = 0.5 * std::pow(step_tolerance(), exponent_);
     bool const turns = rate > 0 && std::isfinite(rate);
@@ -76,7 +79,7 @@ class StepController {
 
   bool accepts(double error) const { return error <= step_tolerance(); }
 
-  /// The dt that follows a step of dt with this error; NaN counts as far too large.
+  /// Returns the dt after a step of dt with this error; NaN counts as far too large.
   double next_dt(double dt, double error) {
     double const ratio = error / step_tolerance();
     if (!(ratio <= 1)) {
@@ -98,7 +101,7 @@ class StepController {
     rejected_ = false;
   }
 
-  /// For cayspin::exchange_memory.
+  /// For cayspin::serialize.
   template <class Visit>
   void visit_memory(Visit const& visit) {
     visit("error_before", before_);
@@ -108,7 +111,7 @@ class StepController {
  private:
   static constexpr double safety = 0.9, smallest = 0.1, largest = 5;
 
-  // Steps of spins at rest grow, but stay finite.
+  // Near equilibrium steps grow, but stay finite.
   double largest_dt() const { return std::min(options_.max_dt, 1e100); }
 
   StepOptions options_;
@@ -117,24 +120,24 @@ class StepController {
   bool rejected_ = false;
 };
 
-/// The steps that an adaptive method takes on its own, whatever times it is asked for.
+/// The internal steps of an adaptive method, which do not depend on the requested times.
 class OwnSteps {
  public:
   std::int64_t accepted_steps() const { return accepted_; }
   std::int64_t rejected_steps() const { return rejected_; }
-  /// The dt of the next own step.
+  /// Returns the dt of the next internal step.
   double next_dt() const { return next_dt_; }
-  /// Forgets the run so far: the next step begins at its own t and spins.
+  /// Forgets the run so far: the next step starts from its t and spins.
   void reset() { running_ = false; }
-  /// Have the own steps reached t, the end of a step of dt?
+  /// Returns true if the internal steps have reached t, the end of a step of dt.
   bool has_reached(double t, double dt) const { return end_time_ >= t - slack(dt); }
 
  protected:
-  /// How a try of a step went. Its error is an angle.
+  /// Outcome of an attempted step. The error is an angle.
   struct Try {
     double error = 0;
     double most_growth = std::numeric_limits<double>::infinity();  // of the next dt
-    bool is_solved = true;  // otherwise there is no error, and half the step is tried
+    bool is_solved = true;  // if false there is no error, and half the step is tried
   };
 
   OwnSteps(StepOptions const& options, int error_order, double least_tolerance,
@@ -144,9 +147,9 @@ class OwnSteps {
         bounds_(options.bounds, region),
         region_(region) {}
 
-  /// Calls begin(t) unless a run is under way, and take_step() until one ends at t + dt or later.
-  /// Where the field jumps, begin(t) is called again, for the spins at the end of the last step.
-  /// What they throw ends the run: the next step begins at its own t and spins.
+  /// Calls begin(t) unless a run is in progress, and take_step() until one ends at t + dt or later.
+  /// After a jump of the field it calls begin(t) again, for the spins at the end of the last step.
+  /// An exception from either ends the run: the next step starts from its t and spins.
   template <class Begin, class TakeStep>
   void go_on_to(double t, double dt, Begin const& begin, TakeStep const& take_step) {
     double const asked = t + dt;
@@ -167,15 +170,15 @@ class OwnSteps {
 
   bool is_running() const { return running_; }
 
-  /// From t, for spins that turn by at most `rate` per unit of time.
+  /// Starts a run at t, for spins that turn by at most `rate` per unit of time.
   void begin_run(double t, double rate, double asked) {
     controller_.reset();
     next_dt_ = controller_.first_dt(rate, asked);
     end_time_ = t;
-    running_ = next_dt_ > 0;  // it is 0 for spins at rest that are asked for no time
+    running_ = next_dt_ > 0;  // 0 for spins at equilibrium and a step of no length
   }
 
-  /// Takes the next own step: try_step(t, dt) returns a Try. Throws StepTooSmall.
+  /// Takes the next internal step: try_step(t, dt) returns a Try. Throws StepTooSmall.
   template <class TryStep>
   void take_own_step(TryStep const& try_step) {
     double const t = end_time_;
@@ -197,7 +200,7 @@ class OwnSteps {
     }
   }
 
-  /// For cayspin::exchange_memory. Returns whether a run is under way.
+  /// For cayspin::serialize. Returns true if a run is in progress.
   template <class Visit>
   bool visit_steps(Visit const& visit) {
     visit("accepted", accepted_);
@@ -213,7 +216,7 @@ class OwnSteps {
 
   StepOptions options_;
   StepController controller_;
-  double end_time_ = 0, dt_ = 0, next_dt_ = 0;  // the last own step ends there
+  double end_time_ = 0, dt_ = 0, next_dt_ = 0;  // the last internal step ends at end_time_
 
  private:
   static double slack(double dt) { return 1e-9 * std::abs(dt); }

@@ -16,39 +16,39 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// What a stepper says of itself; 0 for one that does not run on parts of a lattice.
+/// Number of ghosts that a stepper declares; 0 if it does not run on parts of a lattice.
 template <class Stepper>
 inline constexpr int ghosts_of = 0;
 template <class Stepper>
   requires requires { Stepper::ghosts; }
 inline constexpr int ghosts_of<Stepper> = Stepper::ghosts;
 
-/// Every stepper begins a call with this: static checks, the profiling region, run-time checks.
+/// Base class of steppers; each call starts with its static checks, profiling region and run-time
+/// checks.
 template <class Spins>
 class StepperBase {
  public:
   using spins_type = Spins;
   using Real = typename Spins::value_type;
 
-  // Copies would share what a stepper remembers in fields, and not what it remembers in numbers.
+  // Not copyable: copies would share a stepper's fields but not its numbers.
   StepperBase(StepperBase const&) = delete;
   StepperBase& operator=(StepperBase const&) = delete;
   StepperBase(StepperBase&&) = default;
   StepperBase& operator=(StepperBase&&) = default;
 
-  /// For cayspin::integrate: no step exchanges the memory of the spins, unless a stepper has a
-  /// visit_exchanged of its own.
+  /// For cayspin::integrate: by default no step swaps the memory of the spins.
   template <class Visit>
   void visit_exchanged(Visit const&) {}
 
-  /// Throws std::invalid_argument when `spins` is not of the lattice given at construction.
+  /// Throws std::invalid_argument when `spins` is not on the lattice given at construction.
   void check_spins(Spins const& spins, char const* call = "") const {
     if (!(spins.lattice() == lattice_))
       throw std::invalid_argument(region_ + call + ": the spins are not of the stepper's lattice");
   }
 
  protected:
-  /// `ghosts`: so many a step needs at each inner end of a part of a lattice; 0 for a stepper that
+  /// `ghosts`: layers that a step needs at each inner end of a part of a lattice; 0 if the stepper
   /// does not run on parts.
   StepperBase(std::string const& name, Lattice const& lattice, int ghosts = 0)
       : lattice_(lattice), region_("cayspin::" + name) {
@@ -57,7 +57,7 @@ class StepperBase {
   }
 
   CAYSPIN_DETAIL_NOINLINE std::string label(char const* stage) const { return region_ + stage; }
-  /// "::stage_1", "::stage_2", .. of so many stages.
+  /// Returns the names "::stage_1", "::stage_2", ..
   template <std::size_t Stages>
   std::array<std::string, Stages> stage_labels() const {
     std::array<std::string, Stages> labels;
@@ -65,7 +65,7 @@ class StepperBase {
     return labels;
   }
 
-  /// The region lasts as long as what is returned. `call`: the member that begins.
+  /// Returns a profiling region, which ends with its lifetime. `call`: name of the member function.
   template <class Exec>
   [[nodiscard]] Kokkos::Profiling::ScopedRegion begin_step(Exec const&, Spins const& spins,
                                                            char const* call = "::step") const {
@@ -74,7 +74,7 @@ class StepperBase {
     return Kokkos::Profiling::ScopedRegion(region_);
   }
 
-  /// Throws when `spins` is a second handle on memory that a step has exchanged for its own.
+  /// Throws when `spins` is an old handle on memory that a step has swapped for its own.
   void require_other_memory(Spins const& spins, Spins const& own) const {
     if (spins.array().data == own.array().data) [[unlikely]]
       throw std::invalid_argument(

@@ -22,14 +22,18 @@
 namespace cayspin::inline v0_1 {
 
 /// Gauss's collocation method for stiff exchange. Order 2 is implicit midpoint in Cayley
-/// coordinates: m1 = cay(f) m0, f = dt A((m0 + m1) / 2). Order 4 has two such stages, which move
-/// together. A at the stages is extrapolated from earlier steps and corrected by (1 + b K)^-1 of
-/// the residual, b = dt (damping - i) times an eigenvalue of the tableau: with K = -J Lap, as it is
-/// measured at the first step, that is Newton's method for exchange, on lines of spins that are
-/// nearly parallel. One or two corrections a step are usual. A step whose corrections do not
-/// converge is halved. Keeps |m| and, where the generator is conservative and H affine, the energy
-/// to round-off; with isotropic exchange alone the total spin too. Any generator; not for parts of
-/// a lattice.
+/// coordinates: m1 = cay(f) m0, f = dt A((m0 + m1) / 2). Order 4 has two coupled stages of this
+/// kind.
+///
+/// A at the stages is extrapolated from earlier steps and corrected by (1 + b K)^-1 of the
+/// residual, with b = dt (damping - i) times an eigenvalue of the tableau. With K = -J Lap, as
+/// measured at the first step, that is Newton's method for exchange on lines of nearly parallel
+/// spins. One or two corrections per step are typical. A step whose corrections do not converge is
+/// halved.
+///
+/// Conserves |m| and, if the generator is conservative and H affine, the energy to round-off; if
+/// isotropic exchange is the only term, also the total spin. Works with any generator; not for
+/// parts of a lattice.
 template <class Spins, int Order>
 class StiffGauss : public detail::StepperBase<Spins> {
   static_assert(Order == 2 || Order == 4, "StiffGauss has order 2 or 4.");
@@ -42,24 +46,24 @@ class StiffGauss : public detail::StepperBase<Spins> {
   using typename detail::StepperBase<Spins>::Real;
   static constexpr int order = Order;
   static constexpr int stages = Order / 2;
-  // The grids' are of single precision.
+  // The grids are in single precision.
   static constexpr int work_fields = 2 + 5 * stages + History::fields + (sizeof(Real) == 8 ? 4 : 8);
 
   explicit StiffGauss(Spins const& like, StiffOptions options = {})
       : StiffGauss(name, like, options) {}
 
-  /// Evaluations of the generator so far.
+  /// Returns the generator evaluations so far.
   std::int64_t evaluations_done() const { return evaluations_done_; }
-  /// Steps, or parts of them, that were halved so far.
+  /// Returns how many steps, or parts of steps, were halved so far.
   std::int64_t halvings_done() const { return halvings_done_; }
 
-  /// Forgets the steps so far.
+  /// Forgets the previous steps.
   void reset() {
     exchange_ = {};
     history_.forget();
   }
 
-  /// For cayspin::exchange_memory.
+  /// For cayspin::serialize.
   template <class Visit>
   void visit_memory(Visit const& visit) {
     visit("exchange_known", exchange_.known);
@@ -76,18 +80,17 @@ class StiffGauss : public detail::StepperBase<Spins> {
     if (exchange_.known) make_solver();
   }
 
-  /// For cayspin::integrate: the fields whose memory a step may exchange for that of the spins.
+  /// Visits the fields whose memory a step may swap with that of the spins, for cayspin::integrate.
   template <class Visit>
   void visit_exchanged(Visit const& visit) {
     visit(start_);
     visit(end_);
   }
 
-  /// Advances `spins` from t to t + dt under `generator`; exchanges their memory with its own, so
-  /// take arrays of `spins` again after a step. Waits.
-  /// What a field throws leaves the spins as before.
-  /// Throws NotConverged, with `spins` as before, when halved steps have no solution either, and
-  /// std::invalid_argument when `spins` is not of the lattice given at construction.
+  /// Advances `spins` from t to t + dt under `generator`. Swaps their memory with its own, so take
+  /// arrays of `spins` again after a step. Waits. If a field throws, `spins` are unchanged. Throws
+  /// NotConverged, with `spins` unchanged, when halved steps have no solution either, and
+  /// std::invalid_argument when `spins` is not on the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
@@ -130,7 +133,8 @@ class StiffGauss : public detail::StepperBase<Spins> {
     history_ = {prefix + "earlier", lattice};
   }
 
-  /// Before a step: the spins are not the stepper's own memory, and exchange is known.
+  /// Prepares a step: checks that the spins are not the stepper's own memory, and measures the
+  /// exchange.
   template <class Exec, class Generator>
   void make_ready(Exec const& exec, Generator const& generator, Spins const& spins, double t) {
     for (Spins const* own : {&end_, &start_}) this->require_other_memory(spins, *own);
@@ -144,14 +148,14 @@ class StiffGauss : public detail::StepperBase<Spins> {
 
   void make_solver() { solver_ = Solver(name, this->lattice_, exchange_.couplings); }
 
-  /// After a step that has failed: the spins before it.
+  /// Restores the spins after a failed step.
   void give_back(Spins& spins) {
     if (moved_) swap(spins, start_);
     moved_ = false;
     history_.forget();
   }
 
-  /// One step, or two of half the length where it is not solved.
+  /// Takes one step, or two of half the length if it is not solved.
   template <class Exec, class Generator>
   bool advance(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
                History* history, int halvings) {
@@ -169,8 +173,8 @@ class StiffGauss : public detail::StepperBase<Spins> {
            advance(exec, generator, spins, t + 0.5 * dt, 0.5 * dt, nullptr, halvings - 1);
   }
 
-  /// Leaves the spins after the step in end_, and A at its stages in x_. `Shifted`: corrections
-  /// have K + local_ for K.
+  /// Leaves the spins after the step in end_, and A at its stages in x_. `Shifted`: corrections use
+  /// K + local_ for K.
   template <bool Shifted = false, class Exec, class Generator>
   bool solve(Exec const& exec, Generator const& generator, Spins const& spins, double t, double dt,
              History* history) {
@@ -182,14 +186,14 @@ class StiffGauss : public detail::StepperBase<Spins> {
       double const before = change;
       corrections_ = i + 1;
       change = correct<Shifted>(exec, generator, spins, t, dt);
-      if (!(change < 1)) return false;  // out of the reach of its solution, or not a number
+      if (!(change < 1)) return false;  // diverging, or not a number
       if (i == 0) {
         tolerance = tolerance_of(generator, history, change);
-        // Only a second correction can tell how fast they converge.
+        // Only a second correction shows how fast they converge.
         bool const measures = !has_history || contraction_ > 0.1 || ++unmeasured_ >= 16;
         if (!measures && contraction_ * change <= tolerance) return true;
       } else {
-        // The quotient of two corrections that are round-off tells nothing.
+        // The quotient of two corrections at round-off level means nothing.
         double const contraction = before > 4 * epsilon ? change / before : 0;
         if (i == 1) contraction_ = contraction;
         unmeasured_ = 0;
@@ -203,14 +207,14 @@ class StiffGauss : public detail::StepperBase<Spins> {
     return false;
   }
 
-  /// Of the error that corrections leave, given the first of them.
+  /// Returns the bound on the error that corrections leave, given the first correction.
   template <class Generator>
   double tolerance_of(Generator const& generator, History* history, double first) const {
     if (solving_.tolerance > 0) return solving_.tolerance;
     if constexpr (requires { generator.conserves_energy(); })
       if (generator.conserves_energy()) return 4 * epsilon;
     if (history != nullptr && history->is_complete()) return history->tolerance(first);
-    // `first` is of this order in the rotation: of none known it is the whole.
+    // `first` is of this order in the rotation angle; without history it is the whole rotation.
     double const of_rotation = 1 + (history != nullptr ? history->known() : 0);
     return std::max(std::min(1e-3 * first, 0.01 * std::pow(first, (Order + 1) / of_rotation)),
                     16 * epsilon);
@@ -227,7 +231,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
     detail::for_each_site<Real>(exec, guess_label_, spins.layout(), kernel);
   }
 
-  /// A correction of x_, with the spins at the stages and at the end of the step. Returns the
+  /// Corrects x_, and computes the spins at the stages and at the end of the step. Returns the
   /// largest change of dt x_.
   template <bool Shifted, class Exec, class Generator>
   double correct(Exec const& exec, Generator const& generator, Spins const& spins, double t,
@@ -237,7 +241,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
     kernel.spins = spins.array();
     kernel.end = end_.array();
     kernel.dt = static_cast<Real>(dt);
-    kernel.turned_alone = solver_.solves_for_turned_alone();
+    kernel.only_rotated_part = solver_.solves_only_rotated_part();
     std::complex<double> const step(dt * exchange_.damping, -dt * exchange_.precession);
     for (std::size_t s = 0; s < count; ++s) {
       auto b = step * (s == 0 ? Gauss::eigenvalue : std::conj(Gauss::eigenvalue));
@@ -260,7 +264,8 @@ class StiffGauss : public detail::StepperBase<Spins> {
     return std::abs(dt) * std::sqrt(square);
   }
 
-  /// Of one stage, as a part of the right side of an eigenvector of the tableau.
+  /// Computes the residual of one stage, as part of the right side for an eigenvector of the
+  /// tableau.
   template <class Exec, class Generator>
   void residual(Exec const& exec, Generator const& generator, std::size_t s, double t, double dt) {
     auto prepared = detail::prepare_term(generator, exec, stage_[s], t + Gauss::nodes[s] * dt);
@@ -291,10 +296,10 @@ class StiffGauss : public detail::StepperBase<Spins> {
   detail::MeasuredExchange exchange_;
   double local_ = 0;
   double last_dt_ = 0;
-  double contraction_ = 1;              // of the last two corrections that were compared
+  double contraction_ = 1;              // ratio of the last two compared corrections
   int unmeasured_ = 0;                  // steps since then
   int corrections_ = 0;                 // of the last step
-  int extrapolated_ = History::fields;  // earlier values that a guess takes
+  int extrapolated_ = History::fields;  // earlier values that an extrapolation uses
   bool moved_ = false;                  // start_ holds the spins before the step
   std::int64_t evaluations_done_ = 0, halvings_done_ = 0;
 };

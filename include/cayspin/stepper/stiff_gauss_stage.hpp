@@ -9,10 +9,11 @@
 
 #include <cstddef>
 
-// The passes of StiffGauss. x is the estimate of A at the stages.
+// Kernels of StiffGauss. x is the estimate of A at the stages.
 namespace cayspin::inline v0_1::detail {
 
-/// x = sums of coefficients times x of earlier steps, and the spins at the stages.
+/// Functor that extrapolates x linearly from x of earlier steps, and computes the spins at the
+/// stages.
 template <int Stages, int Earlier, class Real>
 struct GuessStage {
   SiteArray<Real, 3> earlier[std::size_t{Earlier}];
@@ -41,7 +42,7 @@ struct GuessStage {
   }
 };
 
-/// v across the spin m; zero on a vacant site, where m is zero.
+/// Returns the part of v normal to the spin m; zero on a vacant site, where m is zero.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> across_spin(Vec3<Value> const& v, Vec3<Value> const& m) {
   Value const square = dot(m, m);
@@ -50,8 +51,8 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> across_spin(Vec3<Value> const& v, Vec3<V
   return select<Value>(vacant, zero<Value>(), multiply_add(Value(-dot(v, m) / divisor), m, v));
 }
 
-/// The residual A(Y) - x across the spin Y at a stage. What is along it has no effect, since x acts
-/// as x x Y, and is taken from x. Zero on a vacant site.
+/// Functor that computes the residual A(Y) - x normal to the spin Y at a stage. Its part along Y
+/// has no effect, since x acts as x x Y; that part of x is replaced. Zero on a vacant site.
 template <class Generator, class Real>
 struct ResidualStage {
   Generator generator;
@@ -75,15 +76,15 @@ struct ResidualStage {
   }
 };
 
-/// x + the solution across the spins at the stages, and the spins there and at the end of the step.
-/// `Scaled`: solutions are multiplied by a complex factor, that of a second one by its conjugate.
-/// Values: the largest |change|^2.
+/// Functor that adds the solution normal to the spins at the stages to x, and computes the spins
+/// there and at the end of the step. `Scaled`: solutions are multiplied by a complex factor, a
+/// second one by its conjugate. Values: the largest |change|^2.
 template <int Stages, bool Scaled, class Real>
 struct CorrectStage {
   SiteArray<Real, 6> solution[std::size_t{Stages}];
   SiteArray<Real, 3> spins, x[std::size_t{Stages}], stage[std::size_t{Stages}], end;
   Real dt, real, imaginary;  // parts of the factor
-  bool turned_alone;         // what is not m x is zero in all solutions
+  bool only_rotated_part;    // all solutions are of the form m x v''
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
@@ -110,7 +111,7 @@ struct CorrectStage {
   KOKKOS_FORCEINLINE_FUNCTION void corrections(Site const& site,
                                                Vec3<Value> (&v)[std::size_t{Stages}]) const {
     auto const loaded = [&](int s, int c) {
-      if (turned_alone && c == 0) return zero<Value>();
+      if (only_rotated_part && c == 0) return zero<Value>();
       return Vec3<Value>{site.load(solution[s], c), site.load(solution[s], c + 1),
                          site.load(solution[s], c + 2)};
     };
@@ -131,7 +132,7 @@ struct CorrectStage {
   }
 };
 
-/// The sum of A.m.
+/// Functor that sums A.m.
 template <class Generator, class Real>
 struct SumAlongSpins {
   Generator generator;
@@ -144,7 +145,7 @@ struct SumAlongSpins {
   }
 };
 
-/// A sum of A at stages, across the spins at one.
+/// Functor that sums A at stages, normal to the spins at one.
 template <class Real>
 struct SecondDifference {
   SiteArray<Real, 3> values[3];
@@ -156,7 +157,7 @@ struct SecondDifference {
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     store(site, zero<typename Site::value_type>(), 3);
   }
-  /// Of so many values, and of what is there already.
+  /// Adds this many values to the stored one.
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void store(Site const& site, Vec3<Value> sum, int count) const {
     for (int i = 0; i < count; ++i)
@@ -165,7 +166,7 @@ struct SecondDifference {
   }
 };
 
-/// The same with A at the end of the step in place of the third value.
+/// SecondDifference with A at the end of the step as the third value.
 template <class Generator, class Real>
 struct SecondDifferenceWithEnd {
   Generator generator;
@@ -181,8 +182,8 @@ struct SecondDifferenceWithEnd {
   }
 };
 
-/// The spins within a step: those at its begin, turned by `whole` A of its stage, and by `slope`
-/// times the change of A since the stage before.
+/// Functor that computes the spins within a step: those at its start, turned by `whole` A of its
+/// stage, and by `slope` times the change of A since the previous stage.
 template <class Real>
 struct StiffDenseOutput {
   SiteArray<Real, 3> begin, last, before;
@@ -200,7 +201,7 @@ struct StiffDenseOutput {
   }
 };
 
-/// The largest |v|^2 of a solution (v', v''), v = v' + m x v''.
+/// Functor that finds the largest |v|^2 of a solution (v', v''), v = v' + m x v''.
 template <class Real>
 struct LargestSolution {
   SiteArray<Real, 6> solution;

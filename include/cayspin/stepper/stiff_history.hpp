@@ -14,11 +14,11 @@
 
 namespace cayspin::inline v0_1 {
 
-/// How StiffGauss solves a step's equations.
+/// Options of StiffGauss.
 struct StiffOptions {
-  /// Of the rotation vectors' remaining error on any site. 0: round-off where the generator is
-  /// conservative, otherwise 1/200 of the usual first correction, or 1/1000 where that
-  /// is small and the order 4.
+  /// Bound on the largest remaining error of any site's rotation vector. 0: round-off if the
+  /// generator is conservative, otherwise 1/200 of the usual first correction, or 1/1000 if that is
+  /// small and the order is 4.
   double tolerance = 0;
   int iterations = 30;  ///< corrections before the step is halved
   int halvings = 12;    ///< of a step, before NotConverged
@@ -26,7 +26,7 @@ struct StiffOptions {
 
 namespace detail {
 
-/// The last three values of A at stages of earlier steps, the last one first, and their times.
+/// The last three values of A at stages of earlier steps, latest first, and their times.
 template <class Spins, int Stages>
 class StiffHistory {
   using Real = typename Spins::value_type;
@@ -58,12 +58,12 @@ class StiffHistory {
     }
     known_ = std::min(known_ + Stages, fields);
   }
-  /// The next step is `ratio` times as long as the one before.
+  /// Rescales times for a next step that is `ratio` times as long as the previous one.
   void rescale(double ratio) {
     for (double& time : times_) time /= ratio;
   }
 
-  /// For cayspin::exchange_memory; of steps that are not equal, times, too.
+  /// For cayspin::serialize; after unequal steps it includes times.
   template <class Visit>
   void visit_times(Visit const& visit) {
     for (std::size_t i = 0; i < times_.size(); ++i)
@@ -86,8 +86,9 @@ class StiffHistory {
     }
   }
 
-  /// The second derivative of A over 2 in units of dt, from x of a step, of the one before, and of
-  /// the one before that or at the end of the step. Of a first step the first derivative.
+  /// Returns half the second derivative of A in units of dt, from x of a step, of the one before,
+  /// and of the one before that or at the end of the step. For a first step it returns the first
+  /// derivative.
   SecondDifference<Real> second_difference(Spins const& x, bool has_end) const
     requires(Stages == 1)
   {
@@ -107,7 +108,7 @@ class StiffHistory {
     return kernel;
   }
 
-  /// Within the last step, after this share of it: A was nearly linear since the step before.
+  /// Interpolates within the last step at this share of it, with A linear since the previous step.
   StiffDenseOutput<Real> dense_output(double dt, double share) const
     requires(Stages == 1)
   {
@@ -122,9 +123,9 @@ class StiffHistory {
     return kernel;
   }
 
-  /// Of the error that corrections leave, given the first of them. Spin waves that are too short
-  /// for dt are not damped, and extrapolation amplifies what is left of them: so a first correction
-  /// that is larger than usual is not a measure.
+  /// Returns the bound on the error that corrections leave, given the first correction. Spin waves
+  /// that are too short for dt are not damped, and extrapolation amplifies their remains. A first
+  /// correction larger than usual is therefore not a measure.
   double tolerance(double first) {
     double const least = 16 * epsilon;
     first = usual_ = std::clamp(first, least, std::max(least, 1.2 * usual_));
@@ -143,7 +144,7 @@ class StiffHistory {
           node(static_cast<std::size_t>(Stages - 1 - i % Stages)) - i / Stages - 1;
     return times;
   }
-  // Lagrange's.
+  // Returns a coefficient of Lagrange's interpolation.
   double coefficient(int stage, int i, int count) const {
     auto const at = [&](int k) { return times_[static_cast<std::size_t>(k)]; };
     double product = 1;
@@ -153,7 +154,7 @@ class StiffHistory {
   }
 
   std::array<Spins, std::size_t{fields}> earlier_;
-  Times times_ = times_of_equal_steps();  // from the begin of the next step, in units of dt
+  Times times_ = times_of_equal_steps();  // from the start of the next step, in units of dt
   int known_ = 0;
   double usual_ = std::numeric_limits<double>::infinity();  // first correction
 };

@@ -3,13 +3,14 @@
 
 #include <cstddef>
 
-// Explicit Butcher tableaux, as data: a new Runge-Kutta method is a struct like these.
-// a: stages x stages, strictly lower triangular; b: weights; c: stage times in units of dt.
+// Explicit Butcher tableaux as data. To add a Runge-Kutta method, write a struct like these.
+// - a: stages x stages, strictly lower triangular; b: weights; c: stage times in units of dt.
 // Embedded tableaux also have an error estimate and interpolate between steps. They use one more
 // stage: the generator at the end of the step, which is the first one of the next step.
-// error: weights of all stages and that one, of the step less the embedded solution of order
-// embedded_order; dense: of each stage, the coefficients of s, s^2, ... s^5 in its weight at
-// t + s dt, of order dense_order.
+// - error: weights, for all stages and that one, of the step minus the embedded solution of order
+// embedded_order.
+// - dense: for each stage, the coefficients of s, s^2, ... s^5 in its weight at t + s dt, of order
+// dense_order.
 namespace cayspin::inline v0_1::tableau {
 
 /// Euler's method: order 1, one stage.
@@ -53,9 +54,9 @@ struct ThreeEighths4 {
   static constexpr double c[4] = {0, 1. / 3, 2. / 3, 1};
 };
 
-/// Six stages of order 4 with the structure of RK4: each stage takes one slope, from the step's
-/// start. The weights solve the eight conditions of order 4 to 2e-14. Made for stability along the
-/// imaginary axis: 0.82 of dt omega per stage with a little damping, where RK4 has 0.71.
+/// Six stages of order 4 with the structure of RK4: each stage uses one slope, from the start of
+/// the step. The weights solve the eight conditions of order 4 to 2e-14. Made for stability along
+/// the imaginary axis: up to dt omega = 0.82 per stage with a little damping; RK4 has 0.71.
 struct Oscillatory64 {
   static constexpr int stages = 6, order = 4;
   static constexpr double c[6] = {0,
@@ -70,7 +71,7 @@ struct Oscillatory64 {
                                   0.4468478584675798,   0.057412333557148615, 0.19286791519818647};
 };
 
-/// Seven stages of order 4 with the same structure; the first two have no weight. The eight
+/// Seven stages of order 4 with the structure of RK4; the first two have no weight. The eight
 /// conditions of order 4 and the stability polynomial, whose last coefficients are 0.0078, 0.00087
 /// and 0.0001055, determine the numbers. Found by a search for long stable steps and small errors
 /// on films. Largest dt omega per stage at damping 0, 0.02, 0.1, 0.3: 0.79, 0.81, 0.79, 0.61 (RK4:
@@ -100,9 +101,9 @@ struct Oscillatory74 {
                                   0.12083268225466433};
 };
 
-/// Five stages of order 4 for strong damping: small errors, and stable at 0.70 of dt times a rate
-/// of decay per stage, as RK4. The last coefficient of the stability polynomial is 0.85 / 5!. Found
-/// by a search for a small leading error, a tenth of RK4's.
+/// Five stages of order 4 for strong damping: small errors, and stable up to dt times decay rate =
+/// 0.70 per stage, as RK4. The last coefficient of the stability polynomial is 0.85 / 5!. Found by
+/// a search for a small leading error, which is a tenth of RK4's.
 struct Damped54 {
   static constexpr int stages = 5, order = 4;
   static constexpr double c[5] = {0, 0.14114715574092904, 0.5948055915144558, 0.1966650853743125,
@@ -118,7 +119,7 @@ struct Damped54 {
 };
 
 /// Commutator-free, order 4 (Celledoni, Marthinsen and Owren 2003): stages and end are reached by
-/// two rotations, of weights a then second_a, b then second_b, of the generators themselves.
+/// two rotations by the generators themselves, with weights a then second_a, b then second_b.
 struct CommutatorFree4 {
   static constexpr int stages = 4, order = 4;
   static constexpr double a[4][4] = {{0, 0, 0, 0}, {0.5, 0, 0, 0}, {0, 0.5, 0, 0}, {0.5, 0, 0, 0}};
@@ -129,7 +130,7 @@ struct CommutatorFree4 {
   static constexpr double c[4] = {0, 0.5, 0.5, 1};
 };
 
-/// Bogacki and Shampine 1989, 3(2). Between steps: Hermite's cubic.
+/// Bogacki and Shampine 1989, 3(2). Dense output: Hermite's cubic.
 struct BogackiShampine3 {
   static constexpr int stages = 3, order = 3, embedded_order = 2, dense_order = 3;
   static constexpr double a[3][3] = {{0, 0, 0}, {0.5, 0, 0}, {0, 0.75, 0}};
@@ -140,7 +141,7 @@ struct BogackiShampine3 {
       {1, -4. / 3, 5. / 9}, {0, 1, -2. / 3}, {0, 4. / 3, -8. / 9}, {0, -1, 1}};
 };
 
-/// Dormand and Prince 1980, 5(4). Between steps: Shampine's polynomial of order 4.
+/// Dormand and Prince 1980, 5(4). Dense output: Shampine's polynomial of order 4.
 struct DormandPrince5 {
   static constexpr int stages = 6, order = 5, embedded_order = 4, dense_order = 4;
   static constexpr double a[6][6] = {
@@ -169,7 +170,7 @@ struct DormandPrince5 {
       {0, 44764047. / 29380423, -1532549. / 353981, 90730570. / 29380423, -8293050. / 29380423}};
 };
 
-/// Tsitouras 2011, 5(4), with its polynomial of order 4.
+/// Tsitouras 2011, 5(4), with its dense output of order 4.
 struct Tsitouras5 {
   static constexpr int stages = 6, order = 5, embedded_order = 4, dense_order = 4;
   static constexpr double a[6][6] = {
@@ -197,8 +198,8 @@ struct Tsitouras5 {
       {0, 1.5, -4, 2.5}};
 };
 
-/// An embedded tableau with the stage at the step's end as its last: weight 0, and its generator is
-/// the next step's first.
+/// An embedded tableau with the stage at the end of the step appended: its weight is 0, and its
+/// generator is the next step's first.
 template <class Embedded>
 struct FirstSameAsLast : Embedded {
   static constexpr bool first_same_as_last = true;

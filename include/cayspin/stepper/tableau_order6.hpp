@@ -33,8 +33,8 @@ struct Oscillatory86 {
                                   1};
 };
 
-/// The same for strong damping: last coefficients 0.8 / 7! and 0.33 / 8!. Largest dt times a rate
-/// of decay: 0.86 per stage (RK4: 0.70, Dormand-Prince 5: 0.55).
+/// Eight stages of order 6 for strong damping: last coefficients 0.8 / 7! and 0.33 / 8!. Largest dt
+/// times decay rate: 0.86 per stage (RK4: 0.70, Dormand-Prince 5: 0.55).
 struct Damped86 {
   static constexpr int stages = 8, order = 6;
   static constexpr double a[8][8] = {

@@ -13,22 +13,22 @@
 
 #include <limits>
 
-// Steps from the generator at two points, one of which is kept in a field: finite differences of
-// A_o, and the two-step method of Adams and Bashforth.
+// Steps that use the generator at two points, one of which is stored in a field: finite differences
+// of A_o, and the two-step method of Adams and Bashforth.
 namespace cayspin::inline v0_1 {
 
 namespace detail {
 
-/// The inputs of a rule at a site: the spin m that A belongs to, the spin m0 of the step's begin, A
-/// there with its isotropy added, the kept vector, and dt. It returns the step's coordinates F and
-/// sets `kept` to the vector to keep.
+/// Inputs of a rule at a site: the spin m that A belongs to, the spin m0 at the start of the step,
+/// A there including its isotropy, the stored vector, and dt. The rule returns the step's
+/// coordinates F and sets `kept` to the vector to store.
 template <class Value>
 struct TwoPoints {
   Vec3<Value> m, m0, a, kept;
   Value dt;
 };
 
-/// F = dt A_o, which is kept.
+/// F = dt A_o; stores A_o.
 struct PredictOrthogonal {
   static constexpr bool reads = false, writes = true;
   template <class Value>
@@ -38,7 +38,7 @@ struct PredictOrthogonal {
   }
 };
 
-/// F = dt (w + sigma m0), w kept, sigma from A_o here.
+/// F = dt (w + sigma m0), with the stored w, and sigma from A_o here.
 struct ForwardDifference {
   static constexpr bool reads = true, writes = false;
   double cap;
@@ -51,7 +51,7 @@ struct ForwardDifference {
   }
 };
 
-/// F = dt (w + sigma m), w = A_o here, sigma from the kept one of `ratio` = dt / (dt before).
+/// F = dt (w + sigma m), w = A_o here, sigma from the stored one, `ratio` = dt / (previous dt).
 struct BackwardDifference {
   static constexpr bool reads = true, writes = true;
   double cap, ratio;
@@ -66,7 +66,7 @@ struct BackwardDifference {
   }
 };
 
-/// F = dt A, which is kept.
+/// F = dt A; stores A.
 struct PredictFull {
   static constexpr bool reads = false, writes = true;
   template <class Value>
@@ -85,7 +85,7 @@ struct Average {
   }
 };
 
-/// F = dt (A + ratio (A - kept) / 2), A kept.
+/// F = dt (A + ratio (A - kept) / 2); stores A.
 struct Extrapolate {
   static constexpr bool reads = true, writes = true;
   double ratio;
@@ -146,8 +146,8 @@ struct TwoPointStage {
 
 }  // namespace detail
 
-/// A step that keeps A between its two evaluations, or from one step to the next. Method says how
-/// the step uses both (detail::ForwardDifferenceMethod and so on). Work memory: two fields.
+/// A step that stores A between its two evaluations, or from one step to the next. Method defines
+/// how the step uses both (detail::ForwardDifferenceMethod and so on). Work memory: two fields.
 template <class Spins, class Method, class Isotropy, class Rotation>
 class TwoPoint : public detail::StepperBase<Spins> {
   using Base = detail::StepperBase<Spins>;
@@ -155,7 +155,7 @@ class TwoPoint : public detail::StepperBase<Spins> {
  public:
   using typename Base::Real;
   static constexpr int order = Method::order;
-  static constexpr int evaluations = Method::remembers ? 1 : 2;  // of the generator, per step
+  static constexpr int evaluations = Method::remembers ? 1 : 2;  // generator evaluations per step
   static constexpr int ghosts = 2;
   static constexpr int work_fields = 2;
 
@@ -168,16 +168,16 @@ class TwoPoint : public detail::StepperBase<Spins> {
         kept_(name + "::kept_generator", like.lattice()),
         streaming_(detail::exceeds_caches<DefaultExec>(like.bytes() + work_bytes())) {}
 
-  /// Evaluations of the generator in the next step: two in the first one of a method that remembers
-  /// steps.
+  /// Returns the generator evaluations in the next step: two in the first step of a method that
+  /// remembers steps.
   int next_step_evaluations() const { return last_dt_ == 0 ? 2 : evaluations; }
 
   std::size_t work_bytes() const { return work_fields * next_.bytes(); }
 
-  /// Advances `spins` from t to t + dt under `generator`. A method that remembers the step before
-  /// needs the `spins` at its end. It exchanges the memory of `spins` with its own: take arrays of
-  /// `spins` again after a step.
-  /// Throws std::invalid_argument when `spins` is not of the lattice given at construction.
+  /// Advances `spins` from t to t + dt under `generator`. A method that remembers the previous step
+  /// needs the `spins` at its end. Swaps the memory of `spins` with its own: take arrays of `spins`
+  /// again after a step. Throws std::invalid_argument when `spins` is not on the lattice given at
+  /// construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
@@ -197,7 +197,7 @@ class TwoPoint : public detail::StepperBase<Spins> {
     detail::update_ghosts(exec, this->lattice_, spins);
   }
 
-  /// Forgets the step before; the next one is a first step. cayspin::integrate does it for each
+  /// Forgets the previous step; the next one is a first step. cayspin::integrate calls it for each
   /// run.
   void reset()
     requires(Method::remembers)
@@ -205,7 +205,7 @@ class TwoPoint : public detail::StepperBase<Spins> {
     last_dt_ = 0;
   }
 
-  /// For cayspin::exchange_memory.
+  /// For cayspin::serialize.
   template <class Visit>
   void visit_memory(Visit const& visit)
     requires(Method::remembers)
@@ -214,13 +214,13 @@ class TwoPoint : public detail::StepperBase<Spins> {
     if (last_dt_ != 0) visit("kept_generator", kept_);
   }
 
-  /// For cayspin::integrate: the field whose memory a step may exchange for that of the spins.
+  /// Visits the field whose memory a step may swap with that of the spins, for cayspin::integrate.
   template <class Visit>
   void visit_exchanged(Visit const& visit) {
     visit(next_);
   }
 
-  /// Takes `spins` as the state at t, one step of dt before the next one.
+  /// Uses `spins` as the state at t, one step of dt before the next one.
   template <class Exec, class Generator>
   void remember(Exec const& exec, Generator const& generator, Spins const& spins, double t,
                 double dt)
@@ -259,13 +259,13 @@ class TwoPoint : public detail::StepperBase<Spins> {
   Method method_;
   Isotropy isotropy_;
   Spins next_, kept_;
-  bool streaming_;  // stores of what is only written go around the caches
+  bool streaming_;  // stores to write-only fields bypass the caches
   double last_dt_ = 0;
 };
 
-/// The two-step method of Adams and Bashforth, order 2 with one evaluation:
-/// m <- cay(dt (3 xi_n - xi_(n-1)) / 2) m, xi = A + sigma m. When the step changes,
-/// dt (xi_n + (dt / dt before) (xi_n - xi_(n-1)) / 2). The first step is one of LieHeun.
+/// The two-step method of Adams and Bashforth, order 2 with one evaluation: m <- cay(dt (3 xi_n -
+/// xi_(n-1)) / 2) m, xi = A + sigma m. If the step length changes: dt (xi_n + (dt / previous dt)
+/// (xi_n - xi_(n-1)) / 2). The first step is one of LieHeun.
 template <class Spins, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class LieAdamsBashforth2
     : public TwoPoint<Spins, detail::AdamsBashforthMethod, Isotropy, Rotation> {

@@ -21,11 +21,11 @@
 #include <type_traits>
 #include <utility>
 
-// sigma from the derivative of the generator along the flow: first the rates X of all spins, then
-// the generator's derivative along them. field_rate.hpp says what it asks of field terms. A
-// generator of one's own has
+// sigma from the derivative of the generator along the flow. First the rates X of all spins are
+// computed, then the generator's derivative along them. field_rate.hpp lists the members that field
+// terms need. A user's generator needs
 //   Vec3<Value> rate(m, rates)    A' at m along the rates of the stencil's array
-//   auto bare()                   the same with its part along m, where it removes that
+//   auto bare()                   the generator with its part along m, if it removes that
 namespace cayspin::inline v0_1 {
 namespace isotropy {
 
@@ -35,9 +35,9 @@ namespace isotropy {
 /// the norm corrected. Zero if X is zero.
 struct Analytic {};
 
-/// The number that Analytic gives, as the geodesic curvature of the orbit times its speed,
-/// sigma = k_g |X| = <m'', m x m'> / |m'|^2, m' = X: sigma as a partial connection form.
-/// Lewis and Nigam 2002, Sec. 3.2.
+/// Like Analytic, but computed as the geodesic curvature of the orbit times its speed, sigma = k_g
+/// |X| = <m'', m x m'> / |m'|^2, m' = X: sigma as a partial connection form. Lewis and Nigam 2002,
+/// Sec. 3.2.
 struct Connection {};
 
 }  // namespace isotropy
@@ -66,11 +66,12 @@ template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value sigma_along_flow(isotropy::Analytic, Vec3<Value> const& rate,
                                                    Vec3<Value> const& x, Vec3<Value> const&,
                                                    Value const& along) {
-  // A spin at rest gets no part along m, because F = 0 keeps the bits of m.
+  // A spin at equilibrium gets no part along m, because F = 0 keeps the bits of m.
   return guarded_quotient(multiply_subtract(along, dot(x, x), dot(rate, x)), dot(x, x));
 }
 
-/// The same by the second derivative of the orbit, m'' = A' x m + A x X with A = m x X + (m.A) m.
+/// Computes sigma by the second derivative of the orbit, m'' = A' x m + A x X with A = m x X +
+/// (m.A) m.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value sigma_along_flow(isotropy::Connection, Vec3<Value> const& rate,
                                                    Vec3<Value> const& x, Vec3<Value> const& m,
@@ -93,8 +94,8 @@ Generator bare(Orthogonal<Generator> const& prepared) {
   return prepared.part();
 }
 
-/// A' at the spin m, along the rates of the stencil's array. Of LandauLifshitz less damping X x H,
-/// which is normal to X and to what sigma is made of.
+/// Returns A' at the spin m, along the rates of the stencil's array. For LandauLifshitz it omits
+/// damping X x H, which is normal to X and does not contribute to sigma.
 template <class Generator, class Value, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> rate_of(Generator const& generator, Vec3<Value> const& m,
                                                 Stencil const& rates) {
@@ -150,7 +151,7 @@ class Rates {
  private:
   Spins rates_;
   Along along_;
-  bool streaming_ = false;  // stores of rates go around the caches
+  bool streaming_ = false;  // stores of rates bypass the caches
 };
 
 /// Geometric Euler with sigma: m <- cay(dt (A_o + sigma m)) m, in place.
@@ -175,12 +176,12 @@ struct CorrectedEulerStage {
   }
 };
 
-/// sigma of an implicit step: <A', X> / |X|^2, less m.A where A is made orthogonal.
+/// sigma of an implicit step: <A', X> / |X|^2, minus m.A if A is made orthogonal.
 template <class Generator, class Real>
 struct ImplicitSigmaStage {
   Generator generator;  // prepared on the rates
   SiteArray<Real, 3> rates, spins;
-  OutputArray<Real, 1> sigma;  // holds m.A before
+  OutputArray<Real, 1> sigma;  // holds m.A on input
   bool orthogonal;
 
   template <class Site>
@@ -194,8 +195,8 @@ struct ImplicitSigmaStage {
   }
 };
 
-/// isotropy::Analytic of an implicit step: sigma = +<A', X> / |X|^2 at m0, of the sign opposite to
-/// LieEuler's; energy error of order 2. Lewis and Nigam 2002, Sec. 4.2.
+/// isotropy::Analytic for an implicit step: sigma = +<A', X> / |X|^2 at m0, with the sign opposite
+/// to LieEuler's; energy error of order 2. Lewis and Nigam 2002, Sec. 4.2.
 template <class Spins>
 class ImplicitSigma<Spins, isotropy::Analytic> {
   using Real = typename Spins::value_type;
@@ -251,7 +252,7 @@ class LieEuler<Spins, Isotropy, Rotation> : public detail::StepperBase<Spins> {
   std::size_t work_bytes() const { return rates_.bytes(); }
 
   /// Advances `spins` from t to t + dt under `generator`, whose derivative along the flow is known.
-  /// Throws std::invalid_argument when `spins` is not of the lattice given at construction.
+  /// Throws std::invalid_argument when `spins` is not on the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cayspin/field/cubic_anisotropy.hpp>
-#include <cayspin/field/dear.hpp>
 #include <cayspin/field/effective_field.hpp>
 #include <cayspin/field/host_field.hpp>
 #include <cayspin/field/pair_couplings.hpp>
 #include <cayspin/field/parts.hpp>
 #include <cayspin/field/slonczewski.hpp>
+#include <cayspin/field/slow_field.hpp>
 #include <cayspin/field/zeeman.hpp>
 #include <cayspin/optional_members.hpp>
 #include <cayspin/stencil.hpp>
@@ -15,16 +15,16 @@
 #include <concepts>
 #include <stdexcept>
 
-// Derivatives of the effective field, for Series4 and isotropy::Analytic. The library's terms have
-// theirs here. A term of one's own says its degree (FieldTerm in cayspin/concepts.hpp), or has
-//   Vec3<Value> linear_field(stencil)     the linear part of an H that is affine in the spins; it
-//                                         also says is_affine()
+// Derivatives of the effective field, for Series4 and isotropy::Analytic. Those of the library's
+// terms are here. A user's term has a degree (FieldTerm in cayspin/concepts.hpp), or
+//   Vec3<Value> linear_field(stencil)     the linear part of an H that is affine in the spins;
+//                                         requires is_affine()
 //   Vec3<Value> field_rate(m, rates)      dH/dt at m, along the rates of the stencil's array
-//   auto prepare_rate(exec, rates, t, dt)     the term for kernels that ask for dH/dt at time t,
-//                                             where prepare is not enough
+//   auto prepare_rate(exec, rates, t, dt)     returns the term for kernels that evaluate dH/dt at
+//                                             time t, if prepare is not enough
 namespace cayspin::inline v0_1::detail {
 
-/// What a uniform applied field adds to dH/dt.
+/// Contribution of a uniform applied field to dH/dt.
 struct AppliedRate {
   Vec3<double> rate;
 
@@ -34,8 +34,9 @@ struct AppliedRate {
   }
 };
 
-/// d/dt of a callable by differences of order 4 over dt/4: relative error about (w dt)^4 / 1e5 for
-/// changes of angular frequency w. It has to be defined a quarter of a step either way.
+/// Returns d/dt of a callable by differences of order 4 over dt/4: relative error about (w dt)^4 /
+/// 1e5 for changes of angular frequency w. The callable must be defined a quarter of a step either
+/// way.
 template <class Applied>
 Vec3<double> time_derivative(Applied const& applied, double t, double dt) {
   if (dt == 0) return {0, 0, 0};  // a step of no time moves no spin
@@ -45,7 +46,7 @@ Vec3<double> time_derivative(Applied const& applied, double t, double dt) {
   return (1 / (12 * d)) * (8.0 * near - far);
 }
 
-// Of the library's terms whose degree does not say it all.
+// Library terms whose derivative does not follow from the degree.
 
 template <class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_part(Slonczewski const& term,
@@ -57,7 +58,7 @@ KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_part(StoredField<Real> cons
                                                           Stencil const& stencil) {
   return term.energy_factor == -0.5 ? term.field(stencil) : zero<ValueOf<Stencil>>();
 }
-/// Of couplings without a biquadratic part, which is left out.
+/// Linear part of couplings; a biquadratic part is omitted.
 template <class Real, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_part(PairField<Real> const& term,
                                                           Stencil const& stencil) {
@@ -69,7 +70,8 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> rate_of_field(CubicAnisotropy const& ter
                                                       Vec3<Value> const& spin,
                                                       Stencil const& rates) {
   Vec3<Value> const m = term.parts(spin), rate = term.parts(rates.center());
-  Vec3<Value> const half{m.x * rate.x, m.y * rate.y, m.z * rate.z};  // of the squares' rates
+  Vec3<Value> const half{m.x * rate.x, m.y * rate.y,
+                         m.z * rate.z};  // from the rates of the squares
   Value const a = m.x * m.x, b = m.y * m.y, c = m.z * m.z;
   Vec3<Value> const changes{rate.x * (b + c) + Value(2) * m.x * (half.y + half.z),
                             rate.y * (c + a) + Value(2) * m.y * (half.z + half.x),
@@ -94,15 +96,16 @@ auto prepared_rate(PairCouplings<MemorySpace> const& term, Exec const& exec, Spi
 }
 /// Throws std::logic_error between evaluations.
 template <class Term, class Exec, class Spins>
-auto prepared_rate(Dear<Spins, Term> const& term, Exec const& exec, Spins const& rates, double t,
-                   double) {
-  static_assert(!depends_on_time<Term>, "A dear field that depends on t has no rate.");
+auto prepared_rate(SlowField<Spins, Term> const& term, Exec const& exec, Spins const& rates,
+                   double t, double) {
+  static_assert(!depends_on_time<Term>, "An expensive field that depends on t has no rate.");
   if (term.is_interpolated())
-    throw std::logic_error("cayspin::Dear: an interpolated field has no rate");
+    throw std::logic_error("cayspin::SlowField: an interpolated field has no rate");
   return term.prepare(exec, rates, t);
 }
 
-/// The linear part of an affine field at a stencil's centre, applied to the stencil's array.
+/// Functor that applies the linear part of an affine field at a stencil's centre to the stencil's
+/// array.
 struct LinearField {
   template <class Term>
   static constexpr bool skips = false;
@@ -160,8 +163,8 @@ struct FieldRate {
   }
 };
 
-/// The device-callable form of a term or generator for its derivative along `rates`, the X = A x m
-/// of every spin.
+/// Returns the kernel version of a term or generator for its derivative along `rates`, the X = A x
+/// m of every spin.
 template <class Term, class Exec, class Spins>
 auto prepare_rate(Term const& term, Exec const& exec, Spins const& rates, double t, double dt) {
   auto const of_part = [&](auto const& part) { return prepare_rate(part, exec, rates, t, dt); };
@@ -176,7 +179,7 @@ auto prepare_rate(Term const& term, Exec const& exec, Spins const& rates, double
     return prepare_term(term, exec, rates, t);
 }
 
-/// Has a prepared field the linear part of H? Has it the derivative of H along rates?
+/// True if a prepared field has the linear part of H, or the derivative of H along rates.
 template <class Term, class Stencil>
 constexpr bool has_linear_part();
 template <class Term, class Stencil>

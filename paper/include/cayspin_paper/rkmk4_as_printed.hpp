@@ -21,7 +21,7 @@ namespace cayspin::inline v0_1 {
 
 namespace detail {
 
-/// Stage `Stage` of the misprinted method. Stages 0 to 2 keep their generator a = dt xi and move
+/// Stage `Stage` of the misprinted method. Stages 0 to 2 store their generator a = dt xi and move
 /// m0 by it; the last one forms all increments and ends the step.
 template <int Stage, class Isotropy, class Generator, class Real>
 struct AsPrintedStage {
@@ -43,7 +43,7 @@ struct AsPrintedStage {
     f[Stage] = Value(dt) * isotropy(stencil.center(), evaluate(generator, stencil));
     if constexpr (last) {
       unrolled<3>([&](auto j) { f[j()] = site.load(generators[j()]); });
-      // Each needs the generator before it.
+      // Each needs the previous generator.
       unrolled<3>([&](auto j) {
         constexpr int stage = 3 - j();
         f[stage] = Cayley::inverse_differential(
@@ -64,8 +64,8 @@ struct AsPrintedStage {
 
 }  // namespace detail
 
-/// Runge-Kutta-Munthe-Kaas as printed in Lewis and Nigam 2002, Sec. 4.4: stages 3 and 4 take their
-/// argument from the generators A_2, A_3 where the increments F_2, F_3 are meant. Order 3.
+/// Runge-Kutta-Munthe-Kaas as printed in Lewis and Nigam 2002, Sec. 4.4: stages 3 and 4 use the
+/// generators A_2, A_3 as arguments instead of the increments F_2, F_3. Order 3.
 template <class Spins, class Isotropy = isotropy::Zero>
 class Rkmk4AsPrinted : public detail::StepperBase<Spins> {
   using Base = detail::StepperBase<Spins>;
@@ -86,8 +86,8 @@ class Rkmk4AsPrinted : public detail::StepperBase<Spins> {
 
   std::size_t work_bytes() const { return work_fields * levels_[0].bytes(); }
 
-  /// Advances `spins` from t to t + dt under `generator`.
-  /// Throws std::invalid_argument when `spins` is not of the lattice given at construction.
+  /// Advances `spins` from t to t + dt under `generator`. Throws std::invalid_argument when `spins`
+  /// is not on the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);

@@ -46,8 +46,8 @@ struct Series4PaperCorrection {
   }
 };
 
-/// The truncated series of F from a_k = d^k A / dt^k on the exact flow. Lewis and Nigam 2002,
-/// Sec. 5.3, any isotropy.
+/// The truncated series of F from a_k = d^k A / dt^k on the exact flow. Lewis and Nigam 2002, Sec.
+/// 5.3, for any isotropy.
 struct DirectSeries {
   using Correction = Series4Correction;
   template <class Value>
@@ -71,8 +71,8 @@ struct DirectSeries {
   }
 };
 
-/// The orthogonal series as the paper prints it, from the derivatives of A_o: of the same order,
-/// with three times the energy error of the direct series.
+/// The orthogonal series as printed in the paper, from the derivatives of A_o: of equal order, with
+/// three times the energy error of the direct series.
 struct PaperSeries : DirectSeries {
   using Correction = Series4PaperCorrection;
   template <class Value>
@@ -100,7 +100,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> next_derivative(Generator const& generat
   return sum;
 }
 
-/// The end of the step from derivatives 0 .. 3 of m and of the series' source.
+/// Computes the end of the step from derivatives 0 .. 3 of m and of the series' source.
 template <class Series, class Isotropy, class Generator, class Site, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> end_of_series(Generator const& generator, Site const& site,
                                                       Vec3<Value> const* m,
@@ -118,7 +118,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> end_of_series(Generator const& generator
   return Cayley::rotate(f, m[0]);
 }
 
-/// A whole step, if A at a site depends on the spin of that site only, and linearly.
+/// A whole step, if A at a site depends only on that site's spin, and linearly.
 template <class Series, class Isotropy, class Generator, class Real>
 struct LocalSeriesStage {
   Generator generator;
@@ -140,7 +140,7 @@ struct LocalSeriesStage {
 };
 
 /// Kernel K of the four of a step on coupled spins. It computes the K-th derivative of the source,
-/// then the next derivative of the spins, or after the last one the end of the step.
+/// then the next derivative of the spins; the last kernel computes the end of the step.
 template <class Series, int K, class Generator, class Real>
 struct SeriesStage {
   Generator generator;
@@ -190,7 +190,8 @@ class Series4 : public detail::StepperBase<Spins> {
   static constexpr int order = 4;
   static constexpr int evaluations = 4;
   static constexpr int ghosts = 4;
-  static constexpr int work_fields = 7;  // 1 for rigid bodies: the others are made when first used
+  static constexpr int work_fields =
+      7;  // 1 for rigid bodies: the others are allocated on first use
 
   explicit Series4(Spins const& like, Isotropy = {})
       : Series4::StepperBase("Series4", like.lattice(), ghosts),
@@ -200,10 +201,9 @@ class Series4 : public detail::StepperBase<Spins> {
     return next_.bytes() * (derivatives_[0].sites() == 0 ? 1 : work_fields);
   }
 
-  /// Advances `spins` from t to t + dt under `generator`; exchanges their memory with its own, so
-  /// take arrays of `spins` again after a step.
-  /// Throws std::invalid_argument when `spins` is not of the lattice given at construction, and for
-  /// a field that is not affine in the spins.
+  /// Advances `spins` from t to t + dt under `generator`. Swaps their memory with its own, so take
+  /// arrays of `spins` again after a step. Throws std::invalid_argument when `spins` is not on the
+  /// lattice given at construction, and for a field that is not affine in the spins.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     static_assert(!detail::depends_on_time<Generator>, "Series4 refuses fields that depend on t.");
@@ -230,7 +230,7 @@ class Series4 : public detail::StepperBase<Spins> {
     detail::update_ghosts(exec, this->lattice_, spins);
   }
 
-  /// For cayspin::integrate: the field whose memory a step may exchange for that of the spins.
+  /// Visits the field whose memory a step may swap with that of the spins, for cayspin::integrate.
   template <class Visit>
   void visit_exchanged(Visit const& visit) {
     visit(next_);
@@ -276,7 +276,7 @@ class Series4 : public detail::StepperBase<Spins> {
   std::array<Spins, 3> derivatives_, sources_;
 };
 
-/// The orthogonal series as the paper prints it, from the derivatives of A_o. It drops the part of
+/// The orthogonal series as printed in the paper, from the derivatives of A_o. It drops the part of
 /// the generator along m. Also valid and of order 4, with a larger energy error than Series4.
 template <class Spins, class Isotropy = isotropy::Zero>
 class Series4Paper : public Series4<Spins, Isotropy, detail::PaperSeries> {

@@ -13,11 +13,11 @@
 #include <cstddef>
 #include <type_traits>
 
-// What the series differentiates of the library's generators stands here. One of one's own has
-//   Vec3<Value> series_source(stencil)           what A is made of: H, or A itself
-//   Vec3<Value> linear_series_source(stencil)    its linear part; and is_affine() on the host
+// Derivatives of the library's generators for the series. A user's generator needs
+//   Vec3<Value> series_source(stencil)           the source of A: H, or A itself
+//   Vec3<Value> linear_series_source(stencil)    its linear part; requires is_affine() on the host
 //   Vec3<Value> derivative<K>(m, source)         the K-th time derivative of A, from those of both
-//   static bool is_local                         A is linear in the spin itself, without neighbours
+//   static bool is_local                         A is linear in the site's spin, without neighbours
 namespace cayspin::inline v0_1::detail {
 
 template <int N, int K>
@@ -25,7 +25,8 @@ inline constexpr int binomial = K == 0 ? 1 : binomial<N - 1, K - 1> * N / K;
 template <int N>
 inline constexpr int binomial<N, 0> = 1;
 
-/// Leibniz' rule: calls term(binomial(K, j), j, K - j) for j = 0 .. K, all known when compiled.
+/// Applies Leibniz' rule: calls term(binomial(K, j), j, K - j) for j = 0 .. K, all compile-time
+/// constants.
 template <int K, class Term>
 KOKKOS_FORCEINLINE_FUNCTION void leibniz(Term const& term) {
   unrolled<K + 1>([&](auto j) {
@@ -39,7 +40,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> orthogonal_derivative(Generator const& g
                                                               Vec3<Value> const* m,
                                                               Vec3<Value> const* source);
 
-/// What Series4 differentiates, and the derivatives of A that follow from its own.
+/// The source that Series4 differentiates, and the derivatives of A that follow from it.
 template <class Generator>
 struct SeriesOf {
   static constexpr bool is_local = detail::is_local<Generator> || is_body<Generator>;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Pictures of spin textures, with numpy and matplotlib alone. Errors are ValueErrors of one line.
+"""Pictures of spin textures, with only numpy and matplotlib. Errors are ValueErrors of one line.
 
     axes = draw(of_file(h5py.File("film.h5"), frame=-1)[0])
 """

@@ -9,7 +9,7 @@ import numpy as np
 
 
 def _half_solid_angle(a, b, c):
-    """Of three spins, within -pi .. pi; 0 where they are in one plane to round-off."""
+    """Returns the angle of three spins, within -pi .. pi; 0 if they are coplanar to round-off."""
     def dot(u, v):
         return np.einsum("...i,...i", u, v)
 

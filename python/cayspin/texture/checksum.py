@@ -8,7 +8,7 @@ WEIGHTS = np.arange(1 << 18, 0, -1.0)  # so many that sums are exact in doubles
 
 
 def fletcher32(data):
-    """Of an even number of bytes."""
+    """Returns the checksum of an even number of bytes."""
     words = np.frombuffer(data, ">u2")
     total = total_of_totals = 0
     for first in range(0, len(words), len(WEIGHTS)):
@@ -29,13 +29,14 @@ def _mixed(total, checksum):
     return total ^ total >> 32
 
 
-def of_frame(step, numbers, spins, sublattices=None):
-    """The 64 bits that stand for a frame. `numbers`: time, energy, norm_defect, magnetization."""
+def of_frame(step, numbers, spins, more=None):
+    """The 64 bits that stand for a frame. `numbers`: time, energy, norm_defect, magnetization;
+    `more`: what few files have, the sublattices' magnetizations, the shift and the stage."""
     row = np.array([step], "<i8").tobytes() + np.array(numbers, "<f8").tobytes()
     of_row = _mixed(0, fletcher32(row))
     of_spins = _mixed(of_row, fletcher32(spins.tobytes()))
-    if sublattices is not None:
-        of_row = _mixed(of_row, fletcher32(np.asarray(sublattices, "<f8").tobytes()))
+    if more is not None and len(more):
+        of_row = _mixed(of_row, fletcher32(np.asarray(more, "<f8").tobytes()))
     halves = [max(1, total & 0xFFFFFFFF) for total in (of_row, of_spins)]
     return halves[0] << 32 | halves[1]
 
@@ -49,7 +50,9 @@ def require_undamaged(file, first, spins):
     stored, steps = file["checksum"][those], file["step"][those]
     numbers = np.column_stack([file[name][those] for name in (
         "time", "energy", "norm_defect", "magnetization")])
-    means = file["sublattice_magnetization"][those] if spins.ndim == 6 else [None] * len(spins)
-    for number, (known, *parts) in enumerate(zip(stored, steps, numbers, spins, means), first):
+    more = np.concatenate([np.empty((len(spins), 0)), *(
+        np.asarray(file[name][those], np.float64).reshape(len(spins), -1)
+        for name in ("sublattice_magnetization", "shift", "stage") if name in file)], axis=1)
+    for number, (known, *parts) in enumerate(zip(stored, steps, numbers, spins, more), first):
         if of_frame(*parts) != int(known):
             raise ValueError(f"frame {number} is damaged: its checksum differs")

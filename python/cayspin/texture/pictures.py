@@ -16,7 +16,7 @@ _ARROWS, _INCHES_OF_ARROW = 24, 0.2
 
 
 class _Picture:
-    """What is drawn of a plane: the colour of each site `rgb`, for a scale its numbers `field`."""
+    """Data of a plane to draw: colours `rgb` of the sites; numbers `field` for a colour scale."""
 
     def __init__(self, texture, plane, quantity, colors, before, limit):
         self.plane = plane
@@ -82,7 +82,7 @@ def _new_axes(width, height):
 
 
 def _steps(axes, extents, lengths):
-    """Of so many cells along right and up, an odd number, the middle one has an arrow."""
+    """Returns the cells per arrow along right and up, odd so that the arrow is in the middle."""
     box = axes.get_window_extent().width, axes.get_window_extent().height
     inches = min(side / length for side, length in zip(box, lengths)) / axes.figure.dpi
     count = max(1.0, min(_ARROWS, max(lengths) * inches / _INCHES_OF_ARROW))
@@ -231,7 +231,7 @@ def _picture(texture, plane, quantity, colors, before, limit):
 
 def largest(texture: Texture, *, plane: str | None = None, quantity: str = "spins",
             before: np.ndarray | None = None) -> float:
-    """The limit that draw() would choose: of several pictures, the largest gives one scale."""
+    """Returns the limit that draw() would choose; the largest of several gives them one scale."""
     return _picture(texture, plane, quantity, "hue", before, None)[0].largest()
 
 

@@ -29,7 +29,7 @@ def parse_arguments():
 
 
 def find_program():
-    """The program that CAYSPIN_PROGRAM names, the one beside this, or that of the PATH."""
+    """Returns the program named by CAYSPIN_PROGRAM, the one next to this file, or that on PATH."""
     beside = pathlib.Path(sys.argv[0]).parent / "cayspin"
     found = os.environ.get("CAYSPIN_PROGRAM") or shutil.which(beside) or shutil.which("cayspin")
     if not found:

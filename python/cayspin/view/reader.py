@@ -55,7 +55,7 @@ class Reader:
         self._read(self._look)
 
     def _read(self, read: Callable) -> Any:
-        """What `read` returns of the open file, which may be whole in a moment."""
+        """Returns the result of `read` on the open file; retries, since it may soon be complete."""
         for tries_left in range(10, -1, -1):
             try:
                 with h5py.File(self.path, "r", locking=False) as file:
@@ -86,7 +86,7 @@ class Reader:
         return "ended early" if file.attrs["wall_seconds"] > 0 or quiet else "under way"
 
     def news(self, frames: int, samples: int) -> dict:
-        """What is new to a page that has so many frames and samples; all the rest for 0 frames."""
+        """Returns what a page with so many frames and samples lacks; everything for 0 frames."""
         def read(file):
             news = {"state": self._look(file), "file": self._identity, "frames": self.frames}
             last = min(self.samples, samples + MOST_ROWS)
@@ -119,7 +119,7 @@ class Reader:
         return plane_of(self._kept[1].shape, plane).vectors(self._kept[1]).tobytes()
 
     def positions(self, plane: str) -> bytes:
-        """Of the sites of a crystal, 3 floats each, in the order of `frame`."""
+        """Returns the positions of a crystal's sites, 3 floats each, in the order of `frame`."""
         def read(file):
             positions = file["positions"][:]
             return plane_of(positions.shape, plane).vectors(positions)

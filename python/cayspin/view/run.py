@@ -33,7 +33,7 @@ class Run:
         was_there = self.output is None or self.output.exists()
         self._messages = tempfile.TemporaryFile()
         try:
-            # A session of its own: an interrupt from the terminal reaches it once, from stop().
+            # A separate session: an interrupt from the terminal reaches it once, from stop().
             self._process = subprocess.Popen(
                 [program, "run", scene, "--quiet"], stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL, stderr=self._messages, start_new_session=True)

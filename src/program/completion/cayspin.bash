@@ -5,7 +5,7 @@ _cayspin() {
   local IFS=$'\n' words pattern help
   help=$("$program" ${COMP_CWORD:+${COMP_WORDS[1]}} --help 2>/dev/null </dev/null)
   if ((COMP_CWORD == 1)); then
-    words=$("$program" --help | sed -n '/^Subcommands:/,$ s/^  \([a-z]*\).*/\1/p')$'\n--help\n--version'
+    words=$("$program" --help | sed -n '/^Compute:/,$ s/^  \([a-z]*\).*/\1/p')$'\n--help\n--version'
   elif [[ $word == -* ]]; then
     words=$(grep -oE -- '--[a-z][a-z-]*' <<<"$help")
   elif [[ $before == --precision ]]; then

@@ -7,11 +7,11 @@
 
 namespace cayspin::program {
 
-/// The ranks that the program was launched as. One, unless it is built with MPI and a launcher such
-/// as mpiexec started more.
+/// Returns the ranks that the program was launched as: one, unless it is built with MPI and a
+/// launcher such as mpiexec started more.
 std::unique_ptr<simulation::Ranks> launched_ranks();
 
-/// Processes that this one starts are no ranks.
+/// Prevents processes that this one starts from becoming ranks.
 void start_others_alone();
 
 }  // namespace cayspin::program

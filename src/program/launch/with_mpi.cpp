@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Of a program with MPI: the ranks that a launcher such as mpiexec starts.
+// Ranks of a program with MPI, started by a launcher such as mpiexec.
 #include "launched_ranks.hpp"
 #include "simulation/one_rank.hpp"
 #include "simulation/parts.hpp"
@@ -24,14 +24,14 @@ using namespace simulation;
 
 namespace {
 
-/// A datatype of MPI, freed at the end of the scope.
+/// An MPI datatype, freed at the end of the scope.
 class Type {
  public:
   explicit Type(std::size_t bytes) {
     MPI_Type_contiguous(static_cast<int>(bytes), MPI_BYTE, &type_);
     MPI_Type_commit(&type_);
   }
-  /// Sites of a box in the whole lattice.
+  /// Describes the sites of a box in the whole lattice.
   Type(io::SiteBox const& box, std::array<std::int64_t, 3> const& shape, Type const& site) {
     std::array<int, 3> sizes{}, extents{}, begins{};  // the slowest axis first
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -146,7 +146,7 @@ class MpiRanks final : public Ranks {
 
   void leave_by(int status) override {
     if (!many()) return;
-    // All has been said, and MPI would add a line.
+    // The message has been printed, and MPI would add another.
     static_cast<void>(std::freopen("/dev/null", "w", stderr));
     MPI_Abort(MPI_COMM_WORLD, status);
   }
@@ -171,7 +171,7 @@ class MpiRanks final : public Ranks {
       try {
         auto const [y, z] = mpi::divide(lattice, depth, parts);
         return {y, z};
-      } catch (std::invalid_argument const&) {  // not into so many
+      } catch (std::invalid_argument const&) {  // the lattice cannot be divided into so many
       }
     }
     return {1, 1};
@@ -179,7 +179,7 @@ class MpiRanks final : public Ranks {
 
   static void wait(MPI_Request& request) { mpi::detail::wait_for({&request, 1}); }
 
-  /// Without taking a processor from the ranks that still work.
+  /// Waits without occupying a core that other ranks still need.
   static void wait_for_all() {
     MPI_Request all = MPI_REQUEST_NULL;
     MPI_Ibarrier(MPI_COMM_WORLD, &all);
@@ -194,7 +194,7 @@ class MpiRanks final : public Ranks {
   int threads_ = 0, count_ = 0, rank_ = 0, on_this_machine_ = 1;
 };
 
-/// Of the environment, from launchers.
+/// Environment variables set by launchers.
 constexpr std::array launch_variables{"PMI_RANK", "PMI_SIZE", "PMIX_RANK", "OMPI_COMM_WORLD_SIZE"};
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Of a program without MPI.
+// The single rank of a program without MPI.
 #include "launched_ranks.hpp"
 #include "simulation/one_rank.hpp"
 

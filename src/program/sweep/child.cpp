@@ -35,9 +35,9 @@ Pipe open_pipe() {
   return ends;
 }
 
-// After the fork: nothing here allocates.
+// Runs after the fork: nothing here allocates.
 [[noreturn]] void become(char* const* words, Pipe const& output, Pipe const& errors, pid_t parent) {
-  // Not in the group of the terminal, whose interrupt is passed on once, by the parent.
+  // Leaves the terminal's process group; the parent passes an interrupt on once.
   ::setpgid(0, 0);
 #if defined(__linux__)
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -98,7 +98,7 @@ void Child::read() {
       stream = -1;
     }
   }
-  // The last whole line of the output counts.
+  // Only the last whole line of the output counts.
   auto& output = texts_[0];
   if (auto const end = output.find_last_of('\n'); end != output.npos) {
     auto const before = end == 0 ? output.npos : output.find_last_of('\n', end - 1);
@@ -116,8 +116,8 @@ void Child::read() {
 }
 
 int Child::wait() {
-  // It has closed its streams, and a crash may still write a core. Where the system keeps no
-  // status, the file tells whether the run is complete.
+  // The streams are closed, but a crash may still be writing a core. If the system keeps no status,
+  // the file tells whether the run is complete.
   int const status = end_of_process(process_, std::chrono::minutes(1)).value_or(0);
   process_ = -1;
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

@@ -10,7 +10,7 @@
 
 namespace cayspin::program::sweep {
 
-/// This program, started once more with other arguments. It ends when this process does.
+/// Another process of this program, with other arguments. It ends when this process does.
 class Child {
  public:
   /// `many`: others run at the same time, so that none binds its threads to cores.
@@ -21,17 +21,17 @@ class Child {
   Child& operator=(Child const&) = delete;
 
   void add_to(std::vector<pollfd>& polled) const;
-  /// Takes what it has written so far; does not wait.
+  /// Reads its output so far; does not wait.
   void read();
-  /// Has it closed its streams, as it does at its end?
+  /// Returns true once it has closed its streams, as it does at its end.
   bool has_ended() const { return streams_[0] < 0 && streams_[1] < 0; }
-  /// Its exit status, or 128 + the signal that ended it.
+  /// Returns its exit status, or 128 + the signal that ended it.
   int wait();
   void send(int signal) const;
 
-  /// Of `run --report-progress`: the share of its steps that are done.
+  /// Returns the share of steps done, from `run --report-progress`.
   double share() const { return share_; }
-  /// The last line that it wrote on standard error.
+  /// Returns the last line of its standard error.
   std::string message() const;
 
  private:

@@ -11,22 +11,22 @@
 
 namespace cayspin::program::sweep {
 
-/// A run under way and the share of it that is done.
+/// A run in progress and its share of steps done.
 struct Running {
   std::int64_t run;
   double share;
 };
 
-/// How far a sweep is, on standard output: on a terminal a bar for each run under way, as far
-/// as they fit, and one for all, otherwise a line for each that has ended.
+/// Progress report of a sweep on standard output: on a terminal a bar for each run in
+/// progress, as far as they fit, and one for all; otherwise a line for each run that ended.
 class Display {
  public:
-  /// `open`: what has to be run.
+  /// `open`: the runs to do.
   Display(Grid const& grid, std::vector<std::int64_t> const& open, bool quiet);
 
   void ended(std::int64_t number, io::SweptRun const& run, std::vector<Running> const& running);
   void show(std::vector<Running> const& running);
-  /// Takes the bars away.
+  /// Removes the bars.
   void clear();
 
  private:

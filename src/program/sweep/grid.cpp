@@ -3,9 +3,11 @@
 
 #include "cayspin_git_commit.hpp"
 #include "io/notes.hpp"
+#include "io/stages.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/plan.hpp"
+#include "simulation/scene_minimizer.hpp"
 
 #include <cayspin/version.hpp>
 
@@ -18,10 +20,11 @@ namespace cayspin::program::sweep {
 namespace {
 
 constexpr double most_runs = 1e5;
-// Sites of all starts whose numbers are looked at before the first run.
+// Largest number of sites of all starts that are checked before the first run.
 constexpr std::int64_t most_checked = 20'000'000;
 
-// Is one of them the other, or a table around it? Paths as `--set` takes them.
+// Returns true if the paths are equal, or one is a table that contains the other. Paths as for
+// `--set`.
 bool overlap(std::string const& a, std::string const& b) {
   auto const path = [](std::string const& assignment) {
     auto key = assignment.substr(0, assignment.find('='));
@@ -58,6 +61,16 @@ std::vector<io::SweptKey> read_keys(SweepOptions const& options) {
   return keys;
 }
 
+// Each run checks the time dependence of its field itself.
+Plan plan_of(io::Stage const& stage, Precision precision) {
+  auto const& scene = stage.scene;
+  if (stage.relax) return make_plan_to_relax(scene, precision);
+  auto const no_features = std::make_shared<TimeFeatures const>();
+  auto plan = make_plan(scene, precision, scene.integrator.refuse_unstable ? nullptr : no_features);
+  dt_warning(scene, plan);  // an error if the scene sets refuse_unstable
+  return plan;
+}
+
 }  // namespace
 
 std::string values_text(io::SweepHeader const& header, std::int64_t run) {
@@ -84,20 +97,18 @@ Grid make_grid(SweepOptions const& options) {
       if (scene.output.sync)
         throw io::scene_error(scene, "output.sync",
                               "true: a sweep is not kept from power cuts; accepted: false");
-      if (!scene.integrator.method->automatic) {
-        // What the field does in time each run looks at itself.
-        auto const no_features = std::make_shared<TimeFeatures const>();
-        auto const plan = make_plan(scene, options.precision,
-                                    scene.integrator.refuse_unstable ? nullptr : no_features);
-        require_memory(scene, plan);
-        dt_warning(scene, plan);  // an error where the scene refuses to be unstable
+      std::int64_t steps = 0;
+      for (auto const& stage : io::stages_of(scene)) {
+        steps += stage.relax ? 0 : stage.scene.integrator.steps;
+        if (scene.integrator.method->automatic) continue;
+        auto const plan = plan_of(stage, options.precision);
+        require_memory(stage.scene, plan);
         grid.largest = std::max(grid.largest, plan.memory.total());
       }
       checked += io::sites(scene);
       if (checked <= most_checked) io::initial_spins(scene);
       grid.texts.push_back(scene.text);
-      grid.costs.push_back(static_cast<double>(scene.integrator.steps) *
-                           static_cast<double>(io::sites(scene)));
+      grid.costs.push_back(static_cast<double>(steps) * static_cast<double>(io::sites(scene)));
     } catch (io::SceneError const& error) {
       if (header.runs() == 1) throw;
       throw io::SceneError(fmt::format("with {}: {}", values_text(header, run), error.what()));

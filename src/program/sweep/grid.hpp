@@ -14,23 +14,23 @@ struct SweepOptions : SceneOptions {
   std::filesystem::path output;
   Precision precision = Precision::double_precision;
   std::optional<std::string> space;
-  std::optional<int> jobs, threads;  // runs at a time; threads of each
+  std::optional<int> jobs, threads;  // concurrent runs; threads of each
   bool overwrite = false, quiet = false;
 };
 
-/// A sweep whose scenes are all valid.
+/// A sweep with only valid scenes.
 struct Grid {
   io::SweepHeader header;
   std::vector<std::string> texts;  // of the scenes
-  std::vector<double> costs;       // spin updates of each
-  std::int64_t largest = 0;        // bytes of memory that one of them takes
+  std::vector<double> costs;       // spin updates of each run
+  std::int64_t largest = 0;        // memory of the largest run, in bytes
 };
 
 /// Reads every scene as `run` would. Throws UsageError or io::SceneError, which names the
 /// combination that is wrong.
 Grid make_grid(SweepOptions const& options);
 
-/// "system.damping=0.1 integrator.dt=0.02"
+/// Returns, for example, "system.damping=0.1 integrator.dt=0.02".
 std::string values_text(io::SweepHeader const& header, std::int64_t run);
 
 }  // namespace cayspin::program::sweep

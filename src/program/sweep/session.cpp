@@ -24,7 +24,7 @@ bool has_ended(io::SweptRun const& run) {
   return run.status == Status::done || run.status == Status::numbers_failed;
 }
 
-// What makes the sweep in the file another one, or nothing.
+// Returns how the sweep differs from that in the file, or nothing.
 std::string difference(io::SweepHeader const& now, io::SweepHeader const& before) {
   auto const keys = [](io::SweepHeader const& header) {
     std::string text;
@@ -55,7 +55,7 @@ Session::Session(fs::path file, Grid const& grid, bool overwrite)
   if (exists && overwrite) require_replaceable();
   lock_folder();
   if (exists && !overwrite) {
-    // Once more: it may have come to its end meanwhile.
+    // Checked again: it may have completed meanwhile.
     auto const before = io::read_sweep(file_);
     info_.runs = before.runs;
     info_.complete = before.complete;
@@ -70,7 +70,7 @@ Session::Session(fs::path file, Grid const& grid, bool overwrite)
     io::SweptRun found;
     bool const is_whole = read_run(number, found);
     if (run.has_file && !found.has_file) {
-      run = {};  // its file is gone or damaged: it runs again
+      run = {};  // its file is missing or damaged: it runs again
     } else if (is_whole && run.status != Status::numbers_failed) {
       found.message = run.message;
       run = found;
@@ -128,8 +128,8 @@ std::vector<std::int64_t> Session::open_runs() const {
 
 bool Session::is_finished() const { return std::ranges::all_of(info_.runs, has_ended); }
 
-// True where the run's own file is complete and that of this sweep; a file with a frame of a run
-// that failed is read all the same.
+// Returns true if the run's own file is complete and of this sweep. A file with a frame is read
+// even if its run failed.
 bool Session::read_run(std::int64_t number, io::SweptRun& run) const {
   auto const path = run_file(number);
   if (!fs::exists(path)) return false;
@@ -156,7 +156,7 @@ void Session::take(std::int64_t number, std::int64_t status, std::string const& 
   io::SweptRun taken;
   bool const whole = read_run(number, taken);
   taken.status = status;
-  // It names a file that is going to be a group.
+  // The file of this name becomes a group.
   auto const name = run_file(number).string();
   taken.message = message;
   if (auto const place = message.find(name); place != message.npos)
@@ -167,7 +167,8 @@ void Session::take(std::int64_t number, std::int64_t status, std::string const& 
     taken.message = "its file is not that of the scene that was read when the sweep began";
   }
   info_.runs[index(number)] = taken;
-  // A run whose file is complete is found again without this.
+  // Successful runs need not be written at once: one with a complete file is found again without
+  // it.
   if (status != Status::done ||
       std::chrono::steady_clock::now() - written_ > std::chrono::seconds(1))
     write();

@@ -12,11 +12,12 @@
 
 namespace cayspin::program::sweep {
 
-/// The file of a sweep and the folder beside it, where its runs write. Nobody else has them.
+/// The file of a sweep and the folder next to it where its runs write, locked against other
+/// processes.
 class Session {
  public:
-  /// Goes on with the sweep that the file has, or begins one. Throws UsageError when the file has
-  /// something else, or another process works on it.
+  /// Continues the sweep in the file, or starts one. Throws UsageError when the file has other
+  /// contents, or another process works on it.
   Session(std::filesystem::path file, Grid const& grid, bool overwrite);
   ~Session();
   Session(Session const&) = delete;
@@ -26,16 +27,16 @@ class Session {
   io::SweptRun const& run(std::int64_t number) const { return info_.runs[index(number)]; }
   std::filesystem::path run_file(std::int64_t number) const;
 
-  /// The runs that have to be done.
+  /// Returns the runs that are still to do.
   std::vector<std::int64_t> open_runs() const;
 
-  /// A run has ended. Its status is that of wrong usage when it was not the one that was planned.
+  /// Records the end of a run. Its status is that of wrong usage if it was not the planned one.
   void take(std::int64_t number, std::int64_t status, std::string const& message);
 
-  /// Writes what was taken.
+  /// Writes the recorded results.
   void write();
-  /// The same; when all runs have ended, they become part of the file and the folder goes. False
-  /// when an interrupt came first.
+  /// Writes; if all runs have ended, copies them into the file and removes the folder. Returns
+  /// false if interrupted.
   bool close();
 
  private:

@@ -32,7 +32,7 @@ struct Job {
   std::unique_ptr<Child> child;
 };
 
-// How many run at a time, and the threads of each.
+// Number of concurrent runs, and the threads of each.
 struct Sharing {
   int jobs;
   std::optional<int> threads;
@@ -72,7 +72,7 @@ std::vector<std::string> arguments_of(SweepOptions const& options, Grid const& g
   return arguments;
 }
 
-// Their files are not needed: what was under way begins again.
+// Their files are not needed: interrupted runs start again.
 void stop(std::vector<Job>& jobs) {
   for (auto const& job : jobs) job.child->send(SIGTERM);
   auto const deadline = Clock::now() + std::chrono::seconds(2);
@@ -84,7 +84,7 @@ void stop(std::vector<Job>& jobs) {
   jobs.clear();
 }
 
-// False when it was interrupted.
+// Returns false if interrupted.
 bool run_all(SweepOptions const& options, Grid const& grid, Session& session) {
   auto const list = session.open_runs();
   std::deque<std::int64_t> open(list.begin(), list.end());
@@ -182,7 +182,7 @@ Command add_sweep(CLI::App& program) {
       ->required()
       ->allow_extra_args(false)
       ->type_name("KEY=VALUES");
-  command->add_option("--output", options->output, "The file of all runs")->required();
+  command->add_option("-o,--output", options->output, "The file of all runs")->required();
   command->add_option("--jobs", options->jobs, "Runs at a time")->check(CLI::Range(1, 65536));
   add_space_options(*command, *options);
   command->add_flag("--overwrite", options->overwrite,

@@ -28,7 +28,7 @@ std::string status_text(io::SweptRun const& run) {
   }
 }
 
-// Off the sphere, as classical methods may be, six digits after the point are too many.
+// Six digits after the point are too many off the sphere, where classical methods may be.
 std::string component_text(double m) {
   return std::abs(m) < 10 ? fmt::format("{:.6f}", m) : fmt::format("{:.3g}", m);
 }

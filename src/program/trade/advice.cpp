@@ -3,8 +3,8 @@
 
 #include "prospect.hpp"
 #include "resolved.hpp"
-#include "simulation/dear_method.hpp"
 #include "simulation/failure.hpp"
+#include "simulation/multirate_method.hpp"
 #include "simulation/text.hpp"
 
 #include <Kokkos_Timer.hpp>
@@ -16,29 +16,30 @@
 namespace cayspin::program::trade {
 namespace {
 
-// Of the time that a run takes, and seconds at least.
+// Limits of a search: share of the duration of the run, but at least this many seconds.
 constexpr double most_share = 0.1, least_limit = 2;
-// Of the limit, roughly: of a coarse run, the fine solution, the first tries, and all tries.
+// Approximate shares of that limit: for a coarse run, the fine solution, the first trials, and all
+// trials.
 constexpr double coarse_share = 1.0 / 40, fine_share = 0.4, first_share = 0.65, try_share = 0.9;
 
-constexpr double accepted = 0.95;  // of the error asked for, with what is not known of it
-constexpr double aim = 0.9;        // of what is accepted
-constexpr double unlikely = 16;    // evaluations expected over the fewest
-constexpr double hope = 0.8;       // time over that predicted, at best
-constexpr double doubt = 6;        // the same, where noise may be the reason
-constexpr double contender = 1.7;  // time over that of the best, of those timed again
-constexpr int rounds = 3;          // of that
-constexpr int tries = 12;          // of one candidate
-constexpr int all_finer = 30;      // beyond the coarsest steps, where those are refused
+constexpr double accepted = 0.95;  // share of the requested error, with its uncertainty included
+constexpr double aim = 0.9;        // share of the accepted error
+constexpr double unlikely = 16;    // ratio of expected evaluations to the fewest
+constexpr double hope = 0.8;       // ratio of time to the prediction, at best
+constexpr double doubt = 6;        // the same ratio, if noise may be the reason
+constexpr double contender = 1.7;  // ratio of time to the best, for candidates that are timed again
+constexpr int rounds = 3;          // of repeated timing
+constexpr int tries = 12;          // per candidate
+constexpr int all_finer = 30;      // times finer than the coarsest steps, if those are refused
 constexpr int refinements = 4;     // of resolved steps that miss the error
-constexpr int horizons = 20;       // tried, each half of the one before
+constexpr int horizons = 20;       // number to try, each half of the previous one
 
 constexpr Repeats quick{1, 2e-3};
 
-/// A solution and the error that it has.
+/// A solution and its estimated error.
 struct Known {
   FineSolution solution;
-  double error;  // estimated, by the one at ten times the tolerance
+  double error;  // estimated from a solution at ten times the tolerance
 };
 
 class Search {
@@ -59,8 +60,9 @@ class Search {
     std::ranges::stable_sort(prospects_, {}, &Prospect::expected_evaluations);
   }
 
-  /// Each that is likely once, then what promises to be the cheapest, until nothing does; then the
-  /// same with all. Less where time is up, but not before something runs.
+  /// Tries each likely candidate once, then the one predicted to be the cheapest, until none
+  /// promises an improvement; then repeats this with all candidates. Stops early when time is up,
+  /// but not before one candidate works.
   void run() {
     if (prospects_.empty()) return;
     double const least = prospects_.front().expected_evaluations();
@@ -72,7 +74,8 @@ class Search {
     time_again();
   }
 
-  /// Cheapest first. One that was not tried to the end is not the first if others were.
+  /// Returns all advice, cheapest first. A candidate that was not fully tried does not come first
+  /// if others were.
   std::vector<Advice> all_advice() const {
     std::vector<Advice> all;
     double const least = least_seconds();
@@ -98,7 +101,7 @@ class Search {
 
   void add(Candidate const& candidate) {
     if (!pilot_.fits(candidate)) return;
-    // Steps of their own see what a part of the run does not tell of.
+    // Adaptive steps may meet features that this part of the run does not have.
     if (!candidate.method->adaptive && !is_representative_) return;
     auto coarsest = coarsest_steps(pilot_, candidate, horizon_.time, horizon_.own_steps);
     for (int i = 0; is_refused(candidate, coarsest); ++i) {
@@ -107,9 +110,10 @@ class Search {
     }
     auto const scene = with(pilot_.scene(), candidate, horizon_.time, 1, coarsest);
     auto const& variant = find_variant(scene);
-    double const order = candidate.substeps > 0 ? order_around_dear(scene, variant) : variant.order;
+    double const order =
+        candidate.substeps > 0 ? order_with_multirate(scene, variant) : variant.order;
     bool const adaptive = candidate.method->adaptive;
-    // An adaptive method's error is not far from its tolerance, and its cost depends little on it.
+    // An adaptive method's error is close to its tolerance, and its cost depends little on it.
     auto first = coarsest;
     if (adaptive) first.tolerance = std::min(coarsest.tolerance, 30 * goal_);
     constexpr double of_iterations = 20, error_of_own_steps = 1e-2;
@@ -133,7 +137,7 @@ class Search {
     return clock_.seconds() > share * std::clamp(of_best, least_limit, limit_);
   }
 
-  // Of what has the error; infinite where nothing has.
+  // Returns the time of a trial that meets the error; infinite if there is none.
   double seconds_of_passing(Prospect const& prospect) const {
     auto const* const passing = prospect.passing(error_);
     return passing ? passing->seconds : infinite;
@@ -161,7 +165,7 @@ class Search {
         return;
   }
 
-  // Nothing, where none of the others may be cheaper than the best that passes.
+  // Returns nothing if no other candidate may be cheaper than the best that meets the error.
   Prospect* most_promising() {
     Prospect* promising = nullptr;
     double least = least_seconds() / hope;
@@ -184,7 +188,7 @@ class Search {
     if (prospect.tries().size() >= tries || prospect.is_round_off(error_)) prospect.drop();
   }
 
-  // Times those once more that noise may have made slow. Was there one?
+  // Repeats timings that noise may have slowed down. Returns true if there was one.
   bool time_doubtful() {
     bool any = false;
     double const most = doubt * least_seconds();
@@ -201,7 +205,7 @@ class Search {
     return any;
   }
 
-  // By turns, so that noise is the same for all.
+  // Alternates between candidates, so that noise affects all equally.
   void time_again() {
     for (int round = 0; round < rounds; ++round) {
       double const most = (round == 0 ? doubt : contender) * least_seconds();
@@ -232,20 +236,20 @@ class Search {
   Known const& fine_;
   AdviceRequest const& request_;
   Kokkos::Timer const& clock_;
-  double limit_;  // seconds
+  double limit_;  // in seconds
   bool is_representative_;
-  double error_, goal_;  // accepted; to be reached
+  double error_, goal_;  // error accepted; error to aim for
   std::vector<Prospect> prospects_;
 };
 
-// What a search may take, from a coarse run to the end, which a part of it tells.
+// Returns the time limit of a search, estimated from a coarse run of a part of the scene.
 double limit_of(Pilot const& pilot) {
   auto const part = horizon_within(pilot, coarse_share * least_limit);
   return std::max(least_limit, most_share * part.seconds * pilot.end() / part.time);
 }
 
-// Up to the horizon, which is halved until there is one that is known to a part of `error` and
-// takes no more than `seconds`.
+// Returns a solution up to the horizon, which is halved until the solution's error is below a
+// fraction of `error` and it takes at most `seconds`.
 Known fine_solution(Pilot const& pilot, Horizon& horizon, double error, double seconds) {
   auto const by = fine_tsit5();
   double const tightest = by.least_tolerance();
@@ -274,8 +278,8 @@ Known fine_solution(Pilot const& pilot, Horizon& horizon, double error, double s
   throw NumbersFailed("there is no solution to compare with: " + horizon.why_shorter);
 }
 
-// Where a field depends on t the error depends on where the steps lie, and a scene's frames may
-// shorten them: the steps that a run takes are tried, and shortened while they miss the error.
+// Checks the steps of the actual run. If a field depends on t, the error depends on where the steps
+// are, and a scene's frames may shorten them. The steps are shortened until they meet the error.
 bool holds(Pilot const& pilot, Horizon const& horizon, Known const& fine, double error,
            Advice& advice) {
   if (advice.candidate.method->adaptive || !io::depends_on_time(pilot.scene().field)) return true;

@@ -8,35 +8,35 @@
 
 namespace cayspin::program::trade {
 
-/// A method with its steps for a whole scene, and what they will come to.
+/// A method with its steps for a whole scene, and the predicted result.
 struct Advice {
   Candidate candidate;
-  Steps steps;  // to the scene's end
+  Steps steps;  // up to the scene's end
   double dt = 0;
-  double error = 0;  // at the tried horizon
+  double error = 0;  // at the horizon of the trials
   double seconds = 0;
-  std::int64_t memory = 0;  // bytes, of the choice
+  std::int64_t memory = 0;  // of the choice, in bytes
 };
 
 struct AdviceRequest {
   double error = 1e-4;
   std::optional<double> budget;        // seconds that the run may take
-  std::optional<Precision> precision;  // the only one
+  std::optional<Precision> precision;  // the only one to try
   TrialProgress* progress = nullptr;
 };
 
-/// What was found out, at which horizon.
+/// Result of a search, and its horizon.
 struct Advised {
-  std::optional<Advice> choice;  // none where nothing reaches the error, or the budget
+  std::optional<Advice> choice;  // empty if nothing meets the error, or the budget
   std::vector<Advice> others;    // cheapest first
   double horizon = 0;
   std::string why_shorter;
-  double seconds = 0;  // that it took to find out
+  double seconds = 0;  // duration of the search
 };
 
-/// Tries every candidate with coarse steps, judges their errors by one fine solution, and goes on
-/// with those that promise to be the cheapest. Takes a tenth of the time of the run at most, or 2
-/// s, and a try.
+/// Tries every candidate with coarse steps, compares them with one fine solution, and continues
+/// with those predicted to be the cheapest. Takes at most a tenth of the duration of the run, or 2
+/// s, plus one trial.
 Advised advise(Pilot const& pilot, AdviceRequest const& request);
 
 }  // namespace cayspin::program::trade

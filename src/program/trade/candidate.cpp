@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "candidate.hpp"
 
-#include "simulation/dear_method.hpp"
+#include "simulation/multirate_method.hpp"
 #include "simulation/text.hpp"
 
 #include <fmt/format.h>
@@ -19,12 +19,12 @@ std::string Candidate::name() const {
   if (sigma != 0) name += fmt::format(" sigma {:.3g}", sigma);
   if (precision == Precision::single_precision) name += ", single";
   if (compensated) name += " compensated";
-  if (substeps > 0) name += fmt::format(", dear, {}", counted(substeps, "substep"));
+  if (substeps > 0) name += fmt::format(", multirate, {}", counted(substeps, "substep"));
   return name;
 }
 
 double Candidate::least_tolerance() const {
-  // As measured on films; the steps' number does not matter.
+  // As measured on films; it does not depend on the number of steps.
   if (compensated && precision == Precision::single_precision)
     return 4 * double(std::numeric_limits<float>::epsilon());
   return precision == Precision::single_precision ? StepOptions::least_tolerance<float>()
@@ -46,17 +46,17 @@ bool is_possible(io::Scene const& scene, Candidate const& candidate) {
   try {
     auto const tried = with(scene, candidate, 1, 1, {1, 1});
     io::check_combination(tried);
-    require_dear_field_fits(tried, find_variant(tried));
+    require_slow_field_fits(tried, find_variant(tried));
     return true;
   } catch (io::SceneError const&) {
     return false;
   }
 }
 
-// As the rows of the list of methods ask for.
+// Returns the candidates requested by the rows of the list of methods.
 std::vector<Candidate> in_double(io::Scene const& scene) {
-  // Exchange holds a multiple of the spin itself, which a constant sigma takes out: what is left
-  // turns neighbours alike.
+  // H includes a multiple of the spin itself from exchange, which a constant sigma removes. The
+  // rest turns neighbours equally.
   double const couplings = sum_of_couplings(scene);
   std::vector<Candidate> all;
   for (auto const* const method : io::methods()) {
@@ -72,7 +72,7 @@ std::vector<Candidate> in_double(io::Scene const& scene) {
       all.back().sigma = couplings;
     }
   }
-  if (has_dear_field(scene)) {
+  if (has_slow_field(scene)) {
     auto const each_stage = all.size();
     for (std::size_t i = 0; i < each_stage; ++i)
       for (auto const substeps : {1, 2, 4}) {
@@ -108,8 +108,8 @@ io::Scene with(io::Scene scene, Candidate const& candidate, double horizon, std:
                Steps const& steps) {
   auto& integrator = scene.integrator;
   candidate.put_into(integrator);
-  if (scene.field.slab_demag) scene.field.slab_demag->dear = candidate.substeps > 0;
-  if (scene.field.demag) scene.field.demag->dear = candidate.substeps > 0;
+  if (scene.field.slab_demag) scene.field.slab_demag->multirate = candidate.substeps > 0;
+  if (scene.field.demag) scene.field.demag->multirate = candidate.substeps > 0;
   integrator.until_torque.reset();
   integrator.error.reset();
   integrator.energy_control = false;

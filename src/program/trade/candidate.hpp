@@ -16,24 +16,24 @@ using namespace simulation;
 
 inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// A choice in one precision, whose steps are still to be chosen.
+/// A method in one precision, whose steps are still to be chosen.
 struct Candidate : MethodChoice {
   Precision precision = Precision::double_precision;
 
   double least_tolerance() const;
-  /// Round-off of a run comes up to here: no smaller error is asked of the candidate.
+  /// Returns the error of a run due to round-off, below which no error is requested.
   double least_error() const { return 2 * least_tolerance(); }
-  /// Such as "rkmk4 tangent, single" or "rkmk4, dear, 4 substeps".
+  /// Returns a name such as "rkmk4 tangent, single" or "rkmk4, multirate, 4 substeps".
   std::string name() const;
 };
 
-/// How a candidate steps: so many equal steps, or as the tolerance asks for.
+/// Steps of a candidate: a number of equal steps, or a tolerance.
 struct Steps {
   std::int64_t count = 0;
   double tolerance = 0;
 };
 
-/// A run of a candidate; infinite error where it failed.
+/// Result of a candidate's run; infinite error if it failed.
 struct Try {
   Steps steps;
   double error = infinite;
@@ -41,11 +41,11 @@ struct Try {
   std::int64_t evaluations = 0;
 };
 
-/// All that can run a scene, those of high order first; in one precision, where that is given. A
-/// dear field is evaluated once a step of some, and in each stage of others.
+/// Returns all candidates that can run a scene, high orders first; in one precision, if it is
+/// given. Some evaluate an expensive field once a step, others in each stage.
 std::vector<Candidate> candidates(io::Scene const& scene, std::optional<Precision> precision = {});
 
-/// The scene up to `horizon` by a candidate; adaptive ones are looked at after so many equal
+/// Returns the scene up to `horizon` with a candidate; adaptive methods are observed after equal
 /// intervals.
 io::Scene with(io::Scene scene, Candidate const& candidate, double horizon, std::int64_t intervals,
                Steps const& steps);

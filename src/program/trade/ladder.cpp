@@ -7,9 +7,9 @@
 namespace cayspin::program::trade {
 namespace {
 
-constexpr double finer_by = 1.5;  // steps of a rung over those of the one before
+constexpr double finer_by = 1.5;  // ratio of steps between rungs
 
-// At least four, so that there is a motion to look at.
+// At least four, so that there is some motion to observe.
 std::int64_t whole(double steps) {
   return static_cast<std::int64_t>(std::max<double>(4, std::ceil(steps)));
 }
@@ -18,8 +18,8 @@ double amount(Rung const& rung, bool of_evaluations) {
   return of_evaluations ? static_cast<double>(rung.evaluations) : rung.seconds;
 }
 
-// What a rung takes to an error, if one before it that does not get there says more: less, by
-// logarithms.
+// Returns the cost of a rung at an error; lower, by logarithmic interpolation, if the previous rung
+// just misses the error.
 double interpolated(Rung const* before, Rung const& rung, double error, bool of_evaluations) {
   double const last = amount(rung, of_evaluations);
   if (!before || !(before->error > error) || !(rung.error > 0)) return last;
@@ -48,12 +48,12 @@ double least(Ladder const& ladder, double error, bool of_evaluations, Ladder* ar
 Steps coarsest_steps(Pilot const& pilot, Candidate const& candidate, double horizon,
                      std::int64_t own_steps) {
   if (candidate.method->adaptive) return {0, 0.1};
-  // Fewer than an explicit adaptive method takes at its coarsest, but stable ones.
+  // Fewer than an explicit adaptive method takes at its coarsest, but stable.
   auto const parts = static_cast<double>(4 * std::max<std::int64_t>(1, candidate.substeps));
   double const few = candidate.method->stiff ? 0 : static_cast<double>(own_steps) / parts;
   auto plain = candidate;
   plain.isotropy = io::Isotropy::zero;
-  plain.sigma = 0;  // it may make slow modes grow by a little, which is no reason to begin finer
+  plain.sigma = 0;  // slow growth due to sigma is no reason to start with finer steps
   auto const plan = pilot.plan(plain, horizon, {4, 0});
   double const stable =
       plan.stable_dt > 0 && std::isfinite(plan.stable_dt) ? horizon / plan.stable_dt : 0;
@@ -85,7 +85,7 @@ Ladder climb(Pilot const& pilot, Candidate const& candidate, Reference const& re
     double most = infinite;
     for (auto const& other : others)
       most = std::min(most, limits.far_behind * seconds_to(other, error));
-    // Round-off, or dt at which the method is of no use.
+    // Round-off is reached, or the method is too slow at this dt.
     if (error < limits.least_error || run.seconds > std::min(limits.seconds, most) ||
         (worse > 2 && best < 1e-3) || worse > 12)
       break;

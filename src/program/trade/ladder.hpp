@@ -8,13 +8,13 @@
 
 namespace cayspin::program::trade {
 
-/// One run of a ladder.
+/// A run of a ladder.
 struct Rung : Try {
-  double dt = 0;          // of methods with equal steps
-  bool on_front = false;  // nothing is both faster and more accurate
+  double dt = 0;          // of methods with constant steps
+  bool on_front = false;  // no other run is both faster and more accurate
 };
 
-/// A candidate's error and cost, from its coarsest steps on.
+/// Errors and costs of a candidate, starting with its coarsest steps.
 struct Ladder {
   Candidate candidate;
   std::vector<Rung> rungs;
@@ -24,29 +24,29 @@ inline constexpr Repeats measured_well{3, 5e-3};
 
 struct LadderLimits {
   double least_error = 1e-9;  // nothing finer is run
-  double seconds = 10;        // nor anything that takes longer
-  double far_behind = 30;     // nor by a candidate so many times slower than another
+  double seconds = 10;        // limit on the duration of a run
+  double far_behind = 30;     // limit on the ratio of its time to that of another candidate
   int rungs = 40;
   TrialProgress* progress = nullptr;
-  double share = 0;  // of all ladders that is done
+  double share = 0;  // share of all ladders done
 };
 
-/// Steps that a candidate's ladder begins with, as coarse as may be; and those of the next rung.
+/// Returns the coarsest possible steps for a candidate's first rung, and those of the next rung.
 Steps coarsest_steps(Pilot const& pilot, Candidate const& candidate, double horizon,
                      std::int64_t own_steps);
 Steps finer(Candidate const& candidate, Steps const& steps);
 
-/// `others`: what has been climbed before.
+/// `others`: the ladders so far.
 Ladder climb(Pilot const& pilot, Candidate const& candidate, Reference const& reference,
              std::vector<Ladder> const& others, LadderLimits const& limits = {});
 
 /// Marks the Pareto front of all rungs, by error and seconds.
 void mark_front(std::vector<Ladder>& ladders);
 
-/// What a ladder's candidate takes to an error, between rungs by logarithms; infinite where it
-/// does not get there.
+/// Returns the time that a ladder's candidate takes to an error, interpolated logarithmically
+/// between rungs; infinite if it does not reach the error.
 double seconds_to(Ladder const& ladder, double error);
-/// The ladder with the rungs alone from which that comes: two, one or none.
+/// Returns the ladder with only the rungs that give this time: two, one or none.
 Ladder around(Ladder const& ladder, double error);
 double evaluations_to(Ladder const& ladder, double error);
 

@@ -3,8 +3,8 @@
 
 #include "files/available_memory.hpp"
 #include "reference.hpp"
-#include "simulation/dear_method.hpp"
 #include "simulation/guard.hpp"
+#include "simulation/multirate_method.hpp"
 #include "simulation/text.hpp"
 #include "simulation/thermal.hpp"
 
@@ -46,7 +46,7 @@ class KeepStates : public RunObserver<Space, SpinField<Real, typename Space::mem
     auto const kept = outcome_.states.size();
     return kept < steps_.size() && step.number == steps_[kept];
   }
-  // Are they finite?
+  // Keeps the spins; returns true if all are finite.
   bool keep(Spins const& spins) {
     auto const numbers = copy_to_host(spins);
     outcome_.states.emplace_back(numbers.begin(), numbers.end());
@@ -64,7 +64,7 @@ Outcome run_on(io::Scene const& scene, Plan const& plan, Stretch const& stretch,
   Simulation<Real, Space> simulation(scene, plan.lattice, plan.times, stretch.start);
   Outcome outcome;
   std::optional<Guard> guard;
-  constexpr double margin = 8;  // for other steps than these
+  constexpr double margin = 8;  // for steps other than these
   if (guarded) guard.emplace(scene, std::numeric_limits<Real>::epsilon() / margin);
   KeepStates<Real, Space> keep(stretch.looks.steps, simulation.generator, guard, outcome);
   auto const method = open_method(scene, plan, &simulation);
@@ -139,7 +139,7 @@ bool Pilot::is_representative(double horizon) const {
 
 std::int64_t Pilot::bytes(Candidate const& candidate) const {
   auto const steps = candidate.method->adaptive ? Steps{0, 0.1} : Steps{4, 0};
-  // Two fine solutions, a try and the start are in memory at once.
+  // Two fine solutions, a trial and the start are in memory at once.
   auto const states = 3 * std::ssize(times_of_looks(*features_, end())) + 4;
   return plan(candidate, end(), steps).memory.simulation() + states * 24 * io::sites(scene_);
 }
@@ -159,7 +159,7 @@ Outcome Pilot::run(Candidate const& candidate, double horizon, Steps const& step
 Outcome Pilot::run(Candidate const& candidate, Stretch const& stretch, Steps const& steps,
                    Repeats const& repeats) const {
   auto const scene = with(scene_, candidate, stretch.length, stretch.looks.intervals, steps);
-  // No run needs the stable dt of a sigma, which takes long to find.
+  // No run needs the stable dt with a sigma, which takes long to compute.
   auto planned = scene;
   if (candidate.isotropy == io::Isotropy::constant)
     planned.integrator.isotropy = io::Isotropy::zero;

@@ -11,66 +11,66 @@
 
 namespace cayspin::program::trade {
 
-/// When a run's spins are kept.
+/// Steps at which a run's spins are stored.
 struct Looks {
-  std::int64_t intervals;           // equal ones, that adaptive methods take for steps
-  std::vector<std::int64_t> steps;  // ascending, the last step among them
+  std::int64_t intervals;           // equal intervals, which adaptive methods use as steps
+  std::vector<std::int64_t> steps;  // ascending, including the last step
 };
 
-/// A part of a scene's run, from `begin` on.
+/// Part of a scene's run, starting at `begin`.
 struct Stretch {
   double begin, length;
   std::vector<double> const& start;  // (sites, 3)
   Looks looks;
-  bool guarded = false;  // does it fail where `cayspin run` stops?
+  bool guarded = false;  // true: it fails where `cayspin run` stops
 };
 
-/// How often a run is repeated, to measure its time: the shortest counts.
+/// Number of repetitions of a run to measure its time; the shortest counts.
 struct Repeats {
   int least = 1;
-  double seconds = 0;  // in all, of what takes less
+  double seconds = 0;  // total, for runs that take less
 };
 
-/// What a run without files came to.
+/// Result of a run without files.
 struct Outcome : Ending {
-  std::vector<std::vector<double>> states;  // at the looks, (sites, 3)
+  std::vector<std::vector<double>> states;  // at the stored steps, (sites, 3)
 
   double seconds() const { return summary.step_seconds; }
 };
 
-/// The largest distance of any spin.
+/// Returns the largest distance of any spin between two states.
 double distance(std::vector<double> const& a, std::vector<double> const& b);
-/// The same at any look; infinite where one of them is not finite.
+/// Returns the largest distance at any stored step; infinite if a state is not finite.
 double distance(Outcome const& a, Outcome const& b);
 
-/// Runs one scene by one method and another, in one execution space, inside a KokkosSession.
+/// Runner of one scene with different methods, in one execution space, inside a KokkosSession.
 class Pilot {
  public:
-  /// `error`: the smallest that is asked for. Throws io::SceneError for a scene without steps or
-  /// with a temperature, and where memory does not suffice.
+  /// `error`: the smallest requested. Throws io::SceneError for a scene without steps or with a
+  /// temperature, and if memory does not suffice.
   Pilot(io::Scene scene, std::string space, double error);
 
   io::Scene const& scene() const { return scene_; }
   std::vector<double> const& start() const { return start_; }
   double end() const;
   TimeFeatures const& features() const { return *features_; }
-  /// Of equal steps: the scene's max_dt, or the shortest feature of its field.
+  /// Returns the longest constant step: the scene's max_dt, or the shortest feature of its field.
   double longest_step() const;
-  /// Does what depends on t do up to `horizon` all that it does up to the end?
+  /// Returns true if fields that depend on t show all their features up to `horizon`.
   bool is_representative(double horizon) const;
-  /// Is there memory for a candidate's runs?
+  /// Returns true if there is memory for a candidate's runs.
   bool fits(Candidate const& candidate) const;
 
-  /// Seen at its end.
+  /// Runs a candidate, and stores only the final state.
   Outcome run(Candidate const& candidate, double horizon, Steps const& steps,
               Repeats const& repeats = {}) const;
   Outcome run(Candidate const& candidate, Stretch const& stretch, Steps const& steps,
               Repeats const& repeats = {}) const;
-  /// What is known of such a run beforehand.
+  /// Returns the plan of such a run.
   Plan plan(Candidate const& candidate, double horizon, Steps const& steps) const;
 
  private:
-  /// Of a run, and of the states that are kept of two.
+  /// Returns the bytes of a run, and of the stored states of two.
   std::int64_t bytes(Candidate const& candidate) const;
 
   io::Scene scene_;

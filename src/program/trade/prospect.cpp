@@ -7,9 +7,9 @@
 namespace cayspin::program::trade {
 namespace {
 
-constexpr double near = 4;        // error over error asked for, from where orders may be exceeded
-constexpr double most_finer = 5;  // cost over that of the finest try
-constexpr double close = 0.94;    // costs whose difference does not matter
+constexpr double near = 4;  // ratio of error to requested error above which orders may be exceeded
+constexpr double most_finer = 5;  // ratio of cost to that of the finest trial
+constexpr double close = 0.94;    // ratio of costs whose difference does not matter
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void Prospect::add(Try one, double unknown) {
   double const now = resolution(one.steps);
   auto const finer = std::ranges::upper_bound(
       tries_, now, {}, [this](Try const& other) { return resolution(other.steps); });
-  // Below what is known, the order tells.
+  // Below the known accuracy, extrapolates by the order.
   if (finer != tries_.begin() && one.error < 5 * unknown) {
     auto const& coarser = *std::prev(finer);
     double const by_order = coarser.error * std::pow(now / resolution(coarser.steps), -order_);
@@ -54,7 +54,7 @@ Try const* Prospect::passing(double error) const {
   return coarsest;
 }
 
-// From the last two tries; the method's own where they do not say.
+// Returns the order from the last two trials; the method's own if they do not show it.
 double Prospect::seen_order() const {
   if (tries_.size() < 2) return order_;
   auto const &a = tries_[tries_.size() - 2], &b = tries_.back();
@@ -63,7 +63,8 @@ double Prospect::seen_order() const {
   return std::isfinite(seen) ? seen : order_;
 }
 
-// By a power law. Where steps become stable errors fall all at once: halfway, until that is near.
+// Interpolates by a power law. Where steps become stable, errors drop abruptly: bisects until that
+// is near.
 double Prospect::between(Try const& failing, Try const& passing, double error) const {
   double const from = resolution(failing.steps), to = resolution(passing.steps);
   double const slope = std::log(failing.error / passing.error) / std::log(to / from);

@@ -7,12 +7,12 @@
 
 namespace cayspin::program::trade {
 
-/// What is known of a candidate, and what that promises. Resolution: its number of steps, or
-/// 1 / tolerance.
+/// Trials of a candidate, and predictions from them. Resolution: its number of steps, or 1 /
+/// tolerance.
 class Prospect {
  public:
-  /// `order`, `cost_order`: of error and cost in the resolution. `evaluations`: expected to be
-  /// needed, for as long as nothing was tried.
+  /// `order`, `cost_order`: exponents of error and cost in the resolution. `evaluations`: expected
+  /// number until something has been tried.
   Prospect(Candidate const& candidate, Steps const& coarsest, Steps const& first, double order,
            double cost_order, double evaluations)
       : candidate_(candidate),
@@ -29,22 +29,24 @@ class Prospect {
   bool is_dropped() const { return dropped_; }
   void drop() { dropped_ = true; }
 
-  /// Keeps a try, whose error is known up to `unknown`.
+  /// Adds a trial, whose error is known up to `unknown`.
   void add(Try one, double unknown);
-  /// A run with these steps took so long.
+  /// Adds the duration of a run with these steps.
   void add_time(Steps const& steps, double seconds);
 
-  /// The coarsest try from which on all have at most this error; nullptr: none has.
+  /// Returns the coarsest trial from which on all have at most this error; nullptr if there is
+  /// none.
   Try const* passing(double error) const;
-  /// Steps with this error, as far as can be told. They need not be allowed.
+  /// Returns the predicted steps for this error. They may not be allowed.
   Steps needed(double error) const;
-  /// From the shortest time per evaluation of all tries.
+  /// Returns the predicted time, from the shortest time per evaluation of all trials.
   double seconds_of(Steps const& steps) const;
-  /// The next to try: those needed, if they do not take far longer than the finest try.
+  /// Returns the next steps to try: the predicted ones, if they do not take far longer than the
+  /// finest trial.
   Steps next(double error) const;
-  /// Does the passing try take about as long as what is needed?
+  /// Returns true if the passing trial takes about as long as the predicted steps.
   bool is_settled(double error, double goal) const;
-  /// Finer steps that change the result by no less.
+  /// Returns true if finer steps change the result no less.
   bool is_round_off(double error) const;
   bool allows(Steps const& steps) const;
 

@@ -15,10 +15,10 @@ namespace {
 constexpr double enough = 1e-10;
 constexpr double tightest = 1e-13;
 constexpr int most_halvings = 20;
-constexpr int most_fewer = 4;   // halvings, at once
+constexpr int most_fewer = 4;   // halvings at once
 constexpr int most_short = 10;  // steps of a run that is never too long
 
-// The reference is made by these.
+// Methods that compute the reference.
 Candidate by(char const* method) { return {{.method = io::find_method(method)}}; }
 
 Looks looks_of(Candidate const& candidate, Steps const& steps,
@@ -101,12 +101,12 @@ Try FineSolution::measure(Candidate const& candidate, Steps const& steps, bool g
     measured.error =
         std::max(measured.error,
                  distance(outcome.states[i], at(looks.steps[i], adaptive ? parts : steps.count)));
-  // The many looks at an adaptive run take time of their own, on large lattices most of it.
+  // Storing many states takes time, on large lattices most of an adaptive run: timed separately.
   if (adaptive) measured.seconds = pilot_->run(candidate, horizon_, steps, repeats).seconds();
   return measured;
 }
 
-// From the last of its times before that step on.
+// Continues from the last stored time before that step.
 std::vector<double> FineSolution::at(std::int64_t step, std::int64_t steps) const {
   auto const of = [&](std::int64_t time) {
     return static_cast<double>(time) / static_cast<double>(parts);
@@ -143,7 +143,7 @@ Candidate fine_tsit5() {
 
 Horizon horizon_within(Pilot const& pilot, double seconds) {
   Horizon longest;
-  // From below, so that nothing is run much longer than allowed.
+  // Increases the horizon, so that nothing runs much longer than allowed.
   for (int halvings = most_halvings;;) {
     double const time = std::ldexp(pilot.end(), -halvings);
     auto const tried = pilot.run(fine_tsit5(), time, {0, 1e-2});

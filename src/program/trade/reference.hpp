@@ -10,17 +10,17 @@
 
 namespace cayspin::program::trade {
 
-/// The parts of a horizon that runs are looked at after, of 1024: a dozen, and those in which an
-/// applied field jumps or has its shortest feature.
+/// Returns the times, in units of 1/1024 horizon, at which runs are compared: a dozen, and those in
+/// which an applied field jumps or has its shortest feature.
 std::vector<std::int64_t> times_of_looks(TimeFeatures const& features, double horizon);
 
-/// A solution by an adaptive method up to a horizon, by which errors are measured.
+/// A solution by an adaptive method up to a horizon, with which runs are compared.
 ///
-/// Runs are looked at after their first step, and after the first steps that end at one of
-/// times_of_looks or later. An error is that of frames during the whole motion. What comes to rest
-/// does so early, hence half of the times are in the first quarter: at four equal times any stable
-/// step would do. Steps need not end at the times, which would rule out coarse ones. The solution
-/// is continued to where they end.
+/// Runs are compared after their first step, and after the first steps that end at or after one of
+/// times_of_looks, so that the error covers the whole motion. Motion that decays does so early,
+/// hence half of the times are in the first quarter: at four equal times any stable step would
+/// pass. Steps need not end at these times, which would exclude coarse ones. The solution is
+/// continued to where they end.
 class FineSolution {
  public:
   static constexpr std::int64_t parts = 1024;  // of the horizon
@@ -31,17 +31,17 @@ class FineSolution {
   double seconds() const { return solution_.seconds(); }
   std::optional<std::string> const& failure() const { return solution_.failure; }
 
-  /// The largest distance of any spin from another one, at any time.
+  /// Returns the largest distance of any spin from another solution, at any time.
   double distance_to(FineSolution const& other) const {
     return distance(solution_, other.solution_);
   }
 
-  /// From now on it is continued by equal steps of this method, as long as they can be for a run
-  /// to the horizon to come within `error` of it, if there are such. Short continuations are
-  /// cheaper by them than by the tolerance.
+  /// Continues the solution from now on by constant steps of this method, if there are steps whose
+  /// error at the horizon is within `error`; as long ones as possible. They make short
+  /// continuations cheaper than the tolerance does.
   void continue_by(Candidate const& method, double error);
 
-  /// A candidate's run to the horizon. `guarded`: does it fail where `cayspin run` stops?
+  /// Measures a candidate's run to the horizon. `guarded`: it fails where `cayspin run` stops.
   Try measure(Candidate const& candidate, Steps const& steps, bool guarded,
               Repeats const& repeats) const;
 
@@ -53,35 +53,36 @@ class FineSolution {
   double horizon_, tolerance_;
   std::vector<std::int64_t> times_;
   Outcome solution_;
-  std::int64_t equal_steps_ = 0;  // to the horizon, of continuations; 0: they have the tolerance
+  std::int64_t equal_steps_ = 0;  // of continuations, to the horizon; 0: they use the tolerance
 };
 
-/// A part of a scene's run from its start on, and what a coarse run of it tells.
+/// The first part of a scene's run, and results of a coarse run of it.
 struct Horizon {
   double time = 0;
-  std::int64_t own_steps = 0;    // of tsit5 at a tolerance of 0.01: how much there is to resolve
-  double seconds = 0;            // that it took
-  std::string why_shorter = {};  // empty where it is the scene's end
+  std::int64_t own_steps =
+      0;               // of tsit5 at a tolerance of 0.01: a measure of how much there is to resolve
+  double seconds = 0;  // duration of that run
+  std::string why_shorter = {};  // empty if it is the scene's end
 
   void halve(std::string why);
 };
 
-/// tsit5 in a form whose error follows its tolerance.
+/// Returns tsit5 in a form whose error follows its tolerance.
 Candidate fine_tsit5();
 
-/// The longest halving of the end that a coarse run covers in `seconds`, or in ten steps; the
-/// twentieth where none does.
+/// Returns the longest halving of the end that a coarse run covers in `seconds`, or in ten steps;
+/// the twentieth if none does.
 Horizon horizon_within(Pilot const& pilot, double seconds);
 
-/// A converged solution of a scene, up to its end or as far as there is one.
+/// A converged solution of a scene, up to its end or as far as it converges.
 struct Reference {
   Horizon horizon;
   FineSolution solution;
-  double uncertainty;  // distance of the solutions of two methods
+  double uncertainty;  // distance between the solutions of two methods
 };
 
-/// From a horizon that a coarse run covers in a tenth of `seconds`, halves it until two methods at
-/// their tightest agree.
+/// Starts from a horizon that a coarse run covers in a tenth of `seconds`, and halves it until two
+/// methods at their tightest tolerance agree.
 Reference converged_reference(Pilot const& pilot, double seconds);
 
 }  // namespace cayspin::program::trade

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "resolved.hpp"
 
-#include "simulation/dear_method.hpp"
 #include "simulation/failure.hpp"
+#include "simulation/multirate_method.hpp"
 
 #include <fmt/format.h>
 
@@ -13,12 +13,12 @@
 namespace cayspin::program::trade {
 namespace {
 
-// Beyond the last step nothing is due.
+// Nothing is due beyond the last step.
 std::int64_t within(io::Integrator const& integrator, std::int64_t every) {
   return std::clamp<std::int64_t>(integrator.steps, 1, every);
 }
 
-// How many of the scene's steps lie between looks that the advised method cannot leave out.
+// Returns how many of the scene's steps lie between outputs that the advised method must keep.
 std::int64_t steps_between_looks(io::Scene const& scene, bool adaptive) {
   auto const& integrator = scene.integrator;
   bool const looks_at_each = !integrator.method->has_equal_steps() || integrator.until_torque;
@@ -28,7 +28,7 @@ std::int64_t steps_between_looks(io::Scene const& scene, bool adaptive) {
                            within(integrator, scene.output.scalars_every)));
 }
 
-// All of the table, since the scene's may have keys that the method does not take.
+// Returns the complete table, since the scene's may have keys that the method does not accept.
 std::string integrator_table(io::Scene const& scene, Advice const& advice, double dt,
                              std::int64_t steps) {
   auto const& of_scene = scene.integrator;
@@ -51,7 +51,7 @@ std::string integrator_table(io::Scene const& scene, Advice const& advice, doubl
   return fmt::format("integrator={{{}}}", keys);
 }
 
-// Those keys of [output] that the scene has: `steps_of` makes other steps of its own.
+// Returns the keys of [output] that the scene has: `steps_of` converts numbers of steps.
 template <class StepsOf>
 void add_output_keys(io::Scene const& scene, std::vector<std::string>& overrides,
                      StepsOf const& steps_of) {
@@ -69,15 +69,15 @@ Resolved resolve(io::Scene const& scene, Advice const& advice) {
   auto const looks = integrator.steps / together;
   std::int64_t parts = 1;
   if (!advice.candidate.method->adaptive) {
-    // A multiple of four steps in all: a restart can go on with them to ends at quarters.
+    // The total is a multiple of four steps, so that a restart can end at quarters.
     std::int64_t const unit = looks > 0 ? 4 / std::gcd<std::int64_t>(4, looks) : 1;
     auto const least = static_cast<std::int64_t>(std::ceil(time / advice.dt - 1e-9));
     parts = (least + unit - 1) / unit * unit;
   }
   Resolved resolved{time * scene.units.time / static_cast<double>(parts), looks * parts, {}};
   resolved.overrides.push_back(integrator_table(scene, advice, resolved.dt, resolved.steps));
-  if (has_dear_field(scene) && advice.candidate.substeps == 0)
-    resolved.overrides.emplace_back(without_dear(scene));
+  if (has_slow_field(scene) && advice.candidate.substeps == 0)
+    resolved.overrides.emplace_back(without_multirate(scene));
   add_output_keys(scene, resolved.overrides,
                   [&](std::int64_t every) { return within(integrator, every) / together * parts; });
   return resolved;
@@ -106,7 +106,7 @@ std::optional<io::Scene> with_method_of(io::Scene const& scene, std::string cons
     return io::parse_scene(text, scene.path, {}, scene.given);
   };
   auto const typed = parsed(typed_before), resolved = parsed(resolved_before);
-  // What is due at steps of the scene is due at so many times as many of the chosen method.
+  // Output periods, in steps of the scene, are scaled to steps of the chosen method.
   double const ratio = typed.integrator.dt / resolved.integrator.dt;
   auto const steps = [&](std::int64_t of_scene) {
     return std::llround(static_cast<double>(of_scene) * ratio);
@@ -117,8 +117,8 @@ std::optional<io::Scene> with_method_of(io::Scene const& scene, std::string cons
   if (!same_choice || std::abs(whole - std::round(whole)) > 1e-6) return std::nullopt;
   std::vector overrides{io::as_override(resolved_before, "integrator"),
                         fmt::format("integrator.steps={}", steps(scene.integrator.steps))};
-  if (has_dear_field(scene) && !has_dear_field(resolved))
-    overrides.emplace_back(without_dear(scene));
+  if (has_slow_field(scene) && !has_slow_field(resolved))
+    overrides.emplace_back(without_multirate(scene));
   add_output_keys(scene, overrides,
                   [&](std::int64_t every) { return std::max<std::int64_t>(1, steps(every)); });
   return io::with_overrides(scene, overrides);

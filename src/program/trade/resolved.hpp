@@ -9,23 +9,25 @@
 
 namespace cayspin::program::trade {
 
-/// How a scene runs as advised. Frames and samples come when the scene wants them: a whole number
-/// of steps falls between two of them, so dt may be shorter than what is advised.
+/// A scene with the advised method. Frames and samples keep their times: a whole number of steps
+/// lies between two of them, so dt may be shorter than advised.
 struct Resolved {
-  double dt;  // as the scene has it; of adaptive methods: from one look at the spins to the next
+  double
+      dt;  // as in the scene; for adaptive methods the interval between observations of the spins
   std::int64_t steps;
-  std::vector<std::string> overrides;  // of the scene, the whole [integrator] among them
+  std::vector<std::string> overrides;  // of the scene, including the whole [integrator]
 };
 
 Resolved resolve(io::Scene const& scene, Advice const& advice);
 
-/// A scene of method "auto" with the method that is advised for its error, in one precision; any
-/// other scene as it is. Inside a KokkosSession. Throws NumbersFailed when nothing gets there.
+/// Returns a scene of method "auto" with the method advised for its error, in one precision; any
+/// other scene unchanged. Inside a KokkosSession. Throws NumbersFailed when no method meets the
+/// error.
 io::Scene with_method(io::Scene const& scene, std::string const& space, Precision precision,
                       TrialProgress* progress = nullptr);
 
-/// A scene of method "auto" with the method that was chosen for it in a run before, of which the
-/// scene as typed and as resolved are given. None where no such choice was made.
+/// Returns a scene of method "auto" with the method that an earlier run chose, given that run's
+/// scene as typed and as resolved. Empty if there was no such choice.
 std::optional<io::Scene> with_method_of(io::Scene const& scene, std::string const& typed_before,
                                         std::string const& resolved_before);
 

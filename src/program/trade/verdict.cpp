@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t best_ladders = 3;
 constexpr int turns = 3;
 
-// Cheapest first, each with the rungs alone that say so.
+// Returns ladders, cheapest first, each with only the rungs that decide.
 std::vector<Ladder> cheapest(std::vector<Ladder> const& ladders, double error) {
   std::vector<Ladder> all;
   for (auto const& ladder : ladders) all.push_back(around(ladder, error));

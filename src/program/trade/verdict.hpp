@@ -8,7 +8,7 @@
 
 namespace cayspin::program::trade {
 
-/// How an advice turned out, beside the ladders.
+/// Comparison of an advice with the ladders.
 struct Verdict {
   double asked;
   Advised advised;
@@ -16,8 +16,8 @@ struct Verdict {
   double best = 0;                // seconds, of all ladders
 };
 
-/// `pilot`: of the scene up to the reference's horizon, where the ladders end. The advised run and
-/// the best ladders are timed again by turns, so that noise is the same for all.
+/// `pilot`: runs the scene up to the reference's horizon, where the ladders end. The advised run
+/// and the best ladders are timed again alternately, so that noise affects all equally.
 Verdict judge(Pilot const& pilot, Reference const& reference, std::vector<Ladder> const& ladders,
               double asked, std::optional<Precision> precision);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Accepted by a compiler that can take the test headers_clang.
+// Compiles only with a compiler suitable for the test headers_clang.
 #include <omp.h>
 
 #if !defined(__clang__) || __clang_major__ < 14

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The classes whose kernels are compiled for devices, and what is used beside them, in both
-// precisions, for the warnings that templates give when they are used.
+// Uses the classes whose kernels are compiled for devices, and related functions, in both
+// precisions, for the warnings that templates give on use.
 #include "../../cuda/kernels.cpp"
 
 #include <cayspin_paper/analytic_sigma.hpp>
@@ -9,7 +9,7 @@
 
 namespace cayspin::test {
 
-/// A run of each of the steppers.
+/// Runs each of the steppers.
 template <class Generator, class Spins, class... Steppers>
 void run_each(Generator const& generator, Spins& spins, Steppers&&... steppers) {
   (integrate(Exec(), steppers, generator, spins, {.begin = 0, .dt = 0.01, .steps = 4}), ...);

@@ -10,7 +10,8 @@ class HostDevice;
 class HostDeviceMemory;
 }  // namespace cayspin::test
 
-// Kokkos 4 and 5 name the default space by one of a fixed list. OpenACC is a word of that list.
+// Kokkos 4 and 5 choose the default space from a fixed list, in which this one takes the place of
+// OpenACC.
 #define KOKKOS_ENABLE_DEFAULT_DEVICE_TYPE_OPENACC
 namespace Kokkos::Experimental {
 using OpenACC = cayspin::test::HostDevice;

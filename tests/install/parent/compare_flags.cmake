@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# cayspin::cayspin adds folders of headers to what Kokkos asks for, and no other flag.
+# cayspin::cayspin adds include folders to the flags of Kokkos, and nothing else.
 file(READ ${COMMANDS} entries)
 
-# flags_of(<result> <target>): of its command, without folders and names of files
+# flags_of(<result> <target>): flags of its command, without folders and file names
 function(flags_of result target)
   string(JSON count LENGTH "${entries}")
   math(EXPR last "${count} - 1")

@@ -14,7 +14,7 @@
 
 namespace cayspin::inline v0_1::mpi::detail {
 
-/// Throws std::length_error for a message of 16 GiB or more, which MPI cannot count.
+/// Throws std::length_error for a message of 16 GiB or more, whose length MPI's int cannot hold.
 inline int words_of_message(std::size_t bytes) {
   auto const words = bytes / sizeof(std::int64_t);
   if (words > static_cast<std::size_t>(std::numeric_limits<int>::max()))
@@ -23,14 +23,14 @@ inline int words_of_message(std::size_t bytes) {
   return static_cast<int>(words);
 }
 
-/// Bytes to and from each rank, this one included, in multiples of 8.
+/// Exchanges bytes with each rank, including this one, in multiples of 8.
 inline void exchange_with_all(MPI_Comm comm, std::span<std::span<std::byte const> const> sent,
                               std::span<std::span<std::byte> const> received) {
-  constexpr int tag = 2;  // neighbours' ghosts have 0 and 1
+  constexpr int tag = 2;  // neighbours' ghosts use 0 and 1
   int own = 0;
   MPI_Comm_rank(comm, &own);
   std::vector<MPI_Request> requests;
-  // Each rank begins with the next one, not all with the first.
+  // Each rank starts with the next one, so that not all start with the first.
   auto const for_each_rank = [&](auto const& messages, auto const& post) {
     for (std::size_t i = 1; i <= messages.size(); ++i) {
       std::size_t const rank = (static_cast<std::size_t>(own) + i) % messages.size();

@@ -19,8 +19,8 @@
 
 namespace cayspin::inline v0_1::mpi::detail {
 
-/// Copies a box of a field on a device to consecutive numbers, or back. A task is a row of one
-/// component.
+/// Functor that copies a box of a field on a device to consecutive numbers, or back. A task is one
+/// row of one component.
 template <class Word, bool Packs>
 struct CopyRows {
   Word* field;
@@ -44,9 +44,9 @@ struct CopyRows {
   }
 };
 
-/// The messages to and from the two neighbours along an axis: one for the boxes of all fields to
-/// each neighbour. Two ranks on a periodic axis are each other's neighbour twice: the tag is the
-/// direction.
+/// Messages to and from the two neighbours along an axis: one to each neighbour for the boxes of
+/// all fields. Two ranks on a periodic axis are each other's neighbour twice, so the direction is
+/// the tag.
 class GhostMessages {
  public:
   void exchange(MPI_Comm comm, std::span<FieldNumbers const> fields, Faces const& faces,
@@ -57,7 +57,7 @@ class GhostMessages {
               : exchange_in_place(comm, fields, faces, neighbor);
   }
 
-  /// For fields in host memory. Steppers give the same few fields again and again.
+  /// Exchanges fields in host memory. Steppers pass the same few fields again and again.
   void exchange_in_place(MPI_Comm comm, std::span<FieldNumbers const> fields, Faces const& faces,
                          std::array<int, 2> const& neighbor) {
     constexpr std::size_t most = 8;
@@ -70,7 +70,7 @@ class GhostMessages {
     found->exchange();
   }
 
-  /// Through buffers, for fields that Kokkos' default execution space can access.
+  /// Exchanges through buffers, for fields that Kokkos' default execution space can access.
   void exchange_packed(MPI_Comm comm, std::span<FieldNumbers const> fields, Faces const& faces,
                        std::array<int, 2> const& neighbor) {
     std::array<MPI_Request, 4> requests;
@@ -109,7 +109,8 @@ class GhostMessages {
     return sum * static_cast<std::size_t>(box.rows() * box.extent(0));
   }
 
-  /// Of 4 bytes. Throws std::length_error for a message of 8 GiB or more, which MPI cannot count.
+  /// Returns the number of 4-byte words. Throws std::length_error for a message of 8 GiB or more,
+  /// whose length MPI's int cannot hold.
   static int words_of(Buffer const& buffer) {
     auto const words = buffer.size() / sizeof(std::int32_t);
     if (words > static_cast<std::size_t>(std::numeric_limits<int>::max()))

@@ -18,7 +18,7 @@
 
 namespace cayspin::inline v0_1::mpi::detail {
 
-/// Sites from `begin` to before `end`.
+/// Sites from `begin` up to but excluding `end`.
 struct Box {
   std::array<std::int64_t, 3> begin, end;
 
@@ -26,19 +26,19 @@ struct Box {
   std::int64_t rows() const { return extent(1) * extent(2); }
 };
 
-/// Boxes sent to the previous and the next neighbour, and the boxes that receive theirs.
+/// Boxes to send to the previous and the next neighbour, and the boxes to receive into.
 struct Faces {
   std::array<Box, 2> sent, received;
 };
 
-/// A box of a field in host memory, as it lies there: the same number of bytes again and again.
+/// A box of a field in host memory as equal blocks of bytes at constant strides.
 struct BytesInPlace {
   std::byte* first;
   int bytes;  // in a row
   int planes, components;
-  MPI_Aint plane, component;  // bytes from one to the next
+  MPI_Aint plane, component;  // strides in bytes
 
-  // Rows go with what pads them, so that they are one block; whole planes are one block, too.
+  // Rows are sent with their padding to make them one block; whole planes are one block, too.
   BytesInPlace(FieldNumbers const& field, Box const& box)
       : first(static_cast<std::byte*>(field.data) +
               count(field, box.begin[2] * field.plane + box.begin[1] * field.row + box.begin[0])),
@@ -70,8 +70,8 @@ struct BytesInPlace {
   }
 };
 
-/// The messages of some fields in host memory to and from the two neighbours along an axis. They
-/// are made once, and started for each exchange.
+/// Persistent messages of some fields in host memory to and from the two neighbours along an axis:
+/// made once, and started for each exchange.
 class MessagesInPlace {
  public:
   MessagesInPlace(MPI_Comm comm, std::span<FieldNumbers const> fields, Faces const& faces,
@@ -108,7 +108,7 @@ class MessagesInPlace {
  private:
   MPI_Request* next() { return &requests_.emplace_back(MPI_REQUEST_NULL); }
 
-  // A message for all, or, where components are long and each lies in a row, one for each: mpich
+  // One message for all components, or one for each if components are long and contiguous: mpich
   // copies those faster.
   template <class Make>
   void add(Box const& box, Make const& make) const {

@@ -8,8 +8,8 @@
 
 namespace cayspin::inline v0_1::mpi::detail {
 
-/// Waits for requests, and soon lets other threads run: MPI's own waiting takes a core to itself,
-/// which is slow where ranks share cores.
+/// Waits for requests, and soon yields to other threads: MPI's own waiting occupies a core, which
+/// is slow if ranks share cores.
 inline void wait_for(std::span<MPI_Request> requests) {
   constexpr int patience = 1000;
   for (int tries = 0;; ++tries) {

@@ -12,7 +12,7 @@ window.onerror = text => say("page", text);
 const spins = new Spins($("spins"));
 let news, about, laidOut, playing = 0, place = null, path = [];
 
-// What changes on the page is drawn anew, which takes time that a run may want.
+// Redrawing the page takes time that a run may need.
 function write(id, text) {
   if ($(id).textContent !== text) $(id).textContent = text;
 }

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/crystal.hpp>
+#include <cayspin/demagnetization/convolution.hpp>
+#include <cayspin/demagnetization/dipole_interactions.hpp>
+#include <cayspin/demagnetization/kernel_of_pairs.hpp>
+#include <cayspin/lattice.hpp>
+#include <cayspin/spin_field.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <type_traits>
+
+namespace cayspin::inline v0_1 {
+
+/// The field of point dipoles at the sites of a crystal, by FFTs over pairs of sites of a cell: H_i
+/// = strength V sum_j (3 r (r.m_j) - m_j r^2) / (4 pi r^5). V is the product of the lattice's
+/// spacings, so that a dipole of 1 corresponds to a box of these edges with magnetization 1: far
+/// away its field is that of DemagnetizingField's cell. A solver for HostField, which SlowField can
+/// hold: E = -m.H/2. Spins are taken as moments: multiply them by their moments beforehand.
+///
+/// Copies share their work memory; evaluate one at a time. On a part of a lattice (mpi::Domain) it
+/// is the field of all parts, with the bits of a single one: all parts construct and evaluate it
+/// together. Needs the target cayspin::fftw.
+template <class Real>
+class DipolarField {
+  using Convolution = detail::Convolution<Real, detail::KernelOfPairs<Real>>;
+
+ public:
+  static constexpr int degree = 2;
+
+  /// Sites are at the positions of `crystal`, times the lattice's spacings. Throws
+  /// std::invalid_argument for another number of sites in a cell, and for non-finite or
+  /// contradictory options.
+  DipolarField(Lattice const& lattice, Crystal const& crystal, DipolarOptions const& options = {})
+      : lattice_(lattice),
+        convolution_(std::make_shared<Convolution const>(
+            lattice, detail::InteractionsOfDipoles(lattice, crystal, options))) {}
+
+  /// Returns the bytes of the spectrum and the interactions; on a part, those of that part.
+  static std::int64_t work_bytes(Lattice const& lattice, Crystal const& crystal,
+                                 DipolarOptions const& options = {}) {
+    return Convolution::work_bytes(lattice, {lattice, crystal, options});
+  }
+
+  /// Writes H of the spins into `field`. Throws std::invalid_argument for another lattice.
+  template <class HostSpins>
+  void operator()(HostSpins const& spins, HostSpins const& field, double /*t*/) const {
+    static_assert(std::is_same_v<typename HostSpins::value_type, Real>,
+                  "DipolarField was made for spins of another precision.");
+    require_lattice("cayspin::DipolarField", lattice_, spins.lattice());
+    (*convolution_)(spins, field);
+  }
+
+ private:
+  Lattice lattice_;
+  std::shared_ptr<Convolution const> convolution_;
+};
+
+}  // namespace cayspin::inline v0_1

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/demagnetization/interactions.hpp>
+#include <cayspin/demagnetization/spectrum_of_interactions.hpp>
+#include <cayspin/demagnetization/spectrum_of_parts.hpp>
+
+#include <array>
+#include <complex>
+#include <cstddef>
+#include <cstdint>
+
+namespace cayspin::inline v0_1::detail {
+
+/// Distances in memory from row to row and from plane to plane.
+struct PlaneStrides {
+  std::ptrdiff_t row;  // a plane can have more numbers than an int holds
+  std::size_t plane;
+};
+
+/// Interactions between cells at wave numbers. One octant is stored; the others follow by symmetry.
+template <class Real>
+class KernelOfCells {
+  using Complex = std::complex<Real>;
+
+ public:
+  using Interactions = InteractionsOfCells;
+
+  KernelOfCells(Interactions const& interactions, Parts const& parts)
+      : period_(interactions.period()),
+        octant_{interactions.octant(0), interactions.octant(1), interactions.octant(2)},
+        values_("cayspin::DemagnetizingField: interactions",
+                std::size_t(numbers(interactions, parts.share(octant_[0], parts.index())))) {
+    transform_interactions(interactions, parts, values_);
+  }
+
+  /// Returns the count of stored numbers for `waves` wave numbers along x.
+  static std::int64_t numbers(Interactions const& interactions, std::int64_t waves) {
+    return 6 * waves * interactions.lines();
+  }
+  /// Returns how many numbers of work memory `multiply` needs after the planes.
+  std::size_t work_numbers() const { return 0; }
+
+  /// Multiplies the planes of one wave number along x.
+  void multiply(std::int64_t k, Complex* planes, PlaneStrides const& strides) const {
+    for (int z = 0; z < period_[2]; ++z) {
+      bool const beyond = z >= octant_[2];
+      Real const* const kernel = values_.data() + std::size_t(k) * 6 * octant_plane() +
+                                 std::size_t(beyond ? period_[2] - z : z) * std::size_t(octant_[1]);
+      Complex* const row = planes + z * strides.row;
+      Real const sign = beyond ? -1 : 1;
+      multiply_row<1>(kernel, sign, row, strides.plane, 0, octant_[1]);
+      multiply_row<-1>(kernel, sign, row, strides.plane, octant_[1], period_[1]);
+    }
+  }
+
+ private:
+  std::size_t octant_plane() const { return std::size_t(octant_[1]) * std::size_t(octant_[2]); }
+
+  /// `Sign`: the sign of y. `sign_of_z`: -1 where the mirror image is stored.
+  template <int Sign>
+  void multiply_row(Real const* kernel, Real sign_of_z, Complex* row, std::size_t plane, int begin,
+                    int end) const {
+    std::size_t const next = octant_plane();
+    Real const *const xx = kernel, *const yy = xx + next, *const zz = yy + next,
+                      *const xy = zz + next, *const xz = xy + next, *const yz = xz + next;
+    Complex *const mx = row, *const my = row + plane, *const mz = my + plane;
+    Real const sign_yz = Sign * sign_of_z;
+    for (int y = begin; y < end; ++y) {
+      int const i = Sign > 0 ? y : period_[1] - y;
+      Real const n_xy = Sign * xy[i], n_xz = sign_of_z * xz[i], n_yz = sign_yz * yz[i];
+      Complex const x = mx[y], of_y = my[y], z = mz[y];
+      mx[y] = xx[i] * x + n_xy * of_y + n_xz * z;
+      my[y] = n_xy * x + yy[i] * of_y + n_yz * z;
+      mz[y] = n_xz * x + n_yz * of_y + zz[i] * z;
+    }
+  }
+
+  std::array<int, 3> period_, octant_;
+  Kokkos::View<Real*, Kokkos::HostSpace> values_;  // wave number, component, z, y of octants
+};
+
+}  // namespace cayspin::inline v0_1::detail

@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/minimize.hpp>
+#include <cayspin/path/found.hpp>
+#include <cayspin/path/saddle.hpp>
+#include <cayspin/path/string.hpp>
+
+#include <Kokkos_Profiling_ScopedRegion.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+namespace cayspin::inline v0_1 {
+
+namespace detail {
+
+/// A smooth pattern without symmetry that turns no spin by more than 1.
+template <class Exec, class Spins>
+void make_disturbance(Exec const& exec, Preconditioner<Spins>& preconditioner, Spins const& work,
+                      Spins const& disturbance) {
+  using Real = typename Spins::value_type;
+  auto const& shape = work.lattice().shape;
+  for_each_site<Real>(exec, "cayspin::path::random_signs", work.layout(),
+                      RandomSigns<Real>{shape[0], shape[1], 0, 1, work.output(false)});
+  preconditioner.apply(exec, work, disturbance);
+  combine(exec, 1 / largest_length(exec, disturbance), disturbance, 0, disturbance, disturbance);
+}
+
+/// minimum_energy_path for a single call.
+template <class Exec, class Field, class Spins>
+class PathFinder {
+  using Real = typename Spins::value_type;
+
+ public:
+  PathFinder(Exec const& exec, Field const& field, std::vector<Spins> const& images,
+             PathOptions const& options)
+      : exec_(exec),
+        field_(field),
+        options_(options),
+        string_(images),
+        saddle_(images.front().lattice()),
+        is_mobile_("path::is_mobile", images.front().lattice()),
+        highest_("path::highest", images.front().lattice()),
+        peak_("path::peak", images.front().lattice()) {
+    auto const& like = images.front();
+    Kokkos::deep_copy(exec, is_mobile_.allocation(), Real(0));
+    auto const& pattern = saddle_.spins();
+    auto const found = probe(exec, field, options.time, like, pattern, is_mobile_);
+    found_.evaluations += found.evaluations;
+    strongest_ = found.strongest();
+    preconditioner_.set(like.lattice(), found, options.preconditioned);
+  }
+
+  MinimumEnergyPath find(Spins const& saddle, Energy const& from, Energy const& to) {
+    std::size_t const last = string_.size() - 1;
+    string_.fix(0, from);
+    string_.fix(last, to);
+    if (distance_between(exec_, string_.spins(0), string_.spins(last)) < 1e-3)
+      return ended(PathEnd::same_ends, saddle);
+    if (!options_.starts_from_images) make_start();
+    auto const end = search();
+    return ended(end, saddle);
+  }
+
+ private:
+  static constexpr double disturbance = 0.1;          // rad
+  static constexpr double rough = 0.03, fine = 2e-3;  // gradients over the strongest field
+  static constexpr double longest_turn = 0.3;         // of a spin in a step
+
+  /// Moves every spin along its great circle, with a disturbance in the middle.
+  void make_start() {
+    auto const &work = saddle_.spins(), &pattern = saddle_.vector();
+    make_disturbance(exec_, preconditioner_, work, pattern);
+    std::size_t const last = string_.size() - 1;
+    for (std::size_t k = 1; k < last; ++k) {
+      double const fraction = static_cast<double>(k) / static_cast<double>(last);
+      point_between(exec_, string_.spins(0), string_.spins(last), fraction, work);
+      for_each_site<Real>(
+          exec_, "cayspin::path::disturb", work.layout(),
+          TurnTowards<Real>{
+              work.array(), pattern.array(), string_.spins(k).output(false),
+              static_cast<Real>(disturbance * std::sin(std::numbers::pi * fraction))});
+    }
+  }
+
+  /// Relaxes the string roughly to a minimum energy path. Then, between known saddles and minima,
+  /// relaxes it further until it is such a path and has no other maxima.
+  PathEnd search() {
+    double bound = rough;
+    if (auto const end = relax(bound, true)) return *end;
+    double smallest = 0.05;  // peak height over the range of the energies
+    for (int attempt = 0; attempt < 60; ++attempt) {
+      auto const peak = next_peak(1, smallest);
+      bool const added = peak ? add_saddle(*peak) : add_minimum(smallest);
+      if (stopped_) return PathEnd::interrupted;
+      std::optional<PathEnd> end;
+      if (added) {
+        if (auto const stopped = relax(rough, false, 10)) return *stopped;
+        is_settled_ = false;
+        continue;
+      }
+      bool const is_low = peak && !found_.saddles.empty() && peak->energy < found_.saddle().energy;
+      if (peak && !(is_low && bound < fine)) {
+        if (bound < fine) return PathEnd::no_saddle;
+        bound *= 0.3;
+        end = relax(bound, true);
+      } else if (found_.saddles.empty()) {
+        // A barrier may be low compared with the energy between the ends.
+        if (smallest <= 1e-3) return PathEnd::no_saddle;
+        smallest = std::max(0.2 * smallest, 1e-3);
+        bound = std::max(0.3 * bound, fine);
+        end = relax(bound, true);
+      } else {
+        if (is_settled_) return PathEnd::converged;
+        end = relax(fine, false);
+        if (!end && !is_settled_) return PathEnd::unsettled;
+        smallest = 1e-3;
+      }
+      if (end) return *end;
+    }
+    return PathEnd::no_saddle;
+  }
+
+  /// Relaxes until the gradient across the path, of the highest image or of all, is below `bound`
+  /// times the strongest field. Shortens the steps while it does not fall.
+  std::optional<PathEnd> relax(double bound, bool of_highest,
+                               int most_steps = std::numeric_limits<int>::max()) {
+    double turn = longest_turn, least = std::numeric_limits<double>::infinity();
+    bound = std::max(bound, 64.0 * std::numeric_limits<Real>::epsilon()) * strongest_;
+    for (int step = 0, since = 0;; ++step, ++since) {
+      double const largest = string_.look(exec_, field_, options_.time);
+      std::size_t highest = 0;
+      for (std::size_t k = 1; k < string_.size(); ++k)
+        if (string_.energy(k) > string_.energy(highest)) highest = k;
+      found_.across = largest;
+      auto const so_far = found_.evaluations + string_.evaluations();
+      if (!std::isfinite(largest)) return PathEnd::not_finite;
+      is_settled_ = !of_highest && largest < bound;
+      if (is_settled_ || (of_highest && string_.across(highest) < bound && step >= 5))
+        return std::nullopt;
+      if (step >= most_steps) return std::nullopt;
+      if (so_far >= options_.evaluations) return PathEnd::evaluation_limit;
+      if (!proceeds(so_far, string_.energy(highest), largest)) return PathEnd::interrupted;
+      if (largest < 0.9 * least) since = 0;
+      least = std::min(least, largest);
+      if (since > 30) {
+        if (turn < 0.03 || of_highest) return std::nullopt;
+        string_.forget_pairs();
+        turn *= 0.5;
+        since = 0;
+      }
+      string_.step(exec_, preconditioner_, is_mobile_, turn);
+    }
+  }
+
+  bool proceeds(std::int64_t evaluations, double energy, double gradient) const {
+    return !options_.observer ||
+           options_.observer(PathProgress{evaluations, energy, gradient}) == Next::proceed;
+  }
+
+  /// Returns the highest unknown maximum (sign 1), or the lowest unknown minimum (-1), of the
+  /// energy along the path.
+  std::optional<Peak> next_peak(int sign, double smallest) const {
+    auto points = string_.profile();
+    for (auto& point : points) point.energy *= sign, point.slope *= sign;
+    // Smaller peaks come from the remaining gradient.
+    double const left =
+        is_settled_ ? 2 * found_.across * found_.across / preconditioner_.first_shift() : 0;
+    double const least = std::max(smallest * span_of(points), left);
+    for (auto const& peak : peaks_of(points))
+      if (peak.prominence > least) return peak;
+    return std::nullopt;
+  }
+
+  static double span_of(std::vector<PointOfProfile> const& points) {
+    auto const [low, high] = std::ranges::minmax(points, {}, &PointOfProfile::energy);
+    return high.energy - low.energy;
+  }
+
+  bool is_known(Spins const& spins) const {
+    for (std::size_t k = 0; k < string_.size(); ++k)
+      if (string_.is_fixed(k) && distance_between(exec_, string_.spins(k), spins) < 1e-3)
+        return true;
+    return false;
+  }
+
+  /// Fixes an image at a minimum between saddles, where the path may turn a corner.
+  bool add_minimum(double smallest) {
+    auto const valley = next_peak(-1, smallest);
+    if (!valley) return false;
+    auto const& [image, fraction] = valley->place;
+    auto& spins = saddle_.spins();
+    point_between(exec_, string_.spins(image), string_.spins(image + 1), fraction, spins);
+    auto const found = minimize(exec_, field_, spins,
+                                {.torque = options_.torque,
+                                 .evaluations = options_.evaluations,
+                                 .time = options_.time,
+                                 .preconditioned = options_.preconditioned,
+                                 .observer = [this](Minimum const& now) {
+                                   return proceeds(now.evaluations, now.energy.value, now.torque)
+                                              ? Next::proceed
+                                              : Next::stop;
+                                 }});
+    found_.evaluations += found.evaluations;
+    stopped_ = found.end == MinimizeEnd::interrupted;
+    if (found.end != MinimizeEnd::converged || is_known(spins)) return false;
+    is_settled_ = false;
+    return string_.insert(exec_, spins, found.energy, image);
+  }
+
+  /// Climbs from a maximum of the path to a saddle, which becomes an image.
+  bool add_saddle(Peak const& peak) {
+    auto const& [image, fraction] = peak.place;
+    auto const &before = string_.spins(image), &after = string_.spins(image + 1);
+    point_between(exec_, before, after, fraction, saddle_.spins());
+    find_direction(exec_, saddle_.spins(), before, after, saddle_.spins(), 1, 1, saddle_.vector());
+    Kokkos::deep_copy(exec_, peak_.allocation(), saddle_.spins().allocation());
+    std::int64_t const so_far = found_.evaluations + string_.evaluations();
+    auto const climbed =
+        saddle_.find(exec_, field_, is_mobile_, preconditioner_,
+                     {.time = options_.time,
+                      .torque = options_.torque,
+                      .scale = preconditioner_.first_shift(),
+                      .strongest_field = strongest_,
+                      .evaluations = std::max<std::int64_t>(
+                          1, std::min<std::int64_t>(2000, options_.evaluations - so_far))},
+                     [&](SaddleFound const& now) {
+                       return proceeds(so_far + now.evaluations, now.energy.value, now.torque);
+                     });
+    found_.evaluations += climbed.evaluations;
+    stopped_ = climbed.is_stopped;
+    if (!climbed.is_saddle) return false;
+    // Rejects saddles far above the path and those that it already passes.
+    if (climbed.energy.value > peak.energy + 0.1 * span_of(string_.profile())) return false;
+    if (is_known(saddle_.spins())) return false;
+    find_direction(exec_, peak_, peak_, saddle_.spins(), peak_, 0, 1, saddle_.vector());
+    string_.bend(exec_, saddle_.vector(), image, fraction);
+    if (!string_.insert(exec_, saddle_.spins(), climbed.energy, image)) return false;
+    is_settled_ = false;
+    if (found_.saddles.empty() || climbed.energy.value > found_.saddle().energy)
+      Kokkos::deep_copy(exec_, highest_.allocation(), saddle_.spins().allocation());
+    found_.saddles.push_back(
+        {climbed.energy.value, climbed.curvature, climbed.next_curvature, climbed.torque, 0});
+    std::ranges::sort(found_.saddles, std::greater<>(), &PathSaddle::energy);
+    return true;
+  }
+
+  MinimumEnergyPath ended(PathEnd end, Spins const& saddle) {
+    found_.end = end;
+    found_.evaluations += string_.evaluations();
+    double at = 0;
+    for (std::size_t k = 0; k < string_.size(); ++k) {
+      if (k > 0) at += distance_between(exec_, string_.spins(k - 1), string_.spins(k));
+      found_.distance.push_back(at);
+      found_.energy.push_back(string_.energy(k));
+      for (auto& known : found_.saddles)
+        if (string_.is_fixed(k) && known.energy == string_.energy(k)) known.image = k;
+    }
+    if (!found_.saddles.empty())
+      Kokkos::deep_copy(exec_, saddle.allocation(), highest_.allocation());
+    exec_.fence("cayspin::minimum_energy_path");
+    return found_;
+  }
+
+  Exec const& exec_;
+  Field const& field_;
+  PathOptions const& options_;
+  PathString<Spins> string_;
+  SaddleSearch<Spins> saddle_;
+  ScalarField<Real, typename Spins::memory_space> is_mobile_;
+  Spins highest_, peak_;
+  Preconditioner<Spins> preconditioner_;
+  double strongest_ = 0;
+  bool stopped_ = false, is_settled_ = false;
+  MinimumEnergyPath found_;
+};
+
+}  // namespace detail
+
+/// Returns how many fields of three numbers per site minimum_energy_path allocates besides the
+/// images.
+constexpr int path_work_fields(std::size_t images) {
+  return 48 + detail::PathString<SpinField<double>>::fields_per_image * static_cast<int>(images);
+}
+
+/// Finds a minimum energy path between two states, and the saddles on it.
+///
+/// The first and the last image are relaxed by `minimize`; the images between become the path. It
+/// starts from the great circle of each spin (through x, if its end states are opposite), with a
+/// disturbance of 0.1 rad without symmetry. A string of images descends perpendicular to itself by
+/// preconditioned L-BFGS. From its energy maxima, Newton's method climbs to saddles until the
+/// torque is below its bound; then the string relaxes between them. `saddle` receives the highest
+/// one.
+///   std::vector<Spins> images = ...;  // the first and the last are the states
+///   Spins saddle("saddle", lattice);
+///   auto const path = cayspin::minimum_energy_path(exec, field, images, saddle);
+///   double const barrier = path.barrier_forward();
+/// Waits. Throws std::invalid_argument for fewer than three images, images on different lattices
+/// and invalid options, and FieldNotFinite as minimize does.
+template <class Exec, class Field, class Spins>
+MinimumEnergyPath minimum_energy_path(Exec const& exec, Field const& field,
+                                      std::vector<Spins>& images, Spins& saddle,
+                                      PathOptions const& options = {}) {
+  Kokkos::Profiling::ScopedRegion const region("cayspin::minimum_energy_path");
+  if (images.size() < 3)
+    throw std::invalid_argument("cayspin::minimum_energy_path: a path has at least 3 images");
+  for (auto const& image : images)
+    require_lattice("cayspin::minimum_energy_path", saddle.lattice(), image.lattice());
+  auto const relax_end = [&](Spins& spins) {
+    return minimize(exec, field, spins,
+                    {.torque = options.torque,
+                     .evaluations = options.evaluations,
+                     .time = options.time,
+                     .preconditioned = options.preconditioned,
+                     .observer = [&](Minimum const& now) {
+                       return options.observer ? options.observer({now.evaluations,
+                                                                   now.energy.value, now.torque})
+                                               : Next::proceed;
+                     }});
+  };
+  MinimumEnergyPath unfinished;
+  std::array<Minimum, 2> ends;
+  for (std::size_t i = 0; i < 2; ++i) {
+    ends[i] = relax_end(i == 0 ? images.front() : images.back());
+    unfinished.evaluations += ends[i].evaluations;
+    unfinished.end =
+        ends[i].end == MinimizeEnd::interrupted ? PathEnd::interrupted : PathEnd::ends_not_at_rest;
+    if (ends[i].end != MinimizeEnd::converged) return unfinished;
+  }
+  auto found =
+      detail::PathFinder(exec, field, images, options).find(saddle, ends[0].energy, ends[1].energy);
+  found.evaluations += unfinished.evaluations;
+  return found;
+}
+
+}  // namespace cayspin::inline v0_1

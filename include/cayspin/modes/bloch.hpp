@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/minimizer/hessian.hpp>
+#include <cayspin/minimizer/probe.hpp>
+#include <cayspin/spin_field.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+// Spin waves of a wave vector: if all cells of a periodic lattice are equal, small matrices give
+// them.
+namespace cayspin::inline v0_1::detail {
+
+/// Division of a lattice's sites into cells along its periodic axes. A cell extends over the whole
+/// of the other axes.
+class CellsOfLattice {
+ public:
+  using Cell = std::array<std::int64_t, 3>;
+
+  explicit CellsOfLattice(Lattice const& lattice) : sites_(lattice.cell_sites) {
+    Cell extents = lattice.shape;
+    extents[2] /= sites_;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      bool const repeats = lattice.boundary[axis] == Boundary::periodic;
+      cells[axis] = repeats ? extents[axis] : 1;
+      folded_[axis] = repeats ? 1 : extents[axis];
+    }
+    extents_ = extents;
+    parts = sites_ * folded_[0] * folded_[1] * folded_[2];
+  }
+
+  Cell cells{};            // count along each axis
+  std::int64_t parts = 0;  // sites per cell
+
+  std::int64_t sites() const { return sites_ * extents_[0] * extents_[1] * extents_[2]; }
+
+  struct Place {
+    Cell cell;
+    std::size_t part;
+  };
+  /// Returns the place of a site, numbered in the order of copy_to_host.
+  Place operator()(std::int64_t site) const {
+    auto const plane = site / (extents_[0] * extents_[1]);
+    Cell const at{site % extents_[0], site / extents_[0] % extents_[1], plane / sites_};
+    Place place{{0, 0, 0}, static_cast<std::size_t>(plane % sites_)};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (cells[axis] > 1) place.cell[axis] = at[axis];
+      auto const inside = folded_[axis] > 1 ? at[axis] : 0;
+      place.part =
+          place.part * static_cast<std::size_t>(folded_[axis]) + static_cast<std::size_t>(inside);
+    }
+    return place;
+  }
+
+  /// Returns the distance in cells from the first one, the shorter way around.
+  Cell distance(Cell cell) const {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (2 * cell[axis] > cells[axis]) cell[axis] -= cells[axis];
+    return cell;
+  }
+
+ private:
+  std::int64_t sites_;
+  Cell extents_{}, folded_{};
+};
+
+using Point = Eigen::Vector3d;
+
+/// Returns two axes in the tangent plane of a spin.
+inline std::array<Point, 2> tangent_axes(Point const& m) {
+  Point const other = std::abs(m.x()) < 0.6 ? Point(1, 0, 0) : Point(0, 1, 0);
+  Point const e = m.cross(other).normalized();
+  return {e, m.cross(e)};
+}
+
+/// The Hessian between one cell and all others, and how its spins turn.
+class BlochProblem {
+ public:
+  struct Block {
+    CellsOfLattice::Cell distance;
+    Eigen::MatrixXd hessian;  // two axes for each mobile part
+  };
+  std::vector<Block> blocks;
+  Eigen::MatrixXd turning;
+  std::array<bool, 3> reaches_around{};  // as far as half the lattice along an axis
+  CellsOfLattice::Cell cells{};
+
+  /// Returns complex rates (decay and frequency) of waves with this wave vector, in cycles per
+  /// cell.
+  std::vector<std::complex<double>> rates(std::array<double, 3> const& wave) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double const around = wave[axis] * static_cast<double>(cells[axis]);
+      if (reaches_around[axis] && std::abs(around - std::round(around)) > 1e-9)
+        throw std::invalid_argument(
+            "cayspin::bloch_modes: the interaction reaches around the lattice; accepted: more "
+            "cells along axis " +
+            std::to_string(axis) + ", or a wave vector with a whole number of waves in it");
+    }
+    Eigen::MatrixXcd sum = Eigen::MatrixXcd::Zero(turning.rows(), turning.cols());
+    for (auto const& [distance, hessian] : blocks) {
+      double turns = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        turns += wave[axis] * static_cast<double>(distance[axis]);
+      sum += std::polar(1.0, -2 * std::numbers::pi * turns) * hessian;
+    }
+    Eigen::ComplexEigenSolver<Eigen::MatrixXcd> const found(turning * sum, false);
+    // e^(i (k r - w t)) turns with time by -w.
+    std::vector<std::complex<double>> rates(found.eigenvalues().begin(), found.eigenvalues().end());
+    std::ranges::sort(rates, {}, [](auto const& rate) { return rate.imag(); });
+    rates.resize(rates.size() / 2);
+    std::ranges::reverse(rates);
+    return rates;
+  }
+};
+
+/// Multiplies the Hessian by the tangent axes of one cell. Throws std::invalid_argument where cells
+/// differ.
+template <class Exec, class Field, class Spins, class Numbers>
+BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Spins const& spins,
+                           Numbers const& precession, Numbers const& damping,
+                           std::int64_t& evaluations) {
+  using Real = typename Spins::value_type;
+  auto const named = [&](char const* name) { return Spins(name, spins.lattice()); };
+  ScalarField<Real, typename Spins::memory_space> const is_mobile("modes::is_mobile",
+                                                                  spins.lattice());
+  HessianArrays<Spins> const arrays{named("modes::shifted"), named("modes::at_rest"),
+                                    named("modes::before")};
+  auto const found = probe(exec, field, time, spins, arrays.shifted, is_mobile);
+  Hessian hessian(exec, field, time, spins, is_mobile, arrays);
+  CellsOfLattice const cells(spins.lattice());
+  auto const m = copy_to_host(spins), moves = copy_to_host(is_mobile);
+  auto const a = copy_to_host(precession), b = copy_to_host(damping);
+  auto const at = [](auto const& numbers, std::int64_t site) {
+    auto const* const first = &numbers[static_cast<std::size_t>(3 * site)];
+    return Point(first[0], first[1], first[2]);
+  };
+
+  struct Part {
+    std::int64_t site = -1;
+    Eigen::Index first = -1;  // first of its two rows, if mobile
+    std::array<Point, 2> axes;
+  };
+  std::vector<Part> parts(static_cast<std::size_t>(cells.parts));
+  Eigen::Index rows = 0;
+  double const alike = 1e5 * std::sqrt(std::numeric_limits<Real>::epsilon()) * 1e-3;
+  for (std::int64_t site = 0; site < cells.sites(); ++site) {
+    auto const place = cells(site);
+    auto& part = parts[place.part];
+    auto const number = static_cast<std::size_t>(site);
+    if (part.site < 0) {
+      part.site = site;
+      part.axes = tangent_axes(at(m, site));
+      if (moves[number] != 0) part.first = rows, rows += 2;
+    }
+    auto const first = static_cast<std::size_t>(part.site);
+    if (!((at(m, site) - at(m, part.site)).norm() < alike) || a[number] != a[first] ||
+        b[number] != b[first] || moves[number] != moves[first])
+      throw std::invalid_argument(
+          "cayspin::bloch_modes: the cells differ; accepted: a state that is the same in all cells "
+          "along periodic axes");
+  }
+
+  BlochProblem problem;
+  problem.cells = cells.cells;
+  problem.turning = Eigen::MatrixXd::Zero(rows, rows);
+  if (rows == 0) return problem;  // no spin moves
+  Spins const vector = named("modes::vector"), product = named("modes::product");
+  std::vector<Eigen::MatrixXd> blocks(
+      static_cast<std::size_t>(cells.cells[0] * cells.cells[1] * cells.cells[2]),
+      Eigen::MatrixXd::Zero(rows, rows));
+  auto const block_of = [&](CellsOfLattice::Cell const& cell) {
+    return static_cast<std::size_t>((cell[2] * cells.cells[1] + cell[1]) * cells.cells[0] +
+                                    cell[0]);
+  };
+  for (auto const& part : parts) {
+    if (part.first < 0) continue;
+    auto const number = static_cast<std::size_t>(part.site);
+    double const turn = a[number], decay = b[number];
+    problem.turning.block<2, 2>(part.first, part.first) << -decay, -turn, turn, -decay;
+    for (Eigen::Index axis = 0; axis < 2; ++axis) {
+      auto const& e = part.axes[static_cast<std::size_t>(axis)];
+      std::vector<double> unit(m.size());
+      for (Eigen::Index c = 0; c < 3; ++c) unit[3 * number + static_cast<std::size_t>(c)] = e[c];
+      copy_from_host(unit, vector);
+      hessian.multiply(vector, product);
+      auto const column = copy_to_host(product);
+      for (std::int64_t site = 0; site < cells.sites(); ++site) {
+        auto const place = cells(site);
+        auto const& other = parts[place.part];
+        if (other.first < 0) continue;
+        for (Eigen::Index row = 0; row < 2; ++row)
+          blocks[block_of(place.cell)](other.first + row, part.first + axis) =
+              other.axes[static_cast<std::size_t>(row)].dot(at(column, site));
+      }
+    }
+  }
+  evaluations = found.evaluations + hessian.evaluations();
+
+  double largest = 0;
+  for (auto const& block : blocks) largest = std::max(largest, block.cwiseAbs().maxCoeff());
+  double const least = 1e3 * std::numeric_limits<Real>::epsilon() * largest;
+  auto const& [nx, ny, nz] = cells.cells;
+  for (std::int64_t z = 0; z < nz; ++z)
+    for (std::int64_t y = 0; y < ny; ++y)
+      for (std::int64_t x = 0; x < nx; ++x) {
+        auto const& block = blocks[block_of({x, y, z})];
+        if (!(block.cwiseAbs().maxCoeff() > least)) continue;
+        auto const distance = cells.distance({x, y, z});
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          if (distance[axis] != 0 && 2 * std::abs(distance[axis]) >= cells.cells[axis])
+            problem.reaches_around[axis] = true;
+        problem.blocks.push_back({distance, block});
+      }
+  return problem;
+}
+
+}  // namespace cayspin::inline v0_1::detail

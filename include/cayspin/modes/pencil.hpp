@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+// Eigenvalue problems in a small subspace: K c = rate S c, with the Hessian K and with S, the
+// inverse of how spins turn in a field.
+namespace cayspin::inline v0_1::detail {
+
+/// An eigenvalue and its vector in the subspace. A complex conjugate pair is represented by the one
+/// with positive imaginary part.
+struct RitzMode {
+  std::complex<double> rate;
+  Eigen::VectorXcd coefficients;
+
+  bool is_real() const { return rate.imag() == 0; }
+};
+
+struct Pencil {
+  Eigen::MatrixXd hessian, turning;
+
+  Eigen::Index size() const { return hessian.rows(); }
+
+  /// Changes the basis of the vectors to the columns of `q`.
+  void change_basis(Eigen::MatrixXd const& q) {
+    hessian = (q.transpose() * hessian * q).eval();
+    turning = (q.transpose() * turning * q).eval();
+  }
+};
+
+inline void sort_by(std::vector<RitzMode>& modes, auto const& number) {
+  std::ranges::stable_sort(modes,
+                           [&](auto const& a, auto const& b) { return number(a) < number(b); });
+}
+
+/// Returns modes of undamped motion about a minimum. Their rates are imaginary: the problem is
+/// Hermitian in the inner product of the Hessian. Returns none where that is not positive.
+inline std::vector<RitzMode> undamped_modes(Pencil const& pencil) {
+  using namespace std::complex_literals;
+  Eigen::LLT<Eigen::MatrixXd> const factors(pencil.hessian);
+  if (factors.info() != Eigen::Success) return {};
+  Eigen::VectorXd const pivots = factors.matrixLLT().diagonal();
+  if (!(pivots.minCoeff() > 1e-5 * pivots.maxCoeff())) return {};
+  Eigen::MatrixXd inner = factors.matrixL().solve(pencil.turning);
+  inner = factors.matrixL().solve(inner.transpose().eval());  // the transpose: skew
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> const found(-1i * inner);
+  std::vector<RitzMode> modes;
+  double const least = 1e-14 * found.eigenvalues().cwiseAbs().maxCoeff();
+  for (Eigen::Index i = pencil.size(); i-- > 0 && found.eigenvalues()[i] > least;) {
+    Eigen::VectorXcd const column = found.eigenvectors().col(i);
+    modes.push_back({1i / found.eigenvalues()[i], factors.matrixU().solve(column)});
+  }
+  return modes;
+}
+
+/// Returns the modes of any pencil, slowest first. A small positive `shift` keeps the inverted
+/// matrix regular where the Hessian is not.
+inline std::vector<RitzMode> slowest_modes(Pencil const& pencil, bool is_undamped, double shift) {
+  if (is_undamped)
+    if (auto modes = undamped_modes(pencil); !modes.empty()) return modes;
+  Eigen::MatrixXd const shifted = pencil.hessian - shift * pencil.turning;
+  Eigen::EigenSolver<Eigen::MatrixXd> const found(shifted.partialPivLu().solve(pencil.turning));
+  std::vector<RitzMode> modes;
+  if (found.info() != Eigen::Success) return modes;
+  Eigen::VectorXcd const inverse = found.eigenvalues();
+  Eigen::MatrixXcd const vectors = found.eigenvectors();
+  double const least = 1e-14 * inverse.cwiseAbs().maxCoeff();
+  for (Eigen::Index i = 0; i < pencil.size(); ++i) {
+    if (!(std::abs(inverse[i]) > least)) continue;
+    auto const rate = shift + 1.0 / inverse[i];
+    if (rate.imag() >= 0 && std::isfinite(std::abs(rate))) modes.push_back({rate, vectors.col(i)});
+  }
+  sort_by(modes, [](auto const& mode) { return std::abs(mode.rate); });
+  return modes;
+}
+
+/// Returns the eigenvalues of the Hessian, lowest first, when `turning` is the identity.
+inline std::vector<RitzMode> lowest_modes(Pencil const& pencil) {
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> const found(pencil.hessian);
+  std::vector<RitzMode> modes;
+  for (Eigen::Index i = 0; i < pencil.size(); ++i) {
+    Eigen::VectorXcd const vector = found.eigenvectors().col(i).cast<std::complex<double>>();
+    modes.push_back({found.eigenvalues()[i], vector});
+  }
+  return modes;
+}
+
+/// Returns the real and imaginary parts of the first modes, as columns.
+inline Eigen::MatrixXd columns_of(std::vector<RitzMode> const& modes, std::size_t count,
+                                  Eigen::Index rows) {
+  std::vector<Eigen::VectorXd> columns;
+  for (std::size_t i = 0; i < std::min(count, modes.size()); ++i) {
+    columns.push_back(modes[i].coefficients.real());
+    if (!modes[i].is_real()) columns.push_back(modes[i].coefficients.imag());
+  }
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(columns.size()));
+  for (Eigen::Index i = 0; i < matrix.cols(); ++i) {
+    auto const& column = columns[static_cast<std::size_t>(i)];
+    double const norm = column.norm();
+    if (norm > 0) matrix.col(i).head(column.size()) = column / norm;
+  }
+  return matrix;
+}
+
+/// Returns an orthonormal basis of the columns.
+inline Eigen::MatrixXd orthonormal(Eigen::MatrixXd const& columns) {
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(columns);
+  factors.setThreshold(1e-10);
+  return factors.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), factors.rank());
+}
+
+/// Returns columns that orthonormalise vectors with this Gram matrix, fewer where they are linearly
+/// dependent (Stathopoulos and Wu 2002).
+inline Eigen::MatrixXd orthonormalizing(Eigen::MatrixXd const& products, double least) {
+  Eigen::VectorXd scale = products.diagonal();
+  for (double& square : scale) square = square > 0 ? 1 / std::sqrt(square) : 0;
+  Eigen::MatrixXd const scaled = scale.asDiagonal() * products * scale.asDiagonal();
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> const found(scaled);
+  Eigen::Index first = 0;
+  while (first < products.rows() && !(found.eigenvalues()[first] > least)) ++first;
+  Eigen::Index const kept = products.rows() - first;
+  Eigen::VectorXd const roots = found.eigenvalues().tail(kept).cwiseSqrt().cwiseInverse();
+  return scale.asDiagonal() * found.eigenvectors().rightCols(kept) * roots.asDiagonal();
+}
+
+}  // namespace cayspin::inline v0_1::detail

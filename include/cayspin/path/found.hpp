@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/step.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+namespace cayspin::inline v0_1 {
+
+/// Why a search for a path ended.
+enum class PathEnd {
+  converged,         ///< the path, and every saddle on it
+  ends_not_at_rest,  ///< one of the two states could not be relaxed
+  same_ends,         ///< both states relaxed to the same state
+  no_saddle,         ///< a maximum of the energy along the path led to no saddle
+  unsettled,         ///< the saddles are found, but the path between them does not converge
+  not_finite,        ///< the field or its energy is not finite
+  evaluation_limit,  ///< the largest number of evaluations was reached
+  interrupted        ///< the observer said Next::stop
+};
+
+constexpr std::string_view to_string(PathEnd end) {
+  switch (end) {
+    case PathEnd::converged:
+      return "converged";
+    case PathEnd::ends_not_at_rest:
+      return "an end could not be relaxed";
+    case PathEnd::same_ends:
+      return "both ends relaxed to the same state";
+    case PathEnd::no_saddle:
+      return "no saddle found";
+    case PathEnd::unsettled:
+      return "the path between the saddles does not settle";
+    case PathEnd::not_finite:
+      return "the field is not finite";
+    case PathEnd::evaluation_limit:
+      return "evaluation limit";
+    case PathEnd::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+/// A state on a path without torque, from which the energy falls along one direction and its
+/// opposite.
+struct PathSaddle {
+  double energy = 0;
+  double curvature = 0;       ///< lowest eigenvalue of the Hessian, which is negative
+  double next_curvature = 0;  ///< upper bound of the next eigenvalue
+  double torque = 0;          ///< max |m x H|
+  std::size_t image = 0;      ///< its index on the path
+};
+
+/// The result of a search for a path.
+struct MinimumEnergyPath {
+  PathEnd end = PathEnd::evaluation_limit;
+  std::vector<double> energy,
+      distance;  ///< of each image; distances along the great circles of all spins
+  std::vector<PathSaddle> saddles;  ///< highest first
+  double across =
+      std::numeric_limits<double>::infinity();  ///< largest |g| of a spin across the path
+  std::int64_t evaluations = 0;                 ///< of the field over all sites
+
+  PathSaddle const& saddle() const { return saddles.front(); }
+  double barrier_forward() const { return saddle().energy - energy.front(); }
+  double barrier_backward() const { return saddle().energy - energy.back(); }
+};
+
+/// Progress of a search.
+struct PathProgress {
+  std::int64_t evaluations = 0;
+  double energy = 0;    ///< of the highest image, or of the state that climbs to a saddle
+  double gradient = 0;  ///< largest of a spin: across the path, or of the climbing state
+};
+
+/// Options of minimum_energy_path.
+struct PathOptions {
+  double torque = 1e-6;  ///< bound on max |m x H| of the ends and saddles, in the units of H
+  std::int64_t evaluations = 1000000;  ///< approximate upper limit
+  double time = 0;                     ///< time at which H is evaluated
+  bool preconditioned = true;          ///< by the exchange measured on the field
+  bool starts_from_images = false;     ///< the images between the ends are the start
+  std::function<Next(PathProgress const&)> observer = {};  ///< called after each step
+};
+
+}  // namespace cayspin::inline v0_1

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Shapes from surfaces of triangles."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import numpy as np
+
+from cayspin import _cayspin
+
+
+def _triangles(mesh):
+    if isinstance(mesh, (str, os.PathLike)):
+        try:
+            import trimesh
+        except ImportError:
+            raise _cayspin.CayspinError(
+                "occupied_of_mesh: files need trimesh; install it (pip install trimesh), or give "
+                "an array of triangles (count, 3, 3)") from None
+        try:
+            mesh = trimesh.load_mesh(mesh)
+        except (OSError, ValueError, NotImplementedError) as error:
+            raise _cayspin.CayspinError(f"occupied_of_mesh: {mesh}: {error}") from None
+    corners = np.asarray(getattr(mesh, "triangles", mesh), dtype=float)
+    if corners.ndim != 3 or corners.shape[1:] != (3, 3) or not len(corners) \
+            or not np.isfinite(corners).all():
+        raise _cayspin.CayspinError(
+            f"occupied_of_mesh: triangles of shape {corners.shape}; accepted: finite numbers of "
+            "shape (count, 3, 3)")
+    return corners
+
+
+def occupied_of_mesh(mesh: Any, shape: tuple[int, ...], spacing: float | tuple[float, ...] = 1.0, *,
+                     scale: float = 1.0, center: bool = True) -> np.ndarray:
+    """Which cells of a lattice have their middle inside a closed surface, as an array
+    (nz, ny, nx) for lattice.occupied.
+
+    `mesh` is a file of triangles (STL, OBJ, PLY, ..; read by trimesh), something with an attribute
+    `triangles`, or an array (count, 3, 3) of corners. `shape` and `spacing` are those of the
+    lattice; `scale` turns the mesh's unit into that of `spacing`. With `center` the middle of the
+    mesh's bounding box is that of the lattice, otherwise both have one origin, the lattice's
+    corner. Bodies that overlap are united, if the corners of all triangles are counter-clockwise
+    seen from outside.
+
+    Raises CayspinError for meshes that cannot be read."""
+    corners = _triangles(mesh) * scale
+    cells = np.array([*shape, 1, 1][:3])
+    edges = np.broadcast_to(spacing, 3) if np.ndim(spacing) == 0 else np.array([*spacing, 1, 1][:3])
+    if center:
+        low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+        corners = corners - (low + high) / 2 + cells * edges / 2
+    corners = corners / edges - 0.5  # in cells, from the middle of the first one
+    # No line through the middles of cells meets an edge or lies in a face.
+    corners = corners + [1.234567e-7, 2.718281e-7, 3.141592e-7]
+    first = np.maximum(np.ceil(corners.min(axis=1)[:, :2]), 0).astype(int)
+    last = np.minimum(np.floor(corners.max(axis=1)[:, :2]), cells[:2] - 1).astype(int)
+    wide = np.maximum(last - first + 1, 0)
+    count = wide.prod(axis=1)  # of the columns of cells that a triangle may meet
+    of = np.repeat(np.arange(len(corners)), count)
+    turn = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
+    x, y = first[of, 0] + turn % wide[of, 0], first[of, 1] + turn // wide[of, 0]
+    a, (b, c) = corners[:, 0], np.moveaxis(corners[:, 1:] - corners[:, :1], 1, 0)
+    area = b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0]
+    dx, dy = x - a[of, 0], y - a[of, 1]
+    with np.errstate(divide="ignore", invalid="ignore"):  # of triangles along z
+        of_b = (dx * c[of, 1] - dy * c[of, 0]) / area[of]
+        of_c = (b[of, 0] * dy - b[of, 1] * dx) / area[of]
+        met = (of_b >= 0) & (of_c >= 0) & (of_b + of_c <= 1)
+    of, x, y = of[met], x[met], y[met]
+    z = a[of, 2] + of_b[met] * b[of, 2] + of_c[met] * c[of, 2]
+    below = np.clip(np.ceil(z), 0, cells[2]).astype(int)  # cells whose middle is below
+    turns = np.zeros((cells[2] + 1, cells[1], cells[0]), dtype=int)
+    np.add.at(turns, (below, y, x), np.where(area[of] > 0, 1, -1))
+    # A cell is inside where the surfaces above it go out of the body more often than into it.
+    above = np.cumsum(turns[::-1], axis=0)[::-1][1:]
+    return above != 0

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Paths of least energy between two states."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+
+import numpy as np
+
+from cayspin import _cayspin, arguments, sites
+from cayspin.scene import Scene
+
+
+@dataclasses.dataclass(frozen=True)
+class MinimumEnergyPath:
+    """What path() found. Energies are in the unit of energy of the scene, J in SI."""
+
+    spins: np.ndarray  #: (image, nz, ny, nx, 3), of a crystal (image, site, nz, ny, nx, 3)
+    energy: np.ndarray  #: (image)
+    distance: np.ndarray  #: (image): radians along the great circles of all spins
+    saddle: np.ndarray | None  #: spins of the highest saddle, (nz, ny, nx, 3); None if none is found
+    saddle_energy: float | None
+    barrier_forward: float | None  #: saddle_energy less that of the first image
+    barrier_backward: float | None  #: saddle_energy less that of the last image
+    saddle_curvature: float | None  #: the lowest one, which is negative, energy / rad^2
+    saddles: np.ndarray  #: (saddle), the highest first: energy, curvature, next_curvature, image
+    end: str  #: "converged", or why not
+    converged: bool
+    evaluations: int  #: of the field of all sites
+    prefactor_forward: float | None  #: with rates: 1/s and T in K in SI, else reduced
+    prefactor_backward: float | None
+    langer_forward: float | None  #: the same of Langer's theory, with damping
+    langer_backward: float | None
+    zero_modes: tuple[int, int, int] | None  #: with rates: of the start, the saddle and the end
+
+
+_SADDLE = [("energy", float), ("curvature", float), ("next_curvature", float), ("image", int)]
+
+
+def _end(state, name, shape, cell_sites):
+    """The name of a file, or an array as the library has it."""
+    if isinstance(state, (str, bytes, os.PathLike)):
+        return arguments.file_name(state, f"path: {name}")
+    spins = arguments.numbers(state, f"path: {name}")
+    if spins.shape != (*shape, 3):
+        raise _cayspin.CayspinError(f"path: {name}: an array of shape {spins.shape}; accepted: "
+                                    f"{(*shape, 3)}, or the name of a file")
+    return sites.by_plane(spins, cell_sites)
+
+
+def path(scene: Scene, start: np.ndarray | str | os.PathLike, end: np.ndarray | str | os.PathLike,
+         images: int = 16, torque: float = 1e-6, evaluations: int = 1000000, rates: bool = False,
+         precision: str = "double", space: str | None = None,
+         threads: int | None = None) -> MinimumEnergyPath:
+    """Finds a path of least energy between two states, and the saddle that is its barrier, as
+    `cayspin path` does.
+
+        found = cayspin.path(scene, skyrmion, uniform)
+        found.barrier_forward, found.saddle
+
+    `start` and `end` are arrays in the shape of Simulation.spins, or files as initial.file takes
+    them: both are relaxed first. `images`, both ends among them, is from 3 to 1000. `torque` bounds
+    max |m x H| of the ends and saddles, in the unit of H, T in SI. `rates` adds prefactors of
+    rates, up to 4096 sites. `precision`, `space` and `threads` are those of Simulation.
+
+    A search that ends early has `converged` False, and what was found. Raises NumbersFailed where
+    there is no path: an end cannot be relaxed, or both relax to one state. Raises SceneError for
+    rigid bodies, temperatures, torques of currents and fields of t, CayspinError for wrong options
+    and ends. Ctrl-C raises KeyboardInterrupt.
+    """
+    if not isinstance(scene, Scene):
+        raise _cayspin.CayspinError(f"path: a {type(scene).__name__}; accepted: a Scene")
+    options = (arguments.whole(images, "path: images"), arguments.real(torque, "path: torque"),
+               arguments.whole(evaluations, "path: evaluations"),
+               arguments.flag(rates, "path: rates"))
+    run = _cayspin.Run(scene._scene, arguments.word(precision, "precision"),
+                       None if space is None else arguments.word(space, "space"),
+                       None if threads is None else arguments.whole(threads, "threads", 32), None)
+    shape, cell_sites = run.scene.shape, run.scene.cell_sites
+    ends = [_end(state, name, sites.shape_by_site(shape, cell_sites), cell_sites)
+            for state, name in ((start, "start"), (end, "end"))]
+    try:
+        found = run.path(*ends, *options)
+    except (_cayspin.SceneError, _cayspin.NumbersFailed):
+        raise
+    except _cayspin.CayspinError as error:
+        raise _cayspin.CayspinError(f"path: {error}") from None
+    if not found["energy"] or found["end"] == "both ends relaxed to the same state":
+        raise _cayspin.NumbersFailed(f"path: {found['end']}, after {found['evaluations']} "
+                                     "evaluations")
+    real = np.float32 if run.precision == "single" else np.float64
+
+    def states(numbers):
+        planes = numbers.reshape(-1, *shape, 3).astype(real, copy=False)
+        return np.stack([sites.by_site(state, cell_sites) for state in planes])
+
+    saddles = np.array(found["saddles"], _SADDLE)
+    energy = np.array(found["energy"])
+    highest = (None,) * 5
+    if len(saddles):
+        top, curvature = float(saddles["energy"][0]), float(saddles["curvature"][0])
+        highest = (states(found["saddle"])[0], top, top - float(energy[0]), top - float(energy[-1]),
+                   curvature)
+    *prefactors, modes = found.get("rates", (None,) * 5)
+    return MinimumEnergyPath(states(found["spins"]), energy, np.array(found["distance"]), *highest,
+                             saddles, found["end"], found["converged"], found["evaluations"],
+                             *prefactors, None if modes is None else tuple(modes))

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "io/ensemble.hpp"
+#include "io/run_output.hpp"
+#include "io/trajectory.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cayspin::inline v0_1::io {
+
+/// The state of a search for the equilibrium of one replica, as `cayspin relax` ends.
+struct RelaxedReplica {
+  double torque = 0;  ///< max |m x H|: reduced, or mu0 H in T
+  bool converged = false;
+  std::int64_t evaluations = 0;
+};
+
+/// The trajectory file of an ensemble (HDF5, laid out as docs/reference/file_format.md says).
+/// Errors are those of TrajectoryFile.
+class EnsembleFile {
+ public:
+  /// `header`: of one replica. Of the options it takes `overwrite`, the compression and the
+  /// positions.
+  EnsembleFile(std::filesystem::path path, TrajectoryHeader const& header, Ensemble const& ensemble,
+               RunOutputOptions const& options);
+  ~EnsembleFile();
+  EnsembleFile(EnsembleFile&&) noexcept;
+
+  /// Appends the spins of all replicas, packed as (replica, nz, ny, nx, 3) in the precision of the
+  /// header, and the scalars of each, and flushes.
+  void write_frame(std::int64_t step, double time, std::vector<Scalars> const& scalars,
+                   std::vector<std::byte> const& spins);
+  /// Appends a sample to /scalars; it reaches the file with the next frame.
+  void write_scalars(std::int64_t step, double time, std::vector<Scalars> const& scalars);
+
+  void write_relaxed(std::vector<RelaxedReplica> const& replicas);
+
+  /// Ends a run that went as planned: `complete` = 1.
+  void finish(RunCost const& cost);
+  /// Ends another one: the same, but `complete` stays 0.
+  void close(RunCost const& cost);
+
+  std::int64_t frames() const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// Contents of an ensemble file except its spins.
+struct EnsembleInfo {
+  TrajectoryHeader header;  ///< of one replica
+  Ensemble ensemble;
+  RunCost cost;
+  bool complete = false;
+  std::int64_t frames = 0, samples = 0;   ///< whole ones
+  std::int64_t step = 0;                  ///< of the last frame
+  double time = 0;                        ///< of the last frame
+  std::vector<Scalars> last;              ///< of each replica, in the last frame
+  std::optional<std::int64_t> converged;  ///< replicas of a search
+};
+
+bool is_ensemble(std::filesystem::path const& path);
+/// Throws std::runtime_error with one line.
+EnsembleInfo read_ensemble_info(std::filesystem::path const& path);
+
+}  // namespace cayspin::inline v0_1::io

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cstdint>
+
+namespace cayspin::inline v0_1::io {
+
+/// Start of a stage of a run: its number, which is 0 for the scene's own tables, and the step and
+/// time from which its steps are counted. The time is in reduced units of its scene, also in files,
+/// so that a continued run uses the same bits.
+struct StageBegin {
+  std::int64_t stage = 0, step = 0;
+  double time = 0;
+
+  bool operator==(StageBegin const&) const = default;
+};
+
+}  // namespace cayspin::inline v0_1::io

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "check_text.hpp"
+#include "describe.hpp"
+#include "io/notes.hpp"
+#include "io/relax.hpp"
+#include "simulation/scene_minimizer.hpp"
+#include "simulation/single_terms.hpp"
+#include "simulation/text.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace cayspin::program {
+
+std::vector<CheckedStage> plan_stages(io::Scene const& scene, Precision precision) {
+  std::vector<CheckedStage> stages;
+  for (auto& stage : io::stages_of(scene)) {
+    auto plan = stage.relax ? make_plan_to_relax(stage.scene, precision)
+                            : make_plan(stage.scene, precision);
+    require_same_terms(stages.empty() ? stage.scene : stages[0].stage.scene, stage.scene);
+    stages.push_back({std::move(stage), std::move(plan)});
+  }
+  return stages;
+}
+
+void print_stages(std::vector<CheckedStage> const& stages) {
+  std::vector<std::pair<std::string, std::string>> before;
+  std::vector<std::string> noted;
+  for (auto const& [stage, plan] : stages) {
+    auto const& scene = stage.scene;
+    print(io::stage_text(stage), fmt::format("from step {}, t = {}", scene.begin.step,
+                                             time_text(scene.units, scene.begin.time, 9)));
+    auto const lines = describe(scene);
+    for (auto const& line : lines)
+      if (!before.empty() && std::ranges::find(before, line) == before.end())
+        print(line.first, line.second);
+    before = lines;
+    if (stage.relax)
+      print("relax",
+            fmt::format("to max |m x H| < {}{}, with at most {} evaluations", stage.relax->torque,
+                        scene.units.si ? " T" : "", stage.relax->evaluations));
+    else if (io::has_integrator(scene))
+      print_steps(scene, plan);
+    else
+      print("start", "no steps");
+    for (auto const& note : io::notes(scene)) {
+      if (std::ranges::find(noted, note) != noted.end()) continue;
+      noted.push_back(note);
+      print("note", note);
+    }
+  }
+}
+
+std::string stages_json(std::vector<CheckedStage> const& stages) {
+  auto all = nlohmann::json::array();
+  for (auto const& [stage, plan] : stages) {
+    auto const& scene = stage.scene;
+    auto const& units = scene.units;
+    nlohmann::json one{{"name", stage.name},
+                       {"begin_step", scene.begin.step},
+                       {"begin_time", scene.begin.time * units.time},
+                       {"frames", plan.frames},
+                       {"file_bytes", plan.file_bytes}};
+    if (stage.relax) {
+      one["relax"] = {{"torque", stage.relax->torque}, {"evaluations", stage.relax->evaluations}};
+    } else if (io::has_integrator(scene)) {
+      one["method"] = plan.variant.method->word;
+      one["dt"] = plan.times.dt * units.time;
+      one["steps"] = scene.integrator.steps;
+      one["stable_dt"] = has_stable_dt(plan) ? nlohmann::json(plan.stable_dt * units.time)
+                                             : nlohmann::json(nullptr);
+      one["order"] = order(scene, plan.variant);
+    }
+    all.push_back(std::move(one));
+  }
+  return "\"stages\": " + all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace cayspin::program

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "io/stages.hpp"
+#include "simulation/plan.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+// Output of `cayspin check` about the steps of a run.
+namespace cayspin::program {
+
+using namespace simulation;
+
+/// Prints one line, with its name in a column.
+void print(std::string_view name, std::string_view text);
+
+inline bool has_stable_dt(Plan const& plan) { return std::isfinite(plan.stable_dt); }
+/// Returns the order of the method, also in substeps around an expensive field.
+int order(io::Scene const& scene, Variant const& variant);
+std::optional<std::int64_t> evaluations(io::Scene const& scene, Variant const& variant);
+
+/// Prints method, time, stable dt, noise and cost.
+void print_steps(io::Scene const& scene, Plan const& plan);
+
+struct CheckedStage {
+  io::Stage stage;
+  Plan plan;
+};
+
+/// Plans all stages of a scene. Throws io::SceneError.
+std::vector<CheckedStage> plan_stages(io::Scene const& scene, Precision precision);
+/// Prints what each stage changes, and its steps.
+void print_stages(std::vector<CheckedStage> const& stages);
+/// Returns "stages": [...].
+std::string stages_json(std::vector<CheckedStage> const& stages);
+
+}  // namespace cayspin::program

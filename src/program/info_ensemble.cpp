@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "info_ensemble.hpp"
+
+#include "describe.hpp"
+#include "io/ensemble_file.hpp"
+#include "simulation/failure.hpp"
+#include "simulation/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+namespace cayspin::program {
+
+using namespace simulation;
+
+namespace {
+
+void print_range(std::string const& name, std::vector<double> const& values) {
+  auto const [least, most] = std::ranges::minmax(values);
+  fmt::print("{:<12} {:.9g} to {:.9g}\n", name, least, most);
+}
+
+}  // namespace
+
+int print_ensemble(std::filesystem::path const& file) {
+  auto const info = io::read_ensemble_info(file);
+  auto const& header = info.header;
+  auto const* const joule = header.units.si ? " J" : "";
+  fmt::print("{:<12} {}, an ensemble of {} replicas\n", "file", file.string(),
+             info.ensemble.replicas);
+  fmt::print("{:<12} {}\n", "complete", info.complete ? "yes" : "no");
+  fmt::print("{:<12} {} in each replica, {} precision\n", "lattice",
+             sites_text(header.shape, header.cell_sites), header.precision);
+  fmt::print("{:<12} {}\n{:<12} {}\n", "frames", info.frames, "samples", info.samples);
+  fmt::print("{:<12} {}\n", "units", describe_units(header.units));
+  for (auto const& [key, values] : info.ensemble.vary) print_range("vary " + key, values);
+  if (info.frames > 0) {
+    constexpr std::size_t most_shown = 16;
+    fmt::print("{:<12} step {}, t = {:.9g}{}\n", "last frame", info.step, info.time,
+               header.units.si ? " s" : "");
+    for (std::size_t r = 0; r < std::min(most_shown, info.last.size()); ++r) {
+      auto const& [energy, defect, m] = info.last[r];
+      fmt::print(
+          "{:<12} energy {:.9g}{}, norm defect {:.3g}, magnetization ({:.6f}, {:.6f}, {:.6f})"
+          "\n",
+          fmt::format("replica {}", r), energy, joule, defect, m[0], m[1], m[2]);
+    }
+    if (info.last.size() > most_shown)
+      fmt::print("{:<12} {} in all\n", "replicas", info.last.size());
+  }
+  if (info.converged)
+    fmt::print("{:<12} {} of {} replicas\n", "converged", *info.converged, info.ensemble.replicas);
+  if (info.cost.wall_seconds > 0)
+    fmt::print("{:<12} {} evaluations, {} in all, {} stepping\n", "cost", info.cost.evaluations,
+               duration_text(info.cost.wall_seconds), duration_text(info.cost.step_seconds));
+  fmt::print("{:<12} {}, {} threads\n", "space", header.space, header.threads);
+  fmt::print("{:<12} {} ({}), Kokkos {}\n", "written by", header.cayspin_version, header.git_commit,
+             header.kokkos_version);
+  fmt::print("scene:\n{}{}", header.scene_text, header.scene_text.ends_with('\n') ? "" : "\n");
+  return Status::done;
+}
+
+}  // namespace cayspin::program

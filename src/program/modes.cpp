@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "io/modes.hpp"
+
+#include "cayspin_git_commit.hpp"
+#include "command.hpp"
+#include "describe.hpp"
+#include "files/file_beside.hpp"
+#include "io/notes.hpp"
+#include "io/relax.hpp"
+#include "io/trajectory.hpp"
+#include "progress.hpp"
+#include "simulation/kokkos_settings.hpp"
+#include "simulation/plan.hpp"
+#include "simulation/scene_minimizer.hpp"
+#include "simulation/scene_modes.hpp"
+#include "simulation/space.hpp"
+
+#include <cayspin/version.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace cayspin::program {
+namespace {
+
+struct ModesCommand : DeviceOptions {
+  double torque = 1e-6;
+  ModesOptions search{.poll = [] { return interrupt_requested() ? Next::stop : Next::proceed; }};
+  bool at_rest = false, hessian = false, quiet = false;
+  std::vector<std::string> corners;  // of a path of wave vectors
+  int points = 50;                   // from one corner to the next
+};
+
+using WaveVector = std::array<double, 3>;
+
+WaveVector wave_vector(std::string const& text) {
+  WaveVector wave{};
+  char const *at = text.data(), *const end = at + text.size();
+  bool is_right = true;
+  for (std::size_t axis = 0; axis < 3 && is_right; ++axis) {
+    if (axis > 0) is_right = at != end && *at++ == ',';
+    auto const [stop, error] = std::from_chars(at, end, wave[axis]);
+    is_right = is_right && error == std::errc() && std::isfinite(wave[axis]);
+    at = stop;
+  }
+  if (!is_right || at != end)
+    throw UsageError(fmt::format("--wave-vector {}: accepted: three numbers, as in 0.5,0,0", text));
+  return wave;
+}
+
+std::vector<WaveVector> path_of(ModesCommand const& options) {
+  std::vector<WaveVector> path;
+  for (auto const& text : options.corners) {
+    auto const corner = wave_vector(text);
+    if (!path.empty()) {
+      auto const from = path.back();
+      for (int point = 1; point < options.points; ++point) {
+        double const part = static_cast<double>(point) / options.points;
+        auto& between = path.emplace_back();
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          between[axis] = from[axis] + part * (corner[axis] - from[axis]);
+      }
+    }
+    path.push_back(corner);
+  }
+  return path;
+}
+
+bool is_hdf5(std::filesystem::path const& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 8> first{};
+  file.read(first.data(), first.size());
+  return file && std::string_view(first.data(), first.size()) == "\x89HDF\r\n\x1a\n";
+}
+
+std::string toml_text(std::string const& text) {
+  std::string quoted = "\"";
+  for (char const c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+std::string as_start(std::filesystem::path const& file) {
+  return fmt::format("initial={{file={}}}", toml_text(std::filesystem::absolute(file).string()));
+}
+
+// Reports errors of the start in a trajectory file for that file, by its typed name.
+void check_files(io::Scene const& scene, std::filesystem::path const& file) {
+  try {
+    io::check_files(scene);
+  } catch (io::SceneError const& error) {
+    std::string_view const text = error.what();
+    auto const place = fmt::format("--set {}: initial.file: {}: ", as_start(file),
+                                   std::filesystem::absolute(file).string());
+    if (!text.starts_with(place)) throw;
+    throw std::runtime_error(fmt::format("{}: {}", file.string(), text.substr(place.size())));
+  }
+}
+
+// A trajectory file's scene starts at its last frame, in the last field of a list.
+io::Scene scene_of(ModesCommand const& options) {
+  if (!is_hdf5(options.scene)) {
+    auto const scene =
+        io::with_shape_of_start(io::read_scene_to_relax(options.scene, options.overrides));
+    if (!scene.field.applied_in_turn.empty())
+      throw io::scene_error(scene, "field.applied",
+                            "a list of fields has a state for each; accepted: three numbers, or "
+                            "the file that cayspin relax writes");
+    return scene;
+  }
+  auto const info = io::read_info(options.scene);
+  if (info.frames == 0)
+    throw std::runtime_error(fmt::format("{}: it holds no frame", options.scene.string()));
+  std::vector overrides{as_start(options.scene)};
+  overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
+  auto scene = io::parse_scene_to_relax(info.header.scene_text, options.scene, overrides);
+  scene.field = io::fields_in_turn(scene).back();
+  scene.field.applied_in_turn.clear();
+  return scene;
+}
+
+template <class Real, class Space>
+class ModesOfScene {
+  using Spins = SpinField<Real, typename Space::memory_space>;
+
+ public:
+  ModesOfScene(io::Scene const& scene, Lattice const& lattice, ModesCommand const& options)
+      : scene_(scene), options_(options), spins_("spins", lattice) {
+    copy_from_host(io::initial_spins(scene), spins_);
+  }
+
+  int run(std::filesystem::path const& path) {
+    auto const field = field_of<Spins>(scene_, spins_.lattice(), false).made_for(FieldFor::energy);
+    auto const at = equilibrium(field);
+    if (at.end == MinimizeEnd::interrupted) return interrupted();
+    if (at.end != MinimizeEnd::converged)
+      throw NumbersFailed(fmt::format("{}: no equilibrium was found: {} after {} evaluations",
+                                      scene_.path.string(), to_string(at.end), at.evaluations));
+    auto contents = header();
+    contents.torque = at.torque * scene_.units.field;
+    auto const numbers = copy_to_host(spins_);
+    contents.spins.assign(numbers.begin(), numbers.end());
+    contents.evaluations = at.evaluations;
+    if (!options_.corners.empty()) return find_waves(path, field, contents);
+
+    auto const modes = find_modes<Real, Space>(exec_, scene_, field, spins_, options_.search);
+    if (modes.end == ModesEnd::interrupted) return interrupted();
+    FoundCurvatures curvatures;
+    curvatures.end = ModesEnd::converged;
+    if (options_.hessian)
+      curvatures = find_curvatures<Real, Space>(exec_, scene_, field, spins_, options_.search);
+    if (curvatures.end == ModesEnd::interrupted) return interrupted();
+    auto const end = modes.end == ModesEnd::converged ? curvatures.end : modes.end;
+
+    contents.converged = end == ModesEnd::converged;
+    contents.evaluations += modes.evaluations + curvatures.evaluations;
+    contents.frequencies = modes.frequencies;
+    contents.decays = modes.decays;
+    contents.residuals = modes.errors;
+    contents.shapes = modes.shapes;
+    contents.curvatures = curvatures.values;
+    contents.curvature_vectors = curvatures.vectors;
+    io::write_modes(path, contents, options_.overwrite);
+    if (!options_.quiet) report(contents);
+    if (contents.converged) return Status::done;
+    fmt::print(stderr, "{}: modes not converged, for: {}\n", scene_.path.string(), to_string(end));
+    return Status::numbers_failed;
+  }
+
+ private:
+  // Checks a start that is already an equilibrium, and keeps it.
+  Minimum equilibrium(SceneField<Spins> const& field) {
+    SceneMinimizer<Real, Space> minimizer(spins_);
+    MinimizeOptions minimize{.torque = options_.torque / scene_.units.field,
+                             .evaluations = options_.search.evaluations,
+                             .observer = [](Minimum const&) {
+                               return interrupt_requested() ? Next::stop : Next::proceed;
+                             }};
+    if (options_.at_rest) {
+      minimize.torque = std::numeric_limits<double>::max();
+      minimize.keep_saddles = true;
+    }
+    return minimizer.minimize(exec_, scene_, field, spins_, minimize);
+  }
+
+  int find_waves(std::filesystem::path const& path, SceneField<Spins> const& field,
+                 io::ModesContents const& state) const {
+    io::BandsContents contents{state, path_of(options_)};
+    auto const found = find_bands<Real, Space>(exec_, scene_, field, spins_, contents.wave_vectors);
+    contents.converged = true;
+    contents.evaluations += found.evaluations;
+    for (auto const& branches : found.frequencies)
+      contents.frequencies.insert(contents.frequencies.end(), branches.begin(), branches.end());
+    for (auto const& branches : found.decays)
+      contents.decays.insert(contents.decays.end(), branches.begin(), branches.end());
+    io::write_bands(path, contents, options_.overwrite);
+    if (options_.quiet) return Status::done;
+    fmt::print("wave vector, in cycles a cell; frequencies{}\n", scene_.units.si ? ", GHz" : "");
+    for (std::size_t i = 0; i < found.frequencies.size(); ++i) {
+      auto const& k = contents.wave_vectors[i];
+      fmt::print("{:>8.5g} {:>8.5g} {:>8.5g} ", k[0], k[1], k[2]);
+      for (double const frequency : found.frequencies[i])
+        fmt::print(" {:.9g}", (scene_.units.si ? 1e-9 : 1) * frequency);
+      fmt::print("\n");
+    }
+    return Status::done;
+  }
+
+  int interrupted() const {
+    fmt::print(stderr, "{}: interrupted; no file was written\n", scene_.path.string());
+    return Status::interrupted;
+  }
+
+  io::ModesContents header() const {
+    io::ModesContents contents;
+    contents.scene_text = scene_.text;
+    contents.cayspin_version = CAYSPIN_VERSION_STRING;
+    contents.git_commit = CAYSPIN_GIT_COMMIT;
+    contents.space = chosen_space(options_.space);
+    contents.precision = to_string(options_.precision);
+    contents.shape = scene_.lattice.shape;
+    contents.cell_sites = std::ssize(scene_.lattice.basis);
+    contents.units = scene_.units;
+    return contents;
+  }
+
+  void report(io::ModesContents const& found) const {
+    bool const si = scene_.units.si;
+    double const giga = si ? 1e-9 : 1;
+    fmt::print("max |m x H| = {:.3g}{}, {} evaluations\n", found.torque, si ? " T" : "",
+               found.evaluations);
+    fmt::print("{:>4}  {:>16}  {:>16}  {:>8}\n", "mode", si ? "frequency, GHz" : "frequency",
+               si ? "decay, 1/ns" : "decay", "error");
+    for (std::size_t i = 0; i < found.frequencies.size(); ++i)
+      fmt::print("{:>4}  {:>16.9g}  {:>16.9g}  {:>8.1e}\n", i, giga * found.frequencies[i],
+                 giga * found.decays[i], found.residuals[i]);
+    if (!found.curvatures.empty()) fmt::print("{:>4}  curvature{}\n", "", si ? ", J" : "");
+    for (std::size_t i = 0; i < found.curvatures.size(); ++i)
+      fmt::print("{:>4}  {:.9g}\n", i, found.curvatures[i]);
+  }
+
+  io::Scene const& scene_;
+  ModesCommand const& options_;
+  Space exec_;
+  Spins spins_;
+};
+
+int find_modes_of_scene(ModesCommand const& options) {
+  auto const scene = scene_of(options);
+  require_rest(scene);
+  auto const path = options.output.value_or("modes.h5");
+  io::require_free(path, options.overwrite);
+  check_files(scene, options.scene);
+  constexpr double least = Minimizer<SpinField<double>>::least_bound;
+  if (!(options.torque / scene.units.field >= least) || !std::isfinite(options.torque))
+    throw UsageError(fmt::format("--torque {}; accepted: a number of at least {}", options.torque,
+                                 least * scene.units.field));
+  if (!(options.search.tolerance > 0 && options.search.tolerance < 1))
+    throw UsageError(fmt::format("--tolerance {}; accepted: a number between 0 and 1",
+                                 options.search.tolerance));
+  if (!options.corners.empty()) {
+    path_of(options);
+    require_bands(scene);
+  }
+  auto const space = chosen_space(options.space);
+  KokkosSession const kokkos(space, options.threads, options.device);
+  auto const plan = make_plan_of_modes(scene, options.precision, options.search, options.hessian);
+  require_memory(scene, plan);
+  warn_of_notes(scene);
+  catch_signals();
+  return in_space(space, options.precision, [&]<class Real, class Space>() {
+    return ModesOfScene<Real, Space>(scene, plan.lattice, options).run(path);
+  });
+}
+
+}  // namespace
+
+Command add_modes(CLI::App& program) {
+  auto const options = std::make_shared<ModesCommand>();
+  auto* const command = program.add_subcommand(
+      "modes", "Find the normal modes of a scene's equilibrium: frequencies, decays and shapes");
+  add_device_options(*command, *options);
+  command->get_option("SCENE")->description(
+      "Scene file (TOML), or a trajectory file (HDF5), whose last frame is the start");
+  command->get_option("--output")->description("The file to write (default: modes.h5)");
+  command->add_option("--count", options->search.count, "Modes, the slowest first (default: 8)")
+      ->check(CLI::Range(std::size_t{1}, ModesOptions::most));
+  command->add_option("--torque", options->torque, "Largest |m x H| at rest (default: 1e-6)");
+  command->add_option("--tolerance", options->search.tolerance,
+                      "Error of the shapes (default: 1e-9)");
+  command
+      ->add_option("--evaluations", options->search.evaluations,
+                   "Most evaluations of a field in each search (default: 100000)")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 53U));
+  command->add_flag("--at-rest", options->at_rest, "The start is the equilibrium: do not relax");
+  command->add_flag("--hessian", options->hessian,
+                    "Also the lowest eigenvalues of the energy's Hessian, and their vectors");
+  command
+      ->add_option("--wave-vector", options->corners,
+                   "Waves in place of modes: a corner of a path of wave vectors, in cycles a cell")
+      ->allow_extra_args(false)
+      ->type_name("KX,KY,KZ");
+  command->add_option("--points", options->points, "From one corner to the next (default: 50)")
+      ->check(CLI::Range(1, 100000));
+  command->add_flag("--quiet", options->quiet, "No table");
+  return {command, [options](Ranks&) { return find_modes_of_scene(*options); }};
+}
+
+}  // namespace cayspin::program

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "io/path.hpp"
+
+#include "cayspin_git_commit.hpp"
+#include "command.hpp"
+#include "describe.hpp"
+#include "io/notes.hpp"
+#include "io/relax.hpp"
+#include "progress.hpp"
+#include "simulation/kokkos_settings.hpp"
+#include "simulation/scene_path.hpp"
+#include "simulation/text.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace cayspin::program {
+namespace {
+
+struct PathCommandOptions : DeviceOptions {
+  std::filesystem::path from, to;
+  ScenePathOptions search;
+  bool quiet = false;
+};
+
+std::string as_toml(std::filesystem::path const& file) {
+  std::string text = "\"";
+  for (char const c : std::filesystem::absolute(file).string()) {
+    if (c == '"' || c == '\\') text += '\\';
+    text += c;
+  }
+  return text + '"';
+}
+
+/// An end of the path.
+struct EndOption {
+  char const* name;
+  std::filesystem::path const& file;
+
+  std::string as_start() const { return "initial={ file = " + as_toml(file) + " }"; }
+};
+
+/// Reports errors of the file for the option, by the typed file name.
+template <class Work>
+auto for_option(EndOption const& option, Work const& work) {
+  try {
+    return work();
+  } catch (io::SceneError const& error) {
+    std::string_view text = error.what();
+    auto const place = fmt::format("--set {}: initial.file: ", option.as_start());
+    if (!text.starts_with(place)) throw;
+    text.remove_prefix(place.size());
+    auto const whole_name = std::filesystem::absolute(option.file).string() + ": ";
+    if (text.starts_with(whole_name)) text.remove_prefix(whole_name.size());
+    throw UsageError(fmt::format("{} {}: {}", option.name, option.file.string(), text));
+  }
+}
+
+/// Returns the scene with one end as its start.
+io::Scene scene_from(PathCommandOptions const& options, EndOption const& option) {
+  auto overrides = options.overrides;
+  overrides.push_back(option.as_start());
+  auto const scene = io::read_scene_to_relax(options.scene, overrides);
+  return for_option(option, [&] { return io::with_shape_of_start(scene); });
+}
+
+std::vector<double> spins_of(io::Scene const& scene, EndOption const& option) {
+  return for_option(option, [&] {
+    io::check_files(scene);
+    return io::initial_spins(scene);
+  });
+}
+
+std::string barrier_text(io::Scene const& scene, io::Path const& path) {
+  auto const text = [&](double energy) {
+    return energy_text(scene.units, energy / scene.units.energy);
+  };
+  auto line = fmt::format("barriers {} forward, {} backward; saddle energy {}, curvature {:.8g}",
+                          text(path.barrier_forward()), text(path.barrier_backward()),
+                          text(path.saddles.front().energy), path.saddles.front().curvature);
+  if (path.saddles.size() > 1) line += fmt::format("; {} saddles", path.saddles.size());
+  if (auto const& rates = path.rates)
+    line += fmt::format(
+        "\nprefactors {:.8g} forward, {:.8g} backward; zero modes {}, {}, {}"
+        "\nwith damping {:.8g} forward, {:.8g} backward",
+        rates->prefactor_forward, rates->prefactor_backward, rates->zero_modes[0],
+        rates->zero_modes[1], rates->zero_modes[2], rates->langer_forward, rates->langer_backward);
+  return line;
+}
+
+int find_path(PathCommandOptions const& options) {
+  EndOption const first{"--from", options.from}, last{"--to", options.to};
+  auto const scene = scene_from(options, first), other = scene_from(options, last);
+  auto search = options.search;
+  try {
+    require_path(scene, search);
+  } catch (UsageError const& error) {
+    throw UsageError(std::string("--") + error.what());
+  }
+  auto const output = output_file(scene, options.output);
+  if (scene.lattice.shape != other.lattice.shape)
+    throw UsageError(fmt::format("--to {}: has another shape than --from {}", options.to.string(),
+                                 options.from.string()));
+  auto const from = spins_of(scene, first), to = spins_of(other, last);
+  io::require_writable(output, options.overwrite);
+  auto const space = chosen_space(options.space);
+  KokkosSession const kokkos(space, options.threads, options.device);
+  require_memory(scene, make_plan_of_path(scene, options.precision, search));
+  warn_of_notes(scene);
+  catch_signals();
+  search.observer = [](PathProgress const&) {
+    return interrupt_requested() ? Next::stop : Next::proceed;
+  };
+  auto [end, path] =
+      find_scene_path(scene, from, to, space, options.precision, search, CAYSPIN_GIT_COMMIT);
+  path.from = options.from.string();
+  path.to = options.to.string();
+  if (end == PathEnd::interrupted) {
+    fmt::print(stderr, "{}: interrupted; nothing is written\n", scene.path.string());
+    return Status::interrupted;
+  }
+  bool const has_path = !path.energy.empty() && end != PathEnd::same_ends;
+  if (has_path) io::write_path(output, path, options.overwrite);
+  if (!options.quiet && end == PathEnd::converged)
+    fmt::print("{} after {} evaluations, {} images\n{}\n", path.end, path.evaluations,
+               path.energy.size(), barrier_text(scene, path));
+  if (end == PathEnd::converged) return Status::done;
+  fmt::print(stderr, "{}: no path: {}, after {} evaluations\n", scene.path.string(), path.end,
+             path.evaluations);
+  return Status::numbers_failed;
+}
+
+}  // namespace
+
+Command add_path(CLI::App& program) {
+  auto const options = std::make_shared<PathCommandOptions>();
+  auto* const command = program.add_subcommand(
+      "path", "Find a path of least energy between two states, and its barrier (HDF5)");
+  add_device_options(*command, *options);
+  command->add_option("--from", options->from, "The state where it begins: HDF5 or OVF")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--to", options->to, "The state where it ends")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--images", options->search.images,
+                      "States of the path, both ends among them (default: 16)");
+  command->add_option("--torque", options->search.torque,
+                      "Largest |m x H| of the ends and the saddle (default: 1e-6)");
+  command
+      ->add_option("--evaluations", options->search.evaluations,
+                   "Most evaluations of the field (default: 1000000)")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 53U));
+  command->add_flag(
+      "--rates", options->search.rates,
+      "Prefactors of harmonic transition state theory and of Langer's, of small lattices");
+  command->add_flag("--quiet", options->quiet, "No report");
+  return {command, [options](Ranks&) { return find_path(*options); }};
+}
+
+}  // namespace cayspin::program

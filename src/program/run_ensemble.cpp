@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "run_ensemble.hpp"
+
+#include "cayspin_git_commit.hpp"
+#include "describe.hpp"
+#include "io/ensemble_file.hpp"
+#include "simulation/ensemble_run.hpp"
+#include "simulation/failure.hpp"
+#include "simulation/guard.hpp"
+#include "simulation/kokkos_settings.hpp"
+#include "simulation/run_files.hpp"
+#include "simulation/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cayspin::program {
+namespace {
+
+RunSettings settings_of(DeviceOptions const& options, std::string const& space) {
+  return {.precision = options.precision, .space = space, .threads = options.threads};
+}
+
+io::EnsembleFile open_file(io::Scene const& scene, DeviceOptions const& options, EnsembleRun& run) {
+  auto header = run_header(run.replica(0).scene(), options.precision, run.replica(0).space(),
+                           run.replica(0).threads(), CAYSPIN_GIT_COMMIT);
+  header.scene_text = scene.text;
+  return {output_file(scene, options.output), header, scene.ensemble,
+          run_output_options(run.replica(0).scene(), options.overwrite)};
+}
+
+std::string kept(io::EnsembleFile const& file, std::filesystem::path const& path) {
+  return file.frames() == 0
+             ? std::string("no frame was written")
+             : fmt::format("the last good frame is {} in {}", file.frames() - 1, path.string());
+}
+
+/// A run and its file, from frame to frame.
+class RecordedEnsemble {
+ public:
+  RecordedEnsemble(io::Scene const& scene, DeviceOptions const& options, std::string const& space,
+                   Listener listener)
+      : scene_(scene),
+        run_(scene, settings_of(options, space), false),
+        looks_{.period = Guard::period_of(io::sites(scene)),
+               .until_torque = true,
+               .interrupted = interrupt_requested},
+        progress_(io::sites(scene) * scene.ensemble.replicas, listener),
+        path_(output_file(scene, options.output)) {
+    warn_of_steps();
+    file_.emplace(open_file(scene, options, run_));
+  }
+
+  int run() {
+    auto const end = run_.last_step();
+    auto const equal_steps = scene_.integrator.method->has_equal_steps();
+    progress_.begin_stage(0, end, equal_steps, {});
+    auto ending = Advanced::whole;
+    look(false);
+    try {
+      while (ending == Advanced::whole && run_.steps() < end) {
+        auto const after = [&](std::int64_t every) { return (run_.steps() / every + 1) * every; };
+        auto const next =
+            std::min({end, after(scene_.output.every), after(scene_.output.scalars_every)});
+        ending = run_.advance(next - run_.steps(), looks_);
+        // Steps between frames may take less time than the run waits between its own questions.
+        if (interrupt_requested() && run_.steps() < end) ending = Advanced::interrupted;
+        if (ending == Advanced::interrupted) break;
+        look(ending == Advanced::at_rest || run_.steps() == end);
+      }
+    } catch (NumbersFailed const& error) {
+      file_->close(cost());
+      throw NumbersFailed(fmt::format("{}; {}", error.what(), kept(*file_, path_)));
+    }
+    bool const interrupted = ending == Advanced::interrupted;
+    interrupted ? file_->close(cost()) : file_->finish(cost());
+    Summary total;
+    total.steps = run_.steps();
+    total.step_seconds = run_.step_seconds();
+    progress_.close(total, file_->frames(), path_.string());
+    if (!interrupted) return Status::done;
+    fmt::print(stderr, "{}: interrupted after step {} of {}; {}\n", scene_.path.string(),
+               run_.steps(), end, kept(*file_, path_));
+    return Status::interrupted;
+  }
+
+ private:
+  // Says it of the first replica only; a scene that refuses to be unstable refuses any of them.
+  void warn_of_steps() {
+    bool warned = false;
+    for (std::size_t number = 0; number < run_.replicas(); ++number) {
+      auto const warning = run_.replica(number).warning();
+      if (warning && !warned) fmt::print(stderr, "warning: replica {}: {}\n", number, *warning);
+      warned = warned || warning.has_value();
+    }
+  }
+
+  void look(bool last) {
+    auto const step = run_.steps();
+    auto const due = [&](std::int64_t every) { return last || step % every == 0; };
+    Step const now{step, 0, 0, last};
+    if (progress_.due(now)) progress_.show(now);
+    if (!due(scene_.output.every) && !due(scene_.output.scalars_every)) return;
+    auto const scalars = run_.scalars();
+    if (due(scene_.output.scalars_every)) file_->write_scalars(step, run_.time(), scalars);
+    if (due(scene_.output.every)) file_->write_frame(step, run_.time(), scalars, run_.spins());
+  }
+
+  io::RunCost cost() const { return {run_.evaluations(), clock_.seconds(), run_.step_seconds()}; }
+
+  io::Scene const& scene_;
+  EnsembleRun run_;
+  simulation::Looks looks_;
+  Progress progress_;
+  std::filesystem::path path_;
+  std::optional<io::EnsembleFile> file_;
+  Kokkos::Timer clock_;
+};
+
+}  // namespace
+
+int run_ensemble(io::Scene const& scene, DeviceOptions const& options, Listener listener) {
+  auto const space = chosen_space(options.space);
+  KokkosSession const kokkos(space, options.threads, options.device);
+  warn_of_notes(scene);
+  catch_signals();
+  return RecordedEnsemble(scene, options, space, listener).run();
+}
+
+int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
+                   RelaxEnsembleOptions const& search) {
+  auto const space = chosen_space(options.space);
+  KokkosSession const kokkos(space, options.threads, options.device);
+  warn_of_notes(scene);
+  catch_signals();
+  Kokkos::Timer const clock;
+  EnsembleRun run(scene, settings_of(options, space), true);
+  auto file = open_file(scene, options, run);
+  std::vector<io::RelaxedReplica> found;
+  io::RunCost cost;
+  for (std::size_t number = 0; number < run.replicas() && !interrupt_requested(); ++number) {
+    auto const minimum = run.replica(number).relax({.torque = search.torque,
+                                                    .evaluations = search.evaluations,
+                                                    .keep_saddles = search.keep_saddles,
+                                                    .interrupted = interrupt_requested});
+    cost.evaluations += minimum.evaluations;
+    found.push_back({minimum.torque, minimum.end == MinimizeEnd::converged, minimum.evaluations});
+  }
+  cost.wall_seconds = cost.step_seconds = clock.seconds();
+  if (interrupt_requested()) {
+    file.close(cost);
+    fmt::print(stderr, "{}: interrupted after {} of {} replicas; no frame was written\n",
+               scene.path.string(), found.size(), run.replicas());
+    return Status::interrupted;
+  }
+  auto const scalars = run.scalars();
+  file.write_scalars(0, 0, scalars);
+  file.write_frame(0, 0, scalars, run.spins());
+  file.write_relaxed(found);
+  file.finish(cost);
+  auto const failures = std::ranges::count(found, false, &io::RelaxedReplica::converged);
+  if (!search.quiet)
+    fmt::print("{}: {} of {} replicas converged after {} evaluations in {}\n",
+               output_file(scene, options.output).string(), std::ssize(found) - failures,
+               found.size(), cost.evaluations, duration_text(cost.wall_seconds));
+  if (failures == 0) return Status::done;
+  fmt::print(stderr, "{}: {} of {} replicas not converged\n", scene.path.string(), failures,
+             found.size());
+  return Status::numbers_failed;
+}
+
+}  // namespace cayspin::program

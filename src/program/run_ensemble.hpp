@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "command.hpp"
+#include "progress.hpp"
+
+namespace cayspin::program {
+
+/// `cayspin run` of a scene with [ensemble], on one rank. Returns the exit status.
+int run_ensemble(io::Scene const& scene, DeviceOptions const& options, Listener listener);
+
+/// How `cayspin relax` looks for the equilibrium of each replica.
+struct RelaxEnsembleOptions {
+  double torque = 1e-6;
+  std::int64_t evaluations = 100000;
+  bool keep_saddles = false, quiet = false;
+};
+
+/// `cayspin relax` of such a scene: each replica to its own equilibrium.
+int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
+                   RelaxEnsembleOptions const& search);
+
+}  // namespace cayspin::program

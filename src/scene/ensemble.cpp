@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "io/ensemble.hpp"
+
+#include "io/relax.hpp"
+#include "sections.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <variant>
+
+namespace cayspin::inline v0_1::io {
+namespace detail {
+namespace {
+
+constexpr std::int64_t most_replicas = 1'000'000;
+constexpr std::string_view accepted_values =
+    "as many numbers as replicas, or { from = number, to = number }";
+
+// Tables whose numbers a replica may have of its own.
+constexpr std::array varied_tables{"field.", "torque.", "material.", "thermal.temperature",
+                                   "system.damping"};
+// Moments are part of the units and of the lattice.
+constexpr std::array fixed_keys{"material.Ms", "material.mu_s", "material.damping_form"};
+
+bool may_vary(std::string_view key) {
+  auto const begins = [&](std::string_view table) { return key.starts_with(table); };
+  return std::ranges::any_of(varied_tables, begins) && std::ranges::none_of(fixed_keys, begins);
+}
+
+std::vector<double> read_values(Item const& item, Scene& scene, std::int64_t replicas) {
+  std::vector<double> values;
+  if (item.node->is_table()) {
+    Table const table(item, scene);
+    table.accept_only({"from", "to"});
+    double const from = number(table.required("from", "a number")),
+                 to = number(table.required("to", "a number"));
+    for (std::int64_t replica = 0; replica < replicas; ++replica) {
+      double const share =
+          replicas > 1 ? static_cast<double>(replica) / static_cast<double>(replicas - 1) : 0;
+      values.push_back((1 - share) * from + share * to);
+    }
+    return values;
+  }
+  auto const count = static_cast<std::size_t>(replicas);
+  for (auto const& entry : entries(item, count, count, accepted_values))
+    values.push_back(number(entry));
+  return values;
+}
+
+std::vector<std::string> overrides_of(Scene const& scene, std::int64_t replica) {
+  std::vector<std::string> overrides{"ensemble={}"};
+  for (auto const& [key, values] : scene.ensemble.vary)
+    overrides.push_back(fmt::format("{}={}", key, values[static_cast<std::size_t>(replica)]));
+  if (scene.thermal)
+    overrides.push_back(fmt::format("thermal.seed={}", scene.thermal->seed + replica));
+  if (auto const* const random = std::get_if<RandomStart>(&scene.initial))
+    overrides.push_back(fmt::format("initial.random.seed={}", random->seed + replica));
+  return overrides;
+}
+
+// A value that does not fit its key is refused with the key of [ensemble].
+template <class Parse>
+Scene parsed_replica(Scene const& scene, std::int64_t replica, Parse const& parse) {
+  try {
+    auto parsed = parse();
+    parsed.places = scene.places;
+    return parsed;
+  } catch (SceneError const& error) {
+    std::string_view const what = error.what();
+    if (!what.starts_with("--set ")) throw;
+    throw scene_error(scene, "ensemble.vary",
+                      fmt::format("in replica {}: {}", replica, what.substr(what.find(": ") + 2)));
+  }
+}
+
+// Refuses keys whose results the file of an ensemble cannot hold.
+void refuse_options(Scene const& scene) {
+  constexpr std::string_view what = "does not go with an ensemble", accepted = "no such key";
+  if (!scene.stages.empty()) refuse(scene, "stage", what, accepted);
+  if (has_integrator(scene) && scene.integrator.method->automatic)
+    refuse(scene, "integrator.method", "\"auto\" does not go with an ensemble",
+           "the method and dt or tolerance that `cayspin advise` names for a replica");
+  if (!scene.field.applied_in_turn.empty())
+    refuse(scene, "field.applied", "a list of fields does not go with an ensemble",
+           "three numbers or expressions in t");
+  if (scene.lattice.follow) refuse(scene, "lattice.follow", what, accepted);
+  auto const& output = scene.output;
+  for (auto const& [key, is_set] : {std::pair{"output.regions", output.regions},
+                                    {"output.terms", output.terms},
+                                    {"output.xdmf", output.xdmf},
+                                    {"output.table", output.table},
+                                    {"output.sync", output.sync}})
+    if (is_set) refuse(scene, key, what, accepted);
+}
+
+}  // namespace
+
+Ensemble read_ensemble(Table const& root) {
+  Ensemble ensemble;
+  auto const found = root.find("ensemble");
+  if (!found) return ensemble;
+  Table const table(*found, root.scene());
+  if (found->node->as_table()->empty()) return ensemble;
+  table.accept_only({"replicas", "vary"});
+  Limits const limits{"a whole number from 1 to 1000000", 1, static_cast<double>(most_replicas)};
+  ensemble.replicas = integer(table.required("replicas", limits.accepted), limits);
+  auto const vary = table.find("vary");
+  if (!vary) return ensemble;
+  if (!vary->node->is_table()) vary->wrong_type("a table of \"key.path\" = values");
+  Table const keys(*vary, root.scene());
+  for (auto const& [name, node] : *vary->node->as_table()) {
+    std::string const key(name.str());
+    auto const item = *keys.find(key);
+    if (!may_vary(key))
+      item.fail("is the same in all replicas",
+                "a number of [field], [torque] or [material], thermal.temperature, "
+                "system.damping");
+    ensemble.vary.push_back({key, read_values(item, root.scene(), ensemble.replicas)});
+  }
+  return ensemble;
+}
+
+void check_ensemble(Scene const& scene, bool relaxes) {
+  refuse_options(scene);
+  for (auto const replica : {std::int64_t{0}, scene.ensemble.replicas - 1})
+    relaxes ? replica_to_relax(scene, replica) : replica_of(scene, replica);
+}
+
+}  // namespace detail
+
+Scene replica_of(Scene const& scene, std::int64_t replica) {
+  return detail::parsed_replica(
+      scene, replica, [&] { return with_overrides(scene, detail::overrides_of(scene, replica)); });
+}
+
+Scene replica_to_relax(Scene const& scene, std::int64_t replica) {
+  return detail::parsed_replica(scene, replica, [&] {
+    return parse_scene_to_relax(scene.text, scene.path, detail::overrides_of(scene, replica));
+  });
+}
+
+void require_no_ensemble(Scene const& scene, std::string_view who) {
+  if (scene.ensemble.there())
+    detail::refuse(scene, "ensemble", fmt::format("{} takes no ensemble", who),
+                   "a scene without [ensemble], or cayspin run and cayspin relax");
+}
+
+}  // namespace cayspin::inline v0_1::io

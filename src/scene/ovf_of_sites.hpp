@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "io/scene.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace cayspin::inline v0_1::io::detail {
+
+/// Throws std::runtime_error unless the header of an OVF file has the nodes of a lattice with one
+/// site per cell, and this number of components, 1 or 3.
+void check_ovf_of_sites(std::filesystem::path const& path, Lattice const& lattice,
+                        std::int64_t components);
+
+/// Returns the values of a box, x fastest. Reads the whole file.
+std::vector<double> read_ovf_of_sites(std::filesystem::path const& path, Lattice const& lattice,
+                                      std::int64_t components, SiteBox const& box);
+
+}  // namespace cayspin::inline v0_1::io::detail

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "ensemble_run.hpp"
+
+#include "failure.hpp"
+#include "plan.hpp"
+#include "run_files.hpp"
+#include "scene_minimizer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+namespace cayspin::simulation {
+namespace {
+
+void require_memory_of_all(io::Scene const& scene, io::Scene const& replica, Precision precision,
+                           bool relaxes) {
+  auto const plan =
+      relaxes ? make_plan_to_relax(replica, precision) : make_plan(replica, precision);
+  require_memory(scene, plan, static_cast<int>(scene.ensemble.replicas));
+}
+
+}  // namespace
+
+EnsembleRun::EnsembleRun(io::Scene const& scene, RunSettings const& settings, bool relaxes) {
+  for (std::int64_t number = 0; number < scene.ensemble.replicas; ++number) {
+    auto const replica =
+        relaxes ? io::replica_to_relax(scene, number) : io::replica_of(scene, number);
+    if (number == 0) require_memory_of_all(scene, replica, settings.precision, relaxes);
+    try {
+      runs_.push_back(SceneRun::open(replica, settings));
+    } catch (io::SceneError const& error) {
+      throw io::SceneError(fmt::format("replica {}: {}", number, error.what()));
+    }
+  }
+  at_rest_.assign(runs_.size(), false);
+}
+
+double EnsembleRun::time() const {
+  double latest = 0;
+  for (auto const& run : runs_) latest = std::max(latest, run->time());
+  return latest;
+}
+
+std::int64_t EnsembleRun::evaluations() const {
+  std::int64_t all = 0;
+  for (auto const& run : runs_) all += run->evaluations();
+  return all;
+}
+
+double EnsembleRun::step_seconds() const {
+  double all = 0;
+  for (auto const& run : runs_) all += run->step_seconds();
+  return all;
+}
+
+bool EnsembleRun::is_at_rest() const {
+  return std::ranges::all_of(at_rest_, [](bool rests) { return rests; });
+}
+
+Advanced EnsembleRun::advance(std::int64_t count, Looks const& looks) {
+  for (std::size_t number = 0; number < runs_.size(); ++number) {
+    if (at_rest_[number]) continue;
+    try {
+      auto const advanced = runs_[number]->advance(count, looks);
+      if (advanced == Advanced::interrupted) return advanced;
+      at_rest_[number] = advanced == Advanced::at_rest;
+    } catch (NumbersFailed const& error) {
+      throw NumbersFailed(fmt::format("replica {}: {}", number, error.what()));
+    }
+  }
+  for (auto const& run : runs_) steps_ = std::max(steps_, run->steps());
+  return is_at_rest() ? Advanced::at_rest : Advanced::whole;
+}
+
+std::vector<io::Scalars> EnsembleRun::scalars() {
+  std::vector<io::Scalars> all;
+  for (auto const& run : runs_) all.push_back(as_scalars(run->sample(), {}));  // in its units
+  return all;
+}
+
+std::vector<std::byte> EnsembleRun::spins() {
+  std::vector<std::byte> all;
+  auto const add = [&](auto const& numbers) {
+    auto const bytes = std::as_bytes(std::span(numbers));
+    all.insert(all.end(), bytes.begin(), bytes.end());
+  };
+  for (auto const& run : runs_) {
+    auto const lent = run->spins();
+    if (run->precision() == Precision::double_precision)
+      add(packed<double>(lent.vectors));
+    else
+      add(packed<float>(lent.vectors));
+  }
+  return all;
+}
+
+}  // namespace cayspin::simulation

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "io/ensemble_file.hpp"
+#include "scene_run.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace cayspin::simulation {
+
+/// The replicas of a scene with [ensemble], each a run of its own, which go on in turns from one
+/// step to another. Replica r has the bits of a run of io::replica_of(scene, r).
+class EnsembleRun {
+ public:
+  /// For cayspin run, or where `relaxes` for cayspin relax. Throws what SceneRun::open throws, also
+  /// for too little memory.
+  EnsembleRun(io::Scene const& scene, RunSettings const& settings, bool relaxes);
+
+  std::size_t replicas() const { return runs_.size(); }
+  SceneRun& replica(std::size_t number) { return *runs_[number]; }
+
+  /// Those of the replicas that have gone furthest.
+  std::int64_t steps() const { return steps_; }
+  std::int64_t last_step() const { return runs_.front()->last_step(); }
+  double time() const;  // after them
+  std::int64_t evaluations() const;
+  double step_seconds() const;
+  /// Has each replica ended early, without torque?
+  bool is_at_rest() const;
+
+  /// Takes `count` more steps in all replicas that have not ended early. Those before the one that
+  /// fails or is interrupted have taken them then.
+  Advanced advance(std::int64_t count, Looks const& looks);
+
+  std::vector<io::Scalars> scalars();
+  /// Packed as (replica, nz, ny, nx, 3), in the precision of the run.
+  std::vector<std::byte> spins();
+
+ private:
+  std::vector<std::unique_ptr<SceneRun>> runs_;
+  std::vector<bool> at_rest_;
+  std::int64_t steps_ = 0;
+};
+
+}  // namespace cayspin::simulation

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/modes/normal_mode.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace cayspin::simulation {
+
+/// Modes of a scene on the host, slowest first. Frequencies are angular in reduced units, and in Hz
+/// in SI; decays are in 1/s in SI.
+struct FoundModes {
+  ModesEnd end = ModesEnd::evaluation_limit;
+  std::vector<double> frequencies, decays, errors;
+  /// sites x 3 x 2: real and imaginary parts, sites in the order of io::initial_spins.
+  std::vector<std::vector<double>> shapes;
+  std::int64_t evaluations = 0;
+};
+
+/// The lowest eigenvalues of the Hessian of the energy, in units of energy.
+struct FoundCurvatures {
+  ModesEnd end = ModesEnd::evaluation_limit;
+  std::vector<double> values, errors;
+  std::vector<std::vector<double>> vectors;  // sites x 3
+  std::int64_t evaluations = 0;
+};
+
+/// Spin waves of given wave vectors, in the units of FoundModes.
+struct FoundBands {
+  std::vector<std::vector<double>> frequencies, decays;  // for each wave vector its branches
+  std::int64_t evaluations = 0;
+};
+
+}  // namespace cayspin::simulation

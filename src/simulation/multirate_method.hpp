@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "io/scene.hpp"
+#include "plan.hpp"
+#include "variant.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace cayspin::simulation {
+
+/// Returns true if a term of the scene's field is multirate: slab_demag if slab_demag.multirate is
+/// set, demag if the method supports it, and a program's own nonlocal field if there are substeps.
+bool has_slow_field(io::Scene const& scene);
+
+/// Throws io::SceneError for substeps without an expensive field, and for an expensive field
+/// combined with a feature that needs it at each stage, or that remembers stages of earlier steps.
+void require_slow_field_fits(io::Scene const& scene, Variant const& variant);
+
+/// Returns an override that makes no term multirate.
+std::string without_multirate(io::Scene const& scene);
+
+/// Returns the order in time of its interpolation: 4 for methods of a higher order, and for those
+/// of order 4 if the damping is small, because order 3 would add to it; otherwise 3.
+int order_of_multirate(io::Scene const& scene, Variant const& variant);
+/// Returns the method's order around an expensive field.
+inline int order_with_multirate(io::Scene const& scene, Variant const& variant) {
+  return std::min(variant.order, order_of_multirate(scene, variant));
+}
+/// Returns how many fields of three numbers per site the method stores for an expensive field.
+inline std::int64_t work_fields_of_multirate(io::Scene const& scene, Variant const& variant) {
+  return order_of_multirate(scene, variant) == 4 ? 6 : 4;
+}
+
+/// Opens the method of the plan, in substeps between evaluations of an expensive field if there is
+/// one.
+std::unique_ptr<OpenMethod> open_method(io::Scene const& scene, Plan const& plan,
+                                        AnySimulation simulation);
+
+}  // namespace cayspin::simulation

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "scene_modes.hpp"
+
+#include "failure.hpp"
+#include "io/scene.hpp"
+#include "scene_minimizer.hpp"
+#include "space.hpp"
+#include "turning_of_sites.hpp"
+
+#include <cayspin/modes.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace cayspin::simulation {
+namespace {
+
+template <class Real, class Memory>
+Turning<Real, Memory> turning_of(io::Scene const& scene, Lattice const& lattice) {
+  auto const [precession, damping] = turning_of_sites(scene);
+  Turning<Real, Memory> const turning{{"modes::precession", lattice}, {"modes::damping", lattice}};
+  copy_from_host(precession, turning.precession);
+  copy_from_host(damping, turning.damping);
+  return turning;
+}
+
+void require_motion(io::Scene const& scene) {
+  if (!scene.system.precession && scene.system.damping == 0 && !scene.system.dampings.there())
+    throw io::scene_error(scene, "system.damping",
+                          "spins without precession and damping do not move; accepted: a damping "
+                          "above 0, or precession = true");
+}
+
+}  // namespace
+
+Plan make_plan_of_modes(io::Scene const& scene, Precision precision, ModesOptions const& options,
+                        bool with_hessian) {
+  require_motion(scene);
+  auto plan = make_plan_to_relax(scene, precision);
+  auto const modes = static_cast<std::int64_t>(options.count);
+  plan.memory.work = std::max(plan.memory.work, plan.memory.spins * (6 * modes + 100));
+  auto const numbers = io::sites(scene) * (modes * (with_hessian ? 9 : 6) + 3);
+  plan.memory.files += numbers * static_cast<std::int64_t>(sizeof(double));
+  return plan;
+}
+
+template <class Real, class Space>
+FoundModes find_modes(Space const& exec, io::Scene const& scene,
+                      SceneField<SpinField<Real, typename Space::memory_space>> const& field,
+                      SpinField<Real, typename Space::memory_space> const& spins,
+                      ModesOptions const& options) {
+  require_motion(scene);
+  auto const turning = turning_of<Real, typename Space::memory_space>(scene, spins.lattice());
+  auto const found = normal_modes(exec, field, turning, spins, options);
+  FoundModes modes;
+  modes.end = found.end;
+  modes.evaluations = found.evaluations;
+  double const per_time = 1 / scene.units.time;
+  double const cycles = scene.units.si ? 2 * std::numbers::pi : 1;
+  for (auto const& mode : found.modes) {
+    modes.frequencies.push_back(mode.frequency * per_time / cycles);
+    modes.decays.push_back(mode.decay * per_time);
+    modes.errors.push_back(mode.error);
+    auto const real = copy_to_host(mode.real), imaginary = copy_to_host(mode.imaginary);
+    auto& shape = modes.shapes.emplace_back(2 * real.size());
+    for (std::size_t i = 0; i < real.size(); ++i) {
+      shape[2 * i] = static_cast<double>(real[i]);
+      shape[2 * i + 1] = static_cast<double>(imaginary[i]);
+    }
+  }
+  return modes;
+}
+
+template <class Real, class Space>
+FoundCurvatures find_curvatures(
+    Space const& exec, io::Scene const& scene,
+    SceneField<SpinField<Real, typename Space::memory_space>> const& field,
+    SpinField<Real, typename Space::memory_space> const& spins, ModesOptions const& options) {
+  auto const found = lowest_curvatures(exec, field, spins, options);
+  FoundCurvatures curvatures;
+  curvatures.end = found.end;
+  curvatures.evaluations = found.evaluations;
+  for (auto const& one : found.curvatures) {
+    curvatures.values.push_back(one.value * scene.units.energy);
+    curvatures.errors.push_back(one.error);
+    auto const numbers = copy_to_host(one.vector);
+    curvatures.vectors.emplace_back(numbers.begin(), numbers.end());
+  }
+  return curvatures;
+}
+
+void require_bands(io::Scene const& scene) {
+  require_motion(scene);
+  auto const& lattice = scene.lattice;
+  auto const sites = static_cast<std::int64_t>(lattice.basis.size());
+  std::array<std::int64_t, 3> const cells{lattice.shape[0], lattice.shape[1],
+                                          lattice.shape[2] / sites};
+  if (std::ranges::count(lattice.boundary, io::BoundaryKind::periodic) == 0)
+    throw io::scene_error(scene, "lattice.boundary",
+                          "waves of a wave vector need an axis that closes on itself; accepted: "
+                          "\"periodic\", or a list with it");
+  for (auto const& bond : io::couplings(scene))
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (lattice.boundary[axis] == io::BoundaryKind::periodic && cells[axis] > 1 &&
+          2 * std::abs(bond.offset[axis]) > cells[axis])
+        throw io::scene_error(
+            scene, "lattice.shape",
+            fmt::format("{} cells along axis {}, and bonds reach over {}; accepted: at least {}",
+                        cells[axis], axis, std::abs(bond.offset[axis]),
+                        2 * std::abs(bond.offset[axis]) + 1));
+}
+
+template <class Real, class Space>
+FoundBands find_bands(Space const& exec, io::Scene const& scene,
+                      SceneField<SpinField<Real, typename Space::memory_space>> const& field,
+                      SpinField<Real, typename Space::memory_space> const& spins,
+                      std::vector<std::array<double, 3>> const& wave_vectors) {
+  auto const turning = turning_of<Real, typename Space::memory_space>(scene, spins.lattice());
+  FoundBands bands;
+  double const per_time = 1 / scene.units.time;
+  double const cycles = scene.units.si ? 2 * std::numbers::pi : 1;
+  try {
+    auto const found = bloch_modes(exec, field, turning, spins, wave_vectors);
+    bands.evaluations = found.evaluations;
+    for (auto const& branches : found.bands) {
+      auto &frequencies = bands.frequencies.emplace_back(), &decays = bands.decays.emplace_back();
+      for (auto const& [frequency, decay] : branches) {
+        frequencies.push_back(frequency * per_time / cycles);
+        decays.push_back(decay * per_time);
+      }
+    }
+  } catch (std::invalid_argument const& error) {
+    std::string_view const message = error.what();
+    throw UsageError("--wave-vector" + std::string(message.substr(message.find(": "))));
+  }
+  return bands;
+}
+
+#define CAYSPIN_INSTANTIATE(Space, Real)                                                       \
+  template FoundModes find_modes(                                                              \
+      Space const&, io::Scene const&, SceneField<SpinField<Real, Space::memory_space>> const&, \
+      SpinField<Real, Space::memory_space> const&, ModesOptions const&);                       \
+  template FoundCurvatures find_curvatures(                                                    \
+      Space const&, io::Scene const&, SceneField<SpinField<Real, Space::memory_space>> const&, \
+      SpinField<Real, Space::memory_space> const&, ModesOptions const&);                       \
+  template FoundBands find_bands(                                                              \
+      Space const&, io::Scene const&, SceneField<SpinField<Real, Space::memory_space>> const&, \
+      SpinField<Real, Space::memory_space> const&, std::vector<std::array<double, 3>> const&);
+CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, double)
+CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, float)
+#undef CAYSPIN_INSTANTIATE
+
+}  // namespace cayspin::simulation

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "found_modes.hpp"
+#include "plan.hpp"
+#include "scene_field.hpp"
+
+#include <array>
+#include <vector>
+
+namespace cayspin::simulation {
+
+/// Plans a search for modes after one for the equilibrium. Throws like make_plan_to_relax.
+Plan make_plan_of_modes(io::Scene const& scene, Precision precision, ModesOptions const& options,
+                        bool with_hessian);
+
+/// Finds the normal modes of a scene at an equilibrium. `field`: made for energies.
+template <class Real, class Space>
+FoundModes find_modes(Space const& exec, io::Scene const& scene,
+                      SceneField<SpinField<Real, typename Space::memory_space>> const& field,
+                      SpinField<Real, typename Space::memory_space> const& spins,
+                      ModesOptions const& options);
+
+template <class Real, class Space>
+FoundCurvatures find_curvatures(
+    Space const& exec, io::Scene const& scene,
+    SceneField<SpinField<Real, typename Space::memory_space>> const& field,
+    SpinField<Real, typename Space::memory_space> const& spins, ModesOptions const& options);
+
+/// Throws io::SceneError if a scene has no cells that could be equal, or bonds that are too long
+/// for its lattice.
+void require_bands(io::Scene const& scene);
+
+/// Finds the spin waves of given wave vectors, in cycles per cell. Throws UsageError like
+/// bloch_modes.
+template <class Real, class Space>
+FoundBands find_bands(Space const& exec, io::Scene const& scene,
+                      SceneField<SpinField<Real, typename Space::memory_space>> const& field,
+                      SpinField<Real, typename Space::memory_space> const& spins,
+                      std::vector<std::array<double, 3>> const& wave_vectors);
+
+}  // namespace cayspin::simulation

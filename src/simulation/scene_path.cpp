@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "scene_path.hpp"
+
+#include "failure.hpp"
+#include "kokkos_settings.hpp"
+#include "run_files.hpp"
+#include "scene_field.hpp"
+#include "scene_minimizer.hpp"
+#include "simulate.hpp"
+#include "transition_rates.hpp"
+
+#include <cayspin/minimum_energy_path.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace cayspin::simulation {
+namespace {
+
+template <class Real, class Space>
+class PathOfScene {
+  using Spins = SpinField<Real, typename Space::memory_space>;
+
+ public:
+  PathOfScene(io::Scene const& scene, Lattice const& lattice, ScenePathOptions const& options)
+      : scene_(scene),
+        options_(options),
+        saddle_("path::highest_saddle", lattice),
+        field_(field_of<Spins>(scene, lattice, false).made_for(FieldFor::energy)) {
+    for (std::int64_t k = 0; k < options.images; ++k) images_.emplace_back("path::image", lattice);
+  }
+
+  ScenePath find(std::vector<double> const& from, std::vector<double> const& to) {
+    copy_from_host(from, images_.front());
+    copy_from_host(to, images_.back());
+    auto const found = search();
+    ScenePath result{found.end, in_scene_units(found)};
+    if (options_.rates && found.end == PathEnd::converged)
+      result.path.rates = rates_of(scene_, exec_, field_, images_.front(), saddle_, images_.back(),
+                                   found.saddle().curvature);
+    result.path.header.threads = threads_of(exec_);
+    return result;
+  }
+
+ private:
+  MinimumEnergyPath search() {
+    try {
+      return minimum_energy_path(exec_, field_, images_, saddle_,
+                                 {.torque = options_.torque / scene_.units.field,
+                                  .evaluations = options_.evaluations,
+                                  .observer = options_.observer});
+    } catch (FieldNotFinite const&) {
+      throw NumbersFailed(fmt::format("{}: the field of an end, or its energy, is not finite",
+                                      scene_.path.string()));
+    }
+  }
+
+  io::Path in_scene_units(MinimumEnergyPath const& found) const {
+    auto const& units = scene_.units;
+    io::Path path;
+    path.end = to_string(found.end);
+    path.converged = found.end == PathEnd::converged;
+    path.evaluations = found.evaluations;
+    path.across = found.across * units.field;
+    path.distance = found.distance;
+    for (double const energy : found.energy) path.energy.push_back(energy * units.energy);
+    for (auto const& saddle : found.saddles) {
+      path.saddles.push_back({saddle.energy * units.energy, saddle.curvature * units.energy,
+                              saddle.next_curvature * units.energy,
+                              static_cast<std::int64_t>(saddle.image)});
+      path.torque = std::max(path.torque, saddle.torque * units.field);
+    }
+    for (auto const& image : images_) {
+      auto const numbers = copy_to_host(image);
+      path.spins.insert(path.spins.end(), numbers.begin(), numbers.end());
+    }
+    auto const numbers = copy_to_host(saddle_);
+    path.saddle.assign(numbers.begin(), numbers.end());
+    return path;
+  }
+
+  io::Scene const& scene_;
+  ScenePathOptions const& options_;
+  Space exec_;
+  std::vector<Spins> images_;
+  Spins saddle_;
+  SceneField<Spins> field_;
+};
+
+void require_same_frozen_spins(io::Scene const& scene, std::vector<double> const& from,
+                               std::vector<double> const& to) {
+  auto const frozen = io::frozen(scene, {{0, 0, 0}, scene.lattice.shape});
+  for (std::size_t i = 0; i < from.size() && !frozen.empty(); ++i)
+    if (frozen[i / 3] && std::abs(from[i] - to[i]) > 1e-6)
+      throw io::scene_error(scene, "lattice.frozen",
+                            "both ends have other spins there; accepted: the same ones");
+}
+
+}  // namespace
+
+void require_path(io::Scene const& scene, ScenePathOptions const& options) {
+  require_rest(scene);
+  if (io::depends_on_time(scene.field))
+    throw io::scene_error(scene, io::key_in_time(scene.field),
+                          "depends on t, and a path does not; accepted: numbers");
+  if (!scene.field.applied_in_turn.empty())
+    throw io::scene_error(scene, "field.applied",
+                          "a list of fields is for cayspin relax; accepted: three numbers");
+  constexpr std::int64_t most_images = 1000;
+  if (options.images < 3 || options.images > most_images)
+    throw UsageError(fmt::format("images {}; accepted: a whole number from 3 to {}", options.images,
+                                 most_images));
+  constexpr double least = Minimizer<SpinField<double>>::least_bound;
+  if (!(options.torque / scene.units.field >= least) || !std::isfinite(options.torque))
+    throw UsageError(fmt::format("torque {}; accepted: a number of at least {}", options.torque,
+                                 least * scene.units.field));
+  if (options.evaluations < 1)
+    throw UsageError(
+        fmt::format("evaluations {}; accepted: a whole number >= 1", options.evaluations));
+  if (options.rates && io::sites(scene) > most_sites_for_rates)
+    throw io::scene_error(scene, "lattice.shape",
+                          fmt::format("has {} sites; accepted with rates: at most {}",
+                                      io::sites(scene), most_sites_for_rates));
+}
+
+Plan make_plan_of_path(io::Scene const& scene, Precision precision,
+                       ScenePathOptions const& options) {
+  auto plan = make_plan_to_relax(scene, precision);
+  auto const images = static_cast<std::size_t>(options.images);
+  plan.memory.work = plan.memory.spins * (path_work_fields(images) + options.images - 1);
+  plan.memory.files = 2 * (options.images + 1) * 3 * 8 * io::sites(scene);
+  plan.file_bytes = static_cast<double>(plan.memory.files) / 2;
+  return plan;
+}
+
+ScenePath find_scene_path(io::Scene const& scene, std::vector<double> const& from,
+                          std::vector<double> const& to, std::string const& space,
+                          Precision precision, ScenePathOptions const& options,
+                          std::string const& git_commit) {
+  auto const plan = make_plan_of_path(scene, precision, options);
+  require_same_frozen_spins(scene, from, to);
+  Kokkos::Timer const clock;
+  auto found = in_space(space, precision, [&]<class Real, class Space>() {
+    return PathOfScene<Real, Space>(scene, plan.lattice, options).find(from, to);
+  });
+  auto const threads = found.path.header.threads;
+  found.path.header = run_header(scene, precision, space, threads, git_commit);
+  found.path.wall_seconds = clock.seconds();
+  return found;
+}
+
+}  // namespace cayspin::simulation

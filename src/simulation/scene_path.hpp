@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "io/path.hpp"
+#include "plan.hpp"
+#include "precision.hpp"
+
+#include <cayspin/path/found.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace cayspin::simulation {
+
+/// Options of a search for a path, in the units of the scene.
+struct ScenePathOptions {
+  std::int64_t images = 16;
+  double torque = 1e-6;  // of the ends and the saddles
+  std::int64_t evaluations = 1000000;
+  bool rates = false;
+  std::function<Next(PathProgress const&)> observer = {};
+};
+
+/// Largest number of sites whose Hessians are diagonalised for rates: each takes 2 sites squared
+/// numbers.
+inline constexpr std::int64_t most_sites_for_rates = 4096;
+
+/// Throws io::SceneError for what has no path of least energy or no rates, and UsageError for
+/// options that cannot be, which begins with their name.
+void require_path(io::Scene const& scene, ScenePathOptions const& options);
+
+/// Plans the memory of a search for a path. Throws like make_plan_to_relax.
+Plan make_plan_of_path(io::Scene const& scene, Precision precision,
+                       ScenePathOptions const& options);
+
+/// A path between two states, sites x 3 as from io::initial_spins, and why the search ended.
+/// Fills everything but `from` and `to`. Throws NumbersFailed for a field that is not finite.
+struct ScenePath {
+  PathEnd end;
+  io::Path path;
+};
+ScenePath find_scene_path(io::Scene const& scene, std::vector<double> const& from,
+                          std::vector<double> const& to, std::string const& space,
+                          Precision precision, ScenePathOptions const& options,
+                          std::string const& git_commit);
+
+}  // namespace cayspin::simulation

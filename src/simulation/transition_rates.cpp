@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "transition_rates.hpp"
+
+#include "failure.hpp"
+#include "growth_rate.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+// Harmonic transition state theory for spins: Bessarab, Uzdin and Jonsson, Phys. Rev. B 85, 184409
+// (2012). The rate is the flux across the dividing plane at the saddle, by the precession there,
+// over the partition function of the minimum; damping does not enter. Along modes without stiffness
+// the whole volume counts, of a translation that of one cell. In Langer's theory, Ann. Phys. 54,
+// 258 (1969), the flux is that of the mode that grows at the saddle, with damping.
+namespace cayspin::simulation {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+using Numbers = std::vector<double>;
+
+constexpr double pi = std::numbers::pi;
+constexpr double boltzmann = 1.380649e-23;  // J/K
+/// Eigenvalues below this fraction of a bound on the largest count as zero.
+constexpr double zero = 1e-5;
+
+Eigen::Map<Eigen::Vector3d const> at(Numbers const& spins, std::size_t site) {
+  return Eigen::Map<Eigen::Vector3d const>(&spins[3 * site]);
+}
+
+Eigen::Vector3d way_between(Eigen::Vector3d const& m, Eigen::Vector3d const& p) {
+  Eigen::Vector3d const axis = m.cross(p);
+  double const sine = axis.norm();
+  if (sine == 0) return Eigen::Vector3d::Zero();
+  return std::atan2(sine, m.dot(p)) / sine * axis.cross(m);
+}
+
+class State {
+ public:
+  /// `unstable`: approximate lowest curvature of a saddle; 0 for minima. Throws NumbersFailed if
+  /// another one is negative.
+  State(StateHessian const& state, char const* name, double unstable)
+      : state_(state),
+        name_(name),
+        hessian_(Eigen::Map<
+                 Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> const>(
+            state.numbers.data(), static_cast<Eigen::Index>(state.size()),
+            static_cast<Eigen::Index>(state.size()))) {
+    hessian_ = (0.5 * (hessian_ + hessian_.transpose())).eval();
+    auto const n = hessian_.rows();
+    // An upper bound.
+    double const largest = hessian_.cwiseAbs().rowwise().sum().maxCoeff();
+    Matrix rest = hessian_;
+    if (unstable < 0) {
+      Eigen::PartialPivLU<Matrix> const inverse(hessian_ -
+                                                1.001 * unstable * Matrix::Identity(n, n));
+      mode_ = near_vectors(hessian_, inverse, 1).first;
+      rest += (largest - mode_.dot(hessian_ * mode_)) * mode_ * mode_.transpose();
+    }
+    double const bound = zero * largest;
+    Eigen::LLT<Matrix> factors(rest + bound * Matrix::Identity(n, n));
+    if (factors.info() != Eigen::Success)
+      throw NumbersFailed(fmt::format("rates: {} has {} negative curvature", name,
+                                      unstable < 0 ? "a second" : "a"));
+    auto const [vectors, values] = near_vectors(rest, factors, std::min<Eigen::Index>(n, 8));
+    auto const count = (values.array() <= bound).count();
+    zeros_ = vectors.leftCols(count);
+    rest += largest * zeros_ * zeros_.transpose();
+    factors.compute(rest);
+    // Subtracts the substitute values of the modes that are left out.
+    double const in_place = static_cast<double>(count) + (unstable < 0 ? 1 : 0);
+    log_determinant_ =
+        2 * factors.matrixLLT().diagonal().array().log().sum() - in_place * std::log(largest);
+  }
+
+  Matrix const& hessian() const { return hessian_; }
+  /// Returns the unstable mode of a saddle.
+  Vector const& mode() const { return mode_; }
+  std::int64_t zero_modes() const { return zeros_.cols(); }
+  /// Returns the sum of the logarithms of the positive eigenvalues.
+  double log_determinant() const { return log_determinant_; }
+
+  /// Returns the contribution of the zero modes: the volume of all states to which they lead.
+  double zero_volume(io::Lattice const& lattice) const {
+    auto const count = zero_modes();
+    if (count == 0) return 1;
+    auto const along_zeros = [&](Vector const& v) {
+      return (zeros_.transpose() * v).norm() > 0.9 * v.norm() && v.norm() > 1e-6;
+    };
+    std::vector<Vector> translations;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      auto const [centred, whole] = translation(lattice, axis);
+      if (along_zeros(centred)) translations.push_back(whole.norm() / centred.norm() * centred);
+    }
+    if (std::ssize(translations) == count) return volume_of(translations);
+    auto const rotated = rotations();
+    if (std::ssize(rotated) != count)
+      throw NumbersFailed(fmt::format(
+          "rates: {} has {} zero modes; accepted: none, translations along {} periodic axes, or "
+          "rotations of all spins",
+          name_, count, translations.size()));
+    constexpr std::array volumes{2 * pi, 4 * pi, 8 * pi * pi};  // of all angles
+    return volumes[rotated.size() - 1] * volume_of(rotated);
+  }
+
+ private:
+  /// Returns the eigenvectors of a matrix with the largest eigenvalues of its inverse, and their
+  /// eigenvalues, in order, by inverse iteration.
+  static std::pair<Matrix, Vector> near_vectors(Matrix const& matrix, auto const& inverse,
+                                                Eigen::Index count) {
+    auto const n = matrix.rows();
+    Matrix vectors = Matrix::NullaryExpr(n, count, [](Eigen::Index row, Eigen::Index column) {
+      return std::sin(1.0 + 1.7 * static_cast<double>(row + 1) * static_cast<double>(column + 1));
+    });
+    for (int step = 0; step < 12; ++step) {
+      vectors = inverse.solve(vectors).eval();
+      vectors = (Eigen::HouseholderQR<Matrix>(vectors).householderQ() * Matrix::Identity(n, count))
+                    .eval();
+    }
+    Eigen::SelfAdjointEigenSolver<Matrix> const ritz(vectors.transpose() * matrix * vectors);
+    return {vectors * ritz.eigenvectors(), ritz.eigenvalues()};
+  }
+
+  static double volume_of(std::vector<Vector> const& vectors) {
+    auto const count = static_cast<Eigen::Index>(vectors.size());
+    Matrix const products = Matrix::NullaryExpr(count, count, [&](auto i, auto j) {
+      return vectors[static_cast<std::size_t>(i)].dot(vectors[static_cast<std::size_t>(j)]);
+    });
+    return std::sqrt(products.determinant());
+  }
+
+  Vector coordinates(auto const& vector_of_site) const {
+    Vector found(static_cast<Eigen::Index>(state_.size()));
+    for (std::size_t i = 0; i < state_.size(); ++i)
+      found[static_cast<Eigen::Index>(i)] =
+          vector_of_site(state_.sites[i / 2])
+              .dot(Eigen::Map<Eigen::Vector3d const>(state_.vector(i)));
+    return found;
+  }
+
+  /// Returns the translations by a cell along an axis, centred and one-sided; empty unless it is
+  /// periodic.
+  std::pair<Vector, Vector> translation(io::Lattice const& lattice, std::size_t axis) const {
+    Vector const none = Vector::Zero(static_cast<Eigen::Index>(state_.size()));
+    auto shape = lattice.shape;
+    auto const cell_sites = std::ssize(lattice.basis);
+    shape[2] /= cell_sites;
+    if (lattice.boundary[axis] != io::BoundaryKind::periodic || shape[axis] < 2)
+      return {none, none};
+    auto const moved = [&](std::size_t site, std::int64_t by) {
+      auto const n = static_cast<std::int64_t>(site);
+      std::array<std::int64_t, 3> place{n % shape[0], n / shape[0] % shape[1],
+                                        n / (shape[0] * shape[1])};
+      auto const of_cell = place[2] % cell_sites;
+      place[2] /= cell_sites;
+      place[axis] = (place[axis] + by + shape[axis]) % shape[axis];
+      return static_cast<std::size_t>(
+          ((place[2] * cell_sites + of_cell) * shape[1] + place[1]) * shape[0] + place[0]);
+    };
+    auto const way = [&](std::size_t site, std::int64_t by) {
+      return way_between(at(state_.spins, site), at(state_.spins, moved(site, by)));
+    };
+    return {coordinates([&](std::size_t site) -> Eigen::Vector3d {
+              return 0.5 * (way(site, 1) - way(site, -1));
+            }),
+            coordinates([&](std::size_t site) { return way(site, 1); })};
+  }
+
+  /// Returns rotations of all spins by a radian about orthogonal axes, where they are zero modes.
+  std::vector<Vector> rotations() const {
+    Matrix turned(static_cast<Eigen::Index>(state_.size()), 3);
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      turned.col(axis) = coordinates([&](std::size_t site) -> Eigen::Vector3d {
+        return Eigen::Vector3d::Unit(axis).cross(at(state_.spins, site));
+      });
+    // Axes for which most of the rotation is not a zero mode come last.
+    Matrix const beside = turned - zeros_ * (zeros_.transpose() * turned);
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> const axes(beside.transpose() * beside);
+    std::vector<Vector> found;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      Vector const v = turned * axes.eigenvectors().col(i);
+      bool const moves = v.norm() > 1e-3 * turned.norm();
+      if (moves && (beside * axes.eigenvectors().col(i)).norm() < 1e-2 * v.norm())
+        found.push_back(v);
+    }
+    return found;
+  }
+
+  StateHessian const& state_;
+  char const* name_;
+  Matrix hessian_;
+  Matrix zeros_;
+  Vector mode_;
+  double log_determinant_ = 0;
+};
+
+/// Returns the gyromagnetic ratio over the moment of each site, in the units by which spins turn.
+Numbers mobilities(io::Scene const& scene, StateHessian const& state) {
+  auto const& lattice = scene.lattice;
+  io::SiteBox const box{{0, 0, 0}, lattice.shape};
+  auto const moments = io::moments_of_sites(scene, box);
+  auto const cell_sites = lattice.basis.size();
+  auto const plane = static_cast<std::size_t>(lattice.shape[0] * lattice.shape[1]);
+  Numbers found;
+  for (auto const site : state.sites) {
+    auto const of_cell = site / plane % cell_sites;
+    double const ratio = io::of_cell_site(lattice.gyromagnetic, of_cell);
+    found.push_back(moments.empty() ? io::over_moment(lattice, of_cell, ratio)
+                                    : ratio / moments[site]);
+  }
+  return found;
+}
+
+/// Returns the mean square of the velocity along the unstable mode, over kT.
+double square_of_velocity(State const& saddle, Numbers const& mobilities) {
+  Vector const& mode = saddle.mode();
+  Vector turned(mode.size());
+  for (Eigen::Index i = 0; i < mode.size(); i += 2) {
+    double const mobility = mobilities[static_cast<std::size_t>(i / 2)];
+    turned[i] = mobility * mode[i + 1];
+    turned[i + 1] = -mobility * mode[i];
+  }
+  return turned.dot(saddle.hessian() * turned);
+}
+
+}  // namespace
+
+StateHessian::StateHessian(std::vector<double> numbers_of_spins)
+    : spins(std::move(numbers_of_spins)) {
+  for (std::size_t site = 0; site < spins.size() / 3; ++site) {
+    Eigen::Vector3d const m = at(spins, site);
+    if (m.isZero()) continue;
+    sites.push_back(site);
+    Eigen::Vector3d const beside =
+        std::abs(m.x()) < 0.6 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
+    Eigen::Vector3d const first = m.cross(beside).normalized(), second = m.cross(first);
+    for (auto const& v : {first, second}) basis.insert(basis.end(), v.data(), v.data() + 3);
+  }
+}
+
+io::RatesOfPath rates_between(io::Scene const& scene, StateHessian const& start,
+                              StateHessian const& saddle, StateHessian const& end,
+                              double saddle_curvature) {
+  if (!(saddle_curvature < 0))
+    throw NumbersFailed("rates: the energy does not fall from the saddle: it is a plateau");
+  State const of_saddle(saddle, "the saddle", saddle_curvature);
+  double const velocity =
+      std::sqrt(square_of_velocity(of_saddle, mobilities(scene, saddle))) / (2 * pi);
+  auto const saddle_modes = of_saddle.zero_modes();
+  double const saddle_volume = of_saddle.zero_volume(scene.lattice);
+
+  io::RatesOfPath rates;
+  rates.zero_modes[1] = saddle_modes;
+  rates.volumes[1] = saddle_volume;
+  bool const gilbert = scene.material && scene.material->gilbert && !scene.system.dampings.there();
+  double const alpha = gilbert ? scene.material->alpha : 0;
+  double const per_time = (1 + alpha * alpha) / scene.units.time;
+  double const thermal = scene.units.si ? boltzmann / scene.units.energy : 1;
+  double const growth = growth_rate(scene, saddle, of_saddle.hessian(), of_saddle.mode());
+  double const curvature = of_saddle.mode().dot(of_saddle.hessian() * of_saddle.mode());
+  double const langer = growth / (2 * pi * std::sqrt(-curvature) * scene.units.time);
+  // Without the flux.
+  auto const factor = [&](StateHessian const& minimum, char const* name, std::size_t place) {
+    State const state(minimum, name, 0);
+    auto const modes = rates.zero_modes[place] = state.zero_modes();
+    double const volume = rates.volumes[place] = state.zero_volume(scene.lattice);
+    double const power = 0.5 * static_cast<double>(modes - saddle_modes);
+    return saddle_volume / volume * std::pow(2 * pi * thermal, power) *
+           std::exp(0.5 * (state.log_determinant() - of_saddle.log_determinant()));
+  };
+  double const forward = factor(start, "the start", 0), backward = factor(end, "the end", 2);
+  rates.prefactor_forward = per_time * velocity * forward;
+  rates.prefactor_backward = per_time * velocity * backward;
+  rates.langer_forward = langer * forward;
+  rates.langer_backward = langer * backward;
+  return rates;
+}
+
+}  // namespace cayspin::simulation

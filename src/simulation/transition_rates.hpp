@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "io/path.hpp"
+#include "io/scene.hpp"
+
+#include <cayspin/minimizer/hessian.hpp>
+#include <cayspin/spin_field.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace cayspin::simulation {
+
+/// An equilibrium and the Hessian of its energy, in two coordinates of each spin on its tangent
+/// plane. Sites without a spin have none.
+struct StateHessian {
+  std::vector<double> spins;       // sites x 3
+  std::vector<std::size_t> sites;  // sites that have coordinates
+  std::vector<double> basis;       // two vectors for each of them
+  std::vector<double> numbers;     // matrix elements, row by row
+
+  /// Fills sites and basis.
+  explicit StateHessian(std::vector<double> numbers_of_spins);
+  std::size_t size() const { return 2 * sites.size(); }
+  double const* vector(std::size_t coordinate) const { return &basis[3 * coordinate]; }
+};
+
+/// Returns the prefactors of harmonic transition state theory, in the units of the scene.
+/// `unstable` is the approximate curvature of the saddle. Throws NumbersFailed for zero modes that
+/// are neither translations nor rotations of all spins, for a saddle on a plateau, and for states
+/// with other negative curvatures.
+io::RatesOfPath rates_between(io::Scene const& scene, StateHessian const& start,
+                              StateHessian const& saddle, StateHessian const& end,
+                              double saddle_curvature);
+
+/// Computes the Hessian by a product for each coordinate.
+template <class Exec, class Field, class Spins>
+StateHessian hessian_of(Exec const& exec, Field const& field, Spins const& spins) {
+  using Real = typename Spins::value_type;
+  auto const& lattice = spins.lattice();
+  auto const numbers = copy_to_host(spins);
+  StateHessian state({numbers.begin(), numbers.end()});
+  ScalarField<Real, typename Spins::memory_space> const is_mobile("rates::is_mobile", lattice,
+                                                                  Real(1));
+  auto const fields = cayspin::detail::numbered_fields<Spins, 5>("rates", lattice);
+  auto const &vector = fields[0], &product = fields[1];
+  cayspin::detail::Hessian hessian(
+      exec, field, 0, spins, is_mobile,
+      cayspin::detail::HessianArrays<Spins>{fields[2], fields[3], fields[4]});
+  std::size_t const n = state.size();
+  state.numbers.resize(n * n);
+  std::vector<Real> given(numbers.size());
+  for (std::size_t column = 0; column < n; ++column) {
+    auto const at = 3 * state.sites[column / 2];
+    for (std::size_t c = 0; c < 3; ++c) given[at + c] = static_cast<Real>(state.vector(column)[c]);
+    copy_from_host(given, vector);
+    hessian.multiply(vector, product);
+    auto const found = copy_to_host(product);
+    for (std::size_t row = 0; row < n; ++row) {
+      auto const* const of_site = &found[3 * state.sites[row / 2]];
+      auto const* const v = state.vector(row);
+      state.numbers[row * n + column] = of_site[0] * v[0] + of_site[1] * v[1] + of_site[2] * v[2];
+    }
+    for (std::size_t c = 0; c < 3; ++c) given[at + c] = 0;
+  }
+  return state;
+}
+
+template <class Exec, class Field, class Spins>
+io::RatesOfPath rates_of(io::Scene const& scene, Exec const& exec, Field const& field,
+                         Spins const& start, Spins const& saddle, Spins const& end,
+                         double saddle_curvature) {
+  return rates_between(scene, hessian_of(exec, field, start), hessian_of(exec, field, saddle),
+                       hessian_of(exec, field, end), saddle_curvature);
+}
+
+}  // namespace cayspin::simulation

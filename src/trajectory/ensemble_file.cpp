@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "io/ensemble_file.hpp"
+
+#include "ensemble_format.hpp"
+#include "format.hpp"
+#include "hdf5/attribute.hpp"
+#include "hdf5/dataset.hpp"
+#include "hdf5/error.hpp"
+#include "new_file.hpp"
+#include "open_file_space.hpp"
+#include "require.hpp"
+#include "site_order.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+namespace cayspin::inline v0_1::io {
+namespace {
+
+constexpr hsize_t numbers_per_chunk = 4096;
+constexpr std::uint64_t overhead = 1 << 20;  // index nodes and new chunks of a frame
+
+/// The datasets time, step, energy, norm_defect and magnetization of one group: an entry for each
+/// sample, or in it one for each replica.
+class ReplicaSeries {
+ public:
+  static ReplicaSeries create(hid_t group, hsize_t replicas, std::filesystem::path const& path) {
+    ReplicaSeries series;
+    series.replicas_ = replicas;
+    auto const samples = std::max<hsize_t>(1, numbers_per_chunk / replicas);
+    auto const make = [&](char const* name, hid_t type, Extents const& chunk) {
+      return create_growing_dataset(group, name, type, chunk, PropertyHandle(), path);
+    };
+    series.time_ = make("time", H5T_IEEE_F64LE, {numbers_per_chunk});
+    series.step_ = make("step", H5T_STD_I64LE, {numbers_per_chunk});
+    series.energy_ = make("energy", H5T_IEEE_F64LE, {samples, replicas});
+    series.norm_defect_ = make("norm_defect", H5T_IEEE_F64LE, {samples, replicas});
+    series.magnetization_ = make("magnetization", H5T_IEEE_F64LE, {samples, replicas, 3});
+    return series;
+  }
+
+  // A reader counts a sample when all datasets have it; `energy` grows last.
+  void append(std::int64_t step, double time, std::vector<Scalars> const& scalars,
+              std::filesystem::path const& path) {
+    std::vector<double> energies, defects, means;
+    for (auto const& one : scalars) {
+      energies.push_back(one.energy);
+      defects.push_back(one.norm_defect);
+      means.insert(means.end(), one.magnetization.begin(), one.magnetization.end());
+    }
+    append_block(time_.get(), H5T_NATIVE_DOUBLE, {size_}, {1}, &time, path);
+    append_block(step_.get(), H5T_NATIVE_INT64, {size_}, {1}, &step, path);
+    append_block(magnetization_.get(), H5T_NATIVE_DOUBLE, {size_, 0, 0}, {1, replicas_, 3},
+                 means.data(), path);
+    append_block(norm_defect_.get(), H5T_NATIVE_DOUBLE, {size_, 0}, {1, replicas_}, defects.data(),
+                 path);
+    append_block(energy_.get(), H5T_NATIVE_DOUBLE, {size_, 0}, {1, replicas_}, energies.data(),
+                 path);
+    ++size_;
+  }
+
+ private:
+  DatasetHandle time_, step_, energy_, norm_defect_, magnetization_;
+  hsize_t replicas_ = 0, size_ = 0;
+};
+
+void write_attributes(hid_t file, TrajectoryHeader const& header, std::int64_t replicas,
+                      std::filesystem::path const& path) {
+  RootAttributes const attributes(file, path);
+  attributes.create(ensemble_format, ensemble_format_version);
+  attributes.create("replicas", replicas);
+  attributes.create("scene", header.scene_text);
+  // A trajectory is known by `cayspin_version`.
+  attributes.create("written_by", "cayspin " + header.cayspin_version);
+  attributes.create("git_commit", header.git_commit);
+  attributes.create("kokkos_version", header.kokkos_version);
+  attributes.create("space", header.space);
+  attributes.create("threads", std::int64_t{header.threads});
+  attributes.create("precision", header.precision);
+  attributes.create("units", std::string(header.units.si ? si_units : reduced_units));
+  if (header.units.si)
+    for (auto const& [name, member] : unit_attributes)
+      attributes.create(name, header.units.*member);
+  attributes.create("evaluations", std::int64_t{0});
+  attributes.create("wall_seconds", 0.0);
+  attributes.create("step_seconds", 0.0);
+  attributes.create("complete", std::int64_t{0});
+}
+
+void write_varied(hid_t file, Ensemble const& ensemble, std::filesystem::path const& path) {
+  auto const group = create_group(file, "vary", path);
+  std::vector<std::string> names;
+  for (auto const& [key, values] : ensemble.vary) {
+    write_dataset(group.get(), key.c_str(), H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {values.size()},
+                  values.data(), path);
+    names.push_back(key);
+  }
+  if (!names.empty()) write_names(group.get(), "keys", names, path);
+}
+
+/// (replica, nz, ny, nx, 3), of crystals (replica, site, nz, ny, nx, 3).
+Extents extents_of_frame(TrajectoryHeader const& header, hsize_t replicas) {
+  auto const sites = static_cast<hsize_t>(header.cell_sites);
+  Extents extents{replicas};
+  if (sites > 1) extents.push_back(sites);
+  extents.push_back(static_cast<hsize_t>(header.shape[2]) / sites);
+  extents.insert(extents.end(),
+                 {static_cast<hsize_t>(header.shape[1]), static_cast<hsize_t>(header.shape[0]), 3});
+  return extents;
+}
+
+// Written once: all replicas have the same positions.
+void write_positions(hid_t file, TrajectoryHeader const& header,
+                     std::vector<double> const& positions, std::filesystem::path const& path) {
+  auto extents = extents_of_frame(header, 1);
+  extents.erase(extents.begin());
+  write_dataset(file, "positions", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, extents, positions.data(),
+                path);
+}
+
+DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header, hsize_t replicas,
+                           TrajectoryStorage const& storage, std::filesystem::path const& path) {
+  constexpr hsize_t chunk_bytes = 4 << 20;
+  auto const inner = extents_of_frame(header, replicas);
+  bool const single = header.precision == single_precision;
+  auto const of_replica = elements(inner) / replicas * (single ? 4 : 8);
+  Extents chunk{1};
+  chunk.insert(chunk.end(), inner.begin(), inner.end());
+  chunk[1] = std::clamp<hsize_t>(chunk_bytes / of_replica, 1, replicas);
+  // A replica above the limit is cut along its axes, from the slowest on.
+  for (std::size_t axis = 2; axis + 1 < chunk.size(); ++axis)
+    while (elements(chunk) * 8 > most_chunk_bytes && chunk[axis] > 1)
+      chunk[axis] = (chunk[axis] + 1) / 2;
+  if (storage.compression == 0) {
+    auto const of_chunk = elements(chunk) * (single ? 4 : 8);
+    auto const chunks = (replicas + chunk[1] - 1) / chunk[1];
+    chunk[0] = static_cast<hsize_t>(
+        frames_of_chunk(of_chunk, storage.frames * static_cast<std::int64_t>(chunks)));
+  }
+  PropertyHandle properties(H5Pcreate(H5P_DATASET_CREATE));
+  auto const missing = std::numeric_limits<double>::quiet_NaN();
+  constexpr char const* action = "cannot create dataset spins";
+  check(H5Pset_fill_value(properties.get(), H5T_NATIVE_DOUBLE, &missing), path, action);
+  if (storage.compression > 0) {
+    check(H5Pset_shuffle(properties.get()), path, action);
+    check(H5Pset_deflate(properties.get(), static_cast<unsigned>(storage.compression)), path,
+          action);
+  }
+  return create_growing_dataset(file, "spins", single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, chunk,
+                                std::move(properties), path, inner);
+}
+
+template <class Real>
+std::vector<Real> in_file_order(std::vector<std::byte> const& bytes,
+                                TrajectoryHeader const& header) {
+  std::vector<Real> spins(bytes.size() / sizeof(Real));
+  std::memcpy(spins.data(), bytes.data(), bytes.size());
+  return by_sites(spins, header);
+}
+
+}  // namespace
+
+class EnsembleFile::Implementation {
+ public:
+  Implementation(std::filesystem::path path, TrajectoryHeader const& header,
+                 Ensemble const& ensemble, RunOutputOptions const& options)
+      : path_(std::move(path)),
+        header_(header),
+        replicas_(static_cast<hsize_t>(ensemble.replicas)),
+        frame_bytes_(elements(extents_of_frame(header, replicas_)) *
+                     (header.precision == single_precision ? sizeof(float) : sizeof(double))) {
+    require_precision(header.precision);
+    require_shape(header.shape);
+    NewFile file(path_, options.overwrite);
+    space_ = OpenFileSpace(file.get(), path_);
+    space_.reserve(
+        overhead + header.scene_text.size() +
+            sizeof(double) * (replicas_ * (ensemble.vary.size() + 8) + options.positions.size()),
+        path_);
+    write_attributes(file.get(), header, ensemble.replicas, path_);
+    write_varied(file.get(), ensemble, path_);
+    if (!options.positions.empty()) write_positions(file.get(), header, options.positions, path_);
+    spins_ = create_spins(file.get(), header, replicas_, options.storage, path_);
+    frames_ = ReplicaSeries::create(file.get(), replicas_, path_);
+    scalars_ = create_group(file.get(), "scalars", path_);
+    samples_ = ReplicaSeries::create(scalars_.get(), replicas_, path_);
+    check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), path_, "cannot create the file");
+    file_ = file.commit();
+  }
+  ~Implementation() {
+    QuietErrors const quiet;
+    release();
+  }
+
+  // Readers count a frame once its scalars are there: those reach the file after its spins.
+  void write_frame(std::int64_t step, double time, std::vector<Scalars> const& scalars,
+                   std::vector<std::byte> const& spins) {
+    require_replicas(scalars.size());
+    if (spins.size() != frame_bytes_)
+      throw std::logic_error(path_.string() + ": spins of another lattice or precision");
+    space_.reserve(frame_bytes_ + overhead + 64 * replicas_, path_);
+    Extents begin(extents_of_frame(header_, replicas_).size() + 1);
+    begin[0] = static_cast<hsize_t>(written_);
+    auto extents = extents_of_frame(header_, replicas_);
+    extents.insert(extents.begin(), 1);
+    if (header_.precision == single_precision)
+      append_block(spins_.get(), H5T_NATIVE_FLOAT, begin, extents,
+                   in_file_order<float>(spins, header_).data(), path_);
+    else
+      append_block(spins_.get(), H5T_NATIVE_DOUBLE, begin, extents,
+                   in_file_order<double>(spins, header_).data(), path_);
+    flush();
+    frames_.append(step, time, scalars, path_);
+    flush();
+    ++written_;
+  }
+
+  void write_scalars(std::int64_t step, double time, std::vector<Scalars> const& scalars) {
+    require_replicas(scalars.size());
+    space_.reserve(overhead + 64 * replicas_, path_);
+    samples_.append(step, time, scalars, path_);
+  }
+
+  void write_relaxed(std::vector<RelaxedReplica> const& replicas) {
+    require_replicas(replicas.size());
+    std::vector<double> torques;
+    std::vector<std::int64_t> converged, evaluations;
+    for (auto const& one : replicas) {
+      torques.push_back(one.torque);
+      converged.push_back(one.converged ? 1 : 0);
+      evaluations.push_back(one.evaluations);
+    }
+    space_.reserve(overhead + 24 * replicas_, path_);
+    write_dataset(file_.get(), "torque", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {replicas_},
+                  torques.data(), path_);
+    write_dataset(file_.get(), "converged", H5T_STD_I64LE, H5T_NATIVE_INT64, {replicas_},
+                  converged.data(), path_);
+    write_dataset(file_.get(), "evaluations", H5T_STD_I64LE, H5T_NATIVE_INT64, {replicas_},
+                  evaluations.data(), path_);
+  }
+
+  void end(RunCost const& cost, bool complete) {
+    require_open();
+    RootAttributes const attributes(file_.get(), path_);
+    attributes.replace("evaluations", cost.evaluations);
+    attributes.replace("wall_seconds", cost.wall_seconds);
+    attributes.replace("step_seconds", cost.step_seconds);
+    flush();
+    if (complete) {
+      attributes.replace("complete", std::int64_t{1});
+      flush();
+    }
+    check(release(), path_, "cannot close the file");
+  }
+
+  std::int64_t frames() const { return written_; }
+
+ private:
+  void require_open() const {
+    if (file_.get() < 0) throw std::logic_error(path_.string() + ": the trajectory has ended");
+  }
+  void require_replicas(std::size_t count) const {
+    require_open();
+    if (count != replicas_)
+      throw std::logic_error(path_.string() + ": numbers of " + std::to_string(count) +
+                             " replicas; accepted: " + std::to_string(replicas_));
+  }
+  void flush() { check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), path_, "cannot write the file"); }
+  herr_t release() {
+    if (file_.get() >= 0) space_.trim();
+    spins_.close();
+    frames_ = {};
+    samples_ = {};
+    scalars_.close();
+    return file_.close();
+  }
+
+  std::filesystem::path path_;
+  TrajectoryHeader header_;
+  hsize_t replicas_;
+  std::size_t frame_bytes_;
+  FileHandle file_;
+  DatasetHandle spins_;
+  GroupHandle scalars_;
+  ReplicaSeries frames_, samples_;
+  OpenFileSpace space_;
+  std::int64_t written_ = 0;
+};
+
+EnsembleFile::EnsembleFile(std::filesystem::path path, TrajectoryHeader const& header,
+                           Ensemble const& ensemble, RunOutputOptions const& options) {
+  QuietErrors const quiet;
+  implementation_ = std::make_unique<Implementation>(std::move(path), header, ensemble, options);
+}
+EnsembleFile::~EnsembleFile() = default;
+EnsembleFile::EnsembleFile(EnsembleFile&&) noexcept = default;
+
+void EnsembleFile::write_frame(std::int64_t step, double time, std::vector<Scalars> const& scalars,
+                               std::vector<std::byte> const& spins) {
+  QuietErrors const quiet;
+  not_moved(implementation_).write_frame(step, time, scalars, spins);
+}
+void EnsembleFile::write_scalars(std::int64_t step, double time,
+                                 std::vector<Scalars> const& scalars) {
+  QuietErrors const quiet;
+  not_moved(implementation_).write_scalars(step, time, scalars);
+}
+void EnsembleFile::write_relaxed(std::vector<RelaxedReplica> const& replicas) {
+  QuietErrors const quiet;
+  not_moved(implementation_).write_relaxed(replicas);
+}
+void EnsembleFile::finish(RunCost const& cost) {
+  QuietErrors const quiet;
+  not_moved(implementation_).end(cost, true);
+}
+void EnsembleFile::close(RunCost const& cost) {
+  QuietErrors const quiet;
+  not_moved(implementation_).end(cost, false);
+}
+std::int64_t EnsembleFile::frames() const { return not_moved(implementation_).frames(); }
+
+}  // namespace cayspin::inline v0_1::io

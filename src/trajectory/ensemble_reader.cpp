@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "ensemble_format.hpp"
+#include "format.hpp"
+#include "hdf5/attribute.hpp"
+#include "hdf5/dataset.hpp"
+#include "hdf5/error.hpp"
+#include "hdf5/guarded_reading.hpp"
+#include "io/ensemble_file.hpp"
+
+#include <algorithm>
+
+namespace cayspin::inline v0_1::io {
+namespace {
+
+std::vector<double> read_row(hid_t file, char const* name, Extents const& begin,
+                             Extents const& extents, std::filesystem::path const& path) {
+  auto const dataset = open_dataset(file, name, begin.size(), path);
+  std::vector<double> values(elements(extents));
+  read_block(dataset.get(), H5T_NATIVE_DOUBLE, begin, extents, values.data(), path);
+  return values;
+}
+
+hsize_t length_of(hid_t group, char const* name, std::filesystem::path const& path) {
+  auto const dataset = open_dataset(group, name, path);
+  auto const extents = dataset_extents(dataset.get(), path);
+  return extents.empty() ? 0 : extents[0];
+}
+
+void read_spins_extents(hid_t file, EnsembleInfo& info, std::filesystem::path const& path) {
+  auto const dataset = open_dataset(file, "spins", path);
+  auto const extents = dataset_extents(dataset.get(), path);
+  bool const has_sites = extents.size() == 7;
+  bool const fits = (extents.size() == 6 || has_sites) && extents.back() == 3 &&
+                    extents[1] == static_cast<hsize_t>(info.ensemble.replicas);
+  if (!fits)
+    throw_failure(path, "cannot read dataset spins", "its extents are not those of the replicas");
+  auto& header = info.header;
+  header.cell_sites = has_sites ? static_cast<std::int64_t>(extents[2]) : 1;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    header.shape[axis] = static_cast<std::int64_t>(extents[extents.size() - 2 - axis]);
+  header.shape[2] *= header.cell_sites;
+  info.frames = static_cast<std::int64_t>(extents[0]);
+}
+
+EnsembleInfo read_whole_info(std::filesystem::path const& path) {
+  auto const file = open_file(path);
+  RootAttributes const attributes(file.get(), path);
+  attributes.require_version(ensemble_format, ensemble_format_version, "cannot read the ensemble");
+  EnsembleInfo info;
+  auto& header = info.header;
+  header.scene_text = attributes.read_text("scene");
+  header.cayspin_version = attributes.read_text("written_by");
+  header.git_commit = attributes.read_text("git_commit");
+  header.kokkos_version = attributes.read_text("kokkos_version");
+  header.space = attributes.read_text("space");
+  header.threads = static_cast<int>(attributes.read_integer("threads"));
+  header.precision = attributes.read_text("precision");
+  header.units.si = attributes.read_text("units") == si_units;
+  if (header.units.si)
+    for (auto const& [name, member] : unit_attributes)
+      header.units.*member = attributes.read_real(name);
+  info.ensemble.replicas = attributes.read_integer("replicas");
+  info.cost = {attributes.read_integer("evaluations"), attributes.read_real("wall_seconds"),
+               attributes.read_real("step_seconds")};
+  info.complete = attributes.read_integer("complete") == 1;
+  read_spins_extents(file.get(), info, path);
+  info.frames =
+      std::min(info.frames, static_cast<std::int64_t>(length_of(file.get(), "energy", path)));
+  info.samples = static_cast<std::int64_t>(
+      length_of(open_group(file.get(), "scalars", path).get(), "energy", path));
+  auto const replicas = static_cast<hsize_t>(info.ensemble.replicas);
+  auto const vary = open_group(file.get(), "vary", path);
+  if (H5Aexists(vary.get(), "keys") > 0)
+    for (auto const& key : read_names(vary.get(), "keys", path))
+      info.ensemble.vary.push_back({key, read_row(vary.get(), key.c_str(), {0}, {replicas}, path)});
+  if (H5Lexists(file.get(), "converged", H5P_DEFAULT) > 0) {
+    auto const converged = read_row(file.get(), "converged", {0}, {replicas}, path);
+    info.converged = std::ranges::count(converged, 1.0);
+  }
+  if (info.frames == 0) return info;
+  auto const last = static_cast<hsize_t>(info.frames) - 1;
+  info.step = static_cast<std::int64_t>(read_row(file.get(), "step", {last}, {1}, path)[0]);
+  info.time = read_row(file.get(), "time", {last}, {1}, path)[0];
+  auto const energy = read_row(file.get(), "energy", {last, 0}, {1, replicas}, path),
+             defect = read_row(file.get(), "norm_defect", {last, 0}, {1, replicas}, path),
+             mean = read_row(file.get(), "magnetization", {last, 0, 0}, {1, replicas, 3}, path);
+  for (std::size_t r = 0; r < replicas; ++r)
+    info.last.push_back({energy[r], defect[r], {mean[3 * r], mean[3 * r + 1], mean[3 * r + 2]}});
+  return info;
+}
+
+}  // namespace
+
+bool is_ensemble(std::filesystem::path const& path) {
+  QuietErrors const quiet;
+  return read_guarded(path, [&] {
+    auto const file = open_file(path);
+    return RootAttributes(file.get(), path).has(ensemble_format);
+  });
+}
+
+EnsembleInfo read_ensemble_info(std::filesystem::path const& path) {
+  return read_guarded(path, [&] { return read_whole_info(path); });
+}
+
+}  // namespace cayspin::inline v0_1::io

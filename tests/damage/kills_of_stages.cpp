@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// A run in stages, killed at random times, continues in its stage with the bits of an uninterrupted
+// run. CAYSPIN_KILLS and CAYSPIN_SEED: their number and the seed.
+#include "damaged_bytes.hpp"
+#include "program/program_test.hpp"
+
+#include <chrono>
+#include <csignal>
+#include <iostream>
+#include <map>
+#include <thread>
+
+namespace cayspin::program::test {
+namespace {
+
+using cayspin::test::Chance;
+using cayspin::test::number_from;
+
+// Some methods remember steps; the stage before the last ends early.
+std::string const scene = R"toml([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [10, 3]
+[field]
+exchange = 1.0
+applied = ["0.3*cos(7*t)", -0.2, 0.1]
+[initial]
+random = { seed = 3 }
+[integrator]
+method = "rkmk4"
+dt = 1e-3
+steps = 4000
+[output]
+every = 100
+checkpoint_every = "500 steps"
+[[stage]]
+relax = true
+field.applied = [0.1, 0, 0.1]
+[[stage]]
+field.applied = ["0.3*cos(7*t)", 0.1, 0.1]
+integrator = { method = "tsit5", tolerance = 1e-7, dt = 1e-3, steps = 8000 }
+[[stage]]
+field.applied = [0, 0, 0.5]
+integrator = { method = "rkmk4", dt = 1e-2, steps = 400000, until_torque = 0.05 }
+[[stage]]
+field.applied = ["0.3*cos(7*t)", 0.1, 0.1]
+integrator = { method = "heun", dt = 1e-3, steps = 8000 }
+)toml";
+
+class KillsOfStages : public ProgramTest {
+ protected:
+  KillsOfStages() { write("scene.toml", scene); }
+
+  static Arguments into(std::string const& file, Arguments const& more = {}) {
+    return joined(
+        {"run", "scene.toml", "--quiet", "--threads", "1", "--overwrite", "--output", file}, more);
+  }
+};
+
+TEST_F(KillsOfStages, GoOnToTheSameBits) {
+  auto const begun = std::chrono::steady_clock::now();
+  output_of(into("whole.h5"));
+  auto const longest = std::chrono::duration_cast<std::chrono::microseconds>(
+      std::chrono::steady_clock::now() - begun);
+  auto const whole = info_of("whole.h5");
+  auto const spins = last_spins("whole.h5");
+  ASSERT_EQ(whole.frame_stages.back(), 4);
+  ASSERT_LT(whole.frame_steps.back(), 400000);
+  long const kills = 4 * number_from("CAYSPIN_KILLS", 5);
+  Chance chance(static_cast<std::uint64_t>(number_from("CAYSPIN_SEED", 1)));
+  std::map<std::int64_t, int> killed_in;
+  std::string from;
+  for (long kill = 0; kill < kills; ++kill) {
+    std::string const file = kill % 2 == 0 ? "a.h5" : "b.h5";
+    auto const arguments = into(file, from.empty() ? Arguments{} : Arguments{"--restart", from});
+    auto const process = begin(arguments);
+    std::this_thread::sleep_for(
+        std::chrono::microseconds(chance.below(static_cast<std::uint64_t>(longest.count()))));
+    end(process, SIGKILL);
+    if (!exists(file) || info_of(file).frames == 0) continue;
+    auto const killed = info_of(file);
+    ++killed_in[killed.frame_stages.back()];
+    if (killed.complete) {
+      EXPECT_EQ(last_spins(file), spins);
+      from.clear();
+      continue;
+    }
+    auto const outcome = start(into("on.h5", {"--restart", file}));
+    // Before its first checkpoint, a multistep method cannot continue with the same bits.
+    if (outcome.errors.find("checkpoint.h5 is not there") != std::string::npos) {
+      from.clear();
+      continue;
+    }
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    auto const on = info_of("on.h5");
+    EXPECT_EQ(last_spins("on.h5"), spins) << "killed in stage " << killed.frame_stages.back();
+    EXPECT_EQ(on.frame_steps.back(), whole.frame_steps.back());
+    EXPECT_EQ(on.frame_times.back(), whole.frame_times.back());
+    // Half of the kills are of runs that continue a killed one.
+    from = chance.below(2) == 0 ? file : std::string();
+  }
+  std::cout << "killed in stage:";
+  for (auto const& [stage, count] : killed_in) std::cout << ' ' << stage << ": " << count << ',';
+  std::cout << '\n';
+}
+
+}  // namespace
+}  // namespace cayspin::program::test

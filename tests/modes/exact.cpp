@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Known rates of one spin: Kittel's, with damping of any strength, and at a saddle.
+#include "modes.hpp"
+
+#include <complex>
+
+namespace cayspin::test {
+namespace {
+
+template <class Backend>
+class MacrospinModes : public ModesTest<Backend> {};
+TYPED_TEST_SUITE(MacrospinModes, Backends, BackendName);
+
+// rate^2 + damping (bx + by) rate + (1 + damping^2) bx by = 0.
+TYPED_TEST(MacrospinModes, AreThoseOfKittelWithDamping) {
+  double const bx = 1.05, by = 0.35;
+  EffectiveField const field(SlabDemag({1, 0, 0}, bx - by), UniaxialAnisotropy(0.3, {0, 0, 1}),
+                             Zeeman{{0, 0, 0.05}});
+  auto const m = this->uniform(Lattice::chain(1), {0, 0, 1});
+  for (double const damping : {0.0, 1e-3, 0.3, 1.0, 5.0}) {
+    auto const found = normal_modes(this->exec, LandauLifshitz(field, damping), m);
+    ASSERT_EQ(found.end, ModesEnd::converged) << damping;
+    double const half = damping * (bx + by) / 2;
+    double const square = (1 + damping * damping) * bx * by - half * half;
+    if (square > 0) {
+      ASSERT_EQ(found.modes.size(), 1) << damping;
+      EXPECT_NEAR(found.modes[0].frequency, std::sqrt(square), this->accurate) << damping;
+      EXPECT_NEAR(found.modes[0].decay, half, this->accurate) << damping;
+    } else {
+      ASSERT_EQ(found.modes.size(), 2) << damping;
+      double const root = std::sqrt(-square);
+      for (int i = 0; i < 2; ++i) {
+        EXPECT_EQ(found.modes[i].frequency, 0) << damping;
+        EXPECT_NEAR(found.modes[i].decay, half + (i == 0 ? -root : root), 10 * this->accurate);
+      }
+    }
+  }
+}
+
+// Overdamped spins: each direction has a different decay.
+TYPED_TEST(MacrospinModes, DecayWithoutPrecession) {
+  EffectiveField const field(SlabDemag({1, 0, 0}, 0.7), Zeeman{{0, 0, 0.4}});
+  auto const m = this->uniform(Lattice::chain(1), {0, 0, 1});
+  auto const found = normal_modes(this->exec, LandauLifshitz(field, 0.5, false), m);
+  ASSERT_EQ(found.modes.size(), 2);
+  EXPECT_NEAR(found.modes[0].decay, 0.5 * 0.4, this->accurate);
+  EXPECT_NEAR(found.modes[1].decay, 0.5 * 1.1, this->accurate);
+  EXPECT_EQ(found.modes[0].frequency, 0);
+}
+
+// Against a field that does not hold it the motion grows: dm/dt = b of either sign.
+TYPED_TEST(MacrospinModes, GrowAtASaddle) {
+  double const h = 0.2, k = 0.9;
+  EffectiveField const field(UniaxialAnisotropy(k, {0, 0, 1}), Zeeman{{h, 0, 0}});
+  auto const m = this->uniform(Lattice::chain(1), {1, 0, 0});
+  auto const found = normal_modes(this->exec, LandauLifshitz(field, 0.0), m);
+  ASSERT_EQ(found.end, ModesEnd::converged);
+  ASSERT_EQ(found.modes.size(), 2);
+  double const rate = std::sqrt(h * (k - h));
+  EXPECT_NEAR(std::abs(found.modes[0].decay), rate, this->accurate);
+  EXPECT_NEAR(found.modes[0].decay, -found.modes[1].decay, this->accurate);
+  auto const curvatures = lowest_curvatures(this->exec, field, m);
+  ASSERT_EQ(curvatures.curvatures.size(), 2);
+  EXPECT_NEAR(curvatures.curvatures[0].value, h - k, this->accurate);
+  EXPECT_NEAR(curvatures.curvatures[1].value, h, this->accurate);
+}
+
+// The longest vector has length 1, and its largest component is real and positive; the axes of the
+// ellipse have the ratio of the roots of both curvatures.
+TYPED_TEST(MacrospinModes, HaveShapesOfLengthOne) {
+  EffectiveField const field(SlabDemag({1, 0, 0}, 0.7), Zeeman{{0, 0, 0.4}});
+  auto const m = this->uniform(Lattice::chain(3), {0, 0, 1});
+  auto const found = normal_modes(this->exec, LandauLifshitz(field, 0.0), m, {.count = 1});
+  ASSERT_EQ(found.modes.size(), 1);
+  auto const x = copy_to_host(found.modes[0].real), y = copy_to_host(found.modes[0].imaginary);
+  double longest = 0;
+  for (std::size_t i = 0; i < x.size(); i += 3) {
+    double const along_x = std::hypot(x[i], y[i]), along_y = std::hypot(x[i + 1], y[i + 1]);
+    EXPECT_NEAR(along_x / along_y, std::sqrt(0.4 / 1.1), 1e3 * this->accurate);
+    EXPECT_EQ(x[i + 2], 0);
+    // Spins turn about the field right-handed.
+    EXPECT_LT(x[i] * y[i + 1] - y[i] * x[i + 1], 0);
+    longest = std::max(longest, std::hypot(along_x, along_y));
+  }
+  EXPECT_NEAR(longest, 1, 8 * this->epsilon);
+}
+
+TYPED_TEST(MacrospinModes, RefuseWhatCannotBe) {
+  auto const m = this->uniform(Lattice::chain(2), {0, 0, 1});
+  EffectiveField const field(Zeeman{{0, 0, 1}});
+  EXPECT_THROW(normal_modes(this->exec, LandauLifshitz(field, 0.0, false), m),
+               std::invalid_argument);
+  EXPECT_THROW(normal_modes(this->exec, LandauLifshitz(field, 0.1), m, {.count = 0}),
+               std::invalid_argument);
+  EXPECT_THROW(normal_modes(this->exec, LandauLifshitz(field, 0.1), m, {.count = 129}),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace cayspin::test

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// cayspin modes: the standard problem of ferromagnetic resonance, a ferrimagnet, the file and how
+// it ends.
+#include "program_test.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace cayspin::program::test {
+namespace {
+
+struct Modes : ProgramTest {
+  Outcome modes(std::string const& text, Arguments const& more = {}) const {
+    return start(joined({"modes", write("scene.toml", text)}, more));
+  }
+  std::vector<double> numbers(std::string const& dataset) const {
+    return read_dataset("modes.h5", dataset).values;
+  }
+};
+
+// Baker et al. 2017: all eigenvalues of the dense matrix, from Newell's tensors in NumPy. A matrix
+// pencil of OOMMF's run in time has four of them, to 4e-4 GHz.
+TEST_F(Modes, OfTheStandardProblemOfResonance) {
+  auto const outcome = modes(R"toml(units = "SI"
+[material]
+Ms = 8e5
+A = 1.3e-11
+alpha = 0.008
+damping_form = "gilbert"
+gamma = 1.75879979019e11
+[system]
+kind = "llg"
+[lattice]
+shape = [24, 24, 2]
+spacing = [5e-9, 5e-9, 5e-9]
+[field]
+demag = true
+applied = [0.0823581754, 0.0576507224, 0]
+[initial]
+uniform = [0.81923192, 0.57346234, 0]
+[integrator]
+method = "heun"
+dt = 1e-13
+steps = 1
+)toml",
+                             {"--count", "7", "--torque", "1e-10"});
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_TRUE(contains(outcome.output, "frequency, GHz"));
+  auto const frequency = numbers("frequency"), decay = numbers("decay");
+  ASSERT_EQ(frequency.size(), 7U);
+  double const exact[][2] = {{8.266939671, 0.645341109},  {9.398580466, 0.609799940},
+                             {10.834825816, 0.695422545}, {11.228656316, 0.688463462},
+                             {11.987788617, 0.713256195}, {13.039868687, 0.743033178},
+                             {13.810589437, 0.773852679}};
+  for (std::size_t mode = 0; mode < 7; ++mode) {
+    EXPECT_NEAR(1e-9 * frequency[mode], exact[mode][0], 1e-7) << mode;
+    EXPECT_NEAR(1e-9 * decay[mode], exact[mode][1], 1e-7) << mode;
+  }
+  for (auto const& [mode, oommf] : {std::pair{0, 8.2669}, {3, 11.2286}, {4, 11.9881}, {6, 13.8105}})
+    EXPECT_NEAR(1e-9 * frequency[mode], oommf, 4e-4) << mode;
+  EXPECT_EQ(read_dataset("modes.h5", "mode").extents,
+            (std::vector<std::int64_t>{7, 2, 24, 24, 3, 2}));
+  EXPECT_EQ(read_dataset("modes.h5", "spins").extents, (std::vector<std::int64_t>{2, 24, 24, 3}));
+}
+
+std::string const ferrimagnet = R"toml([system]
+kind = "llg"
+damping = 0
+[lattice]
+shape = [1, 1, 1]
+basis = [[0, 0, 0], [0.5, 0, 0]]
+moments = [1.0, 0.6]
+gyromagnetic = [1.0, 1.3]
+[field]
+couplings = [ { between = [0, 1], offset = [0, 0, 0], J = -0.8 } ]
+anisotropy = { constant = 0.1, axis = [0, 0, 1] }
+applied = [0, 0, 0.05]
+[initial]
+expression = ["0.1", "0.2", "1 - 2*s"]
+[integrator]
+method = "heun"
+dt = 0.01
+steps = 1
+)toml";
+
+// w^2 + w (a2 b2 - a1 b1) = a1 a2 (b1 b2 - J^2), with a = gyromagnetic ratio over moment.
+TEST_F(Modes, OfAFerrimagnet) {
+  auto const outcome = modes(ferrimagnet, {"--torque", "1e-11", "--hessian"});
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  double const j = 0.8, k = 0.1, h = 0.05, a1 = 1, a2 = 1.3 / 0.6;
+  auto const spins = numbers("spins");
+  double const up = spins[2] > 0 ? 1 : -1;
+  double const b1 = j + k + up * h, b2 = j + k - up * 0.6 * h;
+  double const half = (a1 * b1 - a2 * b2) / 2;
+  double const root = std::sqrt(half * half + a1 * a2 * (b1 * b2 - j * j));
+  std::vector<double> exact{std::abs(half - root), std::abs(half + root)};
+  std::ranges::sort(exact);
+  auto const frequency = numbers("frequency"), decay = numbers("decay");
+  ASSERT_EQ(frequency.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(frequency[i], exact[i], 1e-9 * exact[i]) << i;
+    EXPECT_EQ(decay[i], 0) << i;
+  }
+  EXPECT_EQ(read_dataset("modes.h5", "mode").extents,
+            (std::vector<std::int64_t>{2, 2, 1, 1, 1, 3, 2}));
+  auto const curvature = numbers("curvature");
+  double const mean = (b1 + b2) / 2, split = std::hypot((b1 - b2) / 2, j);
+  ASSERT_EQ(curvature.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_NEAR(curvature[i], i < 2 ? mean - split : mean + split, 1e-9) << i;
+}
+
+std::string const film = R"toml([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [8, 6]
+[field]
+exchange = 10.0
+anisotropy = { constant = 0.1, axis = [1, 0, 0] }
+slab_demag = { normal = [0, 0, 1] }
+[initial]
+uniform = [1, 0.1, 0.1]
+[integrator]
+method = "heun"
+dt = 0.01
+steps = 1
+)toml";
+
+// A saddle: along the hard axis in the plane the motion grows. From a file of relax the state is
+// its last frame.
+TEST_F(Modes, StartFromFilesAndSaddles) {
+  auto const scene = write("scene.toml", film);
+  EXPECT_EQ(output_of({"modes", scene, "--count", "2", "--quiet"}), "");
+  auto const frequency = numbers("frequency");
+  EXPECT_EQ(start({"relax", scene, "--output", "rest.h5"}).status, 0);
+  expect_refused({"modes", "rest.h5"}, "modes.h5");
+  auto const other_shape = start({"modes", "rest.h5", "--overwrite", "--set", "lattice.shape=[2]"});
+  EXPECT_EQ(other_shape.status, 2);
+  EXPECT_TRUE(other_shape.errors.starts_with("rest.h5: cannot read dataset")) << other_shape.errors;
+  EXPECT_EQ(start({"modes", "rest.h5", "--count", "2", "--overwrite", "--at-rest"}).status, 0);
+  EXPECT_NEAR(numbers("frequency")[0], frequency[0], 1e-6);
+  EXPECT_EQ(start({"modes", scene, "--count", "2", "--overwrite", "--at-rest", "--set",
+                   "initial.uniform=[0, 1, 0]"})
+                .status,
+            0);
+  auto const decay = numbers("decay");
+  EXPECT_LT(*std::ranges::min_element(decay), -0.1);
+}
+
+TEST_F(Modes, InfoHasTheSpectrum) {
+  auto const scene = write("scene.toml", film);
+  EXPECT_EQ(start({"modes", scene, "--count", "2", "--hessian", "--quiet"}).status, 0);
+  auto const text = output_of({"info", "modes.h5"});
+  EXPECT_TRUE(contains_all(text, {"modes.h5, modes of an equilibrium\n", "converged    yes\n",
+                                  "8 x 6", "max |m x H| = ", "mode         frequency", "\n     1  ",
+                                  "curvatures   0.1\n", "scene:\n[system]\n"}))
+      << text;
+  EXPECT_EQ(
+      start({"modes", scene, "--quiet", "--overwrite", "--set", "lattice.boundary=\"periodic\"",
+             "--wave-vector", "0,0,0", "--wave-vector", "0.5,0,0", "--points", "4"})
+          .status,
+      0);
+  EXPECT_TRUE(contains_all(
+      output_of({"info", "modes.h5"}),
+      {"modes.h5, waves of an equilibrium\n", "wave vectors 5\n", "band 0       frequencies 0.3"}));
+}
+
+TEST_F(Modes, OfSpinsThatAreFrozenOrMissing) {
+  auto const outcome = modes(film, {"--count", "3", "--set", "lattice.occupied=\"i < 6\"", "--set",
+                                    "lattice.frozen=\"j < 1\""});
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  auto const mode = numbers("mode");
+  for (std::size_t i = 0; i < 48; ++i)
+    for (std::size_t c = 0; c < 6; ++c)
+      if (i % 8 >= 6 || i / 8 < 1) {
+        EXPECT_EQ(mode[6 * i + c], 0) << i;
+      }
+}
+
+TEST_F(Modes, RefuseWhatHasNone) {
+  auto const refused = [&](Arguments const& more, std::string const& part) {
+    expect_refused(joined({"modes", write("scene.toml", film)}, more), part);
+    EXPECT_FALSE(exists("modes.h5"));
+  };
+  refused({"--count", "0"}, "--count");
+  refused({"--torque", "0"}, "--torque");
+  refused({"--tolerance", "2"}, "--tolerance");
+  refused({"--set", "field.applied=[[0,0,1],[0,0,2]]"}, "a list of fields");
+  refused({"--set", "thermal.temperature=0.1"}, "no temperature");
+  refused({"--set", "system.damping=0", "--set", "system.precession=false"}, "do not move");
+  refused({"--set", "torque.slonczewski={ damping_like = 0.1, polarization = [0, 1, 0] }"},
+          "torque");
+  auto const few = start({"modes", write("scene.toml", film), "--evaluations", "3"});
+  EXPECT_EQ(few.status, 3);
+  EXPECT_FALSE(exists("modes.h5"));
+}
+
+using Branches = std::vector<double>;
+
+struct Bands : Modes {
+  /// Expects the branches at each wave vector of a path, for spins along z; `exact` gives them for
+  /// phases of 2 pi along the vectors of the cell.
+  template <class Exact>
+  void expect_bands(std::string const& lattice_and_field, Exact const& exact) const {
+    auto const scene = "[system]\nkind = \"llg\"\ndamping = 0\n" + lattice_and_field +
+                       "\n[integrator]\nmethod = \"heun\"\ndt = 0.01\nsteps = 1\n";
+    auto const outcome =
+        modes(scene, {"--overwrite", "--quiet", "--torque", "1e-11", "--points", "7",
+                      "--wave-vector", "0,0,0", "--wave-vector", "0.5,0.1,0", "--wave-vector",
+                      "0.3333333333333333,"
+                      "-0.3333333333333333,0.2"});
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    auto const waves = numbers("wave_vector"), found = numbers("frequency");
+    ASSERT_EQ(waves.size(), 3U * 15);
+    for (std::size_t i = 0; i < 15; ++i) {
+      constexpr double turn = 6.283185307179586;
+      Branches branches =
+          exact(turn * waves[3 * i], turn * waves[3 * i + 1], turn * waves[3 * i + 2]);
+      std::ranges::sort(branches);
+      ASSERT_EQ(found.size(), 15 * branches.size());
+      for (std::size_t b = 0; b < branches.size(); ++b)
+        EXPECT_NEAR(found[i * branches.size() + b], branches[b], 1e-10 * branches.back())
+            << i << " " << b;
+    }
+  }
+};
+
+constexpr char const* held = R"toml(
+anisotropy = { constant = 0.1, axis = [0, 0, 1] }
+applied = [0, 0, 0.05]
+[initial]
+uniform = [0, 0, 1]
+)toml";
+
+TEST_F(Bands, OfAHoneycombWithAGapByDmi) {
+  double const d = 0.07;
+  std::string bonds;
+  for (std::string const offset : {"[0,0,0]", "[-1,0,0]", "[0,-1,0]"})
+    bonds += "{ between = [0, 1], offset = " + offset + ", J = 1.0 }, ";
+  for (std::string const offset : {"[1,0,0]", "[-1,1,0]", "[0,-1,0]"})
+    for (int site : {0, 1}) {
+      auto const s = std::to_string(site);
+      bonds += "{ between = [" + s + ", " + s + "], offset = " + offset + ", D = [0, 0, " +
+               std::to_string(site == 0 ? d : -d) + "] }, ";
+    }
+  expect_bands(
+      "[lattice]\nshape = [4, 4]\ncrystal = \"honeycomb\"\nboundary = \"periodic\"\n"
+      "[field]\ncouplings = [" +
+          bonds + "]" + held,
+      [&](double x, double y, double) -> Branches {
+        double const real = 1 + std::cos(x) + std::cos(y), imaginary = std::sin(x) + std::sin(y);
+        double const gap = 2 * d * (std::sin(x) + std::sin(y - x) - std::sin(y));
+        double const split = std::hypot(std::hypot(real, imaginary), gap);
+        return {3.15 - split, 3.15 + split};
+      });
+}
+
+TEST_F(Bands, OfKagomeAndBccAndAFerrimagnet) {
+  std::string const shells = "boundary = \"periodic\"\n[field]\ncouplings = { shells = [1.0] }";
+  expect_bands("[lattice]\nshape = [3, 3]\ncrystal = \"kagome\"\n" + shells + held,
+               [](double x, double y, double) -> Branches {
+                 double const squares = std::pow(std::cos(x / 2), 2) +
+                                        std::pow(std::cos(y / 2), 2) +
+                                        std::pow(std::cos((x - y) / 2), 2);
+                 double const root = std::sqrt(std::max(0.0, 4 * squares - 3));
+                 return {3.15 - root, 3.15 + root, 6.15};
+               });
+  expect_bands("[lattice]\nshape = [3, 3, 3]\ncrystal = \"bcc\"\n" + shells + held,
+               [](double x, double y, double z) -> Branches {
+                 double const c = 8 * std::cos(x / 2) * std::cos(y / 2) * std::cos(z / 2);
+                 return {8.15 - c, 8.15 + c};
+               });
+  expect_bands(
+      "[lattice]\nshape = [3, 3]\ncrystal = \"honeycomb\"\nmoments = [1.0, 0.6]\n"
+      "boundary = \"periodic\"\n[field]\ncouplings = { shells = [-1.0] }\n"
+      "anisotropy = { constant = 0.1, axis = [0, 0, 1] }\napplied = [0, 0, 0.05]\n"
+      "[initial]\nexpression = [\"0\", \"0\", \"s == 0 ? 1 : -1\"]\n",
+      [](double x, double y, double) -> Branches {
+        double const square =
+            std::pow(1 + std::cos(x) + std::cos(y), 2) + std::pow(std::sin(x) + std::sin(y), 2);
+        double const up = 3.1 + 0.05, down = (3.1 - 0.6 * 0.05) / 0.6;
+        double const root = std::sqrt(std::pow((up + down) / 2, 2) - square / 0.6);
+        return {root + (up - down) / 2, root - (up - down) / 2};
+      });
+}
+
+TEST_F(Bands, RefuseWhatHasNone) {
+  auto const refused = [&](Arguments const& more, std::string const& part) {
+    expect_refused(joined({"modes", write("scene.toml", film), "--wave-vector"}, more), part);
+    EXPECT_FALSE(exists("modes.h5"));
+  };
+  refused({"0.1,0,0"}, "lattice.boundary");
+  refused({"0.1,0"}, "three numbers");
+  refused(
+      {"0.1,0,0", "--set", "lattice.boundary=\"periodic\"", "--set", "lattice.frozen=\"i < 1\""},
+      "the cells differ");
+}
+
+}  // namespace
+}  // namespace cayspin::program::test

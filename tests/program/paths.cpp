@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// cayspin path: the file, barriers and rates in reduced units and in SI, and how it ends.
+#include "hdf5/attribute.hpp"
+#include "hdf5/handle.hpp"
+#include "program_test.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace cayspin::program::test {
+namespace {
+
+struct PathCommand : ProgramTest {
+  std::string const scene = R"toml([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [3]
+[field]
+exchange = 20.0
+anisotropy = [{ constant = 1.3, axis = [0, 0, 1] }, { constant = -0.7, axis = [0, 1, 0] }]
+applied = [0.4, 0, 0]
+[initial]
+uniform = [0, 0, 1]
+)toml";
+
+  /// Both ends of a scene, relaxed.
+  void write_ends(std::string const& text) const {
+    auto const file = write("scene.toml", text);
+    expect_status(0, {"relax", file, "--output", "a.h5", "--quiet"});
+    expect_status(0, {"relax", file, "--output", "b.h5", "--quiet", "--set",
+                      "initial={ uniform = [0, 0, -1] }"});
+  }
+  Arguments arguments(Arguments const& more = {}) const {
+    return joined(
+        {"path", in_folder("scene.toml"), "--from", "a.h5", "--to", "b.h5", "--output", "path.h5"},
+        more);
+  }
+  double attribute(char const* name) const {
+    auto const path = in_folder("path.h5");
+    auto const file = io::open_file(path);
+    return io::RootAttributes(file.get(), path).read_real(name);
+  }
+};
+
+TEST_F(PathCommand, FindsTheBarrierOfAMacrospin) {
+  write_ends(scene);
+  auto const outcome = start(arguments({"--images", "12", "--rates"}));
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_EQ(outcome.errors, "");
+  EXPECT_TRUE(
+      contains_all(outcome.output, {"converged after ", "barriers 0.934615", "prefactors "}));
+  double const barrier = 3 * 0.5 * 1.3 * std::pow(1 - 0.4 / 1.3, 2);
+  EXPECT_NEAR(attribute("barrier_forward"), barrier, 1e-11);
+  EXPECT_NEAR(attribute("barrier_backward"), barrier, 1e-11);
+  EXPECT_NEAR(attribute("saddle_energy"), -3 * 0.4, 1e-11);
+  EXPECT_NEAR(attribute("saddle_curvature"), 0.4 - 1.3, 1e-5);
+  auto const spins = read_dataset("path.h5", "/spins");
+  EXPECT_EQ(spins.extents, (std::vector<std::int64_t>{12, 1, 1, 3, 3}));
+  auto const energy = read_dataset("path.h5", "/energy"),
+             distance = read_dataset("path.h5", "/distance");
+  ASSERT_EQ(energy.extents, std::vector<std::int64_t>{12});
+  EXPECT_EQ(distance.values[0], 0);
+  for (std::size_t k = 1; k < 12; ++k) EXPECT_GT(distance.values[k], distance.values[k - 1]);
+  auto const image =
+      static_cast<std::size_t>(read_dataset("path.h5", "/saddles/image").values.at(0));
+  EXPECT_NEAR(energy.values[image], attribute("saddle_energy"), 1e-12);
+  EXPECT_NEAR(read_dataset("path.h5", "/saddle").values.at(0), 1, 1e-6);
+  EXPECT_EQ(read_dataset("path.h5", "/zero_modes").values, (std::vector<double>{0, 0, 0}));
+}
+
+// Three spins that act as one: Bessarab's formula for a biaxial particle.
+TEST_F(PathCommand, GivesTheRateOfABiaxialParticle) {
+  auto const text = scene + "[output]\nfile = \"path.h5\"\n";
+  write_ends(text);
+  auto const outcome =
+      start(arguments({"--rates", "--torque", "1e-10", "--set", "field.applied=[0, 0, 0]", "--set",
+                       "lattice.shape=[1]", "--overwrite"}));
+  EXPECT_EQ(outcome.status, 2);  // the ends have other sites
+  EXPECT_EQ(start(arguments({"--rates", "--set", "field.applied=[0, 0, 0]"})).status, 0);
+  double const easy = 1.3, hard = 0.7;
+  // The modes of exchange, 20 and 60 above these, occur equally at the saddle.
+  double rest = 1;
+  for (double const stiff : {20.0, 60.0})
+    rest *= (stiff + easy) * (stiff + easy + hard) / ((stiff - easy) * (stiff + hard));
+  double const one = std::sqrt(easy * (easy + hard)) / (2 * std::numbers::pi);
+  EXPECT_NEAR(attribute("prefactor_forward"), one * std::sqrt(rest), 1e-6 * one);
+  EXPECT_NEAR(attribute("prefactor_backward"), one * std::sqrt(rest), 1e-6 * one);
+}
+
+// In SI, for a particle of one cell: K V, and gamma sqrt(H_K (H_K + H_hard)) / 2 pi.
+TEST_F(PathCommand, InSi) {
+  std::string const text = R"toml(units = "SI"
+[material]
+Ms = 8e5
+Ku = 5e4
+axis = [0, 0, 1]
+alpha = 0.1
+damping_form = "gilbert"
+gamma = 1.76e11
+[system]
+kind = "llg"
+[lattice]
+shape = [1]
+spacing = 5e-9
+[field]
+anisotropy = { constant = -2e4, axis = [0, 1, 0] }
+[initial]
+uniform = [0, 0, 1]
+)toml";
+  write_ends(text);
+  auto const outcome = start(arguments({"--rates", "--torque", "1e-8"}));
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  double const volume = 125e-27;
+  EXPECT_NEAR(attribute("barrier_forward") / (5e4 * volume), 1, 1e-11);
+  double const easy = 2 * 5e4 / 8e5, hard = 2 * 2e4 / 8e5;  // T
+  EXPECT_NEAR(attribute("prefactor_forward") /
+                  (1.76e11 * std::sqrt(easy * (easy + hard)) / (2 * std::numbers::pi)),
+              1, 1e-6);
+}
+
+TEST_F(PathCommand, InfoHasItsBarriersAndImages) {
+  write_ends(scene);
+  expect_status(0, arguments({"--images", "5", "--rates", "--quiet"}));
+  auto const text = output_of({"info", "path.h5"});
+  EXPECT_TRUE(contains_all(
+      text,
+      {"path.h5, a path of 5 images\n", "converged    yes\n", "from         a.h5\n",
+       "to           b.h5\n", "3 x 1 x 1 sites", "barriers     0.934615385 forward, 0.934615385 ",
+       "saddle       image 2: energy -1.2, curvature -0.9", "prefactors ", "with damping ",
+       "zero modes   0, 0, 0\n", "\n     0             0 ", "scene:\n"}))
+      << text;
+  expect_status(3, arguments({"--evaluations", "70", "--overwrite"}));
+  EXPECT_TRUE(
+      contains_all(output_of({"info", "path.h5"}), {"converged    no: evaluation limit\n"}));
+}
+
+TEST_F(PathCommand, Refuses) {
+  write_ends(scene);
+  expect_refused(arguments({"--images", "2"}),
+                 "--images 2; accepted: a whole number from 3 to 1000");
+  expect_refused(arguments({"--torque", "0"}), "--torque 0; accepted: ");
+  expect_refused(
+      {"path", in_folder("scene.toml"), "--from", "none.h5", "--to", "b.h5", "--output", "path.h5"},
+      "--from none.h5: cannot open the file: ");
+  expect_refused(
+      {"path", in_folder("scene.toml"), "--from", "a.h5", "--to", "none.h5", "--output", "path.h5"},
+      "--to none.h5: cannot open the file: ");
+  expect_refused(arguments({"--set", "lattice.shape=[2]"}), "--from a.h5: cannot read dataset ");
+  expect_refused(arguments({"--set", "field.applied=[[0, 0, 0], [0, 0, 1]]"}), "field.applied: ");
+  expect_refused(arguments({"--set", "thermal={ temperature = 1.0, seed = 1 }"}),
+                 "thermal.temperature: ");
+  EXPECT_FALSE(exists("path.h5"));
+  expect_status(0, arguments({"--quiet"}));
+  auto const before = text_of("path.h5");
+  expect_refused(arguments(), "it exists");
+  EXPECT_EQ(text_of("path.h5"), before);
+  expect_status(0, arguments({"--quiet", "--overwrite"}));
+}
+
+TEST_F(PathCommand, SaysWhyThereIsNoPath) {
+  write_ends(scene);
+  auto const same = start(
+      {"path", in_folder("scene.toml"), "--from", "a.h5", "--to", "a.h5", "--output", "path.h5"});
+  EXPECT_EQ(same.status, 3);
+  EXPECT_TRUE(is_one_line(same.errors));
+  EXPECT_TRUE(contains(same.errors, "both ends relaxed to the same state"));
+  EXPECT_FALSE(exists("path.h5"));
+  auto const limited = start(arguments({"--evaluations", "70"}));
+  EXPECT_EQ(limited.status, 3);
+  EXPECT_TRUE(contains(limited.errors, "evaluation limit"));
+}
+
+TEST_F(PathCommand, HasTheSameBitsForAnyNumberOfThreads) {
+  write_ends(scene);
+  expect_status(0, arguments({"--quiet", "--threads", "1"}));
+  auto const one = read_dataset("path.h5", "/spins").values;
+  expect_status(0, arguments({"--quiet", "--threads", "2", "--overwrite"}));
+  EXPECT_EQ(read_dataset("path.h5", "/spins").values, one);
+}
+
+}  // namespace
+}  // namespace cayspin::program::test

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Shapes from surfaces of triangles."""
+
+import importlib.util
+import itertools
+import struct
+import unittest
+from unittest import mock
+
+import cayspin
+import numpy as np
+from package_test import PackageTest
+
+CELLS = (41, 40, 39)
+
+
+def sphere(parts):
+    """An octahedron's faces, cut in parts^2 and put on the unit sphere; seen from outside their
+    corners are counter-clockwise."""
+    found = []
+    for signs in itertools.product((1, -1), repeat=3):
+        corners = np.diag(signs).astype(float)
+        if np.prod(signs) < 0:
+            corners = corners[::-1]
+
+        def at(i, j, corners=corners):
+            return corners[0] + (corners[1] - corners[0]) * i / parts \
+                + (corners[2] - corners[0]) * j / parts
+
+        for i, j in itertools.product(range(parts), repeat=2):
+            if i + j < parts:
+                found.append([at(i, j), at(i + 1, j), at(i, j + 1)])
+            if i + j + 1 < parts:
+                found.append([at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)])
+    found = np.array(found)
+    return found / np.linalg.norm(found, axis=-1, keepdims=True)
+
+
+def stl(triangles):
+    """A binary STL file's bytes."""
+    return bytes(80) + struct.pack("<I", len(triangles)) + b"".join(
+        struct.pack("<12fH", 0, 0, 0, *triangle.ravel(), 0) for triangle in triangles)
+
+
+class Meshes(PackageTest):
+    def test_a_sphere_is_that_of_an_expression(self):
+        surface = sphere(30)
+        occupied = cayspin.occupied_of_mesh(surface, CELLS, 0.06)
+        self.assertEqual(occupied.shape, CELLS[::-1])
+        k, j, i = np.indices(occupied.shape)
+        r = 0.06 * np.sqrt((i - 20)**2 + (j - 19.5)**2 + (k - 19)**2)
+        inside = r < 1
+        # The faces are flat: between their corners up to 2.5e-3 inside the sphere.
+        self.assertLess(np.abs(r[occupied != inside] - 1).max(initial=0), 2.5e-3)
+        scaled = cayspin.occupied_of_mesh(surface, CELLS, (6e-11, 6e-11, 6e-11), scale=1e-9)
+        np.testing.assert_array_equal(scaled, occupied)
+        placed = cayspin.occupied_of_mesh(surface + [1.23, 1.2, 1.17], CELLS, 0.06, center=False)
+        np.testing.assert_array_equal(placed, occupied)
+        scene = cayspin.Scene(
+            system={"kind": "llg", "damping": 0.1},
+            lattice={"shape": list(CELLS), "spacing": 0.06, "occupied": occupied},
+            field={"applied": [0, 0, 1]}, initial={"uniform": [0, 0, 1]})
+        self.assertAlmostEqual(cayspin.Simulation(scene).energy(), -occupied.sum(), delta=1e-6)
+
+    def test_overlapping_bodies_are_united(self):
+        one = sphere(10)
+        both = np.concatenate([one, one + [0.8, 0, 0]])
+        wide = cayspin.occupied_of_mesh(both + [1, 1, 1], (56, 40, 40), 0.05, center=False)
+        left = cayspin.occupied_of_mesh(one + [1, 1, 1], (56, 40, 40), 0.05, center=False)
+        right = cayspin.occupied_of_mesh(one + [1.8, 1, 1], (56, 40, 40), 0.05, center=False)
+        np.testing.assert_array_equal(wide, left | right)
+
+    # Edges of the surface are at middles of cells, corners at theirs.
+    def test_a_box_along_the_cells(self):
+        corners = np.array(list(itertools.product((0, 1), repeat=3)), float)
+        faces = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7),
+                 (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
+        box = corners[np.array(faces)]
+        for size in (0.3, 0.5, 0.6, 1.0):
+            occupied = cayspin.occupied_of_mesh(box, (10, 10, 10), 0.1, scale=size)
+            self.assertEqual(occupied.sum(), round(10 * size)**3)
+        self.assertEqual(cayspin.occupied_of_mesh(box, (10,), 0.1).sum(), 10)
+
+    def test_wrong_meshes(self):
+        for wrong in (np.zeros((4, 3)), np.zeros((0, 3, 3)), np.full((1, 3, 3), np.nan)):
+            self.assert_refused(cayspin.CayspinError, "occupied_of_mesh: triangles of shape",
+                                cayspin.occupied_of_mesh, wrong, (2, 2, 2))
+        with mock.patch.dict("sys.modules", trimesh=None):
+            self.assert_refused(cayspin.CayspinError, "files need trimesh",
+                                cayspin.occupied_of_mesh, "a.stl", (2, 2, 2))
+
+    @unittest.skipUnless(importlib.util.find_spec("trimesh"), "trimesh is not installed")
+    def test_files(self):
+        file = self.folder / "sphere.stl"
+        file.write_bytes(stl(sphere(20)))
+        np.testing.assert_array_equal(cayspin.occupied_of_mesh(file, CELLS, 0.06),
+                                      cayspin.occupied_of_mesh(sphere(20), CELLS, 0.06))
+        self.assert_refused(cayspin.CayspinError, "occupied_of_mesh: ", cayspin.occupied_of_mesh,
+                            self.folder / "none.stl", (2, 2, 2))
+        (self.folder / "wrong.toml").write_text("a = 1")
+        self.assert_refused(cayspin.CayspinError, "occupied_of_mesh: ", cayspin.occupied_of_mesh,
+                            self.folder / "wrong.toml", (2, 2, 2))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Simulation.set: a run that goes on with other keys is the program's run in stages."""
+
+import os
+import unittest
+import warnings
+
+import cayspin
+import numpy as np
+from package_test import PackageTest
+
+TABLES = {
+    "system": {"kind": "llg", "damping": 0.1},
+    "lattice": {"shape": [12, 3]},
+    "field": {"exchange": 1.0, "applied": [0.3, -0.2, 0.1]},
+    "initial": {"random": {"seed": 3}},
+    "integrator": {"method": "rkmk4", "dt": 0.02, "steps": 25},
+}
+
+
+def scene(**tables):
+    return cayspin.Scene(**{**TABLES, **tables})
+
+
+class Stages(PackageTest):
+    def test_the_bits_of_the_program(self):
+        changes = {"field.applied": ["0.2*sin(9*t)", 0.1, 0.4],
+                   "integrator": {"method": "heun", "dt": 0.01, "steps": 30}}
+        for precision in ("double", "single"):
+            sim = cayspin.Simulation(scene(), precision)
+            sim.run()
+            sim.set(changes)
+            sim.run()
+            self.assertEqual((sim.steps, sim.time), (55, 25 * 0.02 + 30 * 0.01))
+            sim.set("field.applied", [0, 0, 0.5])
+            sim.relax(1e-5)
+            sim.set("system.damping", 0.3)
+            self.assertEqual(sim.scene.dt, 0.01)
+            sim.run()
+            self.assertEqual(sim.steps, 85)
+            stages = [changes_of(changes),
+                      {"field": {"applied": [0, 0, 0.5]}, "relax": {"torque": 1e-5}},
+                      {"system": {"damping": 0.3}}]
+            whole = scene(stage=stages)
+            file = self.run_program(whole, "--precision", precision)
+            self.assertEqual(list(file["stage"]), [0, 0, 1, 2, 3])
+            np.testing.assert_array_equal(sim.spins, file["spins"][-1])
+            self.assertEqual(file["time"][-1], sim.time)
+
+    def test_what_stays(self):
+        sim = cayspin.Simulation(scene())
+        sim.step(7)
+        before, view = sim.spins.copy(), sim.spins
+        sim.set({"field.exchange": 3.0, "system": {"damping": 0.7}})
+        np.testing.assert_array_equal(sim.spins, before)
+        np.testing.assert_array_equal(view, before)
+        self.assertEqual((sim.steps, sim.time), (7, 7 * 0.02))
+        other = cayspin.Simulation(scene(field={**TABLES["field"], "exchange": 3.0},
+                                         system={"kind": "llg", "damping": 0.7}))
+        other.spins = before
+        self.assertEqual(sim.energy(), other.energy())
+        sim.step(5)
+        other.step(5)
+        np.testing.assert_allclose(sim.spins, other.spins, rtol=0, atol=1e-14)  # set and normalised
+        np.testing.assert_array_equal(view, before)
+
+    def test_a_restart_after_it(self):
+        sim = cayspin.Simulation(scene())
+        sim.step(7)
+        sim.set({"integrator.dt": 0.03})
+        sim.step(5)
+        path = os.path.join(self.folder, "after.h5")
+        sim.save(path)
+        again = cayspin.Simulation(sim.scene, restart=path)
+        self.assertEqual((again.steps, again.time), (12, sim.time))
+        for one in (sim, again):
+            one.step(4)
+        np.testing.assert_array_equal(again.spins, sim.spins)
+        self.assertEqual(again.time, sim.time)
+
+    def test_a_function_gives_way_to_numbers(self):
+        sim = cayspin.Simulation(scene(field={"applied": lambda t: [0, 0, 5.0]}))
+        sim.set("system.damping", 0.2)
+        self.assertEqual(sim.field()[0, 0, 0, 2], 5)
+        sim.set("field.applied", [0, 0, 0.25])
+        self.assertEqual(sim.field()[0, 0, 0, 2], 0.25)
+
+    def test_arrays(self):
+        factors = 1 + 0.1 * np.arange(36.0).reshape(1, 3, 12)
+        sim = cayspin.Simulation(scene())
+        sim.step(3)
+        sim.set("system.damping", factors)
+        other = cayspin.Simulation(scene(system={"kind": "llg", "damping": factors}))
+        other.spins = sim.spins
+        sim.step(4)
+        other.step(4)
+        np.testing.assert_allclose(sim.spins, other.spins, rtol=0, atol=1e-14)
+
+    def test_in_an_observer(self):
+        sim = cayspin.Simulation(scene())
+        sim.observe(10, lambda s: s.set("field.applied", [0, 0, 0.1 * s.steps]))
+        sim.run()
+        self.assertEqual(sim.steps, 25)
+        self.assertAlmostEqual(sim.energies()["applied"],
+                               -2.0 * sim.spins[..., 2].sum(), delta=1e-9)
+
+    def test_a_new_dt_is_warned_of(self):
+        sim = cayspin.Simulation(scene())
+        sim.step()
+        sim.set("integrator.dt", 5.0)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            with self.assertRaises(cayspin.NumbersFailed):
+                sim.step(200)
+        self.assertIn("above the stable", str(caught[0].message))
+
+    def test_refusals(self):
+        sim = cayspin.Simulation(scene())
+        sim.step(3)
+        before = sim.spins.copy()
+        for keys, value, words in (
+                ("lattice.shape", [5, 3], "lattice: stays as it is for all of a run"),
+                ("output.file", "a.h5", "output.file: stays as it is"),
+                ("field.Exchange", 1, "did you mean"),
+                ("integrator.dt", -1, "integrator.dt: "),
+                ("integrator.method", "heun", "integrator.dt: is missing"),
+                (3, None, "set: a int; accepted"),
+                ({"field.applied": lambda t: [0, 0, 1]}, None, "field.applied: a function")):
+            with self.assertRaisesRegex(cayspin.CayspinError, words):
+                sim.set(keys, value)
+        np.testing.assert_array_equal(sim.spins, before)
+        with self.assertRaisesRegex(cayspin.SceneError, "a Simulation takes no run in stages"):
+            cayspin.Simulation(scene(stage=[{"relax": True}]))
+
+
+def changes_of(changes):
+    return {"field": {"applied": changes["field.applied"]}, "integrator": changes["integrator"]}
+
+
+if __name__ == "__main__":
+    unittest.main()

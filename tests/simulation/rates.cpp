@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Prefactors of harmonic transition state theory and Langer's: a biaxial particle, the skyrmion of
+// Pd/Fe/Ir(111) of UppASD's tests.
+#include "simulation/failure.hpp"
+#include "simulation/transition_rates.hpp"
+
+#include <cayspin/cayspin.hpp>
+#include <cayspin/minimum_energy_path.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+namespace cayspin::simulation::test {
+namespace {
+
+using Exec = Kokkos::DefaultHostExecutionSpace;
+using Spins = SpinField<double, Exec::memory_space>;
+
+struct Rates : testing::Test {
+  static void SetUpTestSuite() {
+    if (Kokkos::is_initialized()) return;
+    Kokkos::initialize();
+    std::atexit([] { Kokkos::finalize(); });
+  }
+};
+
+struct Rate {
+  MinimumEnergyPath path;
+  io::RatesOfPath rates;
+};
+
+template <class Field>
+Rate rate(Field const& field, cayspin::Lattice const& lattice, std::vector<double> const& from,
+          std::vector<double> const& to, double damping = 0) {
+  Exec const exec;
+  std::vector<Spins> images;
+  for (int k = 0; k < 16; ++k) images.emplace_back("image", lattice);
+  Spins saddle("saddle", lattice);
+  copy_from_host(from, images.front());
+  copy_from_host(to, images.back());
+  Rate found;
+  found.path = minimum_energy_path(exec, field, images, saddle, {.torque = 1e-8});
+  EXPECT_EQ(found.path.end, PathEnd::converged);
+  io::Scene scene;
+  scene.lattice.shape = lattice.shape;
+  scene.system.damping = damping;
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    if (lattice.boundary[axis] == Boundary::periodic)
+      scene.lattice.boundary[axis] = io::BoundaryKind::periodic;
+  found.rates = rates_of(scene, exec, field, images.front(), saddle, images.back(),
+                         found.path.saddle().curvature);
+  return found;
+}
+
+TEST_F(Rates, OfABiaxialParticle) {
+  for (double const hard : {0.01, 0.7, 5.0}) {
+    double const easy = 1.3;
+    EffectiveField const field(UniaxialAnisotropy(easy, {0, 0, 1}),
+                               UniaxialAnisotropy(-hard, {0, 1, 0}));
+    auto const found = rate(field, cayspin::Lattice::chain(1), {0, 0, 1}, {0, 0, -1});
+    double const exact = std::sqrt(easy * (easy + hard)) / (2 * std::numbers::pi);
+    EXPECT_NEAR(found.rates.prefactor_forward / exact, 1, 1e-9);
+    EXPECT_NEAR(found.rates.prefactor_backward / exact, 1, 1e-9);
+    EXPECT_EQ(found.rates.zero_modes, (std::array<std::int64_t, 3>{}));
+  }
+}
+
+// Smith and de Rozario (1976): the motion at the saddle grows by the positive root of a quadratic.
+TEST_F(Rates, OfABiaxialParticleWithDamping) {
+  double const easy = 1.3;
+  for (double const hard : {0.01, 0.7, 5.0})
+    for (double const damping : {0.0, 0.05, 1.0, 20.0}) {
+      EffectiveField const field(UniaxialAnisotropy(easy, {0, 0, 1}),
+                                 UniaxialAnisotropy(-hard, {0, 1, 0}));
+      auto const found = rate(field, cayspin::Lattice::chain(1), {0, 0, 1}, {0, 0, -1}, damping);
+      double const sum = damping * (easy + hard);
+      double const growth =
+          0.5 * (damping * (easy - hard) + std::sqrt(sum * sum + 4 * easy * hard));
+      double const exact = growth / (2 * std::numbers::pi) * std::sqrt((easy + hard) / hard);
+      EXPECT_NEAR(found.rates.langer_forward / exact, 1, 1e-8) << hard << ' ' << damping;
+      EXPECT_NEAR(found.rates.langer_backward / exact, 1, 1e-8) << hard << ' ' << damping;
+    }
+}
+
+// The stiff modes of spins that exchange holds together count as in the undamped theory, where
+// they are not slow beside the barrier.
+TEST_F(Rates, OfAStiffChainWithDamping) {
+  double const easy = 1.3, hard = 0.7, damping = 0.3;
+  auto const lattice = cayspin::Lattice::chain(3);
+  EffectiveField const field(Exchange(lattice, 1e4), UniaxialAnisotropy(easy, {0, 0, 1}),
+                             UniaxialAnisotropy(-hard, {0, 1, 0}));
+  auto const found =
+      rate(field, lattice, {0, 0, 1, 0, 0, 1, 0, 0, 1}, {0, 0, -1, 0, 0, -1, 0, 0, -1}, damping);
+  double const sum = damping * (easy + hard);
+  double const growth = 0.5 * (damping * (easy - hard) + std::sqrt(sum * sum + 4 * easy * hard));
+  double const exact = growth / (2 * std::numbers::pi) * std::sqrt((easy + hard) / hard);
+  EXPECT_NEAR(found.rates.langer_forward / exact, 1, 1e-3);
+}
+
+// By the easy plane at the saddle spins may turn: a zero mode of which the volume is that of a
+// turn.
+TEST_F(Rates, FindARotationOfAllSpins) {
+  auto const found =
+      rate(UniaxialAnisotropy(1, {0, 0, 1}), cayspin::Lattice::chain(1), {0, 0, 1}, {0, 0, -1});
+  EXPECT_EQ(found.rates.zero_modes, (std::array<std::int64_t, 3>{0, 1, 0}));
+  EXPECT_NEAR(found.rates.volumes[1], 2 * std::numbers::pi, 1e-6);
+  EXPECT_LT(found.rates.prefactor_forward, 1e-6);  // no precession leads across
+  EXPECT_LT(found.rates.langer_forward, 1e-6);
+  // Damping does: Brown (1963).
+  for (double const damping : {0.01, 1.0}) {
+    auto const damped = rate(UniaxialAnisotropy(1, {0, 0, 1}), cayspin::Lattice::chain(1),
+                             {0, 0, 1}, {0, 0, -1}, damping);
+    EXPECT_NEAR(damped.rates.langer_forward / damping * std::sqrt(2 * std::numbers::pi), 1, 1e-5);
+  }
+}
+
+// tests/regressionGNEB of UppASD, in mRy: 9 shells of exchange of von Malottki et al. (2017).
+TEST_F(Rates, OfASkyrmionOfPdFeIr) {
+  std::int64_t const n = 40;
+  cayspin::Lattice const lattice{
+      {n, n, 1}, {1, 1, 1}, {Boundary::periodic, Boundary::periodic, Boundary::open}};
+  double const exchange[] = {1.058718581215438, -0.182356018041598, -0.197349006627337,
+                             0.038263762060291, 0.054210395564408,  0.020404326321045,
+                             0.011824535500085, -0.042221296598254, -0.015629780845687};
+  double const squares[] = {1, 3, 4, 7, 9, 12, 13, 16, 19};
+  std::vector<Coupling> couplings;
+  double const height = std::sqrt(0.75);
+  for (int a = -6; a <= 6; ++a)
+    for (int b = 0; b <= 6; ++b)
+      for (std::size_t shell = 0; shell < 9; ++shell) {
+        double const x = a + 0.5 * b, y = b * height;
+        if ((b == 0 && a <= 0) || std::abs(x * x + y * y - squares[shell]) > 1e-6) continue;
+        double const dmi = shell == 0 ? 2 * 0.0734986449617 : 0;
+        couplings.push_back(
+            Coupling::of({0, 0}, {a, b, 0}, 2 * exchange[shell], {dmi * y, -dmi * x, 0}));
+      }
+  EffectiveField const field(PairCouplings(lattice, couplings),
+                             UniaxialAnisotropy(2 * 0.05144905147319651, {0, 0, 1}),
+                             Zeeman{{0, 0, -24 * 0.05788381806 / 13.605693}});
+  std::vector<double> spins, uniform;
+  for (std::int64_t j = 0; j < n; ++j)
+    for (std::int64_t i = 0; i < n; ++i) {
+      double const u = static_cast<double>(i - n / 2), v = static_cast<double>(j - n / 2);
+      double const x = u + 0.5 * v, y = height * v, r = std::hypot(x, y) + 1e-12;
+      double const angle = std::numbers::pi * std::exp(-std::pow(r / 3.5, 1.5));
+      for (double const c : {x / r * std::sin(angle), y / r * std::sin(angle), -std::cos(angle)})
+        spins.push_back(c);
+      for (double const c : {0.0, 0.0, -1.0}) uniform.push_back(c);
+    }
+  auto const found = rate(field, lattice, spins, uniform);
+  EXPECT_NEAR(found.path.barrier_forward(), 5.32125123, 1e-8);
+  EXPECT_NEAR(found.path.barrier_backward(), 14.08655587, 1e-8);
+  EXPECT_NEAR(found.path.saddle().curvature, -2.45602087, 1e-7);
+  EXPECT_EQ(found.rates.zero_modes, (std::array<std::int64_t, 3>{2, 0, 0}));
+  EXPECT_NEAR(found.rates.volumes[0], 15.1529267, 0.02);
+  // In 1/s and 1/(s K), of moments of 3 Bohr magnetons.
+  double const time = 2.00231930 / 4.837769e-14 / 3, kelvin = 6.333623e-6 * 1e3;
+  EXPECT_NEAR(found.rates.prefactor_forward * time * kelvin / 4.19766298e12, 1, 2e-3);
+  EXPECT_NEAR(found.rates.prefactor_backward * time / 8.71839224e14, 1, 2e-3);
+}
+
+}  // namespace
+}  // namespace cayspin::simulation::test
