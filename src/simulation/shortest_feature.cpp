@@ -13,7 +13,7 @@ namespace {
 
 using Points = std::vector<std::pair<double, double>>;  // t and value, ascending in t
 
-// Where values turn back by more than `height`, with the first and the last point.
+// Returns where values reverse by more than `height`, with the first and the last point.
 std::vector<std::size_t> turning_points(Points const& points, double height) {
   std::vector<std::size_t> turns{0};
   std::size_t extreme = 0;
@@ -35,7 +35,7 @@ std::vector<std::size_t> turning_points(Points const& points, double height) {
   return turns;
 }
 
-// The time after or before `from` where the value crosses a level, if it does.
+// Returns the time after or before `from` at which the value crosses a level, if it does.
 std::optional<double> crossing(Points const& points, std::size_t from, int direction,
                                double level) {
   bool const above = points[from].second > level;
@@ -65,12 +65,13 @@ std::optional<TimeFeatures::Shortest> shortest_feature(TimeSamples const& sample
       auto const height = [&](std::size_t other) {
         return points[turns[i]].second - points[turns[other]].second;
       };
-      // What the begin or the end of the run cuts off says less than the other side.
+      // Where the start or the end of the run cuts a side off, the height is the other side's.
       bool const first = i == 1, last = i + 2 == turns.size();
       double const before = height(i - 1), after = height(i + 1);
-      double const least = first == last ? (std::abs(before) < std::abs(after) ? before : after)
-                           : first       ? after
-                                         : before;
+      bool const before_is_lower = std::abs(before) < std::abs(after);
+      double const lower = before_is_lower ? before : after;
+      double const higher = before_is_lower ? after : before;
+      double const least = first && last ? higher : first ? after : last ? before : lower;
       double const level = points[turns[i]].second - 0.5 * least;
       auto const begin = crossing(points, turns[i], -1, level);
       auto const end = crossing(points, turns[i], 1, level);

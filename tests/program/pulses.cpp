@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// `advise` and the method "auto" where a field changes within a small part of a run: what they
-// choose has the error asked for, or they say in one line that nothing has.
+// `advise` and the method "auto" for fields that change within a small part of a run: their choice
+// has the requested error, or one line says that nothing has.
 #include "../support/random_pulses.hpp"
 #include "program_test.hpp"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <sstream>
 
 namespace cayspin::program::test {
@@ -17,7 +19,8 @@ namespace {
 using cayspin::test::RandomPulses;
 
 struct Pulses : ProgramTest {
-  /// One damped spin at rest along z, and a pulse across it near the end.
+  /// Returns a scene of one damped spin at equilibrium along z, with a pulse normal to it near the
+  /// end.
   static std::string scene(std::string const& integrator) {
     return "system = { kind = \"llg\", damping = 0.5 }\nlattice = { shape = [1] }\n"
            "field = { applied = [\"t>500 && t<501.5 ? 1.0 : 0\", \"0\", \"1.0\"] }\n"
@@ -117,6 +120,22 @@ TEST_F(Pulses, CheckNamesTheShortestFeature) {
   EXPECT_NEAR(numbers["shortest_feature"].get<double>(), 1.5, 1e-9);
   EXPECT_EQ(numbers["jumps"], 2);
   EXPECT_EQ(output_of({"check", "chain.toml"}).find("features"), std::string::npos);
+}
+
+TEST_F(Pulses, APeakJustAfterTheStartOrBeforeTheEndIsNoShortFeature) {
+  for (std::string const value : {"cos(9*t-0.1)", "cos(9*(0.3-t)-0.1)"}) {
+    auto const shortest = [&](double end) {
+      write("scene.toml",
+            fmt::format("system = {{ kind = \"llg\" }}\nlattice = {{ shape = [1] }}\n"
+                        "field.applied = [0, 0, \"{}\"]\ninitial.uniform = [1, 0, 1]\n"
+                        "integrator = {{ method = 'rkmk4', dt = 0.02, end = {} }}\n",
+                        value, end));
+      return nlohmann::json::parse(output_of({"check", "scene.toml", "--json"}))
+          .at("shortest_feature");
+    };
+    EXPECT_TRUE(shortest(0.3).is_null()) << shortest(0.3);
+    EXPECT_NEAR(shortest(1.3).get<double>(), std::numbers::pi / 9, 1e-3);
+  }
 }
 
 TEST_F(Pulses, RunWarnsOfStepsThatMayMissThem) {
