@@ -39,6 +39,7 @@
 #include <cayspin/observer/record.hpp>
 #include <cayspin/observer/thermal_noise.hpp>
 #include <cayspin/observer/topological_charge.hpp>
+#include <cayspin/replicas.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/rotation/exponential.hpp>
 #include <cayspin/row_layout.hpp>

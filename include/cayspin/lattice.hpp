@@ -33,6 +33,9 @@ struct Lattice {
   Part const* part = nullptr;
   /// Sites per cell of a crystal (crystal.hpp): planes along z are the sites of a cell in turn.
   std::int64_t cell_sites = 1;
+  /// Independent copies of the lattice in one field, one after the other along z; `shape` is that
+  /// of one copy. No term sees a spin of another replica.
+  std::int64_t replicas = 1;
 
   static Lattice chain(std::int64_t nx, double spacing = 1, Boundary boundary = Boundary::open) {
     return {{nx, 1, 1}, {spacing, spacing, spacing}, {boundary, boundary, boundary}};
@@ -46,8 +49,15 @@ struct Lattice {
     return {{nx, ny, nz}, {spacing, spacing, spacing}, {boundary, boundary, boundary}};
   }
 
-  /// Returns the number of sites without ghosts.
-  std::int64_t sites() const { return own(0) * own(1) * own(2); }
+  /// Returns this lattice with so many replicas.
+  Lattice with_replicas(std::int64_t count) const {
+    Lattice lattice = *this;
+    lattice.replicas = count;
+    return lattice;
+  }
+
+  /// Returns the number of sites of all replicas, without ghosts.
+  std::int64_t sites() const { return own(0) * own(1) * own(2) * replicas; }
   bool has_neighbors(int axis) const { return shape[static_cast<std::size_t>(axis)] > 1; }
 
   /// Returns the extent along an axis without ghosts.
@@ -57,12 +67,13 @@ struct Lattice {
 
   friend bool operator==(Lattice const&, Lattice const&) = default;
 
-  /// Throws std::invalid_argument that names the first invalid extent, spacing or number of sites
-  /// in a cell.
+  /// Throws std::invalid_argument that names the first invalid extent, spacing, number of sites in
+  /// a cell or number of replicas.
   void validate() const {
+    constexpr std::int64_t most_extent = std::numeric_limits<std::int32_t>::max() / 4;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       std::string const which(1, "xyz"[axis]);
-      if (shape[axis] < 1 || shape[axis] > std::numeric_limits<std::int32_t>::max() / 4)
+      if (shape[axis] < 1 || shape[axis] > most_extent)
         throw std::invalid_argument("cayspin::Lattice: the extent along " + which + " is " +
                                     std::to_string(shape[axis]) + "; it must be 1 .. 536870911");
       if (!(spacing[axis] > 0) || !std::isfinite(spacing[axis]))
@@ -80,8 +91,14 @@ struct Lattice {
       throw std::invalid_argument("cayspin::Lattice: the extent along z is " +
                                   std::to_string(shape[2]) + "; it must be a multiple of the " +
                                   std::to_string(cell_sites) + " sites of a cell");
+    if (replicas < 1 || replicas > most_extent / shape[2])
+      throw std::invalid_argument(
+          "cayspin::Lattice: the number of replicas is " + std::to_string(replicas) +
+          "; it must be at least 1, and with the extent along z at most 536870911");
+    if (replicas > 1 && part != nullptr)
+      throw std::invalid_argument("cayspin::Lattice: a part of a lattice has no replicas");
     if (static_cast<double>(shape[0]) * static_cast<double>(shape[1]) *
-            static_cast<double>(shape[2]) >
+            static_cast<double>(shape[2]) * static_cast<double>(replicas) >
         1e15)
       throw std::invalid_argument("cayspin::Lattice: more than 1e15 sites");
   }

@@ -43,6 +43,7 @@ class Minimizer {
   /// Throws std::invalid_argument for a part of a lattice.
   explicit Minimizer(Spins const& like) : descent_(like) {
     detail::require_whole("cayspin::Minimizer", like.lattice());
+    detail::require_one_replica("cayspin::Minimizer", like.lattice());
   }
 
   /// Moves `spins` to a minimum. Waits. Throws std::invalid_argument for spins of another lattice

@@ -69,6 +69,7 @@ class ModesAt {
     check_access<Exec, Memory>();
     check_conservative<Field>();
     require_whole(who, spins.lattice());
+    require_one_replica(who, spins.lattice());
     if (options.count < 1 || options.count > ModesOptions::most)
       throw std::invalid_argument(std::string(who) + ": the count must be from 1 to " +
                                   std::to_string(ModesOptions::most));
@@ -241,6 +242,7 @@ BlochModes bloch_modes(
   detail::check_access<Exec, typename Spins::memory_space>();
   detail::check_conservative<Field>();
   detail::require_whole("cayspin::bloch_modes", spins.lattice());
+  detail::require_one_replica("cayspin::bloch_modes", spins.lattice());
   BlochModes found;
   auto const problem = detail::bloch_problem(exec, field, time, spins, turning.precession,
                                              turning.damping, found.evaluations);

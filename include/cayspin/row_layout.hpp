@@ -27,6 +27,7 @@ struct RowRange {
 /// not compete for the same cache sets.
 struct RowLayout {
   std::int32_t nx = 0, ny = 0, nz = 0;
+  std::int32_t replica_planes = 0;  // nz is a multiple
   bool periodic[3] = {false, false, false};
   std::ptrdiff_t pitch = 0;             // stride of rows
   std::ptrdiff_t plane = 0;             // stride of planes
@@ -47,7 +48,8 @@ struct RowLayout {
     RowLayout layout;
     layout.nx = static_cast<std::int32_t>(lattice.shape[0]);
     layout.ny = static_cast<std::int32_t>(lattice.shape[1]);
-    layout.nz = static_cast<std::int32_t>(lattice.shape[2]);
+    layout.replica_planes = static_cast<std::int32_t>(lattice.shape[2]);
+    layout.nz = static_cast<std::int32_t>(lattice.shape[2] * lattice.replicas);
     for (std::size_t axis = 0; axis < 3; ++axis)
       layout.periodic[axis] = lattice.boundary[axis] == Boundary::periodic;
     layout.own = {
@@ -94,6 +96,11 @@ struct RowLayout {
     return {low(own.y_begin), high(own.y_end, ny), low(own.z_begin), high(own.z_end, nz)};
   }
 
+  KOKKOS_FUNCTION bool has_replicas() const { return replica_planes != nz; }
+  /// Returns the number of a plane in its replica.
+  KOKKOS_FUNCTION std::int32_t plane_of_replica(std::int32_t z) const {
+    return has_replicas() ? z % replica_planes : z;
+  }
   KOKKOS_FUNCTION std::int64_t rows() const { return std::int64_t(ny) * nz; }
   KOKKOS_FUNCTION std::int64_t sites() const { return rows() * nx; }
   std::size_t allocation(int components) const {

@@ -177,6 +177,9 @@ inline void require_lattice(char const* who, Lattice const& lattice, Lattice con
       std::string(who) + ": made for a lattice " +
       (lattice.shape != spins.shape
            ? "of " + sites(lattice) + " sites, and the spins are on " + sites(spins)
+       : lattice.replicas != spins.replicas
+           ? "of " + std::to_string(lattice.replicas) + " replicas, and the spins have " +
+                 std::to_string(spins.replicas)
        : lattice.cell_sites != spins.cell_sites
            ? "with another number of sites in a cell than that of the spins"
            : "of other spacings or boundaries than that of the spins"));
@@ -243,10 +246,19 @@ void copy(Exec const& exec, SiteField<Real, Components, MemorySpace> const& from
   detail::copy_sites<false>(exec, to, from);
 }
 
-/// Copies numbers in host memory, (sites, Components) with x fastest, into a field; waits.
+/// Copies numbers in host memory, (sites, Components) with x fastest, into a field; waits. Numbers
+/// of one replica of the lattice go into all replicas.
 template <class Number, class Real, int Components, class MemorySpace>
 void copy_from_host(std::vector<Number> const& from,
                     SiteField<Real, Components, MemorySpace> const& to) {
+  auto const replicas = to.lattice().replicas;
+  if (replicas > 1 &&
+      static_cast<std::int64_t>(from.size()) * replicas == to.sites() * Components) {
+    std::vector<Number> all;
+    all.reserve(from.size() * static_cast<std::size_t>(replicas));
+    for (std::int64_t r = 0; r < replicas; ++r) all.insert(all.end(), from.begin(), from.end());
+    return copy_from_host(all, to);
+  }
   detail::require_size("cayspin::copy_from_host", from.size(), to.sites() * Components);
   using Exec = typename MemorySpace::execution_space;
   constexpr std::size_t components = Components;

@@ -93,7 +93,7 @@ struct InterlayerOfSites {
     KOKKOS_FORCEINLINE_FUNCTION void add(DistantBonds<Real> const& of) {
       auto const& site = stencil.site();
       auto const [dx, dy, dz] = of.offset;
-      Real const* const row = bonds.spins.row(site.y() + dy, site.z() + dz);
+      Real const* const row = bonds.spins.row(site.y(), site.z(), dy, dz);
       if (!row) return;
       Value own(0), other(0);
       if (bonds.exchange.data) {

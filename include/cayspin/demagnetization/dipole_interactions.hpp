@@ -42,6 +42,7 @@ class InteractionsOfDipoles {
   InteractionsOfDipoles(Lattice const& lattice, Crystal crystal, DipolarOptions const& options)
       : crystal_(std::move(crystal)), options_(options) {
     lattice.validate();
+    require_one_replica("cayspin::DipolarField", lattice);
     crystal_.validate();
     auto const& shape = whole(lattice).shape;
     require(lattice.cell_sites == static_cast<std::int64_t>(crystal_.basis.size()),

@@ -42,6 +42,7 @@ class InteractionsOfCells {
   InteractionsOfCells(Lattice const& lattice, DemagnetizationOptions const& options)
       : cell_(lattice.spacing), options_(options) {
     lattice.validate();
+    require_one_replica("cayspin::DemagnetizingField", lattice);
     auto const& shape = whole(lattice).shape;
     if (!std::isfinite(options.strength))
       throw std::invalid_argument("cayspin::DemagnetizingField: the strength is not finite");

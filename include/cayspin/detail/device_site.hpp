@@ -31,17 +31,23 @@ struct ComponentPointers {
 /// A layout as kernels see it. Index counts the numbers of one component.
 template <class Index>
 struct DeviceLayout {
-  std::int32_t last[3];  // index along each axis
+  std::int32_t last[3];  // index along each axis, in a replica
   Index step[3];         // to the next site along each axis
   Index wrap[3];         // added by a step past an end: leads to the other end, or back
-  bool periodic_x;
+  bool periodic_x, has_replicas;
 
   explicit DeviceLayout(RowLayout const& layout)
-      : last{layout.nx - 1, layout.ny - 1, layout.nz - 1},
+      : last{layout.nx - 1, layout.ny - 1, layout.replica_planes - 1},
         step{1, static_cast<Index>(layout.pitch), static_cast<Index>(layout.plane)},
-        periodic_x(layout.periodic[0]) {
+        periodic_x(layout.periodic[0]),
+        has_replicas(layout.has_replicas()) {
     for (int axis = 0; axis < 3; ++axis)
       wrap[axis] = layout.periodic[axis] ? step[axis] * (last[axis] + 1) : step[axis];
+  }
+
+  /// Returns the number of a plane in its replica.
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t plane_of_replica(std::int32_t z) const {
+    return has_replicas ? z % (last[2] + 1) : z;
   }
 
   /// Returns true if Index can count all numbers of a component, one more plane, and all threads.
@@ -75,7 +81,8 @@ class DeviceSite {
 
   template <int Axis, int Direction>
   KOKKOS_FORCEINLINE_FUNCTION bool is_end() const {
-    return at_[Axis] == (Direction == 0 ? 0 : layout_.last[Axis]);
+    std::int32_t const at = Axis == 2 ? layout_.plane_of_replica(at_[2]) : at_[Axis];
+    return at == (Direction == 0 ? 0 : layout_.last[Axis]);
   }
   template <int Axis, int Direction>
   KOKKOS_FORCEINLINE_FUNCTION bool has_neighbor() const {

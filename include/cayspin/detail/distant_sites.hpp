@@ -15,14 +15,16 @@ namespace cayspin::inline v0_1::detail {
 template <class Real>
 struct DistantSites {
   SiteArray<Real, 3> array;
-  std::int32_t extent[3];
+  std::int32_t extent[3];  // of one replica
   bool periodic[3];
+  bool has_replicas;
   std::ptrdiff_t pitch, plane;
 
   DistantSites(SiteArray<Real, 3> const& of, RowLayout const& layout)
       : array(of),
-        extent{layout.nx, layout.ny, layout.nz},
+        extent{layout.nx, layout.ny, layout.replica_planes},
         periodic{layout.periodic[0], layout.periodic[1], layout.periodic[2]},
+        has_replicas(layout.has_replicas()),
         pitch(layout.pitch),
         plane(layout.plane) {}
 
@@ -37,12 +39,19 @@ struct DistantSites {
             load<Value>(from + 2 * array.stride)};
   }
 
-  /// Returns the first site of the row at distance dy, dz (at most the extents); null past an open
-  /// end.
-  KOKKOS_FORCEINLINE_FUNCTION Real const* row(std::int32_t y, std::int32_t z) const {
-    y = wrapped(y, 1), z = wrapped(z, 2);
-    if (y < 0 || z < 0) return nullptr;
-    return array.data + z * plane + y * pitch;
+  /// Returns the number of a plane in its replica.
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t plane_of_replica(std::int32_t z) const {
+    return has_replicas ? z % extent[2] : z;
+  }
+  /// Returns the first site of the row at distance dy, dz (at most the extents) from a row; null
+  /// past an open end.
+  KOKKOS_FORCEINLINE_FUNCTION Real const* row(std::int32_t y, std::int32_t z, std::int32_t dy,
+                                              std::int32_t dz) const {
+    std::int32_t const in_replica = plane_of_replica(z), first = z - in_replica;
+    y = wrapped(y + dy, 1);
+    std::int32_t const there = wrapped(in_replica + dz, 2);
+    if (y < 0 || there < 0) return nullptr;
+    return array.data + (first + there) * plane + y * pitch;
   }
 
   /// Loads sites x, x + 1, ... of a row, wrapping at its ends; x is at most an extent outside.

@@ -49,7 +49,8 @@ struct ColourRowLoop {
     for (std::int32_t y = block.y_begin; y < block.y_end; ++y) {
       if (rows != RowsOf::both && ((y + block.z) & 1) != static_cast<std::int32_t>(rows)) continue;
       Row const row(layout, y, block.z);
-      std::int32_t const x = (y + block.z + layout.parity + functor.colour) & 1;
+      std::int32_t const plane = layout.plane_of_replica(block.z);
+      std::int32_t const x = (y + plane + layout.parity + functor.colour) & 1;
       std::int32_t pack = Kokkos::max<std::int32_t>(block.pack_begin, 1);
       for (; pack + at_once <= inner_end; pack += at_once) {
         Inner const site(row, x + pack * pack_sites);
@@ -112,7 +113,8 @@ struct OnDeviceSiteOfColour {
   template <class Index>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(DeviceLayout<Index> const& layout, std::int32_t half,
                                               std::int32_t y, std::int32_t z) const {
-    std::int32_t const x = 2 * half + ((y + z + parity + functor.colour) & 1);
+    std::int32_t const plane = layout.plane_of_replica(z);
+    std::int32_t const x = 2 * half + ((y + plane + parity + functor.colour) & 1);
     if (x <= layout.last[0]) functor(DeviceSite<Real, Index>(layout, x, y, z));
   }
 };

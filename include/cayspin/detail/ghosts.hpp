@@ -38,6 +38,12 @@ CAYSPIN_DETAIL_NOINLINE inline void require_whole(char const* who, Lattice const
     throw std::invalid_argument(std::string(who) + ": does not work on a part of a lattice");
 }
 
+/// Throws std::invalid_argument for a lattice of several replicas.
+CAYSPIN_DETAIL_NOINLINE inline void require_one_replica(char const* who, Lattice const& lattice) {
+  if (lattice.replicas > 1)
+    throw std::invalid_argument(std::string(who) + ": does not work on replicas of a lattice");
+}
+
 /// Throws std::invalid_argument for a part of a lattice with fewer ghosts than `needed`, or for any
 /// part if `needed` is 0.
 CAYSPIN_DETAIL_NOINLINE inline void require_ghosts(std::string const& who, Lattice const& lattice,

@@ -95,4 +95,34 @@ class RandomBits {
   mutable std::conditional_t<OnHost, Last, Nothing> last_;
 };
 
+/// The bits of replica r are those of seed + r.
+template <bool OnHost>
+class RandomBitsOfReplica {
+ public:
+  RandomBitsOfReplica() = default;
+  RandomBitsOfReplica(std::uint64_t seed, std::uint64_t draw)
+      : seed_(seed), draw_(draw), bits_(seed, draw) {}
+
+  template <class Number, int Lanes>
+  KOKKOS_FORCEINLINE_FUNCTION typename LanesOf<Number, Lanes>::type get(std::int32_t replica,
+                                                                        std::uint64_t place) const {
+    if constexpr (OnHost) {
+      if (replica != replica_) [[unlikely]] {
+        bits_ = RandomBits<true>(seed_ + static_cast<std::uint64_t>(replica), draw_);
+        replica_ = replica;
+      }
+      return bits_.template get<Number, Lanes>(place);
+    } else {
+      if (replica == 0) return bits_.template get<Number, Lanes>(place);
+      return RandomBits<false>(seed_ + static_cast<std::uint64_t>(replica), draw_)
+          .template get<Number, Lanes>(place);
+    }
+  }
+
+ private:
+  std::uint64_t seed_ = 0, draw_ = 0;
+  mutable std::int32_t replica_ = 0;  // of bits_
+  mutable RandomBits<OnHost> bits_;
+};
+
 }  // namespace cayspin::inline v0_1::detail

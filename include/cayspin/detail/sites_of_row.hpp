@@ -26,7 +26,7 @@ struct Row {
         periodic_x(layout.periodic[0]),
         pitch(layout.pitch) {
     step(0, y, layout.ny, layout.pitch, layout.periodic[1]);
-    step(1, z, layout.nz, layout.plane, layout.periodic[2]);
+    step(1, layout.plane_of_replica(z), layout.replica_planes, layout.plane, layout.periodic[2]);
   }
 
   /// For neighbour rows only: along x the answer depends on the site.

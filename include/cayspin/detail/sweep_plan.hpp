@@ -24,7 +24,7 @@ struct SweepRange {
   std::int32_t high(int stage) const { return end + (ends_inside(end) ? ahead(stage) : 0); }
 
  private:
-  bool ends_inside(std::int32_t i) const { return axis.wraps || (0 < i && i < axis.extent); }
+  bool ends_inside(std::int32_t i) const { return !axis.is_cut(i); }
   std::int32_t ahead(int stage) const { return stages - 1 - stage; }
 };
 

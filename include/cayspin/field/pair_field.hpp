@@ -52,7 +52,7 @@ class PairField {
     auto const& of_site = table_.sites[table_.site_of_plane(site.z())];
     std::int32_t const x = site.x(), y = site.y(), z = site.z();
     std::ptrdiff_t const offset = site.offset();
-    bool const holds_rows = of_site.reach.holds_rows(y, z, spins_.extent);
+    bool const holds_rows = of_site.reach.holds_rows(y, spins_.plane_of_replica(z), spins_.extent);
     if (holds_rows && of_site.reach.holds_along_row(x, lanes_of<Value>, spins_.extent)) [[likely]]
       return sum<Value>(of_site, stencil.center(), [&](std::int32_t b) {
         return spins_.template inside<Value>(offset + table_.bonds[b].template offset<Real>());
@@ -71,7 +71,7 @@ class PairField {
       for (std::int32_t x = begin; x < end; x += lanes)
         store(sum_at_edge(of_site, spins_.template load_at<OnHost>(own + x), x, row.y, row.z),
               to.data + (x - begin));
-    } else if (of_site.reach.holds_rows(row.y, row.z, spins_.extent)) {
+    } else if (of_site.reach.holds_rows(row.y, spins_.plane_of_replica(row.z), spins_.extent)) {
       evaluate_along(of_site, RowsInPlace{own, table_.bonds}, begin, end, to.data);
     } else {
       evaluate_along(of_site, RowsOfBonds(*this, of_site, row), begin, end, to.data);
@@ -103,7 +103,7 @@ class PairField {
         : own(field.spins_.array.data + row.offset), first_(of_site.first_bond) {
       for (std::int32_t b = first_; b < of_site.last_bond; ++b) {
         auto const& bond = field.table_.bonds[b];
-        Real const* const there = field.spins_.row(row.y + bond.dy, row.z + bond.dz);
+        Real const* const there = field.spins_.row(row.y, row.z, bond.dy, bond.dz);
         rows_[b - first_] = there ? there + bond.dx : nullptr;
       }
     }
@@ -230,7 +230,7 @@ class PairField {
                                                                    std::int32_t z) const {
     return sum(of_site, m, [&](std::int32_t b) {
       auto const& bond = table_.bonds[b];
-      Real const* const row = spins_.row(y + bond.dy, z + bond.dz);
+      Real const* const row = spins_.row(y, z, bond.dy, bond.dz);
       return row ? spins_.template along<Value>(row, x + bond.dx) : zero<Value>();
     });
   }

@@ -36,6 +36,7 @@ class Domain final : public Part {
         division_(division),
         depth_(in_whole_cells(depth, lattice)) {
     lattice.validate();
+    detail::require_one_replica("cayspin::mpi::Domain", lattice);
     require_division(lattice, depth, division, size_of(comm));
     MPI_Comm_dup(comm, &comm_);
     MPI_Comm_rank(comm_, &rank_);

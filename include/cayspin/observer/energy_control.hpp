@@ -100,6 +100,7 @@ class EnergyControl {
         energy_(options.energy),
         axes_("EnergyControl::axes", like.lattice()) {
     detail::check_conservative<Generator>();
+    detail::require_one_replica("cayspin::EnergyControl", like.lattice());
     if (!generator_.conserves_energy())
       throw std::invalid_argument(
           "cayspin::EnergyControl: the generator does not conserve its energy (damping 0 does)");

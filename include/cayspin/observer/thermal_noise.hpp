@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace cayspin::inline v0_1 {
@@ -39,23 +40,39 @@ struct OneTurn {
   }
 };
 
-/// One turn for each site of a crystal's cell; none where a spin does not move.
+template <class Real, bool OnHost>
+struct TurnOrNone {
+  RandomTurn<Real, OnHost> turn;
+  bool is_none;
+};
+
+/// One turn for each site of a crystal's cell, or of each replica's cell; none where a spin does
+/// not move.
 template <class Real, bool OnHost>
 struct TurnOfCellSite {
-  RandomTurn<Real, OnHost> const* turns;
+  TurnOrNone<Real, OnHost> const* turns;
   std::int32_t cell_sites;
-  SiteArray<Real, 1> moves;  // without data: all move
+  std::int32_t replica_planes;  // 0: all replicas have the same turns
+  SiteArray<Real, 1> moves;     // without data: all move
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION RandomTurn<Real, OnHost> const& at(Site const& site) const {
-    return turns[site.z() % cell_sites];
+    return turns[number(site)].turn;
   }
   template <class Site, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector kept(Site const& site, Vector const& before,
                                           Vector const& after) const {
     using Value = typename Site::value_type;
+    if (turns[number(site)].is_none) return before;
     if (!moves.data) return after;
     return select<Value>(site.load(moves) == Value(0), before, after);
+  }
+
+ private:
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t number(Site const& site) const {
+    std::int32_t const replica = replica_planes == 0 ? 0 : site.z() / replica_planes;
+    return replica * cell_sites + site.z() % cell_sites;
   }
 };
 
@@ -89,13 +106,14 @@ struct LargestNumber {
   }
 };
 
-/// The turns of a cell's sites for the last requested length of step. A copy has separate turns.
+/// The turns of the sites of cells for the last requested length of step. A copy has separate
+/// turns.
 template <class Real, class MemorySpace>
 class CellTurns {
   static constexpr bool on_host = is_host_execution<typename MemorySpace::execution_space>;
 
  public:
-  using Turn = RandomTurn<Real, on_host>;
+  using Turn = TurnOrNone<Real, on_host>;
 
   CellTurns() = default;
   explicit CellTurns(std::size_t count) : turns_("cayspin::ThermalNoise::cell_sites", count) {}
@@ -108,9 +126,9 @@ class CellTurns {
   }
   ~CellTurns() = default;
 
-  /// Computes turn_of(site) for each site of a cell, unless already made for `u`; then waits.
+  /// Computes turn_of(number) for each of them, unless already made for `u`; then waits.
   template <class Exec, class TurnOf>
-  TurnOfCellSite<Real, on_host> get(Exec const& exec, double u, TurnOf const& turn_of) {
+  Turn const* get(Exec const& exec, double u, TurnOf const& turn_of) {
     if (u != made_for_) {
       auto const turns = Kokkos::create_mirror_view(turns_);
       for (std::size_t site = 0; site < turns.size(); ++site) turns(site) = turn_of(site);
@@ -119,7 +137,7 @@ class CellTurns {
       exec.fence("cayspin::ThermalNoise: turns of a cell's sites");
       made_for_ = u;
     }
-    return {turns_.data(), static_cast<std::int32_t>(turns_.size()), {}};
+    return turns_.data();
   }
 
  private:
@@ -132,12 +150,13 @@ template <class Real, bool OnHost, class Turns = OneTurn<Real, OnHost>>
 struct TurnAtRandom {
   SiteArray<Real, 3> spins;
   OutputArray<Real, 3> output;
-  RandomBits<OnHost> random;
+  RandomBitsOfReplica<OnHost> random;
   Turns turns;
   bool after, before;  // which halves
   std::int64_t first_y, first_z, ny,
       nz;                // the part's place in the whole lattice, and the extents of that
   std::uint64_t places;  // for random bits, in a row
+  std::int32_t replica_planes = 0;  // 0: there is one replica
 
   static std::uint64_t places_of_row(std::int64_t nx) {
     constexpr auto lanes = RandomBits<OnHost>::most_lanes;
@@ -148,10 +167,12 @@ struct TurnAtRandom {
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     using Value = typename Site::value_type;
     using Bits = typename RandomTurn<Real, OnHost>::Bits;
-    std::int64_t const y = wrapped(first_y + site.y(), ny), z = wrapped(first_z + site.z(), nz);
+    std::int32_t const replica = replica_planes == 0 ? 0 : site.z() / replica_planes;
+    std::int64_t const y = wrapped(first_y + site.y(), ny),
+                       z = wrapped(first_z + site.z() - replica * replica_planes, nz);
     auto const row = static_cast<std::uint64_t>(z * ny + y) * places;
-    auto const bits =
-        random.template get<Bits, lanes_of<Value>>(row + static_cast<std::uint64_t>(site.x()));
+    auto const bits = random.template get<Bits, lanes_of<Value>>(
+        replica, row + static_cast<std::uint64_t>(site.x()));
     auto const& turn = turns.at(site);
     Vec3<Value> const found = site.load(spins);
     Vec3<Value> m = found;
@@ -176,10 +197,12 @@ struct TurnAtRandom {
 /// Options of ThermalNoise.
 struct ThermalNoiseOptions {
   double temperature = 0;  ///< in units of moment times field: kB T over the energy unit of a site
-  std::uint64_t seed = 0;
+  std::uint64_t seed = 0;  ///< of the first replica of the lattice; that of replica r is r more
   /// Gyromagnetic ratio over moment for each site of a crystal's cell, and 0 without a spin. Empty:
   /// all 1.
   std::vector<double> cell_sites = {};
+  /// Factor of damping times temperature for each replica of the lattice. Empty: all 1.
+  std::vector<double> replicas = {};
 };
 
 /// Thermal noise for LandauLifshitz with damping and any one-step method: half of it is applied
@@ -192,8 +215,9 @@ struct ThermalNoiseOptions {
 ///             noise.before_steps());
 /// Without observers in between, noise.between_steps(times) applies both halves at once. Random
 /// numbers come from Philox by seed, site and step: the bits do not depend on threads, host spaces
-/// or ranks, nor on where a run is interrupted. Costs no memory and two passes a step. Does not
-/// compile with an AdaptiveStepper. Multistep methods lose their order.
+/// or ranks, nor on where a run is interrupted, and each replica gets those of a lattice of its
+/// own. Costs no memory and two passes a step. Does not compile with an AdaptiveStepper. Multistep
+/// methods lose their order.
 template <class Spins>
 class ThermalNoise {
   using Real = typename Spins::value_type;
@@ -201,22 +225,17 @@ class ThermalNoise {
  public:
   enum class Half { before, after };
 
-  /// Throws std::invalid_argument for a temperature or damping that is negative or not finite.
+  /// Throws std::invalid_argument for a temperature, damping or factor that is negative or not
+  /// finite, and if there is not one number for each site of a cell, or for each replica.
   ThermalNoise(Spins const& like, double damping, ThermalNoiseOptions const& options)
       : lattice_(like.lattice()), damping_(damping), options_(options) {
     if (!(damping >= 0) || !std::isfinite(damping))
       throw std::invalid_argument("cayspin::ThermalNoise: the damping must be finite and >= 0");
     if (!(options.temperature >= 0) || !std::isfinite(options.temperature))
       throw std::invalid_argument("cayspin::ThermalNoise: the temperature must be finite and >= 0");
-    auto const sites = static_cast<std::int64_t>(options.cell_sites.size());
-    if (sites != 0 && sites != like.lattice().cell_sites)
-      throw std::invalid_argument(
-          "cayspin::ThermalNoise: there is not one number for each site of a cell");
-    for (double const number : options.cell_sites)
-      if (!(number >= 0) || !std::isfinite(number))
-        throw std::invalid_argument(
-            "cayspin::ThermalNoise: the numbers of a cell's sites must be finite and >= 0");
-    cell_turns_ = CellTurns(options.cell_sites.size());
+    check(options.cell_sites, like.lattice().cell_sites, "site of a cell");
+    check(options.replicas, like.lattice().replicas, "replica");
+    make_room_for_turns();
   }
   /// Multiplies damping times temperature at each site by a factor, which may contain the damping,
   /// the temperature, or one over the moment; 0 where a spin does not move. Factors other than 0
@@ -231,17 +250,17 @@ class ThermalNoise {
       throw std::invalid_argument("cayspin::ThermalNoise: the factors must be >= 0 on every site");
     factors_ = factors;
     if (!signs.zero_or_one) {
-      if (!options.cell_sites.empty())
+      if (!options.cell_sites.empty() || !options.replicas.empty())
         throw std::invalid_argument(
-            "cayspin::ThermalNoise: factors of sites beside numbers of a cell's sites: one of the "
-            "two");
+            "cayspin::ThermalNoise: factors of sites beside numbers of a cell's sites or of "
+            "replicas: one of the two");
       typename Spins::memory_space::execution_space const exec;
       largest_factor_ = detail::reduce_sites<detail::Maximum, 1>(
           exec, "cayspin::ThermalNoise::largest_factor", factors.layout(),
           detail::LargestNumber<Real>{factors.array()})[0];
     } else if (options_.cell_sites.empty()) {
       options_.cell_sites.assign(static_cast<std::size_t>(lattice_.cell_sites), 1);
-      cell_turns_ = CellTurns(options_.cell_sites.size());
+      make_room_for_turns();
     }
   }
 
@@ -293,9 +312,12 @@ class ThermalNoise {
     detail::check_access<Exec, typename Spins::memory_space>();
     require_lattice("cayspin::ThermalNoise", lattice_, spins.lattice());
     double const u = damping_ * options_.temperature * std::abs(dt);
-    double const largest = largest_factor_               ? *largest_factor_
-                           : options_.cell_sites.empty() ? 1
-                                                         : std::ranges::max(options_.cell_sites);
+    auto const largest_of = [](std::vector<double> const& numbers) {
+      return numbers.empty() ? 1 : std::ranges::max(numbers);
+    };
+    double const largest = largest_factor_
+                               ? *largest_factor_
+                               : largest_of(options_.cell_sites) * largest_of(options_.replicas);
     if (!(largest * u <= 1))
       throw std::invalid_argument(
           "cayspin::ThermalNoise: damping temperature dt must be at most 1: a smaller dt");
@@ -305,14 +327,39 @@ class ThermalNoise {
           detail::TurnOfSite<Real>{static_cast<Real>(u), factors_.array()});
       return;
     }
-    if (options_.cell_sites.empty()) {
+    if (options_.cell_sites.empty() && options_.replicas.empty()) {
       run(exec, step, after, before, spins, detail::OneTurn<Real, on_host<Exec>>{turn_of<Exec>(u)});
       return;
     }
-    auto turns = cell_turns_.get(
-        exec, u, [&](std::size_t site) { return turn_of<Exec>(u * options_.cell_sites[site]); });
+    auto const sites = std::max<std::size_t>(options_.cell_sites.size(), 1);
+    auto const* const found = cell_turns_.get(exec, u, [&](std::size_t number) {
+      double const of_replica = options_.replicas.empty() ? 1 : options_.replicas[number / sites];
+      double const of_site = options_.cell_sites.empty() ? 1 : options_.cell_sites[number % sites];
+      double const of_all = u * of_replica * of_site;
+      return detail::TurnOrNone<Real, on_host<Exec>>{turn_of<Exec>(of_all), of_all == 0};
+    });
+    detail::TurnOfCellSite<Real, on_host<Exec>> turns{
+        found,
+        static_cast<std::int32_t>(sites),
+        options_.replicas.empty() ? 0 : spins.layout().replica_planes,
+        {}};
     if (factors_.lattice() == lattice_) turns.moves = factors_.array();
     run(exec, step, after, before, spins, turns);
+  }
+
+  static void check(std::vector<double> const& numbers, std::int64_t count, char const* what) {
+    if (!numbers.empty() && static_cast<std::int64_t>(numbers.size()) != count)
+      throw std::invalid_argument(
+          std::string("cayspin::ThermalNoise: there is not one number for each ") + what);
+    for (double const number : numbers)
+      if (!(number >= 0) || !std::isfinite(number))
+        throw std::invalid_argument(std::string("cayspin::ThermalNoise: the number of each ") +
+                                    what + " must be finite and >= 0");
+  }
+  void make_room_for_turns() {
+    auto const replicas = options_.replicas.size(), sites = options_.cell_sites.size();
+    if (replicas == 0 && sites == 0) return;
+    cell_turns_ = CellTurns(std::max<std::size_t>(replicas, 1) * std::max<std::size_t>(sites, 1));
   }
 
   template <class Exec>
@@ -338,7 +385,8 @@ class ThermalNoise {
                         begin[2],
                         all.shape[1],
                         all.shape[2],
-                        Kernel::places_of_row(all.shape[0])};
+                        Kernel::places_of_row(all.shape[0]),
+                        spins.layout().has_replicas() ? spins.layout().replica_planes : 0};
     detail::for_each_site<Real>(exec, "cayspin::ThermalNoise", spins.layout(), kernel);
   }
 

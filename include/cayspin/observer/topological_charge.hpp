@@ -94,13 +94,14 @@ double topological_charge(Exec const& exec, SpinField<Real, MemorySpace> const& 
   return detail::charge_of(exec, spins, spins.layout());
 }
 
-/// Returns the charge of plane number z of the whole lattice only. Throws std::invalid_argument
-/// when there is no such plane.
+/// Returns the charge of plane number z of the whole lattice only; replicas follow one another.
+/// Throws std::invalid_argument when there is no such plane.
 template <class Exec, class Real, class MemorySpace>
 double topological_charge(Exec const& exec, SpinField<Real, MemorySpace> const& spins,
                           std::int64_t z) {
   detail::require_sites("cayspin::topological_charge", spins.sites());
-  auto const planes = whole(spins.lattice()).shape[2];
+  auto const& lattice = whole(spins.lattice());
+  auto const planes = lattice.shape[2] * lattice.replicas;
   if (z < 0 || z >= planes)
     throw std::invalid_argument("cayspin::topological_charge: there is no plane " +
                                 std::to_string(z) + "; accepted: 0 .. " +

@@ -31,6 +31,7 @@ class Helmholtz {
   Helmholtz(std::string const& name, Lattice const& lattice, std::array<double, 3> couplings)
       : scale_label_("cayspin::" + name + "::scale"), signs_label_("cayspin::" + name + "::signs") {
     require_whole("cayspin::Helmholtz", lattice);
+    require_one_replica("cayspin::Helmholtz", lattice);
     if (auto const axis = only_coupled_axis(lattice, couplings))
       lines_.emplace(name, RowLayout::of<Real>(lattice), *axis,
                      couplings[static_cast<std::size_t>(*axis)]);

@@ -35,6 +35,7 @@ class SpinWaveSolver {
   SpinWaveSolver(std::string const& name, Lattice const& lattice, std::array<double, 3> couplings)
       : turn_label_("cayspin::" + name + "::turn") {
     require_whole("cayspin::SpinWaveSolver", lattice);
+    require_one_replica("cayspin::SpinWaveSolver", lattice);
     if (auto const axis = only_coupled_axis(lattice, couplings))
       lines_.emplace(name, RowLayout::of<Real>(lattice), *axis,
                      couplings[static_cast<std::size_t>(*axis)]);

@@ -122,7 +122,10 @@ struct SweepChoice {
           SweepPlan::most_stages&& is_host_execution<typename Spins::memory_space::execution_space>;
 
   static bool can_sweep(RowLayout const& layout) {
-    return possible && (!layout.periodic[1] || layout.ny == 1 || layout.ny >= stages);
+    bool const wraps_in_replicas =
+        layout.has_replicas() && layout.periodic[2] && layout.replica_planes > 1;
+    return possible && !wraps_in_replicas &&
+           (!layout.periodic[1] || layout.ny == 1 || layout.ny >= stages);
   }
   /// Returns false while all fields fit the cores' caches, and if the buffers would take more
   /// memory than the fields of passes.
@@ -147,7 +150,8 @@ struct SweepChoice {
     if (!can_sweep(layout))
       throw std::invalid_argument(where +
                                   ": a sweep needs two stages, a host space and, "
-                                  "along a periodic y, as many rows as stages");
+                                  "along a periodic y, as many rows as stages; it does not take "
+                                  "replicas that are periodic along z");
   }
 };
 
