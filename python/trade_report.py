@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Measures the scenes of docs/reports/trade.md on this machine, one after the other, and writes the
-page's tables of times and ratios and its pictures. Takes a quarter of an hour, and for each further
-repetition, which has no large scene, five minutes."""
+"""Measures the scenes of docs/reports/trade.md on this machine, one after the other. Writes the
+tables of times and ratios of that page and of its appendix, and the pictures. Takes a quarter of an
+hour, and for each further repetition, which has no large scene, five minutes."""
 
 import argparse
 import json
@@ -17,7 +17,7 @@ from cayspin_plots import trade_costs, trade_figure, trade_overview
 from cayspin_plots.trade_costs import ERRORS, cheapest, cost
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs/reports/trade.md"
+PAGES = (ROOT / "docs/reports/trade.md", ROOT / "docs/reports/appendix.md")
 # Title in the page, name of the picture, arguments.
 SCENES = (
     ("One switching spin", "switching_spin", ()),
@@ -42,7 +42,8 @@ ONCE = ("film_256", "heisenberg_64")  # take many minutes
 HEADINGS = {"The same, damping 0.02": "Film, damping 0.02"}
 
 
-COLUMNS = ("scene", "1e-2", "1e-4", "1e-6", "1e-8", "single: 1e-2", "1e-4", "1e-6", "spread")
+GAINS = ("scene", "1e-2", "1e-4", "1e-6", "1e-8")
+COLUMNS = (*GAINS, "single: 1e-2", "1e-4", "1e-6", "spread")
 
 
 def printed(program, name, arguments):
@@ -89,6 +90,11 @@ def ratio_row(title, found):
     return row_of((title, *gains, *map(text, found[8:])))
 
 
+def gains_of(row):
+    """The row of a table of gains, from one of all ratios."""
+    return row_of([cell.split(" (")[0] for cell in row.strip("| ").split(" | ")[:len(GAINS)]])
+
+
 def three_digits(number):
     return f"{number:#.3g}".rstrip(".") if number < 1000 else f"{float(f'{number:.3g}'):.0f}"
 
@@ -107,9 +113,9 @@ def cost_row(method, unit):
 
 
 def with_tables(page, trades, rows):
-    """The page with new rows in its table of ratios, and in those of scenes the methods that their
-    pictures have."""
-    trade, lines, replaced, in_ratios = None, [], False, False
+    """The page with new rows in its tables of ratios or gains, and in those of scenes the methods
+    that their pictures have."""
+    trade, lines, replaced, in_ratios, only_gains = None, [], False, False, False
     by_heading = {HEADINGS.get(title, title): title for title in trades}
     for line in page.splitlines():
         heading, first = re.match("### (.*)", line), re.match(r"\| ?([^|]*?) ?\|", line)
@@ -119,9 +125,11 @@ def with_tables(page, trades, rows):
         if line.startswith("#"):
             trade = trades.get(by_heading.get(heading and heading[1]))
         if line.startswith(row_of(COLUMNS[:2])):
-            line, in_ratios = row_of(COLUMNS), True
+            in_ratios, only_gains = True, line == row_of(GAINS)
+            line = row_of(GAINS if only_gains else COLUMNS)
         elif in_ratios and first[1] in rows:
-            line = rows[first[1]]
+            row = rows[first[1]]
+            line = gains_of(row) if only_gains else row
         if replaced:
             continue
         lines.append(line)
@@ -159,7 +167,8 @@ def main():
         trade_figure.draw(trades[title], ROOT / f"docs/images/trade_{name}.png")
     named = [trade | {"name": HEADINGS.get(title, title)} for title, trade in trades.items()]
     trade_overview.draw(named, ROOT / "docs/images/trade_overview.png")
-    PAGE.write_text(with_tables(PAGE.read_text(), trades, rows))
+    for page in PAGES:
+        page.write_text(with_tables(page.read_text(), trades, rows))
 
 
 if __name__ == "__main__":

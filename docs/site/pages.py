@@ -26,7 +26,7 @@ TREE = {
     "Reports": ["docs/reports/validation", "docs/reports/standard_problems",
                 "docs/reports/extremes", "docs/reports/paper", "docs/reports/reliability",
                 "docs/reports/other_programs", "docs/reports/performance", "docs/reports/trade",
-                "docs/reports/long_runs"],
+                "docs/reports/long_runs", "docs/reports/appendix", "docs/reports/extremes_tables"],
     "Project": ["docs/architecture", "CONTRIBUTING", "CHANGELOG"],
 }
 LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".h": "c", ".c": "c", ".f90": "fortran", ".py": "python",

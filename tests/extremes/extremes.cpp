@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The tables equal those of docs/reports/extremes.md, and every run keeps its promise.
+// The tables equal those of docs/reports/extremes_tables.md, and every run keeps its promise.
 #include "io/method.hpp"
 #include "page.hpp"
 

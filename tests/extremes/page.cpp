@@ -4,10 +4,11 @@
 namespace cayspin::extremes {
 namespace {
 
-constexpr char const* head = R"(# Behaviour at extreme inputs
+constexpr char const* head = R"(# Tables of extreme inputs
 
-The test `extremes` computes these tables, compares them with this page and holds every run to the
-promise above its table; `extremes_long` does so for the last one. After a change,
+What each method does with inputs that are tiny, huge or wrong; [the report](extremes.md) has the
+results in short. The test `extremes` computes these tables, compares them with this page and holds
+every run to the promise above its table. `extremes_long` does so for the last one. After a change,
 `build/release/bin/test_extremes --write` writes the page, in minutes.
 
 | word | meaning |
@@ -19,12 +20,9 @@ promise above its table; `extremes_long` does so for the last one. After a chang
 | refused | one line before the first step |
 | detected | the run stops with status 3 |
 
-Runs take six steps of 1/128 unless the table says otherwise. Two words are for double and single
-precision. Brackets hold generators and rotations where not all behave alike. Constant sigmas
+Runs take six steps of 1/128 unless the table says otherwise. Two words in a cell are for double and
+single precision. Brackets hold generators and rotations where not all behave alike. Constant sigmas
 behave as zero does.
-
-A program of your own has neither the warnings nor the guard. Where a table says warned or
-detected, call `largest_stable_step` before the run, and `energy` and `norm_defect` during it.
 )";
 
 // Methods fast enough to take the many steps in minutes.

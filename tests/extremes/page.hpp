@@ -8,7 +8,7 @@
 
 namespace cayspin::extremes {
 
-/// Returns all tables of docs/reports/extremes.md but the last. They are computed once.
+/// Returns all tables of docs/reports/extremes_tables.md but the last. They are computed once.
 std::vector<Table> const& tables();
 
 /// Returns the last table; takes minutes.

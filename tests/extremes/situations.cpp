@@ -13,9 +13,9 @@ using enum Against;
 Section steps() {
   Section section{"Steps",
                   R"(
-One spin in a field of 1, damping 0.1, dt from 1e-300 to 1e300. Runs are exact where nothing
-moves by an epsilon, then bounded. `run` warns above the stable dt, or above 2 radians a step
-where none is known. ab2 is unstable already at dt 1, which is detected.)",
+One spin in a field of 1, damping 0.1. Runs are exact where nothing moves by an epsilon, then
+bounded. `run` warns above the stable dt, or above 2 radians a step where none is known. ab2 is
+unstable already at dt 1, which is detected.)",
                   {exact, bounded, warned, detected},
                   {exact, drifts, warned}};
   for (char const* dt : {"1e-300", "1e-12", "1e-3", "1", "1e8", "1e160", "1e300"}) {
@@ -29,10 +29,10 @@ where none is known. ab2 is unstable already at dt 1, which is detected.)",
 Section turns() {
   Section section{"Turns",
                   R"(
-One spin or body, damping 0. dt |A| is pi, which the Cayley map cannot rotate by; 2 pi, where
-the exponential's inverse tangent has its pole; 1e8; and 1e160, whose square overflows. `run`
-warns in all four. The exponential is exact where A rests, up to 1e8. An overflow stops the run at
-its first step.)",
+One spin or body, damping 0, that turns by dt |A| in a step. The Cayley map cannot rotate by pi.
+The exponential's inverse tangent has its pole at 2 pi. The square of 1e160 overflows, and an
+overflow stops the run at its first step. `run` warns in all four. The exponential is exact where A
+rests, up to 1e8.)",
                   {exact, warned},
                   {warned}};
   for (auto const& [name, turn] : {std::pair{"pi", std::numbers::pi},
@@ -64,7 +64,7 @@ Section dampings() {
   Section section{"Damping",
                   R"(
 One spin in a field of 1. At damping 1e-12 a method may add more energy than the damping takes:
-`run` warns, or stops when the energy rises. 1e12 is far above the stable dt.)",
+`run` warns, or stops when the energy rises. At damping 1e12 dt is far above the stable one.)",
                   {bounded, warned, refused, detected},
                   {drifts, warned}};
   for (char const* damping : {"0", "1e-12", "1e12"})
@@ -75,8 +75,8 @@ One spin in a field of 1. At damping 1e-12 a method may add more energy than the
 Section starts() {
   Section section{"Starts",
                   R"(
-The program normalises every start. Here the length is wrong all the same. More than 64 epsilon
-are detected before the first step; one ulp is kept or normalised away. `classical_*` are not
+The program normalises every start; here the length is wrong all the same. More than 64 epsilon
+are detected before the first step. One ulp is kept or normalised away. `classical_*` are not
 checked.)",
                   {bounded, warned, detected},
                   {drifts}};
@@ -92,9 +92,9 @@ checked.)",
 Section lattices() {
   Section section{"Lattices",
                   R"(
-Uniform spins with exchange 1 in a field of 1, damping 0.1, dt 1e-3. Exact: each spin is where
-one alone is, to 8 epsilon. red_black is bounded. A lattice that does not fit is refused with
-what it needs and what there is.)",
+Uniform spins with exchange 1 in a field of 1, damping 0.1, dt 1e-3. Exact means that each spin
+is where a single one is, to 8 epsilon. red_black is bounded. A lattice that does not fit is
+refused, with the memory that it needs and the memory that there is.)",
                   {exact, refused},
                   {exact, refused}};
   using Shape = std::array<std::int64_t, 3>;
@@ -114,8 +114,8 @@ Section faults() {
   many.shape = {5000, 1, 1};
   Section section{"Faults",
                   R"(
-64 spins, and 5000, one of which becomes NaN after step 3. The guard detects it at the next
-step, above 4096 sites within ten steps. No frame is written after the fault.)",
+64 spins, and 5000, one of which becomes NaN after step 3. `run` detects it at the next step;
+above 4096 sites, within ten steps. No frame is written after the fault.)",
                   {detected},
                   {detected}};
   section.add("64 spins", few, nothing, 4);
@@ -126,11 +126,11 @@ step, above 4096 sites within ten steps. No frame is written after the fault.)",
 Section drift() {
   Section section{"Drift",
                   R"(
-One spin, damping 0, 5000 steps. `Every(100, Normalize{})`, a Newton step towards |m| = 1 every
-100 steps, keeps | |m| - 1 | below 4 epsilon times 100 whatever the number of steps.)",
+One spin, damping 0, 5000 steps. `Every(100, Normalize{})` takes a Newton step towards |m| = 1
+every 100 steps. It keeps | |m| - 1 | below 4 epsilon times 100, whatever the number of steps.)",
                   {bounded, warned},
                   {drifts, warned}};
-  section.add("alone", {.steps = 5000});
+  section.add("without Newton steps", {.steps = 5000});
   section.add("with Newton steps", {.steps = 5000, .normalized = 100});
   return section;
 }
@@ -158,10 +158,10 @@ Section longest_runs() {
                   R"(
 One spin in a field of 1, dt 0.37, rkmk4 in both rotations. Round-off adds up where steps are
 alike: | |m| - 1 | grows by some 0.01 epsilon a step, to 3e-10 in double precision. In single
-precision it reaches 0.01 after some 7e6 steps, where the run stops. A Newton step every 1000
-steps keeps it below an epsilon.)",
+precision it reaches 0.01 after some 7e6 steps, where the run stops. A Newton step every 1000 steps
+keeps it below an epsilon.)",
                   {bounded, detected}};
-  section.add("alone", {.dt = 0.37, .steps = steps}, nothing, steps);
+  section.add("without Newton steps", {.dt = 0.37, .steps = steps}, nothing, steps);
   section.add("with Newton steps", {.dt = 0.37, .steps = steps, .normalized = 1000}, nothing,
               steps);
   return section;

@@ -118,6 +118,20 @@ class PlotTrade(ScriptTest):
         self.assertIn("| scene | best here |\n|---|---|\n| Film, 16 x 16 | 5 |\n", found)
         self.assertEqual(len(found.splitlines()), 4 + 4 + 3 + 5 + 4, found)  # five methods are drawn
         self.assertTrue(found.endswith("| rkmk4 | 1 (1) |\n"))
+        gains = (f"{trade_report.row_of(trade_report.GAINS)}\n|---|---|---|---|---|\n"
+                 "| Film, 16 x 16 | 9 | 9 | 9 | 9 |\n| Slab | 7 | 7 | 7 | 7 |\n")
+        self.assertEqual(trade_report.with_tables(gains, {}, {title: row}), gains.replace(
+            "| 9 | 9 | 9 | 9 |", "| 3.00 | 3.00 | 3.00 | - |"))
+
+    def test_pages_have_the_tables(self):
+        title, row = "Bloch wall", "| Bloch wall | 1 (2) | 3 (4) | 5 (6) | 7 (8) | 9 | 10 | 11 | 12 |"
+        report, appendix = (trade_report.with_tables(page.read_text(), {}, {title: row})
+                            for page in trade_report.PAGES)
+        self.assertIn("\n| Bloch wall | 1 | 3 | 5 | 7 |\n", report)
+        self.assertIn(f"\n{row}\n", appendix)
+        costs = trade_report.with_tables(trade_report.PAGES[1].read_text(), {
+            "Film, 16 x 16": self.trade | {"name": "Film, 16 x 16"}}, {})
+        self.assertIn("\n| rkmk4 | 1870 (75) | 5920 (237) | 18700 (749) | - |\n", costs)
 
     def test_what_is_no_trade(self):
         png = self.folder / "trade.png"
