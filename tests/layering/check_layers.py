@@ -12,7 +12,7 @@ LIBRARY = [
     ("numbers", ["vec3.hpp", "units.hpp", "detail/backend.hpp", "detail/pack.hpp", "detail/unrolled.hpp"]),
     ("lattice", ["lattice.hpp", "lattice/", "part.hpp", "row_layout.hpp", "crystal.hpp", "coupling.hpp", "shells.hpp"]),
     ("loops over sites", ["detail/"]),
-    ("spins", ["spin_field.hpp", "stencil.hpp"]),
+    ("spins", ["replicas.hpp", "spin_field.hpp", "stencil.hpp"]),
     ("contracts", ["concepts.hpp", "checkpoint.hpp", "optional_members.hpp", "step.hpp", "field/parts.hpp"]),
     ("field terms", ["field/"]),
     ("demagnetization", ["demagnetization/"]),
