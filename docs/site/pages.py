@@ -27,7 +27,8 @@ TREE = {
                 "docs/reports/extremes", "docs/reports/paper", "docs/reports/reliability",
                 "docs/reports/other_programs", "docs/reports/performance", "docs/reports/trade",
                 "docs/reports/long_runs", "docs/reports/appendix", "docs/reports/extremes_tables"],
-    "Project": ["docs/architecture", "CONTRIBUTING", "CHANGELOG"],
+    "Project": ["ROADMAP", "CHANGELOG", "CONTRIBUTING", "docs/architecture", "RELEASING",
+                "CODE_OF_CONDUCT", "SECURITY"],
 }
 LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".h": "c", ".c": "c", ".f90": "fortran", ".py": "python",
              ".toml": "toml", ".yaml": "yaml", ".cff": "yaml", ".cmake": "cmake", ".txt": "none",

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Checks what the pages say of the project: links, named files and commands; and their lines.
 
-Usage: check_docs.py [ROOT]              the pages: README, CHANGELOG, CONTRIBUTING and docs/
-       check_docs.py --sources [ROOT]    files and commands in comments and texts of the sources
+Usage: check_docs.py [ROOT]              the pages: README and others beside it, .github/ and docs/
+       check_docs.py --sources [ROOT]    files and commands in comments and texts of the sources, and
+                                         in the workflows and forms of .github/
        check_docs.py --sentences [ROOT]  lists the long sentences of the pages, which are no faults
 Prints one line FILE:LINE on each fault; the exit status is then 1.
 """
@@ -30,10 +31,9 @@ def read(root, path):
 
 
 def pages_of(root):
-    paths = [name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")
-             if os.path.exists(os.path.join(root, name))]
-    paths += sorted(os.path.relpath(path, root)
-                    for path in glob.glob(os.path.join(root, "docs", "**", "*.md"), recursive=True))
+    patterns = ("*.md", ".github/**/*.md", "docs/**/*.md")
+    paths = [os.path.relpath(path, root) for pattern in patterns
+             for path in sorted(glob.glob(os.path.join(root, pattern), recursive=True))]
     return [Page(path, read(root, path)) for path in paths]
 
 
@@ -143,6 +143,9 @@ def check_sources(root):
              for path in sorted(glob.glob(os.path.join(root, folder, "**", "*"), recursive=True))]
     lines = [(os.path.relpath(path, root), number, line)
              for path in paths for number, line in source_texts(path)]
+    lines += [(os.path.relpath(path, root), number, line)
+              for path in sorted(glob.glob(os.path.join(root, ".github/**/*.yml"), recursive=True))
+              for number, line in enumerate(read(root, path).split("\n"), 1)]
     return [*missing_files_of_sources(root, lines), *wrong_commands(root, lines)]
 
 

@@ -74,6 +74,17 @@ class CheckDocs(unittest.TestCase):
         self.expect(GOOD + "\nType `bash cmake/bootstrap.sh build --preset moon`.\n",
                     "no preset moon", 12)
 
+    def test_pages_outside_of_docs(self):
+        self.expect(GOOD, "link to gone.md: not there", 3, {"SECURITY.md": "# Title\n\n[a](gone.md)\n"})
+        self.expect(GOOD, "no verb fly", 1, {".github/form.md": "`bash cmake/bootstrap.sh fly`\n"})
+
+    def test_workflows(self):
+        step = "steps:\n  - run: bash cmake/bootstrap.sh "
+        self.assertEqual(self.faults(GOOD, {".github/workflows/a.yml": step + "build\n"}), [])
+        self.expect(GOOD, "no verb fly", 2, {".github/workflows/a.yml": step + "fly\n"})
+        self.expect(GOOD, "docs/gone.md is not in the repository", 1,
+                    {".github/ISSUE_TEMPLATE/a.yml": "value: Read docs/gone.md\n"})
+
     def test_first_program(self):
         program = {"examples/01_switching_slab.cpp": "// A slab.\n#include <cstdio>\nint main() {}\n"}
         readme = FILES["README.md"]
