@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Named numbers and fields that a run carries from step to step besides its spins. Restoring them
 /// with the spins continues the run with the same bits as without a break, on any host space and
@@ -49,4 +49,4 @@ class CheckpointInMemory final : public Checkpoint {
   std::map<std::string, std::vector<double>> fields_;
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

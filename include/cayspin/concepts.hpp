@@ -16,7 +16,7 @@
 // The five contracts of the library: which members a user's type must have, and which are optional.
 // Terms and generators are templates over the stencil. The concepts check them with the host
 // stencil of Spins (default: double precision in host memory).
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -206,4 +206,4 @@ bool is_due(Observer const& observer, Step const& step) {
 }
 
 }  // namespace detail
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// A bond of a crystal between spin m at site between[0] of a cell and spin m' at site between[1]
 /// of the cell `offset` cells away. E = -m.T m' - biquadratic (m.m')^2. List each bond once.
@@ -23,4 +23,4 @@ struct Coupling {
   friend bool operator==(Coupling const&, Coupling const&) = default;
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -63,4 +63,4 @@ void evaluate_generator(Exec const& exec, Generator const& generator,
                                   std::move(prepared), spins.array(), output.output(false)});
 }
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -16,7 +16,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Steps of length dt up to number `steps`; step n is at time begin + n dt. A continued run starts
 /// after step `first`, at that step's time.
@@ -327,4 +327,4 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
   }
 }
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// open: a missing neighbour contributes nothing (Neumann). periodic: the axis wraps around.
 enum class Boundary { open, periodic };
@@ -104,4 +104,4 @@ struct Lattice {
   }
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -15,7 +15,7 @@
 #include <optional>
 #include <stdexcept>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Search for equilibria of the energy of a field by L-BFGS on the product of spheres. Spins move
 /// along great circles by the Cayley map; earlier steps and gradients are projected to the current
@@ -176,4 +176,4 @@ Minimum minimize(Exec const& exec, Field const& field, Spins& spins,
   return Minimizer<Spins>(spins).minimize(exec, field, spins, options);
 }
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

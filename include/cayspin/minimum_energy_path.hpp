@@ -19,7 +19,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -342,4 +342,4 @@ MinimumEnergyPath minimum_energy_path(Exec const& exec, Field const& field,
   return found;
 }
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

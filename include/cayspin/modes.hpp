@@ -20,7 +20,7 @@
 #include <vector>
 
 // Needs Eigen 3, and is not part of cayspin.hpp.
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -254,4 +254,4 @@ BlochModes bloch_modes(
   return found;
 }
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -8,7 +8,7 @@
 // Calls of field terms and generators by the library. Each function calls the member of its name
 // or, if there is none, does what the tables of concepts.hpp say. field/parts.hpp has the functions
 // for a field made of others.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 template <class Term, class Stencil>
 concept has_field = requires(Term const& term, Stencil const& stencil) {
@@ -177,4 +177,4 @@ KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> turning_part(Generator const& gene
     return evaluate(generator, stencil);
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

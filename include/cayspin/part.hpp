@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Type-erased pointer and strides of a field.
 struct FieldNumbers {
@@ -50,4 +50,4 @@ inline Lattice const& whole(Lattice const& lattice) {
   return lattice.part == nullptr ? lattice : lattice.part->whole();
 }
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

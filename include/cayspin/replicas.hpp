@@ -11,7 +11,7 @@
 
 // Fields on Lattice::with_replicas: many independent copies of a small lattice, which a stepper
 // advances together. Site number s of replica r is number r * (sites of one replica) + s.
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -67,4 +67,4 @@ void copy_to_replica(Exec const& exec, SiteField<Real, Components, MemorySpace> 
   detail::copy_between<true>(exec, to, replica, from);
 }
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

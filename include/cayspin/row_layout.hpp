@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Rows y_begin .. y_end - 1 of planes z_begin .. z_end - 1.
 struct RowRange {
@@ -136,4 +136,4 @@ struct OutputArray : SiteArray<Real, Components> {
   bool streaming = false;
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -15,7 +15,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -212,4 +212,4 @@ double largest_rate(Exec const& exec, Generator const& generator,
   return Kokkos::sqrt(square[0]);
 }
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

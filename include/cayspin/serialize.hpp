@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -94,4 +94,4 @@ void serialize(Stepper& stepper, Checkpoint& checkpoint, std::string const& pref
   }
 }
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -103,4 +103,4 @@ inline std::vector<Coupling> couplings_of_shells(Crystal const& crystal,
   return couplings;
 }
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -286,4 +286,4 @@ std::vector<Real> copy_to_host(SiteField<Real, Components, MemorySpace> const& f
   return numbers;
 }
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

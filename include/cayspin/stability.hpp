@@ -21,7 +21,7 @@
 // The largest stable time step of a method for the Landau-Lifshitz equation, computed before a run.
 // The method's own stages act on one transverse mode of a nearly uniform state, u' = s (-damping +
 // i) u, with a parallel part sigma in the generator.
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -263,4 +263,4 @@ double largest_stable_step(double field_bound, double damping,
   return limit < scan_end ? limit : std::numeric_limits<double>::infinity();
 }
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

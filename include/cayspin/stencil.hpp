@@ -3,7 +3,7 @@
 
 #include <cayspin/detail/site.hpp>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// The argument of field terms and generators: the spin of a site and its neighbours along the axes
 /// of the lattice. On the host a value is a pack: one number for each of several sites. Functions
@@ -142,4 +142,4 @@ class SpinAlone {
 };
 
 }  // namespace detail
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Progress of an integration when an observer is called.
 struct Step {
@@ -17,4 +17,4 @@ struct Step {
 /// proceed.
 enum class Next { proceed, stop };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

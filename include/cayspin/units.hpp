@@ -8,7 +8,7 @@
 
 /// Conversion between SI and the reduced units of the library. Needs no Kokkos.
 /// docs/guide/units.md derives the formulas.
-namespace cayspin::inline v0_1::units {
+namespace cayspin::inline v0_2::units {
 
 // CODATA 2022.
 inline constexpr double vacuum_permeability = 1.25663706127e-6;  ///< N/A^2
@@ -212,4 +212,4 @@ class Atomistic : public ReducedUnits {
   double dipolar_;  // mu0 mu_s^2 / a^3, in units of energy
 };
 
-}  // namespace cayspin::inline v0_1::units
+}  // namespace cayspin::inline v0_2::units

@@ -8,7 +8,7 @@
 #include <string>
 #include <type_traits>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Three components. Value is float, double, or a pack of either: on the host one value holds
 /// several sites. Numbers of another type (2.0 * v, v * 2) are first converted to the scalar of
@@ -140,4 +140,4 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> select(typename ValueTraits<Value>::mask
 /// compares packs of 512 bits the wrong way round with > and >=.
 using detail::select;
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,4 +87,4 @@ std::int64_t available_memory(fs::path const& root) {
   return std::min(kibibytes ? 1024 * *kibibytes : unlimited, left_in_groups(root));
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

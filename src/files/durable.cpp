@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 int write_all(int file, void const* data, std::size_t bytes, std::uint64_t offset) {
   auto const* from = static_cast<std::byte const*>(data);
@@ -56,4 +56,4 @@ int sync_folder_of(std::filesystem::path const& path) {
   return error;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 // Each function returns 0, or the system's error number.
 
@@ -21,4 +21,4 @@ int sync_file(int file);
 /// Waits until the names in the folder of `path` would survive a power cut.
 int sync_folder_of(std::filesystem::path const& path);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -9,7 +9,7 @@
 #include <system_error>
 #include <utility>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -58,4 +58,4 @@ void FileBeside::fail() const {
   throw_unwritten(path_, errno == 0 ? "the disk takes no more" : std::strerror(errno));
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// A file being written as PATH.partial, which commit() renames to PATH. Failures throw
 /// std::runtime_error("PATH: cannot write the file: REASON").
@@ -33,4 +33,4 @@ class FileBeside {
 /// Throws if a file exists that may not be replaced.
 void require_free(std::filesystem::path const& path, bool overwrite);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -171,4 +171,4 @@ void complete_from_journal(fs::path const& path) {
     ::unlink(beside.c_str());
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

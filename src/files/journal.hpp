@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <span>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Size of the unit that a disk writes completely or not at all.
 inline constexpr std::size_t sector_bytes = 512;
@@ -52,4 +52,4 @@ class Journal {
 /// file. Throws std::runtime_error if the file needs its journal and cannot be written.
 void complete_from_journal(std::filesystem::path const& path);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

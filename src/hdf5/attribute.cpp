@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 std::string action(char const* verb, char const* name) {
@@ -143,4 +143,4 @@ void RootAttributes::require_version(char const* name, std::int64_t accepted,
         "its format is " + std::to_string(version) + "; accepted is " + std::to_string(accepted));
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

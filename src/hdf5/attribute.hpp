@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Returns the type of variable-length UTF-8 strings.
 DatatypeHandle text_type();
@@ -50,4 +50,4 @@ class RootAttributes {
   std::filesystem::path const& path_;
 };
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

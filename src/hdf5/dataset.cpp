@@ -8,7 +8,7 @@
 #include <numeric>
 #include <string>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 std::string dataset_name(hid_t dataset) {
@@ -137,4 +137,4 @@ void read_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents 
   check(H5Dread(dataset, memory_type, memory.get(), file.get(), H5P_DEFAULT, values), path, action);
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 using Extents = std::vector<hsize_t>;
 
@@ -58,4 +58,4 @@ void write_raw_chunk(hid_t dataset, Extents const& begin, void const* stored, st
 void read_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents const& extents,
                 void* values, std::filesystem::path const& path);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

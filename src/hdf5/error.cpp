@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 herr_t keep_description(unsigned, H5E_error2_t const* error, void* data) {
@@ -49,4 +49,4 @@ void throw_failure(std::filesystem::path const& path, std::string const& action,
   throw std::runtime_error(path.string() + ": " + action + ": " + reason);
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// While in scope, no other thread of the library uses HDF5, which may be built without thread
 /// safety, and HDF5 does not print its error stack.
@@ -40,4 +40,4 @@ Result check(Result result, std::filesystem::path const& path, std::string const
   return result;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -4,7 +4,7 @@
 #include <new>
 #include <stdexcept>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 ReadingTrial trial_of_files = nullptr;
@@ -40,4 +40,4 @@ void rethrow_reading(std::filesystem::path const& path) {
   }
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <functional>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Runs the trial of `reading`; does nothing if none is set.
 void try_before(std::filesystem::path const& path, std::function<void()> const& reading);
@@ -31,4 +31,4 @@ auto read_guarded(std::filesystem::path const& path, Reading const& reading) {
   }
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -6,7 +6,7 @@
 
 #include <mutex>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 thread_local int depth_of_turns = 0;  // how many scopes this thread is in
@@ -56,4 +56,4 @@ GroupHandle open_group(hid_t parent, char const* name, std::filesystem::path con
       check(H5Gopen2(parent, name, H5P_DEFAULT), path, std::string("cannot open group ") + name));
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <utility>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// While in scope, no other thread of the library uses HDF5. Scopes may be nested. A child forked
 /// in scope owns the lock, too, unlike with std::recursive_mutex.
@@ -64,4 +64,4 @@ FileHandle open_file(std::filesystem::path const& path, Locking locking = Lockin
 GroupHandle create_group(hid_t parent, char const* name, std::filesystem::path const& path);
 GroupHandle open_group(hid_t parent, char const* name, std::filesystem::path const& path);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <functional>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Tries `reading` of a possibly damaged file where a crash does no harm, for example in another
 /// process. Throws std::runtime_error with one line if the file must not be read. No other thread
@@ -16,4 +16,4 @@ using ReadingTrial = void (*)(std::filesystem::path const& path,
 /// not start processes. Call it before other threads read files.
 void set_trial(ReadingTrial trial);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

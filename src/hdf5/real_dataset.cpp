@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 RealDataset::RealDataset(std::filesystem::path path, std::string name)
     : path_(std::move(path)), name_(std::move(name)) {
@@ -53,4 +53,4 @@ void RealDataset::refuse_extents(std::string const& accepted) const {
   refuse(fmt::format("its extents are ({}); accepted: {}", fmt::join(extents_, ", "), accepted));
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// A dataset of type float or double in any HDF5 file, read as double. Its members throw
 /// std::runtime_error with one line that starts with the file.
@@ -39,4 +39,4 @@ class RealDataset {
   double epsilon_ = 0;
 };
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -14,7 +14,7 @@
 #include <H5FDdevelop.h>
 #endif
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 // HDF5 requires its own struct as the first member.
@@ -137,4 +137,4 @@ void SyncedFile::use_in(hid_t file_access) {
   H5Pset_driver(file_access, registered_driver(), &self);
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

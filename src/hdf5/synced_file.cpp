@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 std::uint64_t sector_of(std::uint64_t offset) { return offset / sector_bytes * sector_bytes; }
@@ -156,4 +156,4 @@ int SyncedFile::close() {
   return error;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -11,7 +11,7 @@
 #include <map>
 #include <optional>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// A file written by HDF5 that a power cut returns to its state at the last commit().
 ///
@@ -66,4 +66,4 @@ class SyncedFile {
   int error_ = 0;
 };
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

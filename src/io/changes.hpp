@@ -7,7 +7,7 @@
 #include <vector>
 
 /// Differences between two scenes, for a run that continues from another one's state.
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Returns the first key by which two scenes of equal shape and cell_sites have different sites:
 /// "lattice.spacing", boundary, cell, basis, moments, gyromagnetic, occupied, frozen, or
@@ -21,4 +21,4 @@ std::string changed_lattice_key(Scene const& before, Scene const& now);
 /// Throws SceneError for a text that is not TOML.
 std::vector<std::string> changed_keys(std::string const& before, std::string const& now);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -15,7 +15,7 @@
 
 /// The file from which a run is continued (HDF5; docs/reference/file_format.md has the layout).
 /// Failures throw std::runtime_error with one line: the file, the action that failed, and why.
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// The run that a checkpoint belongs to, and its progress.
 struct CheckpointHeader {
@@ -82,4 +82,4 @@ class CheckpointReader final : public Checkpoint {
 /// Returns true for an HDF5 file that is marked as a checkpoint.
 bool is_checkpoint(std::filesystem::path const& path);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

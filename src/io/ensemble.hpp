@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 struct Scene;
 
@@ -33,4 +33,4 @@ Scene replica_to_relax(Scene const& scene, std::int64_t replica);
 /// Throws SceneError for an ensemble. `who`: what takes none, as the message names it.
 void require_no_ensemble(Scene const& scene, std::string_view who);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// The state of a search for the equilibrium of one replica, as `cayspin relax` ends.
 struct RelaxedReplica {
@@ -71,4 +71,4 @@ bool is_ensemble(std::filesystem::path const& path);
 /// Throws std::runtime_error with one line.
 EnsembleInfo read_ensemble_info(std::filesystem::path const& path);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

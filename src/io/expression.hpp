@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// A function of two numbers and of the values of an expression's variables, to be called in it.
 /// May throw std::runtime_error with one line.
@@ -44,4 +44,4 @@ class Expression {
   std::unique_ptr<Compiled> compiled_;
 };
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -25,13 +25,13 @@
 // write a struct with the members of Exchange, a member of Field, and its entry in
 // Field::lattice_terms. The scene reader, `cayspin check`, the stability bound and the kernels use
 // that list.
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 class Exchange;
 class InterfacialDmi;
 class BulkDmi;
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 using Triple = std::array<double, 3>;
 
@@ -421,4 +421,4 @@ void for_each_lattice_term(AnyField&& field, Work&& work) {
   std::apply([&](auto... member) { (work(field.*member), ...); }, Field::lattice_terms);
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -5,7 +5,7 @@
 
 #include <span>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// The quantity that a lattice follows: the mean of a component, or the position of the topological
 /// charge.
@@ -29,4 +29,4 @@ struct Follow {
   double value = 0;  ///< of the mean of a component, where the wall is in place
 };
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

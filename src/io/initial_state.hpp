@@ -10,7 +10,7 @@
 
 /// The named values of initial.state, with their keys; docs/reference/scene.md has the formulas.
 /// Lengths are in the unit of lattice.spacing, positions in fractions of the lattice.
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 struct VortexState {
   double radius = 0;  ///< of the core
@@ -43,4 +43,4 @@ struct HelixState {
 
 using InitialState = std::variant<VortexState, SkyrmionState, TwoDomainsState, HelixState>;
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

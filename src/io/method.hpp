@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// A variant of a method that `cayspin trade` tries.
 enum class Trial { plain, in_chart, sigma, single_precision, compensated_single_precision };
@@ -52,4 +52,4 @@ std::span<Method const* const> methods();
 /// Returns the method of this name, or nullptr.
 Method const* find_method(std::string_view word);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -10,7 +10,7 @@
 #include <vector>
 
 /// The file of `cayspin modes` (HDF5; docs/reference/file_format.md has the layout).
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Contents of the file. Vectors of sites are in the order of initial_spins.
 struct ModesContents {
@@ -46,4 +46,4 @@ BandsContents read_modes(std::filesystem::path const& path);
 /// Writes PATH.partial and renames it. Throws std::runtime_error with one line.
 void write_modes(std::filesystem::path const& path, ModesContents const& contents, bool overwrite);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Lists each key of a scene that has no effect, or that does not go with another key, in one line,
 /// "FILE:LINE: key: message". `cayspin check` prints these notes, `run` and `relax` print them as
@@ -18,4 +18,4 @@ std::vector<std::string> notes(Scene const& scene);
 /// SceneError.
 Scene with_shape_of_start(Scene scene);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -12,7 +12,7 @@
 /// Fields in OVF, the file format of OOMMF and mumax3: three components, or one, on a rectangular
 /// mesh. Versions 1.0 and 2.0 are read, and 2.0 is written. Every failure throws std::runtime_error
 /// with one line that starts with the file.
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Storage format of an OVF file's values. `text` has as many digits as a double needs.
 enum class OvfFormat { text, binary4, binary8 };
@@ -57,4 +57,4 @@ OvfField read_ovf(std::filesystem::path const& path, std::int64_t components = 3
 void write_ovf(std::filesystem::path const& path, OvfField const& field, OvfFormat format,
                bool overwrite);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <functional>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Three numbers of every site in host memory: component c of site (i, j, k) is k strides[0] + j
 /// strides[1] + i strides[2] + c strides[3] numbers after `data`.
@@ -26,4 +26,4 @@ struct OwnField {
   std::function<void(HostVectors const& spins, HostVectors const& field, double t)> nonlocal;
 };
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// A saddle on a path, in the units of the scene; curvatures are energies per square of radians.
 struct SaddleOfPath {
@@ -60,4 +60,4 @@ Path read_path(std::filesystem::path const& path);
 /// Throws as write_path does for a file that it would not write.
 void require_writable(std::filesystem::path const& path, bool overwrite);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 struct Scene;
 
@@ -22,4 +22,4 @@ struct RefusedPair {
 /// Returns all of them, in the order in which a scene is checked.
 std::span<RefusedPair const> refused_pairs();
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

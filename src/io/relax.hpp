@@ -3,7 +3,7 @@
 
 #include "io/scene.hpp"
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Reads a scene for `cayspin relax`: like read_scene, but [integrator] is optional, and
 /// field.applied may be a list of fields (Field::applied_in_turn). Throws SceneError, also for
@@ -34,4 +34,4 @@ bool is_to_relax(Scene const& scene);
 /// Returns the [field] of each equilibrium that the scene asks for: one, or those of its list.
 std::vector<Field> fields_in_turn(Scene const& scene);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Options for the files of a run besides its trajectory.
 struct RunOutputOptions {
@@ -67,4 +67,4 @@ class RunOutput {
   std::unique_ptr<Implementation> implementation_;
 };
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

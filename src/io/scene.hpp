@@ -28,7 +28,7 @@
 #include <vector>
 
 /// A scene file as plain data. docs/reference/scene.md describes every key.
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Error in a scene. what() is one line: `FILE:LINE: key: what is wrong; accepted: ...`, or `--set
 /// key=value: key: ...` when an override is to blame.
@@ -421,4 +421,4 @@ std::vector<InertiaTensor> inertia(Scene const& scene);
 /// Returns their inverses in the order xx, yy, zz, xy, xz, yz. Throws like inertia.
 std::vector<std::array<double, 6>> inverse_inertia(Scene const& scene);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

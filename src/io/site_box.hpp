@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// A box of sites from `begin`, with a count along each axis.
 struct SiteBox {
@@ -82,4 +82,4 @@ void for_each_box_of_planes(std::array<std::int64_t, 3> const& shape, std::int64
     work(SiteBox{{0, 0, first}, {shape[0], shape[1], std::min(at_once, shape[2] - first)}});
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Start of a stage of a run: its number, which is 0 for the scene's own tables, and the step and
 /// time from which its steps are counted. The time is in reduced units of its scene, also in files,
@@ -15,4 +15,4 @@ struct StageBegin {
   bool operator==(StageBegin const&) const = default;
 };
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -8,7 +8,7 @@
 #include <vector>
 
 /// A run in stages: [[stage]].
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Returns all stages of a run: the scene's own tables, and those that follow. Each starts where it
 /// would if no stage before it ended early.
@@ -35,4 +35,4 @@ void require_no_stages(Scene const& scene, std::string_view who);
 Scene changed_on_the_way(Scene const& scene, std::vector<std::string> const& overrides,
                          Given const& given = {});
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

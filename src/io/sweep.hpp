@@ -13,7 +13,7 @@
 
 /// The file of a sweep: one scene run with every combination of the values of some keys
 /// (docs/reference/file_format.md has the layout). Errors are those of trajectory.hpp.
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// A key of a scene and its values.
 struct SweptKey {
@@ -84,4 +84,4 @@ bool is_sweep(std::filesystem::path const& path);
 /// Reads all but the runs' trajectories. Throws std::runtime_error with one line.
 SweepInfo read_sweep(std::filesystem::path const& path);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

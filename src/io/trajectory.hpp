@@ -19,7 +19,7 @@
 /// Every failure of the file system or of HDF5 throws std::runtime_error with one line: the file,
 /// the action that failed, and why. HDF5 itself prints nothing. Not thread-safe. If this is a
 /// program's first use of HDF5, HDF5 does not close files of others at exit.
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Optional numbers of each sample besides its Scalars, in this order.
 struct MoreScalars {
@@ -222,4 +222,4 @@ std::vector<double> read_spins(std::filesystem::path const& path,
                                std::array<std::int64_t, 3> const& shape, std::int64_t frame,
                                std::int64_t cell_sites = any_cell_sites);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// The reduced units in the units that a scene is typed in and its files are written in.
 struct Units {
@@ -14,4 +14,4 @@ struct Units {
   bool operator==(Units const&) const = default;
 };
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

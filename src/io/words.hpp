@@ -7,7 +7,7 @@
 #include <string_view>
 
 /// The named values of a scene, except those of methods, which are in io/method.hpp.
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 enum class SystemKind { llg, rigid_body };
 enum class BoundaryKind { open, periodic };
@@ -118,4 +118,4 @@ class SetOf {
   unsigned bits_ = 0;
 };
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -10,7 +10,7 @@
 #include <set>
 #include <stdexcept>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 constexpr std::size_t longest_line = 65536;
@@ -211,4 +211,4 @@ OvfHeader read_header(std::istream& stream, std::filesystem::path const& path) {
   refuse_ovf(path, "it ends before # Begin: Data");
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// The first datum of a binary block, which identifies the byte order: big endian in OVF 1.0,
 /// little endian in OVF 2.0.
@@ -43,4 +43,4 @@ OvfHeader read_header(std::istream& stream, std::filesystem::path const& path);
 /// Throws std::runtime_error("PATH: cannot read the OVF file: REASON").
 [[noreturn]] void refuse_ovf(std::filesystem::path const& path, std::string const& reason);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

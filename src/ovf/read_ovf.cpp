@@ -14,7 +14,7 @@
 #include <fstream>
 #include <stdexcept>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
@@ -247,4 +247,4 @@ OvfField read_ovf(fs::path const& path, std::int64_t components) {
   return std::move(header.field);
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -10,7 +10,7 @@
 #include <ostream>
 #include <stdexcept>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 std::string one_line(std::string text) {
@@ -115,4 +115,4 @@ void write_ovf(std::filesystem::path const& path, OvfField const& field, OvfForm
   file.commit();
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

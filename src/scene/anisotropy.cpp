@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 constexpr std::string_view accepted_axes = "two vectors at right angles, to 1e-4";
@@ -113,9 +113,9 @@ void read_anisotropies(Item const& item, Scene& scene, Field& field) {
     read_anisotropy(entry, scene, field);
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 std::array<std::vector<double>, 2> crystal_axes(Scene const& scene, CrystalAnisotropy const& term,
                                                 SiteBox const& box) {
@@ -149,4 +149,4 @@ std::array<std::vector<double>, 2> crystal_axes(Scene const& scene, CrystalAniso
   return axes;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -9,7 +9,7 @@
 #include <set>
 #include <string_view>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 // Compares up to the round-off of a conversion from SI.
@@ -146,4 +146,4 @@ std::vector<std::string> changed_keys(std::string const& before, std::string con
   return found;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

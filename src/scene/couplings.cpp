@@ -15,7 +15,7 @@
 #include <tuple>
 #include <utility>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 constexpr auto any = std::numeric_limits<std::size_t>::max();
@@ -243,9 +243,9 @@ void read_couplings(Item const& item, Scene& scene, Field& field) {
   if (pairs) add_bonds(read_pairs(*pairs, scene, both && boolean(*both)), field.couplings);
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 std::vector<Coupling> couplings(Scene const& scene) {
   auto const& field = scene.field;
@@ -256,4 +256,4 @@ std::vector<Coupling> couplings(Scene const& scene) {
   });
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 constexpr Word<Crystal (*)()> crystals[] = {
@@ -114,10 +114,10 @@ void check_crystal(Scene const& scene) {
   refuse_if(field.torque.zhang_li.has_value(), "torque.zhang_li", "slonczewski, or no such key");
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 Crystal crystal(Lattice const& lattice) { return {lattice.cell, lattice.basis}; }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

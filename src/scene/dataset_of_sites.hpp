@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 
 /// A dataset with `of_site` numbers of each site: (nz, ny, nx), or (site, nz, ny, nx) for a
 /// crystal, and a last extent for several numbers.
@@ -55,4 +55,4 @@ class DatasetOfSites {
   Extents expected_;
 };
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

@@ -12,7 +12,7 @@
 #include <limits>
 #include <utility>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 // Periodic axes of more than one cell have infinitely many images. Cells have no such sum along
@@ -114,4 +114,4 @@ void read_demag(Table const& table, Scene& scene, Field& field) {
   }
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

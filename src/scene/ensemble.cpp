@@ -11,7 +11,7 @@
 #include <utility>
 #include <variant>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace detail {
 namespace {
 
@@ -148,4 +148,4 @@ void require_no_ensemble(Scene const& scene, std::string_view who) {
                    "a scene without [ensemble], or cayspin run and cayspin relax");
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

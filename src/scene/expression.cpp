@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 // Returns true for an assignment: muParser would let "x = 3" change the variable.
@@ -128,4 +128,4 @@ bool Expression::depends_on(std::string_view variable) const {
   return used.contains(std::string(variable));
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 template <class Term>
@@ -263,9 +263,9 @@ Field read_field(Table const& root, SystemKind kind) {
   return field;
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 std::string_view key_in_time(Field const& field) {
   if (field.own.uniform) return "field.applied";
@@ -301,4 +301,4 @@ bool is_nonlocal(Field const& field) {
   return field.own.nonlocal || field.demag || (field.slab_demag && field.slab_demag->on_host);
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

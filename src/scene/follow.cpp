@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 constexpr std::string_view axes[] = {"x", "y", "z"};
@@ -116,4 +116,4 @@ void require_alike_where_followed(Scene const& scene) {
   if (scene.thermal) check(scene.thermal->of_sites, "thermal.temperature");
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -9,7 +9,7 @@
 #include <array>
 #include <cmath>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 std::string text_of(std::size_t axis) { return fmt::format("free sides along {}", "xyz"[axis]); }
@@ -133,4 +133,4 @@ std::optional<std::vector<double>> numbers_at_free_sides(Scene const& scene,
   return values;
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 
 /// Returns true if the scene has free_boundary. Refuses it without DMI of a continuum.
 bool has_free_boundary(Table const& root);
@@ -22,4 +22,4 @@ std::optional<std::vector<double>> numbers_at_free_sides(Scene const& scene,
                                                          SiteNumbers const& numbers,
                                                          SiteBox const& box);
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

@@ -10,7 +10,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 double square(double x) { return x * x; }
@@ -113,4 +113,4 @@ double Grains::at(std::array<double, 3> const& point, double size, double seed) 
   return static_cast<double>(search.grain);
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

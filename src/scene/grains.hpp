@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 
 /// Voronoi grains of a lattice: a point belongs to the nearest seed. Each tile of the lattice has
 /// one seed at a random position. Grains wrap around where the lattice is periodic. They do not
@@ -28,4 +28,4 @@ class Grains {
   std::array<bool, 3> periodic_;
 };
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

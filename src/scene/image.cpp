@@ -11,7 +11,7 @@
 #include <png.h>
 #endif
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 [[noreturn]] void refuse_image(std::filesystem::path const& path, std::string_view reason) {
@@ -111,4 +111,4 @@ std::vector<double> numbers_of_image(SiteNumbers const& numbers, Lattice const& 
   return values;
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

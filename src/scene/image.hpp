@@ -10,7 +10,7 @@
 
 // Images as site-dependent numbers. Every failure throws std::runtime_error with one line that
 // starts with the file.
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 
 /// Grey values from 0 (black) to 255 (white), row by row from the top.
 struct Image {
@@ -41,4 +41,4 @@ void read_image_keys(Table const& table, SiteNumbers& numbers);
 std::vector<double> numbers_of_image(SiteNumbers const& numbers, Lattice const& lattice,
                                      SiteBox const& box);
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <utility>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 Eigen::Matrix3d symmetric_part(InertiaTensor const& tensor) {
@@ -100,4 +100,4 @@ std::vector<std::array<double, 6>> inverse_inertia(Scene const& scene) {
   return inverses;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

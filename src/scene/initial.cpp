@@ -11,7 +11,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 ExpressionStart read_expressions(Item const& item, Lattice const& lattice) {
@@ -63,9 +63,9 @@ Initial read_initial(Table const& root) {
   return FileStart{input_file(table, "file", "the name of an HDF5 or OVF file")};
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 using Site = std::array<std::int64_t, 3>;
@@ -203,4 +203,4 @@ std::vector<double> initial_spins(Scene const& scene, SiteBox const& box) {
   return spins;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

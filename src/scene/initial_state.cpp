@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 using cayspin::detail::scalar_product;
@@ -117,4 +117,4 @@ Triple spin_of_state(InitialState const& state, Lattice const& lattice,
   return std::visit(SpinOfState{lattice, site}, state);
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

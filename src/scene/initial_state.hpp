@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 
 /// Reads the named state of initial.state, with its keys. Call it after reading the lattice.
 InitialState read_initial_state(Table const& table, Item const& state);
@@ -15,4 +15,4 @@ InitialState read_initial_state(Table const& table, Item const& state);
 Triple spin_of_state(InitialState const& state, Lattice const& lattice,
                      std::array<std::int64_t, 3> const& site);
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

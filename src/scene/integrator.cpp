@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 // Times are n dt in double, so n must be exact there.
@@ -165,4 +165,4 @@ Integrator read_integrator(Table const& root, SystemKind kind) {
   return integrator;
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

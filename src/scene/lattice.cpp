@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 // Limit of cayspin::Lattice::validate.
@@ -82,4 +82,4 @@ Lattice read_lattice(Table const& root, SystemKind kind) {
   return lattice;
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <functional>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 double positive_moment(Item const& item, double value) {
@@ -195,4 +195,4 @@ void check_si(Scene const& scene) {
                     "one number in material.mu_s, or field.dipoles");
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

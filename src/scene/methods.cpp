@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 std::span<Method const* const> methods() {
   static constexpr auto all =
@@ -18,4 +18,4 @@ Method const* find_method(std::string_view word) {
   return found == methods().end() ? nullptr : *found;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -15,7 +15,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 using Cells = std::array<std::int64_t, 3>;
@@ -283,4 +283,4 @@ std::vector<std::string> notes(Scene const& scene) {
   return Notes(scene)();
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <charconv>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 CheckpointPeriod checkpoint_period(Item const& item) {
@@ -63,4 +63,4 @@ Output read_output(Table const& root, Integrator const& integrator) {
   return output;
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

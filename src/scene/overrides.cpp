@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 std::vector<std::string> split_path(std::string_view path) {
@@ -121,4 +121,4 @@ void apply_override(toml::table& root, std::string const& assignment) {
   }
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

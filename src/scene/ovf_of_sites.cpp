@@ -8,7 +8,7 @@
 
 #include <stdexcept>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 
 void check_ovf_of_sites(std::filesystem::path const& path, Lattice const& lattice,
                         std::int64_t components) {
@@ -29,4 +29,4 @@ std::vector<double> read_ovf_of_sites(std::filesystem::path const& path, Lattice
   return numbers_in(box, lattice.shape, components, read_ovf(path, components).values);
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

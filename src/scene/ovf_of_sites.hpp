@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 
 /// Throws std::runtime_error unless the header of an OVF file has the nodes of a lattice with one
 /// site per cell, and this number of components, 1 or 3.
@@ -18,4 +18,4 @@ void check_ovf_of_sites(std::filesystem::path const& path, Lattice const& lattic
 std::vector<double> read_ovf_of_sites(std::filesystem::path const& path, Lattice const& lattice,
                                       std::int64_t components, SiteBox const& box);
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

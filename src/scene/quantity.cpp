@@ -3,7 +3,7 @@
 
 #include <cayspin/units.hpp>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 constexpr Unit energies[] = {{"meV", 1e-3 * units::electronvolt},
@@ -47,4 +47,4 @@ InUnit in_joules_of_atoms(Item const& item, Scene& scene) {
   return scene.material && scene.material->atomistic ? in_joules(item, scene) : InUnit{item};
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 
 /// A unit that a table may name: { meV = number }.
 struct Unit {
@@ -36,4 +36,4 @@ double constant_of_sites(Item const& item, Scene& scene, SiteNumbers& numbers);
 /// Reads an energy if the material has mu_s, otherwise the item itself.
 InUnit in_joules_of_atoms(Item const& item, Scene& scene);
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

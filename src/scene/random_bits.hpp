@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 
 /// Returns value number `counter` of the SplitMix64 sequence (Steele, Lea, Flood 2014, doi
 /// 10.1145/2660193.2660195), in constant time.
@@ -24,4 +24,4 @@ inline double random_number(std::uint64_t start, std::uint64_t counter) {
 /// Returns the seed of a function in an expression. Throws std::runtime_error.
 std::uint64_t whole_seed(double seed, std::string_view function);
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 constexpr double cells_of_core = 3, cells_of_wall = 3;
@@ -155,4 +155,4 @@ InitialState read_initial_state(Table const& table, Item const& state) {
   return word_among<Read>(states, state)(table);
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

@@ -15,7 +15,7 @@
 #include <tuple>
 #include <utility>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 std::string read_text(std::filesystem::path const& path) {
@@ -293,4 +293,4 @@ std::int64_t sites(Scene const& scene) {
   return shape[0] * shape[1] * shape[2];
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -11,7 +11,7 @@
 #include <numeric>
 #include <sstream>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -229,4 +229,4 @@ std::filesystem::path input_file(Table const& table, std::string_view name,
   return table.scene().path.parent_path() / file;
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

@@ -17,7 +17,7 @@
 #include <variant>
 #include <vector>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 
 /// Replaces control characters by '?', so that a name typed in a scene cannot break the line.
 std::string one_line(std::string text);
@@ -193,4 +193,4 @@ void read_keys(Table const& table, Section& section) {
   }
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 constexpr std::string_view method_key = "integrator.method",
@@ -137,4 +137,4 @@ void check_pairs(Scene const& scene) {
 }
 
 }  // namespace detail
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

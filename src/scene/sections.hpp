@@ -3,7 +3,7 @@
 
 #include "reader.hpp"
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 
 /// Throws scene_error with what is accepted.
 [[noreturn]] void refuse(Scene const& scene, std::string_view key, std::string_view wrong,
@@ -88,4 +88,4 @@ void apply_override(toml::table& root, std::string const& assignment);
 /// entry and positive definite.
 std::optional<std::string> inertia_fault(InertiaTensor const& tensor, double tolerance);
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

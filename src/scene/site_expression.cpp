@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 double random_of(double n, double seed, double const*) {
@@ -44,4 +44,4 @@ Expression site_expression(std::string text, Lattice const& lattice, double leng
   return {std::move(text), site_variables(lattice), {{"grain", grain}, {"random", random_of}}};
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 
 /// Returns the variables of site expressions: the position, the cell's indices and, for a crystal,
 /// the index in the cell.
@@ -42,4 +42,4 @@ inline Expression site_expression(std::string text, Scene const& scene) {
   return site_expression(std::move(text), scene.lattice, scene.units.length);
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

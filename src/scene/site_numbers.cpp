@@ -17,7 +17,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 constexpr std::size_t most_regions = 65536;
@@ -274,4 +274,4 @@ std::vector<double> numbers_of_sites(Scene const& scene, SiteNumbers const& numb
   return values;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 using detail::normalise;
 
@@ -261,4 +261,4 @@ std::int64_t reach_of_interlayers(Scene const& scene) {
   return reach;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 // Returns 1 where numbers are not 0; nothing without numbers.
@@ -143,4 +143,4 @@ bool needs_pass(Scene const& scene) {
          !field.interlayers.empty() || field.torque.zhang_li || field.torque.slonczewski;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -8,7 +8,7 @@
 #include <vector>
 
 /// The tables [[stage]] of a document.
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 
 /// Returns the number of stages. Throws SceneError for a key "stage" that is not a list of tables.
 std::size_t count_stages(toml::table const& document, std::string const& path);
@@ -28,4 +28,4 @@ void read_stage(Table const& table, Stage& stage);
 /// Refuses a list of fields, "auto", and keys that give the run another lattice.
 void check_stage(Scene const& own, Scene const& stage);
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace detail {
 namespace {
 
@@ -199,4 +199,4 @@ void require_no_stages(Scene const& scene, std::string_view who) {
                    "a scene without [[stage]]");
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

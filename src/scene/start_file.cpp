@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 std::int64_t sites_of(Lattice const& lattice) {
@@ -73,4 +73,4 @@ bool holds_spins(std::filesystem::path const& path) {
   });
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 
 /// Throws std::runtime_error unless an HDF5 or OVF file has spins for a lattice. Checks only types
 /// and shapes.
@@ -23,4 +23,4 @@ std::vector<double> sites_with_spins(std::filesystem::path const& path, Lattice 
 /// Returns true for a file with spins, and false for one with site-dependent numbers.
 bool holds_spins(std::filesystem::path const& path);
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

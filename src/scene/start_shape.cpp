@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <sstream>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 /// Counts the sites of a file that have a zero vector.
@@ -52,4 +52,4 @@ Scene with_shape_of_start(Scene scene) {
   return scene;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 constexpr std::string_view accepted = "key.path=VALUE,VALUE,... with TOML values";
@@ -96,4 +96,4 @@ std::vector<std::string> SweepHeader::overrides(std::int64_t run) const {
   return overrides;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 constexpr std::string_view inertia_accepted =
@@ -80,4 +80,4 @@ void read_dampings(Table const& root, Scene& scene) {
     read_site_numbers(*item, scene, scene.system.dampings);
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <tuple>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 
 namespace {
 
@@ -80,9 +80,9 @@ void check_thermal(Scene const& scene) {
                            largest_noise(scene) * system.damping * scene.thermal->temperature);
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 std::vector<double> noise_of_cell_sites(Scene const& scene) {
   auto const& lattice = scene.lattice;
@@ -154,4 +154,4 @@ void require_moderate_noise(Scene const& scene, double heat) {
                   integrator.dt / half * scene.units.time));
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

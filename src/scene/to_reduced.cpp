@@ -10,7 +10,7 @@
 #include <cmath>
 #include <regex>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 // Returns a formula in t, with t in units of `time` and the result in units of `field`.
@@ -230,4 +230,4 @@ void convert_to_reduced(Scene& scene) {
   }
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 constexpr std::string_view three_components = "three numbers or expressions in t";
@@ -148,4 +148,4 @@ Torque read_torque(Table const& root, SystemKind kind) {
   return torque;
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

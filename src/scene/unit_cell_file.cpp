@@ -18,7 +18,7 @@
 // bilinear interactions and, in some files, biquadratic ones. Vampire numbers atoms by line and
 // ignores their first number. E = -sum S.J S' over the bonds, each of which is listed from both
 // ends.
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -237,4 +237,4 @@ std::vector<Coupling> read_unit_cell_couplings(std::filesystem::path const& path
   return all;
 }
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

@@ -11,7 +11,7 @@
 
 // Unit-cell files of Vampire, which other programs write, too. Both functions throw
 // std::runtime_error with one line that gives the line of the file.
-namespace cayspin::inline v0_1::io::detail {
+namespace cayspin::inline v0_2::io::detail {
 
 /// Largest number of sites in a cell.
 constexpr std::int64_t most_sites = 32767;
@@ -26,4 +26,4 @@ Crystal read_unit_cell(std::filesystem::path const& path);
 std::vector<Coupling> read_unit_cell_couplings(std::filesystem::path const& path,
                                                Crystal const& crystal, double scale);
 
-}  // namespace cayspin::inline v0_1::io::detail
+}  // namespace cayspin::inline v0_2::io::detail

@@ -9,7 +9,7 @@
 #include <array>
 #include <cctype>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 struct ForeignWord {
@@ -133,4 +133,4 @@ std::string hint_for_word_of_others(std::string_view word) {
   return found == foreign_words.end() ? std::string() : fmt::format(", here it is {}", found->here);
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 struct Scene;
 }
 

@@ -15,7 +15,7 @@
 // compiled. The file needs no Kokkos, because it only declares steppers.
 // To add a tableau, write a struct in cayspin/stepper/tableau.hpp and a row; to add a stepper, a
 // declaration and a row.
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 template <class Spins, class Isotropy, class Rotation>
 class LieEuler;
@@ -65,7 +65,7 @@ struct Energy;
 }  // namespace isotropy
 struct Cayley;
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2
 
 namespace cayspin::simulation {
 

@@ -7,7 +7,7 @@
 #include <array>
 #include <string>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 struct Scene;
 }
 

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 struct Scene;
 }
 

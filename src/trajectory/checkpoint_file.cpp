@@ -17,7 +17,7 @@
 #include <span>
 #include <utility>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 constexpr char const* format_mark = "checkpoint_format";
@@ -351,4 +351,4 @@ bool is_checkpoint(std::filesystem::path const& path) {
   });
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

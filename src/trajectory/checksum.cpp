@@ -8,7 +8,7 @@
 #include <string>
 #include <type_traits>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 // Spreads the bits of one sum over all bits of the result.
@@ -49,4 +49,4 @@ std::uint64_t text_checksum(TrajectoryHeader const& header) {
   return hash;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

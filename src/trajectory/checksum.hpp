@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Returns a 32-bit checksum of step, time, scalars and further numbers of a sample; never 0.
 std::uint32_t row_checksum(Sample const& sample, std::span<double const> more = {});
@@ -18,4 +18,4 @@ std::uint32_t spins_checksum(Sample const& sample, std::uint32_t fletcher32);
 /// Returns a checksum of the texts of a header.
 std::uint64_t text_checksum(TrajectoryHeader const& header);
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

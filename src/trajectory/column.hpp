@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Storage of an integer, a double or three doubles per row in a dataset, all of 64 bits.
 template <class Value>
@@ -33,4 +33,4 @@ auto values_of(std::vector<Row> const& rows, Member const& member) {
   return values;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

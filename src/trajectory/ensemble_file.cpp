@@ -18,7 +18,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 constexpr hsize_t numbers_per_chunk = 4096;
@@ -323,4 +323,4 @@ void EnsembleFile::close(RunCost const& cost) {
 }
 std::int64_t EnsembleFile::frames() const { return not_moved(implementation_).frames(); }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

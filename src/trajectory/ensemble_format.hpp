@@ -3,10 +3,10 @@
 
 #include <cstdint>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// The attribute by which an ensemble's file is known, and its value.
 inline constexpr char const* ensemble_format = "ensemble_format";
 inline constexpr std::int64_t ensemble_format_version = 1;
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 std::vector<double> read_row(hid_t file, char const* name, Extents const& begin,
@@ -103,4 +103,4 @@ EnsembleInfo read_ensemble_info(std::filesystem::path const& path) {
   return read_guarded(path, [&] { return read_whole_info(path); });
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 // Folds modulo 65535, but a nonzero sum does not become 0.
@@ -37,4 +37,4 @@ std::uint32_t Fletcher32::value() const {
   return static_cast<std::uint32_t>(sum_of_sums_ << 16U | sum_);
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

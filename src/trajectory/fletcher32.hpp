@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// The checksum of HDF5's filter fletcher32, for bytes in pieces of even length.
 class Fletcher32 {
@@ -24,4 +24,4 @@ inline std::uint32_t fletcher32(std::span<std::byte const> bytes) {
   return sum.value();
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 inline constexpr int format_version = 1;
 inline constexpr char const* single_precision = "single";
@@ -69,4 +69,4 @@ inline std::array<hsize_t, 5> frame_chunk(std::array<std::int64_t, 3> const& sha
   return chunk;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

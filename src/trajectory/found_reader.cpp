@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -163,4 +163,4 @@ BandsContents read_modes(fs::path const& path) {
   return read_guarded(path, [&] { return read_whole_modes(path); });
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

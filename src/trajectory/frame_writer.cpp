@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 using Shape = std::array<std::int64_t, 3>;
@@ -243,4 +243,4 @@ Extents FrameWriter::place(std::int64_t site, std::int64_t plane) const {
                    cell_sites_, static_cast<hsize_t>(site));
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

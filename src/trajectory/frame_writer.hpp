@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Dataset /spins of a trajectory file, to which frames are added by planes along z. Frames of a
 /// crystal with several sites per cell are added as a whole, and stored site by site.
@@ -64,4 +64,4 @@ class FrameWriter {
   std::vector<std::array<double, 3>> sublattices_;
 };
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <span>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -153,4 +153,4 @@ void write_bands(fs::path const& path, BandsContents const& contents, bool overw
              [&](Writer const& writer) { writer.write_bands(contents.wave_vectors); });
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -16,7 +16,7 @@
 #include <cstring>
 #include <string>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -129,4 +129,4 @@ FileHandle NewFile::commit() {
   return std::move(file_);
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// An HDF5 file being written as PATH.partial until commit(), so that PATH is complete at every
 /// moment. An existing file stays unchanged until then; with `shared` it may have readers. With
@@ -34,4 +34,4 @@ class NewFile {
   FileHandle file_;
 };
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 // Checked here because exceeding the limit would raise a signal that ends the program.
@@ -57,4 +57,4 @@ void OpenFileSpace::trim() const {
   [[maybe_unused]] auto const result = ::ftruncate(descriptor_, static_cast<off_t>(used()));
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Allocates disk space for the bytes from `begin` to `end` of a file. Returns 0, or the system's
 /// error number if there is none. A file system that cannot tell counts as having space.
@@ -38,4 +38,4 @@ class OpenFileSpace {
   std::uint64_t reserved_ = 0;
 };
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

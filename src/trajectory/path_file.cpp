@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 constexpr std::int64_t path_format_version = 1;
@@ -125,4 +125,4 @@ void require_writable(std::filesystem::path const& path, bool overwrite) {
   NewFile const file(path, overwrite);
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

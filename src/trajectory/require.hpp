@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Checks the contents of a file; throws std::invalid_argument for an unknown precision.
 inline void require_precision(std::string const& precision) {
@@ -35,4 +35,4 @@ Implementation& not_moved(std::unique_ptr<Implementation> const& writer) {
   return *writer;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -23,7 +23,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -275,4 +275,4 @@ void RunOutput::close(RunCost const& cost) { not_moved(implementation_).end(cost
 std::int64_t RunOutput::frames() { return not_moved(implementation_).frames(); }
 std::filesystem::path const& RunOutput::path() const { return not_moved(implementation_).path(); }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

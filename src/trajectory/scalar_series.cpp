@@ -13,7 +13,7 @@
 #include <string>
 #include <utility>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 constexpr hsize_t samples_per_chunk = 512;
@@ -264,4 +264,4 @@ std::vector<std::uint64_t> ScalarSeries::read_checksums(std::int64_t begin, std:
   return checksums;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

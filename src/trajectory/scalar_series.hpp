@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// The datasets time, step, energy, norm_defect, magnetization and checksum of one group; for the
 /// frames of crystals with several sites per cell also sublattice_magnetization; then those of
@@ -66,4 +66,4 @@ class ScalarSeries {
   hsize_t size_ = 0;
 };
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 ScalarTable::ScalarTable(std::filesystem::path path, bool in_si, bool overwrite,
                          MoreScalars const& more)
@@ -65,4 +65,4 @@ void ScalarTable::append(std::vector<Line> const& samples) {
   }
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Samples as a text table in mumax3's style: columns with names and units, separated by tabs, with
 /// enough digits to restore every double. The file holds complete lines at every moment.
@@ -32,4 +32,4 @@ class ScalarTable {
   int file_ = -1;
 };
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

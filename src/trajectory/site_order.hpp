@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// States one after the other, each packed as (nz, ny, nx, 3) in the order of the header's shape,
 /// in the order of files: site by site of a crystal's cell.
@@ -27,4 +27,4 @@ std::vector<Real> by_sites(std::vector<Real> const& spins, TrajectoryHeader cons
   return sorted;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

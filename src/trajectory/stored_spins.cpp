@@ -13,7 +13,7 @@
 #include <limits>
 #include <span>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 // Only trajectory files have the version of cayspin that wrote them.
@@ -170,4 +170,4 @@ std::vector<double> read_spins(std::filesystem::path const& path,
   return read_guarded(path, [&] { return StoredSpins(path, shape, cell_sites).frame(frame); });
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Dataset /spins of any HDF5 file, open for reading.
 class StoredSpins {
@@ -47,4 +47,4 @@ class StoredSpins {
   Extents begin_, frame_;
 };
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -170,4 +170,4 @@ bool write_sweep(fs::path const& path, SweepInfo const& sweep, std::function<boo
   return true;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

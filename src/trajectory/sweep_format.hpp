@@ -5,7 +5,7 @@
 #include "hdf5/handle.hpp"
 #include "io/trajectory.hpp"
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 inline constexpr char const* sweep_format = "sweep_format";
 inline constexpr int sweep_format_version = 1;
@@ -25,4 +25,4 @@ void for_each_result(Use const& use) {
   use("step_seconds", [](auto& run) -> auto& { return run.cost.step_seconds; });
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

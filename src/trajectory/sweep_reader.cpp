@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -140,4 +140,4 @@ SweepInfo read_sweep(fs::path const& path) {
   return read_guarded(path, [&] { return read_whole_sweep(path); });
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -21,7 +21,7 @@
 #include <string>
 #include <utility>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -327,4 +327,4 @@ std::filesystem::path const& TrajectoryFile::path() const {
   return not_moved(implementation_).path();
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

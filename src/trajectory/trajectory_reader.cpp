@@ -22,7 +22,7 @@
 #include <string>
 #include <string_view>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 // Files of versions without units are in reduced ones.
@@ -158,4 +158,4 @@ std::optional<bool> is_being_written(std::filesystem::path const& path) {
   return error == EWOULDBLOCK ? std::optional(true) : std::nullopt;
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

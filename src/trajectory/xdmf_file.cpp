@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <utility>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 constexpr std::int64_t always_written = 1000;
@@ -117,4 +117,4 @@ void XdmfFile::write(bool overwrite) {
   last_write_ = Clock::now();
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// Positions of the sites that an XDMF file describes.
 struct XdmfGrid {
@@ -42,4 +42,4 @@ class XdmfFile {
   Clock::time_point last_write_;
 };
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

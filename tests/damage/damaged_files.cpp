@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 using cayspin::test::Chance;
@@ -175,4 +175,4 @@ TEST_F(Damage, InertiaOfAnotherMakerNeverCrashes) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -9,7 +9,7 @@
 
 #include <iostream>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 using cayspin::test::Chance;
@@ -73,4 +73,4 @@ TEST_F(DamagedSweeps, TakeInAWholeRunOrRefuseIt) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

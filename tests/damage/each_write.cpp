@@ -31,7 +31,7 @@ extern "C" ssize_t pwrite(int file, void const* data, size_t bytes, off_t offset
   return ::syscall(SYS_pwrite64, file, data, bytes, offset);
 }
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 struct Course : KnownRun {
@@ -117,4 +117,4 @@ TEST_F(Killed, AtTheEndOfAChunkOfSamples) { kill_at_every_write(course(254, 258)
 TEST_F(Killed, AtTheEndOfAChunkOfFrames) { kill_at_every_write(course(510, 514), stride(19)); }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

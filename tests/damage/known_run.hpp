@@ -6,7 +6,7 @@
 #include "trajectory/stored_spins.hpp"
 #include "trajectory/trajectory_test.hpp"
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 /// A run with known numbers, and its start.
 struct KnownRun {
@@ -136,4 +136,4 @@ inline void write_older_file(std::filesystem::path const& path, bool sync) {
   file.finish({});
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -12,7 +12,7 @@
 #include <regex>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 using cayspin::test::Chance;
@@ -93,4 +93,4 @@ TEST(MutatedScenes, FormulaWithALineBreakIsRefusedWithOneLine) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

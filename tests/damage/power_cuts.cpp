@@ -11,7 +11,7 @@
 
 #include <iostream>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 using namespace cayspin::test;
@@ -227,4 +227,4 @@ TEST_F(PowerCuts, LoseNothingWhateverOfFewWritesIsThere) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

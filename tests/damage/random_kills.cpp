@@ -18,7 +18,7 @@
 #include <optional>
 #include <thread>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 using cayspin::test::Chance;
@@ -170,4 +170,4 @@ TEST_F(RandomKills, LoseNoFrame) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

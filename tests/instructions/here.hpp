@@ -61,7 +61,7 @@ class Kokkos::View<Real*, cayspin::instructions::Memory> {
   std::vector<Real> numbers_;
 };
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 // Replaces the launch in all headers that follow.
 template <class Body>
@@ -72,7 +72,7 @@ void for_each_task(instructions::Here const&, std::string const&, std::int64_t c
   CALLGRIND_TOGGLE_COLLECT;
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail
 
 // Profiling regions are the only library functions that a step calls.
 void Kokkos::Tools::pushRegion(std::string const&) {}

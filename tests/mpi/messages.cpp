@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace cayspin::inline v0_1::mpi {
+namespace cayspin::inline v0_2::mpi {
 namespace {
 
 /// Returns the number of component c of a site, by its place in the whole lattice.
@@ -85,4 +85,4 @@ TEST(Ghosts, HoldWhatTheNeighboursHold) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::mpi
+}  // namespace cayspin::inline v0_2::mpi

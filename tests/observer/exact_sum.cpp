@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 namespace {
 
 double rounded_sum_of(std::vector<double> const& numbers) {
@@ -76,4 +76,4 @@ TEST(ExactSum, FindsNumbersThatAreNone) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

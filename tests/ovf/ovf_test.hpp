@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 
 using cayspin::test::read_bytes;
 using cayspin::test::write_bytes;
@@ -94,4 +94,4 @@ inline std::string small_text() {
 
 inline std::vector<double> small_values() { return {1, 0, 0, 0, 0.6, -0.8}; }
 
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 TEST_F(OvfTest, TextOfTheUserGuideIsRead) {
@@ -103,4 +103,4 @@ TEST_F(OvfTest, FilesAreKnownByNameOrBegin) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -4,7 +4,7 @@
 
 #include <sys/stat.h>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 class OvfRefusal : public OvfTest {
@@ -143,4 +143,4 @@ TEST_F(OvfRefusal, NoFile) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

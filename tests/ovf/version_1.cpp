@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 std::string old_header() {
@@ -165,4 +165,4 @@ TEST_F(OldOvfRefusal, TruncatedFiles) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

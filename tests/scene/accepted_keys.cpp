@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 std::string page() {
@@ -90,4 +90,4 @@ TEST(AcceptedKeys, ArraysWhereNoneIsTakenAreNamed) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 std::string const crystal_scene =
@@ -296,4 +296,4 @@ TEST(Crystals, StartsFromOtherFilesAreRefused) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

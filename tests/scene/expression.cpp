@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 double value(char const* text, double x = 0, double y = 0) {
@@ -93,4 +93,4 @@ TEST(Expression, RefusesAResultThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <random>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 std::string const dmi_film = R"toml([system]
@@ -191,4 +191,4 @@ TEST(FreeBoundary, IsRefusedWithoutWhatItNeeds) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

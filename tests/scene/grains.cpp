@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 Scene with_lattice(std::string const& lattice) {
@@ -190,4 +190,4 @@ TEST(Grains, ThatAreWrongAreRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 
 /// Writes one dataset into a new file; `stored` is the type in the file.
 inline void write_dataset(std::filesystem::path const& path, char const* name,
@@ -25,4 +25,4 @@ inline void write_dataset(std::filesystem::path const& path, char const* name,
   if (status < 0) throw std::runtime_error("cannot write " + path.string());
 }
 
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

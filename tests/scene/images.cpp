@@ -8,7 +8,7 @@
 #include <png.h>
 #endif
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 constexpr std::string_view lattice_line = "shape = [4, 3, 2]";
@@ -214,4 +214,4 @@ TEST(Images, ABuildWithoutPngSaysSo) {
 #endif
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

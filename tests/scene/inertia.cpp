@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 constexpr InertiaTensor tensor = {2, 0.5, 0.25, 0.5, 3, -0.125, 0.25, -0.125, 4};
@@ -96,4 +96,4 @@ TEST(Inertia, WrongFilesAreRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -203,4 +203,4 @@ initial = { state = 'helix', period = 3, phase = nan } | .phase: nan is not fini
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 
 inline void expect_near(Triple const& m, Triple const& expected, double tolerance = 2e-14) {
   for (std::size_t c = 0; c < 3; ++c)
@@ -74,4 +74,4 @@ inline InitialSpins state_of(std::string const& keys,
   return {scene.lattice, initial_spins(scene)};
 }
 
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 constexpr std::array<std::string_view, 5> states = {
@@ -140,4 +140,4 @@ TEST(InitialStates, SurviveOverrides) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -11,7 +11,7 @@
 #include <array>
 #include <random>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 constexpr int all = infinitely_many_images;
@@ -202,4 +202,4 @@ TEST(Couplings, ThatLeaveTheLatticeEverywhereAreRefused) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

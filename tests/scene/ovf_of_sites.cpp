@@ -6,7 +6,7 @@
 #include <cmath>
 #include <sstream>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 std::string const film_scene = std::string(plain_scene) + "[field]\nexchange = 1\n";
@@ -103,4 +103,4 @@ TEST(OvfOfSites, ThatIsWrongIsRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

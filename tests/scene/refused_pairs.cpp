@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 constexpr std::string_view plain = R"(
@@ -124,4 +124,4 @@ TEST(RefusedPairs, AreThoseOfTheTable) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

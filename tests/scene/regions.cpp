@@ -7,7 +7,7 @@
 
 #include <variant>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 using Overrides = std::vector<std::string>;
@@ -284,4 +284,4 @@ integrator = { method = "heun", dt = 0.1, steps = 1 }
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <random>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 std::string const single = R"toml([system]
@@ -96,4 +96,4 @@ TEST(RoundedDigits, OfACellKeepItsShells) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 
 /// A separate folder for each test, removed afterwards.
 class Folder {
@@ -141,4 +141,4 @@ inline void expect_holds(std::string const& message, std::string_view part) {
   EXPECT_NE(message.find(part), std::string::npos) << message << "\nexpected: " << part;
 }
 
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 constexpr std::string_view iron = R"toml(units = "SI"
@@ -384,4 +384,4 @@ TEST(WrongSiContinuum, MessagesOfSitesNameTheMaterial) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 constexpr std::string_view si_film = R"toml(units = "SI"
@@ -262,4 +262,4 @@ TEST(SiScene, UndampedMotionNeedsNoFormOfDamping) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -6,7 +6,7 @@
 #include <limits>
 #include <memory>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 std::string const plain_film = std::string(plain_scene) + "[field]\nexchange = 1\n";
@@ -161,4 +161,4 @@ TEST(SiteNumbers, SitesWithoutASpinHaveNoNoise) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -7,7 +7,7 @@
 
 #include <tuple>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 std::string with_stages(std::string_view stages, std::string_view scene = plain_scene) {
@@ -223,4 +223,4 @@ TEST(ChangedOnTheWay, FollowsTheRulesOfStages) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -11,7 +11,7 @@
 #include <memory>
 #include <numbers>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -256,4 +256,4 @@ TEST(Start, WrongFilesAreRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

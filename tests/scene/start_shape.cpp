@@ -7,7 +7,7 @@
 
 #include <random>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 std::string const film_from_file = R"toml([system]
@@ -159,4 +159,4 @@ TEST(StartShape, OfACrystalIsThatOfItsSites) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 using Values = std::vector<std::string>;
@@ -45,4 +45,4 @@ TEST(SweptGrid, TheLastKeyTurnsFastest) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

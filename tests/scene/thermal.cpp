@@ -3,7 +3,7 @@
 #include "si_constants.hpp"
 #include "wrong_scenes.hpp"
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 std::string thermal_scene(std::string const& thermal) {
@@ -94,4 +94,4 @@ TEST(ThermalScene, RigidBodiesHaveNone) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

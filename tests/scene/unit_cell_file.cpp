@@ -7,7 +7,7 @@
 #include <random>
 #include <sstream>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 std::string text_of(std::string const& name) {
@@ -262,4 +262,4 @@ TEST(UnitCellFile, DamagedFilesAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

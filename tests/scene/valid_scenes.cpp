@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 TEST(Scene, EveryKeyArrives) {
@@ -231,4 +231,4 @@ TEST(Scene, FilesLieBesideTheScene) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

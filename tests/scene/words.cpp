@@ -7,7 +7,7 @@
 
 #include <set>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 template <class Value>
@@ -71,4 +71,4 @@ TEST(Methods, AreConsistent) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -7,7 +7,7 @@
 #include <array>
 #include <string>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 TEST(WordsOfOthers, SayWhatTheyAreHere) {
@@ -66,4 +66,4 @@ TEST(WordsOfOthers, AreInMessagesOfScenes) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 TEST(WrongCombination, OfSpins) {
@@ -128,4 +128,4 @@ TEST(Combinations, CapIsRead) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -2,7 +2,7 @@
 #include "io/relax.hpp"
 #include "wrong_scenes.hpp"
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 std::string const two_site_scene =
@@ -244,4 +244,4 @@ TEST(WrongCrystal, BodiesHaveNoSites) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "wrong_scenes.hpp"
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 namespace {
 
 // Text that is not a key of its table, over one line or more.
@@ -226,4 +226,4 @@ TEST(SceneFile, ErrorFoundLaterPointsAtItsKey) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

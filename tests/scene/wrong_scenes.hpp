@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace cayspin::inline v0_1::io::test {
+namespace cayspin::inline v0_2::io::test {
 
 inline std::string trimmed(std::string_view text) {
   auto const begin = text.find_first_not_of(" \n");
@@ -125,4 +125,4 @@ inline void expect_refused(std::string_view scene, std::string_view table) {
   }
 }
 
-}  // namespace cayspin::inline v0_1::io::test
+}  // namespace cayspin::inline v0_2::io::test

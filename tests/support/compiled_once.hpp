@@ -39,12 +39,12 @@
   CAYSPIN_TEST_METHOD(Real, Heun, LieUncorrected<Cayley>)                                       \
   CAYSPIN_TEST_METHOD(Real, Classical4, Lie<Cayley>)
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 CAYSPIN_TEST_PRECISION(double)
 CAYSPIN_TEST_PRECISION(float)
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2
 
 namespace cayspin::test {
 

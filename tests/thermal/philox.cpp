@@ -7,7 +7,7 @@
 
 #include <array>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 namespace {
 
 struct Answer {
@@ -47,4 +47,4 @@ TEST(Philox, GivesTheKnownAnswersInEveryLane) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -17,7 +17,7 @@
 #include <cstring>
 #include <thread>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 TEST(Checksum, DependsOnEveryNumberAndIsNeverZero) {
@@ -292,4 +292,4 @@ TEST(NoTrial, ReadsOnceWithoutAChild) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 constexpr std::int64_t sites = 3;
@@ -308,4 +308,4 @@ TEST_F(TrajectoryTest, PositionsAreThoseOfAllSites) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

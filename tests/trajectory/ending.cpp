@@ -6,7 +6,7 @@
 #include <array>
 #include <csignal>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 TEST_F(TrajectoryTest, InterruptedRunIsNotComplete) {
@@ -65,4 +65,4 @@ TEST_F(TrajectoryTest, FrameWithoutItsScalarsDoesNotCount) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -11,7 +11,7 @@
 
 #include <cstdlib>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -152,4 +152,4 @@ TEST_F(TrajectoryTest, FailedWriteOfARunFromAFileIsReported) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 struct Layout {
@@ -205,4 +205,4 @@ TEST(FrameChunk, HoldsAtMostThePlanesAskedFor) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 MoreScalars const all{.regions = 2, .terms = {"exchange", "applied", "z"}, .shift = true};
@@ -130,4 +130,4 @@ TEST_F(TrajectoryTest, FilesWithoutThemHaveNoSuchDatasets) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

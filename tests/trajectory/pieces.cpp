@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 constexpr std::array<std::int64_t, 3> odd_shape{4, 3, 7};
@@ -196,4 +196,4 @@ TEST_F(TrajectoryTest, FieldsOfACheckpointAreNotMixedOrCutShort) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

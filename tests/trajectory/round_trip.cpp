@@ -2,7 +2,7 @@
 #include "hdf5/real_dataset.hpp"
 #include "trajectory_test.hpp"
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 template <class Real>
@@ -101,4 +101,4 @@ TEST_F(TrajectoryTest, ManySamples) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -17,7 +17,7 @@
 #include <set>
 #include <sstream>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -288,4 +288,4 @@ TEST_F(TrajectoryTest, XdmfDescribesEveryFrameThatIsInTheFile) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 class StagesOfFiles : public TrajectoryTest {
@@ -73,4 +73,4 @@ TEST_F(StagesOfFiles, AreInCheckpoints) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 
 using cayspin::test::bytes_of;
 using cayspin::test::overwrite;
@@ -116,4 +116,4 @@ inline testing::AssertionResult contains(std::string const& text, std::string co
   return testing::AssertionFailure() << '"' << text << "\" lacks \"" << part << '"';
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

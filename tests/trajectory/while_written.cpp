@@ -5,7 +5,7 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 /// A process that writes a trajectory on request.
@@ -123,4 +123,4 @@ TEST_F(TrajectoryTest, NothingHalfWrittenIsReadWhileItIsWritten) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

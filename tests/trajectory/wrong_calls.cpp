@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::inline v0_2::io {
 namespace {
 
 using test::expect_refused;
@@ -212,4 +212,4 @@ TEST_F(TrajectoryTest, SweepsHaveAResultForEachRun) {
 }
 
 }  // namespace
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::inline v0_2::io

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// The field of interactions between cells, by FFTs. Rows along x are transformed first. Each wave
 /// number along x is then transformed along y and z in one thread's memory, multiplied by the
@@ -210,4 +210,4 @@ class Convolution {
   Workers<Complex> plane_workers_;  // site of a cell, component, z, y
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -10,7 +10,7 @@
 
 // Transforms of a demagnetising field by cuFFT, with the data layout of fftw.hpp, in device memory
 // and in the order of an execution space instance.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 template <class Real>
 struct Cufft;
@@ -124,4 +124,4 @@ class CufftRowTransforms {
   CufftPlan forward_, backward_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

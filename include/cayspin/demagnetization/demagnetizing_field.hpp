@@ -12,7 +12,7 @@
 #include <memory>
 #include <type_traits>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// The demagnetising field of a lattice of uniformly magnetized cells, each as large as the
 /// lattice's spacings: H_i = -strength sum_j N_ij m_j, by FFTs. A solver for HostField, which
@@ -83,4 +83,4 @@ template <class Spins>
 DemagnetizingField(Spins, DemagnetizationOptions)
     -> DemagnetizingField<typename Spins::value_type, typename Spins::memory_space>;
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

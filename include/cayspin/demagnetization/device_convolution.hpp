@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Memory layout of a DeviceConvolution.
 struct DeviceSpectrum {
@@ -229,4 +229,4 @@ class DeviceConvolution {
   Kokkos::View<Real*, Memory> kernel_;       // wave number, component, z, y of octants
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

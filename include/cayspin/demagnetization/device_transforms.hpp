@@ -9,7 +9,7 @@
 #endif
 
 // Selects the FFT library of an execution space. The transforms of each have equal members.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// FFTW in a host space, so that tests can run the device code there; none elsewhere.
 template <class Exec>
@@ -32,4 +32,4 @@ struct DeviceTransforms<Kokkos::Cuda> {
 };
 #endif
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -15,7 +15,7 @@
 #include <numbers>
 #include <vector>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Returns an upper bound of |H| of DipolarField with strength 1, as it enters the modes that a
 /// method has to follow: a bound on the largest eigenvalue of the matrix from spins to H, for open
@@ -78,4 +78,4 @@ inline double dipolar_bound(Lattice const& lattice, Crystal crystal,
   return best * x * y * z / (4 * std::numbers::pi);
 }
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

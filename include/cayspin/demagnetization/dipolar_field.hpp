@@ -12,7 +12,7 @@
 #include <memory>
 #include <type_traits>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// The field of point dipoles at the sites of a crystal, by FFTs over pairs of sites of a cell: H_i
 /// = strength V sum_j (3 r (r.m_j) - m_j r^2) / (4 pi r^5). V is the product of the lattice's
@@ -58,4 +58,4 @@ class DipolarField {
   std::shared_ptr<Convolution const> convolution_;
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

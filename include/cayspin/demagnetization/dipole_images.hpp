@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Sum of f over the points r + i a + j b + k c within a distance, for a lattice of one to three
 /// periods.
@@ -205,4 +205,4 @@ class DipoleImages {
   Point direction_{};
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

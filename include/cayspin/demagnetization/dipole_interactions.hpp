@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 struct DipolarOptions {
   double strength = 1;
@@ -144,4 +144,4 @@ class InteractionsOfDipoles {
 };
 
 }  // namespace detail
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 using Point = std::array<double, 3>;
 
@@ -68,4 +68,4 @@ inline double self_field_of_ewald(double alpha) {
 /// Ewald's sums are below round-off beyond this many 1 / alpha, and 2 alpha in wave numbers.
 inline constexpr double ewald_reach = 6.2;
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

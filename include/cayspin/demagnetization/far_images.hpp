@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// The sum of tensors between a cell and infinitely many images of another, along one or two
 /// periodic axes, without the nearest images. Images beyond 16 periods are replaced by lines of
@@ -170,4 +170,4 @@ class FarImages {
   std::array<WeightedShifts, 2> of_sheets_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -14,7 +14,7 @@
 #include <numbers>
 #include <vector>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Sums over far images for all distances of a lattice. They vary smoothly along the periodic axes:
 /// they are computed at ten points there and interpolated to 1e-12 of the trace.
@@ -120,4 +120,4 @@ class FarImagesTable {
   std::vector<DemagnetizingTensor> sums_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

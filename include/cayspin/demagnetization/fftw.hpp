@@ -13,7 +13,7 @@
 // Transforms of a demagnetising field by FFTW, in both precisions. Plans use FFTW_ESTIMATE, which
 // does not measure: it chooses the same plan each time, and so the same bits. Arrays are aligned to
 // cache lines, as Kokkos allocates them.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 template <class Real>
 struct Fftw;
@@ -155,4 +155,4 @@ class RowTransforms {
   FftwPlan<Real> forward_, backward_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

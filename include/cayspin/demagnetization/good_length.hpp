@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Returns the next number with no prime factors but 2, 3, 5 and 7: FFTs of such lengths are fast.
 inline int good_length(int least) {
@@ -13,4 +13,4 @@ inline int good_length(int least) {
   }
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Value of `periodic_images` that stands for infinitely many.
 inline constexpr int infinitely_many_images = std::numeric_limits<int>::max();
@@ -11,4 +11,4 @@ inline constexpr int infinitely_many_images = std::numeric_limits<int>::max();
 /// Largest ratio of two periods for which infinitely many images are summed.
 inline constexpr double largest_period_ratio = 1e4;
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

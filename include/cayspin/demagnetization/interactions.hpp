@@ -19,7 +19,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 struct DemagnetizationOptions {
   double strength = 1;
@@ -183,4 +183,4 @@ class InteractionsOfCells {
 };
 
 }  // namespace detail
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Distances in memory from row to row and from plane to plane.
 struct PlaneStrides {
@@ -80,4 +80,4 @@ class KernelOfCells {
   Kokkos::View<Real*, Kokkos::HostSpace> values_;  // wave number, component, z, y of octants
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

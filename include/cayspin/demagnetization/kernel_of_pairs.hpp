@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Interactions between the sites of a crystal's cells at wave numbers. Those of a site with itself
 /// are real. Those of a pair are complex, and conjugate for the pair in the other order.
@@ -198,4 +198,4 @@ class KernelOfPairs {
   Kokkos::View<Real*, Kokkos::HostSpace> values_;  // wave number, z, pair, component, y
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

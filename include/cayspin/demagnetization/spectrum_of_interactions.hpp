@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// The transform of the interactions, which is real: each component is even or odd along each axis,
 /// and odd along two axes or none. It holds an octant of wave numbers, along x only the share of
@@ -129,4 +129,4 @@ void transform_interactions(InteractionsOfCells const& interactions, Parts const
   }
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

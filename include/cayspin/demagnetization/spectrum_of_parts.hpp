@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// The parts of a lattice; a whole lattice is a single part.
 class Parts {
@@ -149,4 +149,4 @@ class SpectrumOfParts {
   Memory of_lines_, of_waves_;  // wave number, line; part, wave number, line
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// The symmetric demagnetising tensor N between two equal rectangular cells: H = -N m, in units of
 /// the saturation magnetization.
@@ -276,4 +276,4 @@ inline DemagnetizingTensor demagnetizing_tensor(std::array<double, 3> const& pos
   return n;
 }
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

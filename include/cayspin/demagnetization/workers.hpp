@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Host threads with work memory, which is reused from task to task.
 template <class Number>
@@ -56,4 +56,4 @@ class Workers {
   Kokkos::View<Number*, Kokkos::HostSpace> memory_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

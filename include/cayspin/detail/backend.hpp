@@ -90,7 +90,7 @@
 #define CAYSPIN_DETAIL_NOT_UNROLLED
 #endif
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 inline constexpr std::int64_t cache_line_bytes = 64, page_bytes = 4096;
 
@@ -112,4 +112,4 @@ __device__ __forceinline__ float rough_inverse(float number) {
 }
 #endif
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -7,7 +7,7 @@
 #include <string>
 #include <tuple>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Several host loops over a small lattice, run one after another, `count` times.
 template <class... Loops>
@@ -42,4 +42,4 @@ void repeat_on_calling_thread(std::string const& label, std::int64_t count,
   for_each_task(CallingThread(), label, 1, 1, RepeatLoops<Loops...>{loops, count});
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -3,7 +3,7 @@
 
 #include <cayspin/detail/for_each_site.hpp>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Swaps the memory of two fields.
 template <class Array, class Output>
@@ -57,4 +57,4 @@ class CallersMemory {
   Spins callers_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

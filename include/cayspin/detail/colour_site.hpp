@@ -5,7 +5,7 @@
 #include <cayspin/detail/rows.hpp>
 #include <cayspin/detail/sites_of_row.hpp>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Sites of one colour of a checkerboard, as many as Value has lanes, two apart in one row: x, x +
 /// 2, ... Loads stay between the neighbour before the first lane and the neighbour after the last
@@ -140,4 +140,4 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -14,7 +14,7 @@
 // Addresses of the sites of a device thread. Most integer work of a device kernel is addressing, so
 // addresses take few 32-bit operations: one place in memory for each row of the stencil, chosen
 // without a branch at the ends, and one multiply-add for each number.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Pointers to the three components of a field.
 template <class Real>
@@ -174,4 +174,4 @@ class DeviceSite {
   Index offset_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

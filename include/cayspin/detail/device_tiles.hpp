@@ -13,7 +13,7 @@
 // Assigns sites to the threads of a device. Each group of threads_of_tile threads shares a tile of
 // rows, and each thread walks along z. So most neighbours along y and z come from the cache of the
 // multiprocessor, and one address serves several sites.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Division of numbers below 2^31 by a positive divisor that is known at launch: a product and a
 /// shift.
@@ -91,4 +91,4 @@ class DeviceTiles {
   QuickDivision by_row_, by_plane_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -9,7 +9,7 @@
 #include <cstdint>
 
 // Spins at any distance along x, y and z.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// A field as read from sites that are not adjacent. Past an open end it is the zero vector.
 template <class Real>
@@ -110,4 +110,4 @@ struct DistantSites {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

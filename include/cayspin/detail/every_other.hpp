@@ -7,7 +7,7 @@
 #include <cstdint>
 
 // Packs of numbers with stride two.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Returns from[Odd], from[Odd + 2], ...; loads two whole packs.
 template <int Odd, class Value, class Real>
@@ -104,4 +104,4 @@ KOKKOS_FORCEINLINE_FUNCTION void store_every_other(Value const& value, scalar_t<
     to[2 * lane] = value[static_cast<std::size_t>(lane)];
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

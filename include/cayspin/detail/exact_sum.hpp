@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// A sum of doubles without round-off until it is read, so that its bits do not depend on the order
 /// of the summands. A fixed-point number of overlapping 32-bit digits, as in R. Neal, "Fast exact
@@ -103,4 +103,4 @@ class ExactSum {
   std::int32_t until_carry_ = most_between_carries;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

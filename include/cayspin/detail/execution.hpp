@@ -11,7 +11,7 @@
 #include <string>
 #include <type_traits>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Host spaces run over rows with packs; the threads of device spaces take single sites.
 template <class Exec>
@@ -125,4 +125,4 @@ inline void require_size(char const* where, std::size_t size, std::int64_t expec
                                 " numbers for a field of " + std::to_string(expected));
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <string>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Rows are cut into pieces of this many sites, so that threads can share a long row.
 inline constexpr std::int32_t sites_per_task = 4096;
@@ -156,4 +156,4 @@ void for_each_site(Exec const& exec, std::string const& label, RowLayout const& 
   for_each_site<Real>(exec, label, layout, functor, layout.all());
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -16,7 +16,7 @@
 // other task may write these at the same time. Therefore rows with even y + z run first, then rows
 // with odd y + z: no task writes to a neighbour row, and in its own row a pack writes only its own
 // sites.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Rows with one parity of y + z, or all rows.
 enum class RowsOf : std::int32_t { even = 0, odd = 1, both = 2 };
@@ -138,4 +138,4 @@ void for_each_site_of_colour(Exec const& exec, std::string const& label, RowLayo
   }
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 template <class Field>
 FieldNumbers field_numbers(Field const& field) {
@@ -58,4 +58,4 @@ CAYSPIN_DETAIL_NOINLINE inline void require_ghosts(std::string const& who, Latti
                                     std::to_string(ghosts));
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -15,7 +15,7 @@
 
 // Loads and stores of packs, and what depends on the operating system: huge pages and the size of
 // the last cache.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 template <class Value, class Real>
 KOKKOS_FORCEINLINE_FUNCTION Value load(Real const* from) {
@@ -161,4 +161,4 @@ inline void advise_huge_pages([[maybe_unused]] void* begin, [[maybe_unused]] std
 #endif
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -5,7 +5,7 @@
 #include <cayspin/detail/site.hpp>
 
 // Reductions of float fields compute in double and store float.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 template <class Value, class Real>
 KOKKOS_FORCEINLINE_FUNCTION void store_narrowed(Value const& value, Real* to) {
@@ -30,4 +30,4 @@ KOKKOS_FORCEINLINE_FUNCTION void store_narrowed(Vec3<Value> const& value, Site c
   store_narrowed(value.z, to + 2 * array.stride);
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

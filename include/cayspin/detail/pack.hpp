@@ -21,7 +21,7 @@
 // numbers, and device passes of the compiler see only those. No kernel has a pack in its name or
 // arguments, so all passes agree on them. The operations here accept packs and numbers, so that
 // kernels are written once.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 #if defined(CAYSPIN_DETAIL_SIMD_ABI)
 template <std::floating_point Real>
@@ -189,4 +189,4 @@ KOKKOS_FORCEINLINE_FUNCTION Value lane_numbers() {
   }
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

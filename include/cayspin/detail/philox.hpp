@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 // Integers side by side in registers, by vector extensions of GCC and Clang.
 template <class Number, int Lanes>
@@ -109,4 +109,4 @@ KOKKOS_FORCEINLINE_FUNCTION void encrypt(PhiloxKeys const& keys, Philox<Lanes>& 
   }
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -5,7 +5,7 @@
 
 #include <type_traits>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Returns a / b to less than a unit in the last place, from 1 / b to 18 bits or more.
 template <class Value>
@@ -27,4 +27,4 @@ KOKKOS_FORCEINLINE_FUNCTION Value quotient(Value const& a, Value const& b) {
 #endif
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

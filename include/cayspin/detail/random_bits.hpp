@@ -8,7 +8,7 @@
 #include <cstring>
 #include <type_traits>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// 16 random bits for each numbered place, by Philox with 64 places to eight counters. A place gets
 /// equal bits whether drawn singly or in a register. Devices draw for one place at a time.
@@ -125,4 +125,4 @@ class RandomBitsOfReplica {
   mutable RandomBits<OnHost> bits_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

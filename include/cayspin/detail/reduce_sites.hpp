@@ -19,7 +19,7 @@
 // ends and then the packs between them, the lanes of a pack in a fixed tree; rows are added without
 // round-off. So the bits do not depend on the host space, the number of threads or the division of
 // a lattice into parts. Devices sum with twice the digits, in their own order.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 // Number of `Count` values that are summed; for the others the maximum is found.
 struct Sum {
@@ -277,4 +277,4 @@ struct LargestOfSites {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

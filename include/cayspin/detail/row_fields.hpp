@@ -18,7 +18,7 @@
 // generator may evaluate the packs at the ends of rows itself, so that a stage's arithmetic is
 // compiled once, for the packs between them:
 //   void find_row_ends(row, begin, end, fields, turning_alone) const    after begin_row
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// A row of spins and its neighbour rows along y and z.
 template <class Real>
@@ -74,4 +74,4 @@ template <class Term>
   requires requires { Term::row_fields; }
 inline constexpr int row_fields<Term> = Term::row_fields;
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// One part of a sweep through a lattice of one plane, at one of its ticks: each stage works on the
 /// next plan.block rows, one row behind the stage before it.
@@ -47,4 +47,4 @@ struct RowSweepPart {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -9,7 +9,7 @@
 #include <cstdint>
 
 // Rows of spins, in a field or in the buffers of a sweep, for a Runge-Kutta stage.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// The first site of a row: component c of site x is data[c * stride + x].
 template <class Real>
@@ -101,4 +101,4 @@ CAYSPIN_DETAIL_NOINLINE KOKKOS_FUNCTION PlaneRows<Real> plane_rows(SiteArray<Rea
   return {plane + layout.ny * layout.pitch, plane, plane, 0, layout.ny, layout.pitch, array.stride};
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

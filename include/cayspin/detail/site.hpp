@@ -6,7 +6,7 @@
 
 #include <type_traits>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Adjacent sites of a row, as many as Value has lanes.
 template <class Value, bool AtEdge = true>
@@ -178,4 +178,4 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

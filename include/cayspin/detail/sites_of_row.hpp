@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// A row along x and the offsets of its neighbour rows; at an open end the offset is 0.
 struct Row {
@@ -114,4 +114,4 @@ class SitesOfRow {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

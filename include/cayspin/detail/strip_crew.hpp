@@ -12,7 +12,7 @@
 #endif
 
 // Threads that work on adjacent strips, step by step. A strip waits only for its two neighbours.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Progress of a strip: twice the steps done, plus one while a thread works on the next. Each has
 /// its own cache line.
@@ -92,4 +92,4 @@ struct StripCrew {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

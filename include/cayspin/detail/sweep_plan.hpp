@@ -12,7 +12,7 @@
 // Divides the lattice of a sweep among threads, and each part into blocks of rows whose buffers fit
 // the cache. Seams hold the rows that two blocks share. In a lattice of one plane, stages follow
 // each other by rows instead (row_sweep.hpp).
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// The planes or rows of one part. At an end inside the lattice, at ghosts or at a periodic end,
 /// each earlier stage works on one more plane or row, which the next part computes, too.
@@ -310,4 +310,4 @@ struct SweepPart {
   std::int32_t bounds_[3] = {};  // of the previous strip, this one and the next
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Returns the elements copied to a memory space; waits.
 template <class MemorySpace, class Element>
@@ -19,4 +19,4 @@ Kokkos::View<Element*, MemorySpace> table_of(std::string const& label,
   return table;
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

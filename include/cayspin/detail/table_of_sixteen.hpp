@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// True if registers of such numbers look up a table of sixteen in one or two instructions.
 template <class Numbers>
@@ -32,4 +32,4 @@ template <class Real, class Numbers>
 void look_up(Real const (&table)[16], Numbers const& code) = delete;
 #endif
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <string>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Returns a number for a message, to nine digits: 1e-12 rather than 0.000000. It has a decimal
 /// point in any locale.
@@ -13,4 +13,4 @@ inline std::string to_text(double number) {
   return {text, std::to_chars(text, text + sizeof text, number, std::chars_format::general, 9).ptr};
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

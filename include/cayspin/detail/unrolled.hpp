@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 template <int... I, class Body>
 KOKKOS_FORCEINLINE_FUNCTION void unrolled(std::integer_sequence<int, I...>, Body const& body) {
@@ -19,4 +19,4 @@ KOKKOS_FORCEINLINE_FUNCTION void unrolled(Body const& body) {
   unrolled(std::make_integer_sequence<int, Count>{}, body);
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

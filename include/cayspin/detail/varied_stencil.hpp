@@ -3,7 +3,7 @@
 
 #include <cayspin/detail/site.hpp>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// The neighbours of a site, loaded once.
 template <class Site, class Real>
@@ -79,4 +79,4 @@ class VariedStencil {
   vector_type center_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -3,7 +3,7 @@
 
 #include <cayspin/stencil.hpp>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// A term that depends on the spin along one axis: H = c (m.e) e, E = -c (m.e)^2 / 2. A coordinate
 /// axis is detected once, and then costs one product instead of seven.
@@ -57,4 +57,4 @@ class AlongAxis {
   Coordinate coordinate_ = Coordinate::none;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

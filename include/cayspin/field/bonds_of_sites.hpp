@@ -20,7 +20,7 @@
 #include <vector>
 
 // The bonds of each site of a cell, in the order in which kernels sum them.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Distance of another site in memory, in numbers of double and of single precision.
 struct OffsetInMemory {
@@ -304,4 +304,4 @@ class BondsOfSites {
   bool has_biquadratic_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

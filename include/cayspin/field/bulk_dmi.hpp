@@ -7,7 +7,7 @@
 
 #include <cstddef>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -79,4 +79,4 @@ class BulkDmi : public detail::TermOnLattice<detail::UniformBulkDmi> {
                       detail::finite(constant, "cayspin::BulkDmi: the constant")) {}
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

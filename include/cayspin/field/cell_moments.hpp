@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// One number for each site of a crystal's cell, for kernels: a prepared term calls
 /// moments.at(stencil.site()).
@@ -85,4 +85,4 @@ class CellMoments {
 
 CellMoments(Lattice, std::vector<double>, std::vector<double> = {}) -> CellMoments<>;
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -10,7 +10,7 @@
 #include <type_traits>
 
 // A coefficient of a term: one number for all sites, or a field of numbers.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Returns the coefficient for kernels.
 inline double array_of(double number) { return number; }
@@ -89,4 +89,4 @@ Signs signs_of(ScalarField<Real, MemorySpace> const& numbers, char const* what) 
   return {count[1] != 0, count[2] != 0, count[1] == 0 && count[2] == count[3]};
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

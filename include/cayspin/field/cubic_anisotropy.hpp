@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Cubic anisotropy, with components a, b, c of m along the axes e1, e2 and e3 = e1 x e2:
 /// E = Kc (a^2 b^2 + b^2 c^2 + c^2 a^2) per site,
@@ -89,4 +89,4 @@ class CubicAnisotropy {
   bool along_coordinates_ = false;
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// The sum of field terms, composed by type, so that terms not listed cost nothing. A term is a
 /// plain struct with two const, device-callable templates:
@@ -139,4 +139,4 @@ class EffectiveField<First, Rest...>
 template <class... Terms>
 EffectiveField(Terms...) -> EffectiveField<Terms...>;
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

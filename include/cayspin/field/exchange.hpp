@@ -7,7 +7,7 @@
 
 #include <cstddef>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -149,4 +149,4 @@ class Exchange : public detail::TermOnLattice<detail::UniformExchange> {
                       detail::finite(constant, "cayspin::Exchange: the constant")) {}
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -14,7 +14,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -139,4 +139,4 @@ class ZeemanOfMoments : public detail::PreparedOnce {
   CellMoments<MemorySpace> moments_;
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -5,7 +5,7 @@
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Functor that writes a prepared term's field into an array.
 template <class Term, class Real>
@@ -22,4 +22,4 @@ struct FieldOfSites {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -177,4 +177,4 @@ class FieldWithVacancies : public Forwarding<FieldWithVacancies<Field, Real, Mem
   ScalarField<Real, MemorySpace> occupation_;
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -115,4 +115,4 @@ inline constexpr bool is_host_field<HostField<Spins, Solver>> = true;
 template <class Solver>
 HostField(Lattice, Solver) -> HostField<SpinField<double>, Solver>;
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <stdexcept>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -84,4 +84,4 @@ class InterfacialDmi : public detail::TermOnLattice<detail::UniformInterfacialDm
                       detail::finite(constant, "cayspin::InterfacialDmi: the constant"), normal) {}
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

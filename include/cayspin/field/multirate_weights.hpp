@@ -7,7 +7,7 @@
 #include <span>
 
 // Weights that interpolate values of an expensive field to a time x within a step, 0 <= x <= 1.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 inline constexpr std::size_t most_multirate_values = 5;
 using MultirateWeights = std::array<double, most_multirate_values>;
@@ -50,4 +50,4 @@ inline MultirateWeights damping_corrector(double x, std::span<double const> /*no
           0.5 * x * (x - 1) + 3 * third + 6 * fourth, -third - 4 * fourth, fourth};
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

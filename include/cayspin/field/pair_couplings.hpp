@@ -13,7 +13,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Bonds between any sites of a crystal: E = -m.T m' - B (m.m')^2 of each Coupling, so that H = T
 /// m' + 2 B (m.m') m' at m, and with T transposed at m'. Bonds past an open end are omitted. A
@@ -81,4 +81,4 @@ class PairCouplings {
 
 PairCouplings(Lattice, std::vector<Coupling>) -> PairCouplings<>;
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// PairCouplings for kernels. Sums the bonds of a site in the order of their table, spin by spin or
 /// along a row, with equal bits.
@@ -295,4 +295,4 @@ class PairFieldAlongRows : public PairField<Real> {
   std::int32_t begin_ = 0;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -18,7 +18,7 @@
 //   local_field_varies()         true if the local part of H changes with the spin
 // The local part of H at a site depends only on its spin and t; the rest is the neighbour field.
 // RedBlack rotates each spin about the field of its neighbours.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// The parts of a term or generator made of others (Forwarding); empty for any other.
 template <class... Parts>
@@ -223,4 +223,4 @@ KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_magnitude(Source const& sour
   }
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

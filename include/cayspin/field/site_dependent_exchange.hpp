@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -200,4 +200,4 @@ class SiteDependentExchange : public detail::PreparedOnce {
   std::optional<ScalarField<Real, MemorySpace>> bonds_[3];
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

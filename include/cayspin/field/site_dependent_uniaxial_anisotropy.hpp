@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -123,4 +123,4 @@ SiteDependentUniaxialAnisotropy(SiteField<Real, 1, MemorySpace>, SiteField<Real,
     -> SiteDependentUniaxialAnisotropy<SiteField<Real, 1, MemorySpace>,
                                        SiteField<Real, 3, MemorySpace>>;
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

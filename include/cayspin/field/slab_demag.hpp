@@ -3,7 +3,7 @@
 
 #include <cayspin/field/along_axis.hpp>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// The demagnetising field of an infinite slab, spin by spin: H = -strength (m.n) n,
 /// E = strength (m.n)^2 / 2 per site. The normal n is normalised.
@@ -15,4 +15,4 @@ class SlabDemag : public detail::AlongAxis {
                   "cayspin::SlabDemag: the normal") {}
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

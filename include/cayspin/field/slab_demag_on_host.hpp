@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// SlabDemag's field computed on the host: a solver for HostField.
 class SlabDemagOnHost {
@@ -32,4 +32,4 @@ class SlabDemagOnHost {
   double strength_;
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -3,7 +3,7 @@
 
 #include <cayspin/stencil.hpp>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// The torque of a current polarised along the unit vector p, t = a m x (p x m) - b m x p. It is
 /// written as a field that precesses the spin accordingly: H = a m x p + b p, which equals m x t up
@@ -51,4 +51,4 @@ class Slonczewski {
   Vec3<double> damping_like_, field_like_;  // a p and b p
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -5,7 +5,7 @@
 #include <cayspin/optional_members.hpp>
 #include <cayspin/spin_field.hpp>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// A term made for one lattice, constant in time. Prepared: the kernel version, made from the
 /// lattice and the term's numbers.
@@ -33,4 +33,4 @@ class TermOnLattice : public Prepared, public PreparedOnce {
   Lattice lattice_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

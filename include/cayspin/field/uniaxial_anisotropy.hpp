@@ -3,7 +3,7 @@
 
 #include <cayspin/field/along_axis.hpp>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Uniaxial anisotropy: H = K (m.e) e, E = -K (m.e)^2 / 2 per site. The axis e is normalised.
 class UniaxialAnisotropy : public detail::AlongAxis {
@@ -14,4 +14,4 @@ class UniaxialAnisotropy : public detail::AlongAxis {
                   "cayspin::UniaxialAnisotropy: the axis") {}
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -6,7 +6,7 @@
 #include <concepts>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// A uniform applied field: H = applied, E = -m.H per site. Evaluation throws std::invalid_argument
 /// when it is not finite.
@@ -55,4 +55,4 @@ class TimeDependentZeeman {
   Applied applied_;
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

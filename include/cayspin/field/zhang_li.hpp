@@ -7,7 +7,7 @@
 
 #include <cstddef>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -69,4 +69,4 @@ class ZhangLi : public detail::TermOnLattice<detail::UniformZhangLi> {
                       detail::finite(nonadiabaticity, "cayspin::ZhangLi: the nonadiabaticity")) {}
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -13,7 +13,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// m' = -m x H - damping m x (m x H), as A x m with A = H + damping m x H; without precession
 /// (overdamped) A = damping m x H. Reduced units. Damping is double, or a ScalarField with a number
@@ -139,4 +139,4 @@ template <class Field, class Real, class MemorySpace>
 LandauLifshitz(Field, SiteField<Real, 1, MemorySpace>, bool = true)
     -> LandauLifshitz<Field, SiteField<Real, 1, MemorySpace>>;
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -82,4 +82,4 @@ Orthogonal<Generator> orthogonal(Generator generator) {
   return Orthogonal<Generator>(std::move(generator));
 }
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <type_traits>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// A symmetric 3 x 3 matrix: xx, yy, zz, xy, xz, yz.
 using SymmetricTensor = std::array<double, 6>;
@@ -140,4 +140,4 @@ class RigidBodyEnsemble {
   Tensors tensors_;
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

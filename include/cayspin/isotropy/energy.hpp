@@ -5,16 +5,16 @@
 #include <cayspin/isotropy/sigma.hpp>
 #include <cayspin/vec3.hpp>
 
-namespace cayspin::inline v0_1::isotropy {
+namespace cayspin::inline v0_2::isotropy {
 
 /// Correction for rigid bodies that adds dt^p s m to a step's coordinates F. The number s cancels
 /// the leading energy error of LieHeun (p = 3), Rkmk4 and Series4 (p = 4); it is zero for a body at
 /// rest. Lewis and Nigam 2002, Sec. 5.2, here coordinate free and for any symmetric inertia.
 struct Energy {};
 
-}  // namespace cayspin::inline v0_1::isotropy
+}  // namespace cayspin::inline v0_2::isotropy
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Invariants of B = I^-1 and m that the corrections depend on.
 template <class Value>
@@ -89,4 +89,4 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> corrected(Generator const& generator, Si
   return multiply_add(Value(scale * sigma), m, f);
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -7,7 +7,7 @@
 
 // An isotropy policy turns the generator's A at a spin m into xi = A + sigma m. The exact flow is
 // independent of sigma; methods of finite order are not.
-namespace cayspin::inline v0_1::isotropy {
+namespace cayspin::inline v0_2::isotropy {
 
 /// sigma = 0: uses the generator unchanged.
 struct Zero {
@@ -43,4 +43,4 @@ struct FiniteDifferenceBackward {
   double cap = std::numeric_limits<double>::infinity();  ///< bound on |dt sigma|
 };
 
-}  // namespace cayspin::inline v0_1::isotropy
+}  // namespace cayspin::inline v0_2::isotropy

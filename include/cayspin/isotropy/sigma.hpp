@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Returns numerator / square; zero if the square is too small to be resolved.
 template <class Value>
@@ -31,4 +31,4 @@ KOKKOS_FORCEINLINE_FUNCTION Value turn_from_difference(Vec3<Value> const& dt_tim
   return clamp(guarded_quotient(numerator, dot(w, w)), cap);
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -16,7 +16,7 @@
 #include <optional>
 #include <string>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Descent of a Minimizer until the torque vanishes: line searches along L-BFGS directions, and
 /// Newton steps where those are slow.
@@ -268,4 +268,4 @@ class Descent {
   std::int64_t newton_until_ = 0;  // up to this number of evaluations
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -15,7 +15,7 @@
 // Hessian of the energy on the tangent planes of mobile spins, P (-dH/dm) P + (H.m), from the field
 // at the spins plus a tangent vector. Immobile spins, including the zero vectors of vacant sites,
 // never change in these fields of spins.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Functor that sets v to its part along which spins move.
 template <class Real>
@@ -161,4 +161,4 @@ class Hessian {
   std::int64_t evaluations_ = 0;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <string>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// L-BFGS with a preconditioner as the first approximation (Nocedal and Wright 2006, Alg. 7.4).
 template <class Spins>
@@ -116,4 +116,4 @@ class Lbfgs {
   double step_square_ = 1;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -15,7 +15,7 @@
 // Lowest curvature of the energy at an equilibrium: the least eigenvalue of the Hessian, negative
 // at a saddle. Computed by the locally optimal preconditioned conjugate gradients of Knyazev
 // (2001).
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Least eigenvalue of a symmetric matrix, and its eigenvector, by Jacobi rotations.
 struct LowestOfThree {
@@ -165,4 +165,4 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
   return found;
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string_view>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Why a minimisation ended.
 enum class MinimizeEnd {
@@ -65,4 +65,4 @@ struct MinimizeOptions {
   std::function<Next(Minimum const&)> observer = {};  ///< called after each iteration
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

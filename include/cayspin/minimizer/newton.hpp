@@ -8,7 +8,7 @@
 
 // Newton steps by preconditioned conjugate gradients, stopped early at negative curvature or when a
 // spin turns too far (Nocedal and Wright 2006, Alg. 7.1 and 7.2).
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Work memory of `find_newton_step`.
 template <class Spins>
@@ -80,4 +80,4 @@ NewtonStep find_newton_step(AnyHessian& hessian, Exec const& exec, Spins const& 
   return found;
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

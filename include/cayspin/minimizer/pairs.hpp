@@ -13,7 +13,7 @@
 // (Nocedal and Wright 2006, Sec. 7.2). Both are tangent where they were made, and are projected to
 // the current tangent planes where they are used. Two passes give all inner products of an
 // iteration; the recursion then needs only numbers.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 inline constexpr std::size_t pairs_kept = 6;
 
@@ -177,4 +177,4 @@ class Pairs {
   std::size_t count_ = 0;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

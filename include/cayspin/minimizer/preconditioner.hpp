@@ -11,7 +11,7 @@
 #include <optional>
 
 // First approximation of the inverse Hessian: (K + c)^-1 with the measured exchange K of a field.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 template <class Spins>
 class Preconditioner {
@@ -55,4 +55,4 @@ class Preconditioner {
   double first_shift_ = 1, shift_ = 1;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -17,7 +17,7 @@
 
 // Measures an unknown field for a minimiser: the strength of exchange along each axis, the strength
 // of the rest, and which spins see no field.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// A uniform direction, or one that is reversed from site to site.
 template <class Real>
@@ -208,4 +208,4 @@ FieldStrengths probe(
   return found;
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

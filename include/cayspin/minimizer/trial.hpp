@@ -15,7 +15,7 @@
 
 // A point along the path m(a) = cay(a m x d) m of a line search, and what one evaluation of the
 // field gives there. Spins turn on great circles from m towards d.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Returns v without its component along m.
 template <class Value>
@@ -114,4 +114,4 @@ PointOnPath look_along(Exec const& exec, Field const& field, double time, Spins 
           std::sqrt(v[Look::torque])};
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -22,7 +22,7 @@
 
 // Spin waves of a wave vector: if all cells of a periodic lattice are equal, small matrices give
 // them.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Division of a lattice's sites into cells along its periodic axes. A cell extends over the whole
 /// of the other axes.
@@ -227,4 +227,4 @@ BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Sp
   return problem;
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Why a search for modes ended.
 enum class ModesEnd {
@@ -95,4 +95,4 @@ struct Turning {
   ScalarField<Real, MemorySpace> precession, damping;
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

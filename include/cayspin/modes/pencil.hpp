@@ -15,7 +15,7 @@
 
 // Eigenvalue problems in a small subspace: K c = rate S c, with the Hessian K and with S, the
 // inverse of how spins turn in a field.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// An eigenvalue and its vector in the subspace. A complex conjugate pair is represented by the one
 /// with positive imaginary part.
@@ -133,4 +133,4 @@ inline Eigen::MatrixXd orthonormalizing(Eigen::MatrixXd const& products, double 
   return scale.asDiagonal() * found.eigenvectors().rightCols(kept) * roots.asDiagonal();
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

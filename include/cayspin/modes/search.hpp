@@ -21,7 +21,7 @@
 // Eigenvectors of B v = rate G^-1 v, with the Hessian B, from a subspace extended by preconditioned
 // residuals (Davidson 1975; Morgan and Scott 1986). It restarts with the current approximate modes
 // and those of the previous step (Stathopoulos 2007).
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 struct ModeSearchOptions {
   std::size_t count = 8;
@@ -303,4 +303,4 @@ class ModeSearch {
   std::size_t first_ = 0;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

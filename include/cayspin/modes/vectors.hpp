@@ -17,7 +17,7 @@
 #include <vector>
 
 // Algebra of many fields of tangent vectors at once.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Largest number of fields that one kernel combines.
 inline constexpr std::size_t most_vectors = 320;
@@ -203,4 +203,4 @@ struct ResidualsOfModes {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

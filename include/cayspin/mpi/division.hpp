@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace cayspin::inline v0_1::mpi {
+namespace cayspin::inline v0_2::mpi {
 
 /// Number of parts along y and z. Rows along x are not divided.
 struct Division {
@@ -84,4 +84,4 @@ inline void require_division(Lattice const& lattice, Depth const& depth, Divisio
                                 " that its neighbours need");
 }
 
-}  // namespace cayspin::inline v0_1::mpi
+}  // namespace cayspin::inline v0_2::mpi

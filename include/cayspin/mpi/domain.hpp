@@ -16,7 +16,7 @@
 #include <span>
 #include <stdexcept>
 
-namespace cayspin::inline v0_1::mpi {
+namespace cayspin::inline v0_2::mpi {
 
 /// A lattice divided among the ranks of a communicator, along y and z. Each rank holds its part,
 /// with `depth` ghosts at each end inside the lattice. Fields on local() work like any others with
@@ -187,4 +187,4 @@ class Domain final : public Part {
   mutable std::array<detail::GhostMessages, 3> messages_;
 };
 
-}  // namespace cayspin::inline v0_1::mpi
+}  // namespace cayspin::inline v0_2::mpi

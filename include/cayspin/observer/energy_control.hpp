@@ -20,7 +20,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -170,4 +170,4 @@ class EnergyControl {
   SiteField<Real, 3, typename Spins::memory_space> axes_;
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -70,4 +70,4 @@ struct Normalize {
   }
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Energy, norm defect and magnetization at one step.
 struct Sample {
@@ -90,4 +90,4 @@ class Record {
   std::vector<Sample>& samples_;
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -415,4 +415,4 @@ class ThermalNoise {
   mutable CellTurns cell_turns_;
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

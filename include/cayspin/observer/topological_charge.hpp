@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -116,4 +116,4 @@ double topological_charge(Exec const& exec, SpinField<Real, MemorySpace> const& 
   return detail::charge_of(exec, spins, layout);
 }
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Why a search for a path ended.
 enum class PathEnd {
@@ -88,4 +88,4 @@ struct PathOptions {
   std::function<Next(PathProgress const&)> observer = {};  ///< called after each step
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

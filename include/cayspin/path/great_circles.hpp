@@ -13,7 +13,7 @@
 
 // Great circles between the spins of two states: distances, intermediate states, and the direction
 // of a path at one of its states.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Returns the tangent vector at m that leads along the shorter great circle to p, with the angle
 /// as its length. Between opposite spins all circles are equally short: it takes the one through x,
@@ -131,4 +131,4 @@ Along find_direction(Exec const& exec, Spins const& spins, Spins const& before, 
   return {square, slope};
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Functor that computes the energy of an image of a path, and g = -(H - (H.m) m).
 template <class Field, class Real>
@@ -43,4 +43,4 @@ ImageNow look_at_image(Exec const& exec, Field const& field, double time, Spins 
   return {{found[Look::energy], found[Look::magnitude]}, std::sqrt(found[Look::torque])};
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -13,7 +13,7 @@
 // which L-BFGS makes the next steps of all images together. Both are projected to the current
 // tangent planes and across the current path where they are used. Passes over the sites compute
 // inner products; the recursion then needs only numbers.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 inline constexpr std::size_t path_pairs = 4;
 
@@ -149,4 +149,4 @@ class Recursion {
   Numbers alpha{}, weights{};  // of changes, and then of steps
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -10,7 +10,7 @@
 #include <vector>
 
 // The energy along a path, and the positions of its images: host arithmetic.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 struct PointOfProfile {
   double distance, energy, slope;
@@ -134,4 +134,4 @@ inline PlaceOnPath point_of_image(std::size_t image, std::vector<std::size_t> co
   return {node, arcs[node] > 0 ? std::min(1.0, rest / arcs[node]) : 0};
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

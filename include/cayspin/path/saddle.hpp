@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// The Hessian restricted to vectors normal to a given unit vector.
 template <class Whole, class Exec, class Spins>
@@ -191,4 +191,4 @@ class SaddleSearch {
   std::array<Spins, std::size_t{work_fields}> fields_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

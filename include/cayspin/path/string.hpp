@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// A string of images between two states. Each step is a preconditioned L-BFGS step across the path
 /// for all images together, after which they are spaced evenly along it again (the simplified
@@ -375,4 +375,4 @@ class PathString {
   std::int64_t evaluations_ = 0;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -5,7 +5,7 @@
 #include <cayspin/rotation/displacement.hpp>
 #include <cayspin/vec3.hpp>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// The Cayley map of so(3). Coordinates f rotate about f, by the angle 2 atan(|f|/2). Lewis and
 /// Nigam 2002, Sec. 2; right-trivialised differential.
@@ -80,4 +80,4 @@ struct OverflowSafeCayley : Cayley {
   }
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

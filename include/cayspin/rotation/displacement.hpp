@@ -3,7 +3,7 @@
 
 #include <cayspin/vec3.hpp>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// The displacement of a spin, scale * direction, in full relative precision even when it is small.
 template <class Value>
@@ -17,4 +17,4 @@ struct Displacement {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> vector() const { return scale * direction; }
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

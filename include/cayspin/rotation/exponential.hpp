@@ -5,7 +5,7 @@
 #include <cayspin/rotation/half_angle.hpp>
 #include <cayspin/vec3.hpp>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// The exponential map of so(3) (Rodrigues' rotation): about f, by the angle |f|. It calls no
 /// library sine, so it vectorises. The result is on the sphere for every finite f. The angle has an
@@ -38,4 +38,4 @@ struct Exponential {
   }
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

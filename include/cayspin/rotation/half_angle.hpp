@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Returns the Taylor polynomial 1 + x/c1 (1 + x/c2 (1 + ...)) with ck = -(2k + Odd)(2k - 1 + Odd),
 /// the series of sin(a)/a (Odd = 1) and cos(a) (Odd = 0) in x = a^2. For |a| <= 1.62 the first
@@ -125,4 +125,4 @@ KOKKOS_FORCEINLINE_FUNCTION Value inverse_tangent_coefficient(Vec3<Value> const&
   return select<Value>(small, sum, closed);
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <type_traits>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// exp(v) m = m + factor tangent x (m + tangent x m): tangent is tan(|v| / 2) v / |v|, and factor
 /// 2 cos^2(|v| / 2).
@@ -202,4 +202,4 @@ class RandomTurnOfSites {
   Value axial_, diagonal_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// -1 where the indices along some axes have an odd sum, 1 elsewhere.
 struct AlternatingSigns {
@@ -47,4 +47,4 @@ inline double opposed_bonds(Lattice const& lattice, int axis) {
   return static_cast<double>(lattice.sites() / extent * (extent - (closes ? 0 : 1)));
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// One axis of a cell-centred grid, and the coarser axes of its multigrid hierarchy.
 class CellAxis {
@@ -159,4 +159,4 @@ class CellAxisTables {
   Kokkos::View<std::int32_t*, MemorySpace> beside_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

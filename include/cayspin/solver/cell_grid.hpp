@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <string>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Row y of plane z, starting at cell x.
 struct CellPlace {
@@ -150,4 +150,4 @@ struct RunInside {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -9,7 +9,7 @@
 #include <concepts>
 
 // Real and complex coefficients of linear systems. A complex number in a field is two real ones.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 template <class Scalar>
 struct RealPart {
@@ -44,4 +44,4 @@ KOKKOS_FORCEINLINE_FUNCTION void multiply_add_to(Kokkos::complex<scalar_t<Value>
   sum[1] = multiply_add(Value(a.imag()), x[0], multiply_add(Value(a.real()), x[1], sum[1]));
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

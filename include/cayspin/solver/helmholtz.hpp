@@ -12,7 +12,7 @@
 #include <optional>
 #include <string>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Solver that approximates z = (c + b K)^-1 r for fields of vectors, with K = -J Lap over the
 /// neighbours of a lattice, b >= 0 and c > 0. Along an axis with J < 0 the difference to a
@@ -67,4 +67,4 @@ class Helmholtz {
   Multigrid<ShiftedExchange<float>, 2, true, float, MemorySpace> multigrid_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

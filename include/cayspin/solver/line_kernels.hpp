@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Coefficients of lines that are solved from both ends, with equal factors for both halves: y_i =
 /// inverse_i r_i + ratio_i y_(i-1) towards the middle, z_i = y_i + ratio_i z_(i+1) back. In the
@@ -194,4 +194,4 @@ struct SolveLinesOnDevice {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

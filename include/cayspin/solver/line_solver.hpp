@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Returns the only axis along which a lattice couples, or any axis if none does; nothing if
 /// several do. Sets couplings of axes without neighbours to 0.
@@ -164,4 +164,4 @@ class LineSolver {
   std::size_t oldest_ = 0;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -13,7 +13,7 @@
 #include <cstddef>
 #include <string>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Functor that computes z + amplitude sign x where there is a spin, 0 on vacant sites.
 template <class Real>
@@ -151,4 +151,4 @@ struct MeasuredExchange {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// One multigrid cycle on cell-centred grids for an Operation, ShiftedExchange or ShiftedSpinWaves,
 /// in precision Real. It relaxes after the coarse-grid correction, and if IsSymmetric as often
@@ -223,4 +223,4 @@ class Multigrid {
   std::vector<Level> levels_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

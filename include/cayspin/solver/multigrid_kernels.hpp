@@ -9,7 +9,7 @@
 #include <cstdint>
 
 // Relaxation on one grid. K = -J Lap >= 0 over the neighbours of a lattice.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// The operator 1 + b K, and the weight of a relaxation.
 template <class Real>
@@ -227,4 +227,4 @@ struct TurnRightSide {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

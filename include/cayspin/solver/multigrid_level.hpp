@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// A grid of a multigrid hierarchy, and its memory.
 template <class Real, int RightComponents, class MemorySpace>
@@ -66,4 +66,4 @@ struct MultigridLevel {
   std::vector<Field> between;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

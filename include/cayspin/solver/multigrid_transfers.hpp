@@ -7,7 +7,7 @@
 #include <cstdint>
 
 // Transfers between a grid and the next coarser one, one axis at a time.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Packs read padding beside a row and multiply it by zero.
 template <class Real>
@@ -167,4 +167,4 @@ struct InterpolateAlongRows {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

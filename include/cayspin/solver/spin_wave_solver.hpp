@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 struct SpinWaveOptions {
   bool conjugated = false;  ///< a right side of 6 components is (r', -r'')
@@ -72,4 +72,4 @@ class SpinWaveSolver {
   Multigrid<ShiftedSpinWaves<float>, 4, false, float, MemorySpace> multigrid_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -15,7 +15,7 @@
 // The list of arrays of a Runge-Kutta stage, as whole fields, planes of them, or rows: a pass
 // converts fields to rows, a sweep the planes of its buffers. Add a new array here and in the
 // kernel that uses it.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Kind selects the type of the arrays: WholeFields, Planes or Rows.
 template <class Kind, int Stages>
@@ -243,4 +243,4 @@ struct ToComponents {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

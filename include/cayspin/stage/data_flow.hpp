@@ -5,7 +5,7 @@
 
 // The arrays that the stages of an explicit Runge-Kutta step read and write. The tableau and the
 // update decide, at compile time.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// True if every stage uses only the increment before it, as in the classical Runge-Kutta methods
 /// (a chain).
@@ -126,4 +126,4 @@ struct StageDataFlow {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <type_traits>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Returns true if all weights before number j are 0.
 template <class Weights>
@@ -251,4 +251,4 @@ struct RungeKuttaStage {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

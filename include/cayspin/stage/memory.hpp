@@ -12,7 +12,7 @@
 #include <string>
 #include <tuple>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Work memory of a Runge-Kutta step: fields for passes, or the buffers of a sweep; and what one
 /// step leaves for the next, which survives a switch between the two.
@@ -180,4 +180,4 @@ class StageMemory {
   bool streaming_ = false;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -13,7 +13,7 @@
 
 // A Runge-Kutta stage over the whole lattice: on hosts a pack of spins at a time along rows, on
 // devices one site per thread.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 template <class Kernel>
 using FieldsOf = StageArrays<WholeFields<typename Kernel::value_type>, Kernel::stages>;
@@ -189,4 +189,4 @@ void run_pass(Exec const& exec, std::string const& label, RowLayout const& layou
   }
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

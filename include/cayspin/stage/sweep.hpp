@@ -18,7 +18,7 @@
 
 // All stages of a Runge-Kutta step in one pass through the lattice. Each stage is one plane and one
 // row behind the previous one, so that its data are still in the cache.
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Order in which the stages of a step traverse the lattice. Both give equal bits.
 enum class Path {
@@ -265,4 +265,4 @@ struct SweepLoop {
 };
 
 }  // namespace detail
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

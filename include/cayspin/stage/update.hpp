@@ -15,7 +15,7 @@
 // stages, `finish` for the end of the step, and displacement(f, m0) is finish(f, m0) - m0.
 // recovers_increments(stages): true if a chain of `stages` stages (each uses only the increment
 // before it) recomputes increments from the spins to which they move m0.
-namespace cayspin::inline v0_1::update {
+namespace cayspin::inline v0_2::update {
 
 /// Runge-Kutta-Munthe-Kaas: f in the Lie algebra, m = Rotation(f) m0, f' = dRotation_f^-1 (A).
 template <class Rotation>
@@ -254,4 +254,4 @@ struct Stereographic {
   }
 };
 
-}  // namespace cayspin::inline v0_1::update
+}  // namespace cayspin::inline v0_2::update

@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace update {
 
@@ -53,4 +53,4 @@ KOKKOS_FORCEINLINE_FUNCTION RoundedSum<Value> rounded_sum(Vec3<Value> const& a,
 }
 
 }  // namespace detail
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <string>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Work memory of an adaptive step, and the state between steps. Passes need one more field, a
 /// sweep its buffers.
@@ -138,4 +138,4 @@ struct AdaptiveMemory {
   bool streaming_ = false;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -23,7 +23,7 @@
 #include <tuple>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 template <class Spins, class Embedded, class Update, class Isotropy>
@@ -278,4 +278,4 @@ class AdaptiveProjected : public AdaptiveRungeKutta<Spins, Embedded, update::Pro
       : AdaptiveProjected::AdaptiveRungeKutta("AdaptiveProjected", like, options) {}
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

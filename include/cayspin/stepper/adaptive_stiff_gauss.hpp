@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// StiffGauss2 with adaptive steps, which become long as spins approach equilibrium. The error of a
 /// step is the largest angle of any spin due to the second derivative of A: a divided difference
@@ -186,4 +186,4 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
   double local_dt_ = 0;  // when local_ was measured
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

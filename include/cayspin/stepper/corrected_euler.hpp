@@ -6,7 +6,7 @@
 #include <cayspin/stepper/two_point.hpp>
 
 // Geometric Euler with a sigma that raises the order of its energy error by one.
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// With sigma from a forward difference; energy error of order 2, two evaluations.
 template <class Spins, class Rotation>
@@ -27,4 +27,4 @@ class LieEuler<Spins, isotropy::FiniteDifferenceBackward, Rotation>
       : LieEuler::TwoPoint("LieEuler", like, {{isotropy.cap}}) {}
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

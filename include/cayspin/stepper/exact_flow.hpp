@@ -6,7 +6,7 @@
 
 #include <cstddef>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// exp(-x) and 1 - exp(-x), each to a few ulp, for 0 <= x < 700 (double), 80 (float).
 template <class Value>
@@ -172,4 +172,4 @@ struct ExactFlow {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

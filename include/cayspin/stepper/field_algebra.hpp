@@ -8,7 +8,7 @@
 #include <string>
 
 // Vector operations on whole fields of three components, for iterative solvers.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 template <class Real>
 struct LinearCombination {
@@ -78,4 +78,4 @@ double largest_difference(Exec const& exec, Spins const& x, Spins const& y) {
       LargestDifference<typename Spins::value_type>{x.array(), y.array()})[0];
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <string>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// A ring of the last Count fields of a run, and the steps between them.
 template <class Field, std::size_t Count>
@@ -65,4 +65,4 @@ class FieldHistory {
   std::size_t newest_ = 0, known_ = 0;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -8,7 +8,7 @@
 #include <complex>
 #include <cstddef>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Gauss's collocation method for m' = a(t) x m on one site, given f_i = dt a(nodes_i): Y_i = m +
 /// sum_j a_ij f_j x Y_j, m' = m + sum_j b_j f_j x Y_j. The linear equations are solved exactly, so
@@ -91,4 +91,4 @@ struct GaussLegendre<2> {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

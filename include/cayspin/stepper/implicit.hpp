@@ -12,7 +12,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Thrown when an implicit step's equation was not solved. The spins are those before the step.
 class NotConverged : public std::runtime_error {
@@ -200,4 +200,4 @@ class ImplicitMidpoint : public detail::Implicit<Spins, isotropy::Zero, Cayley, 
       : ImplicitMidpoint::Implicit("ImplicitMidpoint", like, {}, options) {}
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

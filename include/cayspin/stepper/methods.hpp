@@ -12,7 +12,7 @@
 
 // The named Runge-Kutta methods with constant steps. Each combines a tableau, an update and an
 // isotropy.
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Geometric Euler, order 1: m <- cay(dt xi) m, xi = A(m) + sigma m.
 /// Lewis and Nigam 2002, Sec. 4.2. <cayspin/stepper/corrected_euler.hpp> adds the isotropies
@@ -168,4 +168,4 @@ struct EnergyCorrection<tableau::Classical4, update::Lie<Cayley>> {
 };
 
 }  // namespace detail
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -19,7 +19,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Options of Multirate.
 struct MultirateOptions {
@@ -236,4 +236,4 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   std::int64_t evaluations_done_ = 0, slow_evaluations_done_ = 0;
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Solver of v = g(v) on a field by Newton's method with step halving. GMRES solves the linear
 /// systems, with g' times a vector from a difference of g. Allocates 16 fields at its first use.
@@ -121,4 +121,4 @@ class NewtonKrylov {
   Spins correction_, point_, image_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

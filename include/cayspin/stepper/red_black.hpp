@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Splitting by the two colours of a checkerboard, of order 2 or 4, for the Landau-Lifshitz
 /// equation with nearest-neighbour couplings. While the spins of one colour move, their neighbours
@@ -166,4 +166,4 @@ class RedBlack4 : public RedBlack<Spins, 4> {
   explicit RedBlack4(Spins const& like) : RedBlack4::RedBlack(like) {}
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -15,7 +15,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// One pass over a colour, for fractions of a step: one flow of every spin, or two flows where two
 /// steps meet. `length` and `middle` of each flow are in steps, from the start of the step.
@@ -233,4 +233,4 @@ struct RedBlackSteps {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -16,7 +16,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// An explicit one-step method on a spin field: a tableau, and an update that moves spins by
 /// increments (cayspin::update). Owns all work memory.
@@ -181,4 +181,4 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
   std::string batch_label_ = this->label("::batch");
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -13,7 +13,7 @@
 #include <tuple>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Parameters of a run that determine a stepper's work memory.
 struct PredictedRun {
@@ -96,4 +96,4 @@ class StagedStepper : public StepperBase<Spins> {
 };
 
 }  // namespace detail
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

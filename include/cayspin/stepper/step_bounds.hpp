@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// A time interval in which steps are at most max_dt long; a longer step that reaches it ends at
 /// its start. max_dt = 0 is a jump of the field between `begin` and `end`, a few roundings of t
@@ -72,4 +72,4 @@ class StepBounds {
 };
 
 }  // namespace detail
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Thrown when an adaptive step would have to be shorter than min_dt or than the resolution of t:
 /// the values are not finite, or the field is not smooth. The spins are those before the step;
@@ -234,4 +234,4 @@ class OwnSteps {
 };
 
 }  // namespace detail
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -14,7 +14,7 @@
 #include <string>
 #include <utility>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Number of ghosts that a stepper declares; 0 if it does not run on parts of a lattice.
 template <class Stepper>
@@ -97,4 +97,4 @@ class StepperBase {
   std::string region_;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -19,7 +19,7 @@
 #include <string>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Gauss's collocation method for stiff exchange. Order 2 is implicit midpoint in Cayley
 /// coordinates: m1 = cay(f) m0, f = dt A((m0 + m1) / 2). Order 4 has two coupled stages of this
@@ -309,4 +309,4 @@ using StiffGauss2 = StiffGauss<Spins, 2>;
 template <class Spins>
 using StiffGauss4 = StiffGauss<Spins, 4>;
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -10,7 +10,7 @@
 #include <cstddef>
 
 // Kernels of StiffGauss. x is the estimate of A at the stages.
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Functor that extrapolates x linearly from x of earlier steps, and computes the spins at the
 /// stages.
@@ -218,4 +218,4 @@ struct LargestSolution {
   }
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -12,7 +12,7 @@
 #include <limits>
 #include <string>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 /// Options of StiffGauss.
 struct StiffOptions {
@@ -160,4 +160,4 @@ class StiffHistory {
 };
 
 }  // namespace detail
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -11,7 +11,7 @@
 // embedded_order.
 // - dense: for each stage, the coefficients of s, s^2, ... s^5 in its weight at t + s dt, of order
 // dense_order.
-namespace cayspin::inline v0_1::tableau {
+namespace cayspin::inline v0_2::tableau {
 
 /// Euler's method: order 1, one stage.
 struct Euler {
@@ -230,4 +230,4 @@ struct FirstSameAsLast : Embedded {
   static constexpr Row c = extended(Embedded::c, 1);
 };
 
-}  // namespace cayspin::inline v0_1::tableau
+}  // namespace cayspin::inline v0_2::tableau

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-namespace cayspin::inline v0_1::tableau {
+namespace cayspin::inline v0_2::tableau {
 
 /// Dormand and Prince, order 8 in twelve stages: the steps of DOP853, Hairer, Nørsett and Wanner
 /// 1993, Sec. II.5.
@@ -52,4 +52,4 @@ struct DormandPrince8 {
                                    1};
 };
 
-}  // namespace cayspin::inline v0_1::tableau
+}  // namespace cayspin::inline v0_2::tableau

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-namespace cayspin::inline v0_1::tableau {
+namespace cayspin::inline v0_2::tableau {
 
 /// Eight stages of order 6. The 37 conditions of order 6 and the stability polynomial, whose last
 /// coefficients are 1.05 / 7! and 1.39 / 8!, hold to 1e-16. Found by a search for small errors of
@@ -65,4 +65,4 @@ struct Damped86 {
                                   1};
 };
 
-}  // namespace cayspin::inline v0_1::tableau
+}  // namespace cayspin::inline v0_2::tableau

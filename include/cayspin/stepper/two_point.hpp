@@ -15,7 +15,7 @@
 
 // Steps that use the generator at two points, one of which is stored in a field: finite differences
 // of A_o, and the two-step method of Adams and Bashforth.
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -274,4 +274,4 @@ class LieAdamsBashforth2
       : LieAdamsBashforth2::TwoPoint("LieAdamsBashforth2", like, {}, isotropy) {}
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -26,7 +26,7 @@
 // terms need. A user's generator needs
 //   Vec3<Value> rate(m, rates)    A' at m along the rates of the stencil's array
 //   auto bare()                   the generator with its part along m, if it removes that
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 namespace isotropy {
 
 /// sigma from A' along the flow: xi = A_o + sigma m with sigma = (m.A) - <A', X> / |X|^2,
@@ -271,4 +271,4 @@ class LieEuler<Spins, Isotropy, Rotation> : public detail::StepperBase<Spins> {
   detail::Rates<Spins> rates_;
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -22,7 +22,7 @@
 //   Vec3<Value> field_rate(m, rates)      dH/dt at m, along the rates of the stencil's array
 //   auto prepare_rate(exec, rates, t, dt)     returns the term for kernels that evaluate dH/dt at
 //                                             time t, if prepare is not enough
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 /// Contribution of a uniform applied field to dH/dt.
 struct AppliedRate {
@@ -214,4 +214,4 @@ constexpr bool has_derivative() {
     } || has_linear_part<Term, Stencil>();
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -17,7 +17,7 @@
 #include <string>
 #include <utility>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -132,4 +132,4 @@ class Rkmk4AsPrinted : public detail::StepperBase<Spins> {
   std::array<std::string, 4> labels_ = this->template stage_labels<4>();
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -19,7 +19,7 @@
 #include <string>
 #include <type_traits>
 
-namespace cayspin::inline v0_1 {
+namespace cayspin::inline v0_2 {
 
 namespace detail {
 
@@ -285,4 +285,4 @@ class Series4Paper : public Series4<Spins, Isotropy, detail::PaperSeries> {
       : Series4Paper::Series4(like, isotropy) {}
 };
 
-}  // namespace cayspin::inline v0_1
+}  // namespace cayspin::inline v0_2

@@ -18,7 +18,7 @@
 //   Vec3<Value> linear_series_source(stencil)    its linear part; requires is_affine() on the host
 //   Vec3<Value> derivative<K>(m, source)         the K-th time derivative of A, from those of both
 //   static bool is_local                         A is linear in the site's spin, without neighbours
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_2::detail {
 
 template <int N, int K>
 inline constexpr int binomial = K == 0 ? 1 : binomial<N - 1, K - 1> * N / K;
@@ -151,4 +151,4 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> orthogonal_derivative(Generator const& g
   return result;
 }
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_2::detail

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace cayspin::inline v0_1::mpi::detail {
+namespace cayspin::inline v0_2::mpi::detail {
 
 /// Throws std::length_error for a message of 16 GiB or more, whose length MPI's int cannot hold.
 inline int words_of_message(std::size_t bytes) {
@@ -48,4 +48,4 @@ inline void exchange_with_all(MPI_Comm comm, std::span<std::span<std::byte const
   wait_for(requests);
 }
 
-}  // namespace cayspin::inline v0_1::mpi::detail
+}  // namespace cayspin::inline v0_2::mpi::detail

@@ -17,7 +17,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace cayspin::inline v0_1::mpi::detail {
+namespace cayspin::inline v0_2::mpi::detail {
 
 /// Functor that copies a box of a field on a device to consecutive numbers, or back. A task is one
 /// row of one component.
@@ -157,4 +157,4 @@ class GhostMessages {
   std::array<Buffer, 2> sent_, received_;
 };
 
-}  // namespace cayspin::inline v0_1::mpi::detail
+}  // namespace cayspin::inline v0_2::mpi::detail

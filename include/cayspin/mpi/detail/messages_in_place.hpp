@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace cayspin::inline v0_1::mpi::detail {
+namespace cayspin::inline v0_2::mpi::detail {
 
 /// Sites from `begin` up to but excluding `end`.
 struct Box {
@@ -145,4 +145,4 @@ class MessagesInPlace {
   std::vector<MPI_Request> requests_;
 };
 
-}  // namespace cayspin::inline v0_1::mpi::detail
+}  // namespace cayspin::inline v0_2::mpi::detail

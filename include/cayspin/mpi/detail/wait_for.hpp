@@ -6,7 +6,7 @@
 #include <span>
 #include <thread>
 
-namespace cayspin::inline v0_1::mpi::detail {
+namespace cayspin::inline v0_2::mpi::detail {
 
 /// Waits for requests, and soon yields to other threads: MPI's own waiting occupies a core, which
 /// is slow if ranks share cores.
@@ -20,4 +20,4 @@ inline void wait_for(std::span<MPI_Request> requests) {
   }
 }
 
-}  // namespace cayspin::inline v0_1::mpi::detail
+}  // namespace cayspin::inline v0_2::mpi::detail
