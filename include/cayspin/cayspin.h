@@ -63,7 +63,7 @@ typedef struct cayspin_minimum {
    until the next call that fails. */
 char const* cayspin_last_error(void);
 
-/* Such as "0.1.0". */
+/* Such as "0.2.0". */
 char const* cayspin_version(void);
 
 /* Opens a scene file; one without [integrator] is only for cayspin_relax. `space`: openmp, threads,

@@ -17,16 +17,16 @@ class Cayspin(CMakePackage):
     license("Apache-2.0 WITH LLVM-exception")
 
     # No public address yet: dev-build takes the clone, install an archive in the current folder.
-    url = f"file://{os.getcwd()}/cayspin-0.1.0.tar.gz"
+    url = f"file://{os.getcwd()}/cayspin-0.2.0.tar.gz"
     manual_download = True
     download_instr = (
         "cayspin has no public address yet. In a clone, make an archive and install it there: "
-        "git archive --prefix=cayspin-0.1.0/ -o cayspin-0.1.0.tar.gz HEAD, "
-        "spack install --no-checksum cayspin@0.1.0"
+        "git archive --prefix=cayspin-0.2.0/ -o cayspin-0.2.0.tar.gz HEAD, "
+        "spack install --no-checksum cayspin@0.2.0"
     )
 
     version("main")
-    version("0.1.0")
+    version("0.2.0")
 
     variant("program", default=True, description="The program, scenes, files and the C interface")
     variant("examples", default=False, description="Build the examples")

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Compares the recipes for Spack and conda with the CMake files: check_recipes.py ROOT.
+"""Compares the recipes for Spack and conda with the CMake files, and every file that states the
+version with CMakeLists.txt: check_recipes.py ROOT.
 
-Neither is built. Versions, dependencies, options and the scenes of their tests are compared as text.
+No recipe is built. Versions, dependencies, options and the scenes of their tests are compared as
+text.
 """
 
 import ast
@@ -20,6 +22,27 @@ PACKAGES = {
     "CLI11": ("cli11", "cli11"),
     "PNG": ("libpng", "libpng"),
 }
+# Text that a file has to contain, with V for the version.
+STATEMENTS = {
+    "pyproject.toml": '\nversion = "V"\n',
+    "CITATION.cff": "\nversion: V\n",
+    "CHANGELOG.md": "\n## [V] - ",
+    "docs/guide/linking.md": " cayspin@V ",
+}
+SEARCHED = ("README.md", "docs/**/*.md", "examples/**/CMakeLists.txt", "tests/install/**/CMakeLists.txt")
+
+
+def other_versions(root, version):
+    """Files that do not state `version`. Users ask CMake for its first two numbers."""
+    minor = version.rpartition(".")[0]
+    for name, statement in STATEMENTS.items():
+        expected = statement.replace("V", version)
+        if expected not in (root / name).read_text(encoding="utf-8"):
+            yield f"{name}: has no {expected.strip()!r}"
+    for path in sorted(path for pattern in SEARCHED for path in root.glob(pattern)):
+        for asked in re.findall(r"find_package\(cayspin (\d[\d.]*)", path.read_text(encoding="utf-8")):
+            if asked != minor:
+                yield f"{path.relative_to(root)}: asks for cayspin {asked}, and this is {minor}"
 
 
 def problems_of(root):
@@ -58,13 +81,14 @@ def problems_of(root):
                 yield f"{name}: its tests need scenes/{scene}, which does not exist"
         for other in {*re.findall(r"cayspin[-@](\d+(?:\.\d+)+)", text)} - {version}:
             yield f"{name}: names version {other}, and this is {version}"
+    yield from other_versions(root, version)
 
 
 def main():
     if len(sys.argv) != 2:
         sys.exit("usage: check_recipes.py ROOT")
     problems = list(problems_of(pathlib.Path(sys.argv[1])))
-    print("\n".join(problems) or "the recipes agree with the CMake files")
+    print("\n".join(problems) or "the recipes and all versions agree with the CMake files")
     sys.exit(1 if problems else 0)
 
 
