@@ -19,11 +19,14 @@ from cayspin.observables import Average, Dispersion, average, dispersion, topolo
 from cayspin.path import MinimumEnergyPath, path
 from cayspin.scene import Scene
 from cayspin.simulation import Minimum, Modes, Simulation
+from cayspin.spirit import read_spirit_pairs
 from cayspin.trade import Advice, Trade, advise, trade
 from cayspin.trajectory import Trajectory, open
+from cayspin.uppasd import read_uppasd
 from cayspin.view import View, view
 
 __all__ = ["Advice", "Average", "Averages", "CayspinError", "Dispersion", "Ensemble", "Minimum",
            "MinimumEnergyPath", "Modes", "NumbersFailed", "Scene", "SceneError", "Simulation",
            "Trade", "Trajectory", "View", "__version__", "advise", "average", "dispersion",
-           "occupied_of_mesh", "open", "path", "topological_charge", "trade", "view"]
+           "occupied_of_mesh", "open", "path", "read_spirit_pairs", "read_uppasd",
+           "topological_charge", "trade", "view"]
