@@ -7,18 +7,19 @@ from typing import Any, Callable
 
 import numpy as np
 
-version: str
+version: str  #: of the package, as in 0.1.0
 git_commit: str
 complete_file: Callable[[str | os.PathLike], None]
 
 class CayspinError(Exception):
-    """One line: what is wrong, and what is accepted."""
+    """Every error of the package: one line with what is wrong, and what is accepted."""
 
 class SceneError(CayspinError):
-    """A scene that cannot be: place: key: what is wrong; accepted: ..."""
+    """A scene that is refused: its file and line, the key, what is wrong and what is accepted."""
 
 class NumbersFailed(CayspinError):
-    """The numbers of a run are not finite, left the sphere, or gained energy they cannot gain."""
+    """A run whose spins are not finite, have left the sphere or gained energy that nothing gives, and
+    a search that has no result."""
 
 class Scene:
     @staticmethod

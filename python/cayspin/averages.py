@@ -15,8 +15,10 @@ if TYPE_CHECKING:
 
 
 class Averages:
-    """Means over looks at a simulation while it runs, from Simulation.averages(): of all looks, or
-    of the latest. Errors are those of cayspin.average(). Before the first look a mean is NaN."""
+    """Running means of a simulation, from Simulation.averages(): over all samples, or the latest.
+
+    Each is an Average with a standard error, as from average(), and NaN before the first sample.
+    Numbers are in the units of the scene."""
 
     def __init__(self, window: int | None):
         def looks():
@@ -38,32 +40,32 @@ class Averages:
         return average(looks) if looks else Average(np.nan, np.nan, 0)
 
     def restart(self) -> None:
-        """Forgets all looks: for a simulation that has come to equilibrium."""
+        """Forgets all samples, as for a simulation that has come to equilibrium."""
         for looks in (*self._looks.values(), *self._terms.values()):
             looks.clear()
 
     def __len__(self) -> int:
-        """Looks that the means are over."""
+        """The number of samples that the means are over."""
         return len(self._looks["energy"])
 
     @property
     def magnetization(self) -> Average:
-        """Returns the mean of the magnetization, (3,)."""
+        """The mean of Simulation.magnetization(), (3,)."""
         return self._average(self._looks["magnetization"])
 
     @property
     def sublattice_magnetization(self) -> Average:
-        """Returns the mean of the mean spin of each site of the cell, (site, 3)."""
+        """The mean of Simulation.sublattice_magnetization(), (site, 3)."""
         return self._average(self._looks["sublattices"])
 
     @property
     def energy(self) -> Average:
-        """Returns the mean of the energy, summed over sites."""
+        """The mean of the energy, summed over sites."""
         return self._average(self._looks["energy"])
 
     @property
     def energies(self) -> dict[str, Average]:
-        """Returns the mean of the energy of each term of the scene."""
+        """The mean of the energy of each term, by the names of Simulation.energies()."""
         return {name: self._average(looks) for name, looks in self._terms.items()}
 
     def __repr__(self):

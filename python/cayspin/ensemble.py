@@ -12,23 +12,30 @@ from cayspin.texture.replica import Replica
 
 
 class Ensemble:
-    """An open file of a scene with [ensemble]. Its members are read when they are indexed:
-    ensemble.spins[-1, 5].
+    """An open file of a scene with [ensemble], from open(). Its arrays are read when they are
+    indexed: ensemble.spins[-1, 5]. Use it in a `with`, or call close(). Numbers are in the units
+    of the scene.
 
-    spins (frame, replica, nz, ny, nx, 3), of crystals with several sites in a cell (frame, replica,
-    site, nz, ny, nx, 3); time, step (frame); energy, norm_defect (frame, replica); magnetization
-    (frame, replica, 3); scalars: these five at the samples; vary: the values (replica) of each
-    varied key. Of `cayspin relax`: torque, converged, evaluations (replica). Use it in a `with`, or
-    call close().
+    - `spins`: (frame, replica, nz, ny, nx, 3), of a crystal with several sites in a cell
+      (frame, replica, site, nz, ny, nx, 3)
+    - `time`, `step`: (frame)
+    - `energy`, summed over the sites of a replica, and `norm_defect`: (frame, replica)
+    - `magnetization`: (frame, replica, 3)
+    - `torque`, `converged`, `evaluations`: (replica), in files of `cayspin relax`
+
+    Raises AttributeError for an array that the file does not have.
     """
 
     _names = ("spins", "time", "step", "energy", "norm_defect", "magnetization")
     _of_searches = ("torque", "converged", "evaluations")
 
     def __init__(self, path: str | os.PathLike, file: Any):
-        self.path, self.file = path, file
-        self.scalars = {name: file["scalars"][name] for name in file["scalars"]}
-        self.vary = {name: file["vary"][name][:] for name in file["vary"]}
+        self.path: str | os.PathLike = path  #: name of the file
+        self.file: Any = file  #: the open h5py.File
+        #: time, step, energy, norm_defect and magnetization at the samples
+        self.scalars: dict[str, Any] = {name: file["scalars"][name] for name in file["scalars"]}
+        #: the values, (replica), of each varied key
+        self.vary: dict[str, Any] = {name: file["vary"][name][:] for name in file["vary"]}
 
     def __getattr__(self, name: str) -> Any:
         if name in self._names:
@@ -55,8 +62,13 @@ class Ensemble:
         return bool(self.file.attrs["complete"])
 
     def plot(self, replica: int = 0, frame: int = -1, axes: Any = None, **options: Any) -> Any:
-        """Draws the spins of a replica in a frame, as Trajectory.plot does. Raises CayspinError for
-        other replicas, frames, planes and words."""
+        """Draws the spins of a replica into matplotlib axes, which it returns.
+
+        `replica` counts from 0, `frame` too, or from the end below 0. `axes` and the other options,
+        as plane="z=0", are those of texture.draw().
+
+        Raises CayspinError for a replica, frame, plane or word that is not there.
+        """
         replica = arguments.whole(replica, "plot: replica")
         frame = arguments.whole(frame, "plot: frame")
         try:
@@ -66,7 +78,7 @@ class Ensemble:
             raise CayspinError(f"{self.path}: {error}") from None
 
     def __len__(self) -> int:
-        """Whole frames: a killed run may leave the spins of one without its scalars."""
+        """The number of whole frames; a killed run may have written part of another."""
         return min(len(self.file[name]) for name in self._names)
 
     def __enter__(self) -> Ensemble:

@@ -34,17 +34,18 @@ def _triangles(mesh):
 
 def occupied_of_mesh(mesh: Any, shape: tuple[int, ...], spacing: float | tuple[float, ...] = 1.0, *,
                      scale: float = 1.0, center: bool = True) -> np.ndarray:
-    """Which cells of a lattice have their middle inside a closed surface, as an array
+    """Finds the cells of a lattice whose middle is inside a closed surface: True in an array
     (nz, ny, nx) for lattice.occupied.
 
     `mesh` is a file of triangles (STL, OBJ, PLY, ..; read by trimesh), something with an attribute
-    `triangles`, or an array (count, 3, 3) of corners. `shape` and `spacing` are those of the
-    lattice; `scale` turns the mesh's unit into that of `spacing`. With `center` the middle of the
-    mesh's bounding box is that of the lattice, otherwise both have one origin, the lattice's
+    `triangles`, or an array (count, 3, 3) of corners. `shape` (nx, ny, nz) and `spacing` are those
+    of the lattice; the corners times `scale` are in the unit of `spacing`. With `center` the middle
+    of the mesh's bounding box is that of the lattice, otherwise both have one origin, the lattice's
     corner. Bodies that overlap are united, if the corners of all triangles are counter-clockwise
     seen from outside.
 
-    Raises CayspinError for meshes that cannot be read."""
+    Raises CayspinError for a mesh that cannot be read, or where trimesh is missing.
+    """
     corners = _triangles(mesh) * scale
     cells = np.array([*shape, 1, 1][:3])
     edges = np.broadcast_to(spacing, 3) if np.ndim(spacing) == 0 else np.array([*spacing, 1, 1][:3])

@@ -14,14 +14,14 @@ from cayspin.texture.charge import half_solid_angles
 
 
 def topological_charge(spins: Any, boundary: Sequence[str] = ("open", "open")) -> np.ndarray:
-    """The topological charge Q of each plane (x, y) of spins (..., ny, nx, 3), as an array (...).
+    """The topological charge Q of each plane (x, y) of `spins` (..., ny, nx, 3), as an array (...).
 
     Q = sum m.(d_x m x d_y m) / (4 pi): the solid angles of the triangles of neighbouring spins, two
     of each plaquette, over 4 pi (Berg and Luescher 1981). A skyrmion whose core points down, among
     spins up, has Q = -1. Lengths do not matter. `boundary`: "open" or "periodic" along x and y; the
     charge of a plane that is periodic along both is a whole number, to round-off.
 
-    Raises CayspinError for other arrays and words.
+    Raises CayspinError for an array of another shape, and for other words.
     """
     spins = arguments.numbers(spins, "topological_charge").astype(np.float64, copy=False)
     if spins.ndim < 3 or spins.shape[-1] != 3:
@@ -40,23 +40,24 @@ class Dispersion:
     """S(k, w) along a path of wave vectors, from dispersion()."""
 
     wave_vectors: np.ndarray  #: (k, 3), in fractions of the reciprocal vectors
-    distance: np.ndarray  #: (k,), along the path: the length of k, 2 pi included
-    frequency: np.ndarray  #: (w,), angular, rising from below zero
-    intensity: np.ndarray  #: (k, w)
+    distance: np.ndarray  #: (k,), length of the path up to k, in radians over the unit of `cell`
+    frequency: np.ndarray  #: (w,), angular, in radians over the unit of `dt`, rising
+    intensity: np.ndarray  #: (k, w), dimensionless
     corners: np.ndarray  #: (corner,), distances of the corners of the path
-    labels: list[str]  #: (corner), their names
+    labels: list[str]  #: names of the corners
 
     @property
     def resolution(self) -> float:
-        """From one frequency to the next. A sharp line is four of these wide."""
+        """The angular frequency from one to the next. A sharp line is four of these wide."""
         return float(self.frequency[1] - self.frequency[0])
 
     def peak(self) -> np.ndarray:
-        """The frequency of the largest intensity at each wave vector, (k,)."""
+        """The angular frequency of the largest intensity at each wave vector, (k,)."""
         return self.frequency[self.intensity.argmax(axis=1)]
 
     def plot(self, axes: Any = None):
-        """Draws the logarithm of S(k, w) into matplotlib axes, which it returns."""
+        """Draws the logarithm of S(k, w) into matplotlib `axes` (default: new ones), which it
+        returns. Raises ImportError without matplotlib."""
         if axes is None:
             import matplotlib.pyplot
 
@@ -144,7 +145,7 @@ def dispersion(spins: Any, dt: float, path: Any, *, labels: Sequence[str] | None
                about: Any = None) -> Dispersion:
     """The dynamic structure factor S(k, w) along a path of wave vectors.
 
-    `spins`: frames (frame, nz, ny, nx, 3) at times dt apart, or (frame, site, nz, ny, nx, 3) with
+    `spins`: frames (frame, nz, ny, nx, 3) at times `dt` apart, or (frame, site, nz, ny, nx, 3) with
     several sites in a cell. They are read frame by frame, also from a dataset of h5py.
     `path`: the corners, each (h, k, l) in fractions of the reciprocal vectors of the cell; also
     beyond the first zone. S is given at the lattice's own wave vectors on it, multiples of
@@ -163,7 +164,8 @@ def dispersion(spins: Any, dt: float, path: Any, *, labels: Sequence[str] | None
     |sum of (..) exp(-i k.r)|^2 over the number of sites. Frequencies are angular, apart by
     2 pi / (frames dt), and seen up to pi / dt: faster motion appears less a multiple of 2 pi / dt.
 
-    Raises CayspinError for arrays, paths and words that do not fit.
+    Raises CayspinError for arrays and words that do not fit, fewer than four frames, and a path
+    without wave vectors of the lattice.
     """
     if not hasattr(spins, "shape"):
         spins = arguments.numbers(spins, "dispersion: spins")
@@ -231,11 +233,12 @@ def dispersion(spins: Any, dt: float, path: Any, *, labels: Sequence[str] | None
 
 
 class Average(NamedTuple):
-    """The mean of numbers over time, from average()."""
+    """The mean of numbers over time, from average(). Each field is a number, or an array (...) of
+    values (time, ...)."""
 
-    mean: Any  #: a number, or an array where each of the values is one
+    mean: Any  #: in the unit of the values
     error: Any  #: its standard error; NaN where the values are too few to tell
-    block: Any  #: values in a block that hardly knows of the next one; 0 where the error is NaN
+    block: Any  #: values in a block that hardly depends on the next one; 0 where the error is NaN
 
 
 def _block_error(values):
@@ -254,16 +257,16 @@ def _block_error(values):
 
 
 def average(values: Any, skip: int = 0) -> Average:
-    """The mean of values (time, ...) over time and its standard error, without the first `skip`.
+    """The mean of `values` (time, ...) over time and its standard error, without the first `skip`.
 
     Values that follow each other in time are alike, so the error is that of means of blocks
     (Flyvbjerg and Petersen 1989). Their length is doubled from 1 until it is B with
-    B^3 > 2 n (error_B / error_1)^4, where what blocks still know of each other and the spread of
-    few blocks weigh the same (Lee et al. 2011): about (2 n (2 tau)^2)^(1/3) for a correlation time
-    of tau values. The values are to be in equilibrium, at equal steps in time. Where they span too
+    B^3 > 2 n (error_B / error_1)^4 (Lee et al. 2011). There the correlation of blocks and the
+    spread of few blocks weigh the same. B is about (2 n (2 tau)^2)^(1/3) for a correlation time of
+    tau values. The values are to be in equilibrium, at equal steps in time. Where they span too
     few correlation times, the error is NaN.
 
-    Raises CayspinError when no values are left.
+    Raises CayspinError when no values are left, or they are no real numbers.
     """
     values = arguments.numbers(values, "average").astype(np.float64, copy=False)
     skip = arguments.whole(skip, "average: skip")

@@ -14,25 +14,27 @@ from cayspin.scene import Scene
 
 @dataclasses.dataclass(frozen=True)
 class MinimumEnergyPath:
-    """What path() found. Energies are in the unit of energy of the scene, J in SI."""
+    """Result of path(). Energies are in the scene's unit, J in SI. Without a saddle, what belongs
+    to it is None. `prefactor_*` and `langer_*` are those of
+    rate = prefactor T^((n - n_s) / 2) exp(-barrier / kT), n and n_s numbers of zero modes."""
 
     spins: np.ndarray  #: (image, nz, ny, nx, 3), of a crystal (image, site, nz, ny, nx, 3)
-    energy: np.ndarray  #: (image)
-    distance: np.ndarray  #: (image): radians along the great circles of all spins
-    saddle: np.ndarray | None  #: spins of the highest saddle, (nz, ny, nx, 3); None if none is found
-    saddle_energy: float | None
-    barrier_forward: float | None  #: saddle_energy less that of the first image
-    barrier_backward: float | None  #: saddle_energy less that of the last image
-    saddle_curvature: float | None  #: the lowest one, which is negative, energy / rad^2
-    saddles: np.ndarray  #: (saddle), the highest first: energy, curvature, next_curvature, image
+    energy: np.ndarray  #: (image,), summed over sites
+    distance: np.ndarray  #: (image,), radians along the great circles of all spins
+    saddle: np.ndarray | None  #: spins of the highest saddle, (nz, ny, nx, 3) or with sites first
+    saddle_energy: float | None  #: energy of the highest saddle, in the unit of `energy`
+    barrier_forward: float | None  #: saddle_energy less that of the first image, in its unit
+    barrier_backward: float | None  #: saddle_energy less that of the last image, in its unit
+    saddle_curvature: float | None  #: its lowest curvature, negative, energy / rad^2
+    saddles: np.ndarray  #: (saddle,), the highest first: energy, curvature, next_curvature, image
     end: str  #: "converged", or why not
-    converged: bool
+    converged: bool  #: whether the path and its saddle meet `torque`
     evaluations: int  #: of the field of all sites
-    prefactor_forward: float | None  #: with rates: 1/s and T in K in SI, else reduced
-    prefactor_backward: float | None
-    langer_forward: float | None  #: the same of Langer's theory, with damping
-    langer_backward: float | None
-    zero_modes: tuple[int, int, int] | None  #: with rates: of the start, the saddle and the end
+    prefactor_forward: float | None  #: with `rates`; in SI in 1/s with T in K
+    prefactor_backward: float | None  #: the same of the way back, in the same unit
+    langer_forward: float | None  #: of Langer's theory, with damping, in the same unit
+    langer_backward: float | None  #: the same of the way back, in the same unit
+    zero_modes: tuple[int, int, int] | None  #: with `rates`: of the start, the saddle and the end
 
 
 _SADDLE = [("energy", float), ("curvature", float), ("next_curvature", float), ("image", int)]
@@ -59,10 +61,11 @@ def path(scene: Scene, start: np.ndarray | str | os.PathLike, end: np.ndarray | 
         found = cayspin.path(scene, skyrmion, uniform)
         found.barrier_forward, found.saddle
 
-    `start` and `end` are arrays in the shape of Simulation.spins, or files as initial.file takes
-    them: both are relaxed first. `images`, both ends among them, is from 3 to 1000. `torque` bounds
-    max |m x H| of the ends and saddles, in the unit of H, T in SI. `rates` adds prefactors of
-    rates, up to 4096 sites. `precision`, `space` and `threads` are those of Simulation.
+    `scene` needs no integrator. `start` and `end` are arrays in the shape of Simulation.spins, or
+    files as initial.file takes them: both are relaxed first. `images`, both ends among them, is
+    from 3 to 1000. `torque` bounds max |m x H| of the ends and saddles, in the unit of H, T in SI.
+    `evaluations` of the field of all sites are the most. `rates` adds prefactors of rates, up to
+    4096 sites. `precision`, `space` and `threads` are those of Simulation.
 
     A search that ends early has `converged` False, and what was found. Raises NumbersFailed where
     there is no path: an end cannot be relaxed, or both relax to one state. Raises SceneError for

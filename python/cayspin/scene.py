@@ -76,23 +76,28 @@ def _nonlocal_by_planes(function, shape, cell_sites):
 
 
 class Scene:
-    """A scene: the tables of a scene file, as docs/reference/scene.md describes them.
+    """A description of what to simulate: the tables of a scene file, with the same keys, units and
+    checks (docs/reference/scene.md).
 
         Scene(system={"kind": "llg", "damping": 0.1}, lattice={"shape": [100]},
               field={"exchange": 1.0, "applied": [0.5, 0, 0]}, initial={"uniform": [0, 0, 1]},
               integrator={"method": "rkmk4", "dt": 0.05, "end": 60})
 
-    `initial` may also be an array (nz, ny, nx, 3) of vectors, which are copied and normalised.
-    `field["applied"]` may be a function of t that returns three numbers: the uniform field.
-    `field["nonlocal"]` may be a function of (spins, t) that returns H of all sites as an array
-    (nz, ny, nx, 3). Arrays of a crystal with several sites in a cell are (site, nz, ny, nx, 3).
-    Numbers of sites may be arrays (nz, ny, nx), of a crystal (site, nz, ny, nx):
-    lattice={"shape": [20, 20], "occupied": mask}. So may vectors of sites, with a last axis of 3:
-    field={"sources": [{"profile": array}]}.
-    The function is called before each stage with a copy of the spins, and H has to be linear
-    in them and symmetric: its energy is -sum m.H / 2.
-    Without `end` and `steps` in `integrator` the scene has no end. Without `integrator` it is for
-    Simulation.relax() alone.
+    `system`, `lattice`, `field`, `integrator` and `output` are dicts of the keys of these tables,
+    `tables` further ones: material, torque, thermal, ensemble, and units="SI". Without `end` and
+    `steps` in `integrator` the scene has no end. Without `integrator` it is only for
+    Simulation.relax() and what needs no steps.
+
+    `initial` is a dict, or an array (nz, ny, nx, 3) of vectors, which are copied and normalised.
+    Arrays of a crystal with several sites in a cell are (site, nz, ny, nx, 3). Numbers of sites may
+    be arrays (nz, ny, nx), of a crystal (site, nz, ny, nx): lattice={"shape": [20, 20],
+    "occupied": mask}. So may vectors of sites, with a last axis of 3: field={"sources":
+    [{"profile": array}]}.
+
+    `field["applied"]` may be a function of t that returns three numbers: the uniform field, in T in
+    SI. `field["nonlocal"]` may be a function of (spins, t) that returns H of all sites in the shape
+    of the spins, in SI also in T. It is called before each stage with a copy of the spins, and H
+    has to be linear in them and symmetric: its energy is -sum m.H / 2.
 
     Raises SceneError with one line that names the key, what is wrong and what is accepted.
     """
@@ -110,8 +115,12 @@ class Scene:
 
     @classmethod
     def from_file(cls, path: str | os.PathLike, **overrides: Any) -> Scene:
-        """The scene of a TOML file, with keys changed: from_file("film.toml",
-        integrator={"dt": 0.1}). `initial` replaces the whole table; it may be an array."""
+        """Reads a scene from the TOML file `path`, with keys changed by `overrides`, as in
+        from_file("film.toml", integrator={"dt": 0.1}). Overrides are tables as of Scene(); one of
+        `initial` replaces the whole table, and may be an array.
+
+        Raises SceneError with file and line for what is wrong in it.
+        """
         typed, spins, own, arrays = _split(overrides)
         self = cls.__new__(cls)
         changed = toml_text.overrides(typed)
@@ -144,8 +153,11 @@ class Scene:
         self._only_here += [f"an array as {key}" for key in arrays]
 
     def at_sites(self, expression: str) -> np.ndarray:
-        """The values of an expression at the sites, (nz, ny, nx), of a crystal with several sites
-        in a cell (site, nz, ny, nx): at_sites("grain(20, 1)") numbers the grains."""
+        """The values of an `expression` at the sites, (nz, ny, nx), of a crystal with several sites
+        in a cell (site, nz, ny, nx): at_sites("grain(20, 1)") numbers the grains.
+
+        Raises CayspinError for what is no expression of sites.
+        """
         values = self._scene.at_sites(arguments.word(expression, "at_sites"))
         return sites.by_site(values, self._scene.cell_sites)
 
@@ -187,32 +199,33 @@ class Scene:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """(nz, ny, nx), of a crystal with several sites in a cell (site, nz, ny, nx)"""
+        """(nz, ny, nx), of a crystal with several sites in a cell (site, nz, ny, nx)."""
         return sites.shape_by_site(self._scene.shape, self._scene.cell_sites)
 
     @property
     def cell(self) -> np.ndarray:
-        """The three vectors of the cell, (3, 3), in the scene's unit of length"""
+        """The three vectors of the cell, (3, 3), in the scene's unit of length, m in SI."""
         return np.array(self._scene.cell)
 
     @property
     def basis(self) -> np.ndarray:
-        """The sites of the cell, (site, 3), in fractions of its vectors"""
+        """The sites of the cell, (site, 3), in fractions of its vectors."""
         return np.array(self._scene.basis)
 
     @property
     def method(self) -> str | None:
-        """integrator.method; None without an integrator"""
+        """The integrator's method; None without an integrator."""
         return self._scene.method if self._scene.has_integrator else None
 
     @property
     def dt(self) -> float | None:
-        """The time step; of adaptive methods the time from one look at the spins to the next."""
+        """The time step, in s in SI; of adaptive methods the time between guards, samples and
+        frames. None without an integrator."""
         return self._scene.dt if self._scene.has_integrator else None
 
     @property
     def steps(self) -> int:
-        """Steps to the end; 0 for a scene without end."""
+        """Steps of dt to the end; 0 for a scene without end."""
         return self._scene.steps
 
     def __repr__(self):

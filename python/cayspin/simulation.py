@@ -19,39 +19,40 @@ _GUARD_PERIOD = 100  # steps between two looks at energy and lengths in step()
 
 @dataclasses.dataclass(frozen=True)
 class Minimum:
-    """Result of relax(), in the units of the scene."""
+    """Result of Simulation.relax(), in the units of the scene."""
 
     end: str  #: "converged", "stagnated" (by round-off) or "evaluation limit"
-    torque: float  #: max |m x H|
-    energy: float
-    iterations: int
+    torque: float  #: max |m x H|, in the unit of H, T in SI
+    energy: float  #: summed over sites, in the scene's unit, J in SI
+    iterations: int  #: steps of the search
     evaluations: int  #: of the field of all sites
-    saddles: int  #: that were left on the way
-    curvature: float  #: an upper bound of the least one of the energy, of a converged state
+    saddles: int  #: that were left during the search
+    curvature: float  #: upper bound of the lowest one, in energy / rad^2, if converged
 
     @property
     def converged(self) -> bool:
-        """Is the torque below its bound, and was no direction found that leads down?"""
+        """Whether the torque is below its bound, and no direction leads down."""
         return self.end == "converged"
 
 
 @dataclasses.dataclass(frozen=True)
 class Modes:
-    """Result of modes(), slowest first."""
+    """Result of Simulation.modes(), the slowest first."""
 
-    frequency: np.ndarray  #: angular; in Hz in SI
-    decay: np.ndarray  #: in 1/s in SI; negative where the motion grows
-    residual: np.ndarray  #: errors of the shapes, relative
-    shape: np.ndarray  #: complex dm, (mode, nz, ny, nx, 3); the longest has length 1
-    converged: bool
+    frequency: np.ndarray  #: (mode,), angular in reduced units; in Hz in SI
+    decay: np.ndarray  #: (mode,), in 1/s in SI; negative where the motion grows
+    residual: np.ndarray  #: (mode,), relative errors of the shapes
+    shape: np.ndarray  #: complex dm, (mode, nz, ny, nx, 3) or with sites first; the longest is 1
+    converged: bool  #: whether all residuals are below `tolerance`
     evaluations: int  #: of the field of all sites
 
 
 class Simulation:
-    """A scene in memory.
+    """A `scene` that runs: its spins, and the time that they have reached.
 
-    `precision` is "double" or "single", `space` one of the execution spaces compiled in (default:
-    that of Kokkos), `threads` their number: the first simulation of a process decides that.
+    `precision` is "double" or "single", `space` an execution space that was compiled in (default:
+    that of Kokkos), `threads` the number of its threads: the first simulation of a process decides
+    that.
 
     `restart` names a file of save(), or the trajectory of a run: the simulation goes on from there
     with the bits of one without a break. Its lattice has to be the scene's; a warning names what
@@ -61,8 +62,11 @@ class Simulation:
     KeyboardInterrupt, and it can go on from there. N calls of step() give the bits of one step(N),
     and those of `cayspin run`.
 
-    Raises SceneError, CayspinError, and NumbersFailed when the numbers of a run fail. The first step
-    warns of a dt that is too large, as `cayspin run` does; refuse_unstable makes that a SceneError.
+    Lengths, times, fields and energies are in the units of the scene: reduced ones, or with
+    units = "SI" m, s, T and J.
+
+    Raises SceneError for a scene that cannot run here, CayspinError for other arguments and a
+    `restart` that does not fit.
     """
 
     def __init__(self, scene: Scene, precision: str = "double", space: str | None = None,
@@ -82,7 +86,14 @@ class Simulation:
             warnings.warn(warning, stacklevel=2)
 
     def step(self, n: int = 1) -> None:
-        """Takes n steps of dt, or fewer when an observer returns True."""
+        """Takes `n` steps of dt, or fewer when an observer returns True. The first step warns of a
+        dt that is too large, as `cayspin run` does.
+
+        Raises NumbersFailed when spins are not finite, leave the sphere or gain energy that nothing
+        gives, SceneError for a dt that integrator.refuse_unstable refuses, CayspinError without an
+        integrator or beyond the last possible step. An exception of an observer or of a field of
+        your own reaches you; the spins are then those of the last whole step.
+        """
         n = arguments.whole(n, "step")
         if not self._scene._scene.has_integrator:
             raise _cayspin.CayspinError("step: the scene has no integrator; accepted: relax()")
@@ -95,10 +106,15 @@ class Simulation:
 
     def run(self, until: float | None = None, output: str | os.PathLike | bool | None = None,
             overwrite: bool = False) -> None:
-        """Steps to time `until`, or to the scene's end, as `cayspin run` does.
+        """Steps to time `until`, in s in SI, or to the scene's end, as `cayspin run` does.
 
         Frames go into the HDF5 file `output`, or into the scene's output.file; output=False writes
-        none. The run ends early where the scene's until_torque or an observer says so.
+        none. `overwrite` replaces a file that is there. The run ends early where the scene's
+        until_torque or an observer says so.
+
+        Raises NumbersFailed and SceneError as step() does. Raises CayspinError for a time that has
+        passed or is no whole number of steps, for a scene without end, and for a file that is there
+        or cannot be written.
         """
         overwrite = arguments.flag(overwrite, "run: overwrite")
         if not self._scene._scene.has_integrator:
@@ -138,15 +154,18 @@ class Simulation:
               applied: Sequence[float] | None = None,
               keep_saddles: bool = False) -> Minimum:
         """Moves the spins to a state of least energy, without steps in time, as `cayspin relax`
-        does: until max |m x H| is below `torque`, or for so many evaluations of the field.
+        does. The search ends where max |m x H| is below `torque`, in the unit of H, T in SI. It
+        takes at most `evaluations` of the field of all sites.
 
-        `applied`, three numbers, takes the place of the scene's field.applied. A hysteresis is
-        [sim.relax(applied=h) and sim.magnetization() for h in fields]: each search begins at the
-        state before. Otherwise H is that at the time now. Time and steps stay as they are.
-        With `keep_saddles` a state without torque is enough, a saddle too.
+        `applied`, three numbers in the unit of H, takes the place of the scene's field.applied. A
+        hysteresis is [sim.relax(applied=h) and sim.magnetization() for h in fields]: each search
+        begins at the state before. Otherwise H is that at the time now. Time and steps stay as they
+        are. With `keep_saddles` a state without torque is enough, a saddle too.
 
-        The scene needs no integrator. Raises NumbersFailed for a field that is not finite,
-        SceneError for rigid bodies and temperatures. Ctrl-C leaves the spins on their way.
+        The scene needs no integrator. After Ctrl-C the spins hold the last state of the search.
+
+        Raises NumbersFailed for a field that is not finite, SceneError for rigid bodies and
+        temperatures, CayspinError for other arguments.
         """
         if applied is not None:
             applied = arguments.numbers(applied, "relax: applied")
@@ -161,27 +180,43 @@ class Simulation:
 
     def modes(self, count: int = 8, tolerance: float = 1e-9,
               evaluations: int = 100000) -> Modes:
-        """The slowest normal modes about the spins, which have to be at rest: call relax() before.
-        The spins move by the real part of shape e^((i frequency - decay) t), with frequency in
-        radians. `tolerance` is the error of the shapes; frequencies are more accurate.
+        """Finds the `count` slowest normal modes, at most 128, about the spins. These are taken to
+        be in equilibrium: call relax() before. They move by the real part of
+        shape e^((i w - decay) t), with w the angular frequency, 2 pi frequency in SI.
+
+        `tolerance` is the relative error of the shapes; frequencies are more accurate. The search
+        takes at most `evaluations` of the field of all sites.
+
+        Raises CayspinError for other arguments, SceneError for rigid bodies, temperatures and spins
+        that neither precess nor are damped.
         """
         *numbers, shapes, converged, cost = self._run.modes(
             arguments.whole(count, "modes: count"), arguments.real(tolerance, "modes: tolerance"),
             arguments.whole(evaluations, "modes: evaluations"))
         parts = np.array(shapes).reshape((len(shapes), *self._run.spins().shape, 2))
-        return Modes(*(np.array(each) for each in numbers), parts[..., 0] + 1j * parts[..., 1],
-                     converged, cost)
+        cell_sites = self._scene._scene.cell_sites
+        shape = parts[..., 0] + 1j * parts[..., 1]
+        if cell_sites > 1 and len(shapes):
+            shape = np.stack([sites.by_site(one, cell_sites) for one in shape])
+        return Modes(*(np.array(each) for each in numbers), shape, converged, cost)
 
     def set(self, keys: str | dict[str, Any], value: Any = None) -> None:
-        """Goes on with other keys of the scene, from the spins, time and steps now:
-        set("field.applied", [0.1, 0, 0]), set({"system.damping": 0.02, "integrator.dt": 0.01}),
-        set({"integrator": {"method": "tsit5", "tolerance": 1e-6, "end": 50}}).
+        """Goes on with other keys of the scene, from the spins, time and steps now. `keys` is one
+        key with its `value`, or a dict of keys or tables:
 
-        They are changed as by a table [[stage]] of a scene, with the same rules: integrator.method
+            sim.set("field.applied", [0.1, 0, 0])
+            sim.set({"system.damping": 0.02, "integrator.dt": 0.01})
+            sim.set({"integrator": {"method": "tsit5", "tolerance": 1e-6, "end": 50}})
+
+        Units are the scene's, and numbers of sites may be arrays (nz, ny, nx).
+
+        Keys are changed as by a table [[stage]] of a scene, with the same rules. integrator.method
         begins a new [integrator], and its end or steps are counted from now. Where no integrator is
         among the keys, run() goes on for as long again as the scene did. Methods that remember
-        earlier steps begin again. Numbers of sites may be arrays. Raises SceneError for keys that
-        stay as they are, such as those of lattice, and for what cannot be; nothing is changed then.
+        earlier steps begin again.
+
+        Raises SceneError for keys that stay as they are, such as those of lattice, and for wrong
+        values, CayspinError for other arguments; nothing is changed then.
         """
         changes = {arguments.word(keys, "set"): value} if isinstance(keys, str) else keys
         if not isinstance(changes, dict):
@@ -196,8 +231,11 @@ class Simulation:
         self._dt_is_checked = False
 
     def save(self, checkpoint: str | os.PathLike) -> None:
-        """Stores all that Simulation(scene, restart=checkpoint) needs to go on with the same bits.
-        A file of that name is replaced as a whole."""
+        """Stores in the file `checkpoint` all that Simulation(scene, restart=checkpoint) needs to
+        go on with the same bits. A file of that name is replaced as a whole.
+
+        Raises CayspinError where it cannot be written.
+        """
         self._run.save(arguments.file_name(checkpoint, "save"))
 
     def _check_dt(self):
@@ -222,8 +260,11 @@ class Simulation:
                 return
 
     def observe(self, every: int, f: Callable[[Simulation], Any]) -> None:
-        """Calls f(simulation) after each step whose number is a multiple of `every`. Where it
-        returns True, the current step(n) or run() ends."""
+        """Calls the function `f` with this simulation after each step whose number is a multiple of
+        `every`. Where it returns True, the current step(n) or run() ends.
+
+        Raises CayspinError for an `every` below 1, and for what is no function.
+        """
         every = arguments.whole(every, "observe: every")
         if not callable(f):
             raise _cayspin.CayspinError(f"observe: a {type(f).__name__}; accepted: a function")
@@ -232,9 +273,12 @@ class Simulation:
         self._observers.append((every, f))
 
     def averages(self, every: int, window: int | None = None) -> Averages:
-        """Running means of magnetizations and energies with their errors: looks after each step
-        whose number is a multiple of `every`, from now on. With `window` they are over that many
-        latest looks, otherwise over all since the last restart() of what is returned."""
+        """Begins running means of magnetizations and energies, with their errors. Samples are taken
+        after each step whose number is a multiple of `every`, from now on. With `window` the means
+        are over that many latest samples, otherwise over all since the result's last restart().
+
+        Raises CayspinError for an `every` or a `window` below 1.
+        """
         if window is not None:
             window = arguments.whole(window, "averages: window")
             if window < 1:
@@ -248,9 +292,10 @@ class Simulation:
         """The spins now, (nz, ny, nx, 3), of a crystal with several sites in a cell
         (site, nz, ny, nx, 3): a read-only view of the library's memory, no copy.
 
-        A view never changes. When the simulation goes on while someone holds one, it moves to
-        other memory. Assigning to `spins` sets them: any array that broadcasts to the shape,
-        normalised. Methods that remember earlier steps begin again.
+        A view never changes: a simulation that goes on while you hold one moves to other memory.
+        Assigning to `spins` copies and normalises any array that broadcasts to the shape, and
+        methods that remember earlier steps begin again. Raises CayspinError for another shape, and
+        for vectors that are zero or not finite.
         """
         return sites.by_site(self._run.spins(), self._scene._scene.cell_sites)
 
@@ -266,9 +311,12 @@ class Simulation:
         self._run.set_spins(sites.by_plane(values, self._scene._scene.cell_sites))
 
     def plot(self, axes: Any = None, **options: Any) -> Any:
-        """Draws the spins now into matplotlib axes, which it returns. Options are those of
-        cayspin.texture.draw: plane="z=0", quantity="charge", colors="safe", before=other_spins.
-        Raises CayspinError for other planes and words."""
+        """Draws the spins now into matplotlib `axes` (default: new ones), which it returns. Options
+        are those of texture.draw(): plane="z=0", quantity="charge", colors="safe",
+        before=other_spins.
+
+        Raises CayspinError for a plane or a word that is not there.
+        """
         try:
             return texture.draw(self._texture(), axes, **options)
         except ValueError as error:
@@ -286,20 +334,24 @@ class Simulation:
                                texture.time_text(self.time, si))
 
     def field(self) -> np.ndarray:
-        """The effective field H of every site now, in the shape of the spins, read-only."""
+        """The effective field H of every site now, (nz, ny, nx, 3), of a crystal with several sites
+        in a cell (site, nz, ny, nx, 3), in T in SI; read-only. Raises CayspinError for rigid
+        bodies."""
         return sites.by_site(self._run.field(), self._scene._scene.cell_sites)
 
     def energy(self) -> float:
-        """The energy, summed over sites; of rigid bodies that of their rotation."""
+        """The energy, summed over sites, in the scene's unit, J in SI; of rigid bodies that of
+        their rotation."""
         return self._run.sample()[0]
 
     def energies(self) -> dict[str, float]:
-        """The energy of each term of the scene: exchange, dmi, anisotropy, applied, slab_demag,
-        demag, dipoles, nonlocal; of rigid bodies: rotation."""
+        """The energy of each term of the scene, summed over sites, in the scene's unit, J in SI:
+        exchange, dmi, anisotropy, applied, slab_demag, demag, dipoles, nonlocal and others; of
+        rigid bodies rotation."""
         return self._run.energies()
 
     def magnetization(self) -> np.ndarray:
-        """The mean spin, (3,)."""
+        """The mean spin, (3,), weighted by the moments of the sites."""
         return np.array(self._run.sample()[2])
 
     def sublattice_magnetization(self) -> np.ndarray:
@@ -310,17 +362,17 @@ class Simulation:
         return spins.sum((1, 2, 3), np.float64) / np.maximum(count, 1)[:, None]
 
     def norm_defect(self) -> float:
-        """The largest | |m| - 1 | of all sites."""
+        """The largest | |m| - 1 | of all sites, dimensionless."""
         return self._run.sample()[1]
 
     @property
     def time(self) -> float:
-        """The time now: steps times dt."""
+        """The time now, in the scene's unit, s in SI."""
         return self._run.time
 
     @property
     def steps(self) -> int:
-        """Steps taken."""
+        """Steps of dt taken since the time 0."""
         return self._run.steps
 
     @property
@@ -330,12 +382,12 @@ class Simulation:
 
     @property
     def step_seconds(self) -> float:
-        """Seconds spent on stepping so far."""
+        """Seconds of stepping so far, without observers and files."""
         return self._run.step_seconds
 
     @property
     def scene(self) -> Scene:
-        """The scene that runs."""
+        """The scene that runs, with the keys that set() has changed."""
         return self._scene
 
     @property
@@ -345,7 +397,7 @@ class Simulation:
 
     @property
     def space(self) -> str:
-        """The execution space."""
+        """The execution space, as in "openmp"."""
         return self._run.space
 
     @property

@@ -66,17 +66,28 @@ def _options(precision, space, threads):
 
 
 class Trade(list):
-    """A list of dicts, one for each run: method, baseline, dt or tolerance, error (the largest
-    distance of any spin), seconds, evaluations, front. pandas.DataFrame(trade) takes it."""
+    """Result of trade(): a list of dicts, one for each run. pandas.DataFrame(trade) takes it.
+
+    - `method`, and `baseline`: whether it is one
+    - `dt`, in the scene's unit, or `tolerance`, in radians
+    - `error`: the largest distance of any spin, dimensionless
+    - `seconds` of stepping, and `evaluations` of the field of all sites
+    - `front`: whether no other run has less error in less time
+    """
 
     def __init__(self, answer: dict):
         super().__init__({"method": method["method"], "baseline": method["baseline"], **rung}
                          for method in answer["methods"] for rung in method["rungs"])
-        self.horizon: float = answer["horizon"]  #: the time up to which errors are known
+        #: the time up to which errors hold, in the scene's unit
+        self.horizon: float = answer["horizon"]
 
     def plot(self, axes: Any = None, cost: str = "seconds"):
-        """Draws error over `cost` ("seconds" or "evaluations") into matplotlib axes, which it
-        returns. Methods on the Pareto front have names."""
+        """Draws error over `cost` ("seconds" or "evaluations") into matplotlib `axes` (default: new
+        ones), which it returns. Methods on the Pareto front have names. Raises CayspinError for
+        another `cost`.
+        """
+        if cost not in ("seconds", "evaluations"):
+            raise CayspinError(f'plot: cost {cost!r}; accepted: "seconds" or "evaluations"')
         if axes is None:
             import matplotlib.pyplot
 
@@ -98,36 +109,46 @@ class Trade(list):
 
 @dataclasses.dataclass
 class Advice:
-    """The cheapest method for an error, and its steps."""
+    """Result of advise(): the cheapest method for an error, and its steps."""
 
-    method: str
-    error: float  #: predicted
-    seconds: float  #: predicted, of the whole run
+    method: str  #: its word in a scene
+    error: float  #: predicted largest distance of any spin, dimensionless
+    seconds: float  #: predicted seconds of the whole run
     memory: int  #: bytes
-    precision: str
-    dt: float
-    steps: int
-    tolerance: float | None  #: of adaptive methods
-    warning: str | None  #: what is too large about dt, as `run` warns
-    horizon: float  #: the time up to which the error is predicted
+    precision: str  #: "double" or "single"
+    dt: float  #: the step, in the scene's unit
+    steps: int  #: of the whole run
+    tolerance: float | None  #: of adaptive methods, in radians
+    warning: str | None  #: what is too large about dt, as `cayspin run` warns
+    horizon: float  #: the time up to which the error is predicted, in the scene's unit
     units: str  #: of dt and horizon, the scene's: "reduced" or "SI"
     space: str  #: the execution space in which `seconds` holds
-    threads: int  #: as many as that takes
+    threads: int  #: the number of its threads
     scene: Scene  #: with the method and its steps: Simulation(advice.scene, advice.precision)
     others: list[dict]  #: method and seconds of the next ones
 
 
 def trade(scene: Scene, seconds: float = 10, precision: str | None = None,
           space: str | None = None, threads: int | None = None) -> Trade:
-    """Runs every method that can run the scene, each for at most `seconds`. Takes minutes."""
+    """Runs every method that can run the `scene`, each for at most `seconds`, as `cayspin trade`
+    does: it takes minutes. `precision`, `space` and `threads` are those of Simulation; by default
+    both precisions and the program's space and threads.
+
+    Raises CayspinError for a scene that the program cannot run, as one with functions or arrays.
+    """
     return Trade(_ask("trade", scene, "--seconds", repr(arguments.real(seconds, "seconds")),
                       *_options(precision, space, threads)))
 
 
 def advise(scene: Scene, error: float, precision: str | None = None, space: str | None = None,
            threads: int | None = None) -> Advice:
-    """The cheapest method for a largest distance `error` of any spin, 1e-13 to 1, seen at a dozen
-    times from the first step on. Raises NumbersFailed where no method gets there."""
+    """Finds the cheapest method that runs the `scene` with a largest distance `error` of any spin,
+    1e-13 to 1, at a dozen times from the first step on, as `cayspin advise` does. `precision`,
+    `space` and `threads` are as of trade().
+
+    Raises NumbersFailed where no method gets there, CayspinError for a scene that the program
+    cannot run, as one with functions or arrays.
+    """
     answer = _ask("advise", scene, "--error", repr(arguments.real(error, "error")),
                   *_options(precision, space, threads))
     return Advice(scene=scene._with(answer.pop("overrides")), **answer)

@@ -27,19 +27,21 @@ class _Frames:
 
 
 class Trajectory:
-    """An open trajectory file. Its members are read when they are indexed: trajectory.spins[-1].
+    """An open trajectory file, from open(). Its arrays are read when they are indexed:
+    trajectory.spins[-1]. Use it in a `with`, or call close(). Numbers are in the units of the
+    scene.
 
-    spins (frame, nz, ny, nx, 3); time, step, energy, norm_defect (frame); magnetization (frame, 3);
-    scalars: the same names at the samples, and where the scene asks for them region_magnetization
-    (sample, region, 3), region_energy (sample, region) and term_energy (sample, term), whose names
-    `terms` has. Use it in a `with`, or call close().
+    - `spins`: (frame, nz, ny, nx, 3), of a crystal with several sites in a cell
+      (frame, site, nz, ny, nx, 3)
+    - `time`, `step`: (frame)
+    - `energy`, summed over sites, and `norm_defect`, the largest | |m| - 1 |: (frame)
+    - `magnetization`: the mean spin, (frame, 3)
+    - `sublattice_magnetization`: (frame, site, 3), of a crystal with several sites in a cell
+    - `positions`: in the shape of a frame of the spins, where the sites are on no rectangular grid
+    - `shift`: (frame), the cells by which a lattice with lattice.follow has moved
+    - `stage`: (frame), of a run in stages
 
-    Of crystals with several sites in a cell: spins (frame, site, nz, ny, nx, 3),
-    sublattice_magnetization (frame, site, 3). Where the sites are on no rectangular grid:
-    positions, in the shape of a frame of the spins.
-
-    Of lattices that follow: shift (frame) and scalars["shift"], the cells by which they moved.
-    Of a run in stages: stage (frame).
+    Raises AttributeError for an array that the file does not have.
     """
 
     _names = ("spins", "time", "step", "energy", "norm_defect", "magnetization")
@@ -50,10 +52,10 @@ class Trajectory:
     def __init__(self, path: str | os.PathLike):
         import h5py
 
-        self.path = arguments.file_name(path, "open")
+        self.path: str = arguments.file_name(path, "open")  #: name of the file
         complete_file(self.path)
         try:
-            self.file = h5py.File(self.path, "r")
+            self.file: Any = h5py.File(self.path, "r")  #: the open h5py.File
         except (OSError, ValueError) as error:
             reason = " ".join(str(error).split())
             raise CayspinError(f"{self.path}: cannot be opened: {reason}") from None
@@ -65,7 +67,10 @@ class Trajectory:
             self.file.close()
             raise CayspinError(f"{self.path}: no trajectory, it has no {missing[0]}; accepted: a "
                                "file that cayspin wrote")
-        self.scalars = {name: self.file["scalars"][name] for name in self.file["scalars"]}
+        #: the same names at the samples, and where the scene asks for them region_magnetization,
+        #: (sample, region, 3), region_energy, (sample, region), and term_energy, (sample, term)
+        self.scalars: dict[str, Any] = {name: self.file["scalars"][name]
+                                        for name in self.file["scalars"]}
 
     def __getattr__(self, name: str) -> Any:
         if name in self._names:
@@ -120,7 +125,10 @@ class Trajectory:
 
     def topological_charge(self, boundary: Sequence[str] | None = None) -> np.ndarray:
         """The topological charge of each plane, (frame, nz), of a crystal (frame, site, nz), as
-        cayspin.topological_charge says; `boundary` is that of the scene."""
+        cayspin.topological_charge() says. `boundary` is that of the scene by default.
+
+        Raises CayspinError for another `boundary`, and without one before Python 3.11.
+        """
         if boundary is None:
             boundary = self._lattice("boundary", "open", "boundary")[:2]
         return np.stack([observables.topological_charge(self.file["spins"][frame], boundary)
@@ -128,9 +136,12 @@ class Trajectory:
 
     def dispersion(self, path: Any, frames: slice = slice(None),
                    **options: Any) -> observables.Dispersion:
-        """S(k, w) along a path of wave vectors, of these frames, as cayspin.dispersion says.
-        Boundaries, the cell and the positions in it are those of the scene.
-        Raises CayspinError also for frames that are not at equal steps of time."""
+        """S(k, w) along a `path` of wave vectors, of the `frames` of a slice, as
+        cayspin.dispersion() says, whose other options it takes. Boundaries, the cell and the
+        positions in it are those of the scene by default.
+
+        Raises CayspinError as there, and for frames that are not at equal steps of time.
+        """
         if not isinstance(frames, slice):
             raise CayspinError(f"dispersion: frames {frames!r}; accepted: a slice")
         try:
@@ -158,12 +169,13 @@ class Trajectory:
 
     def plot(self, frame: int = -1, axes: Any = None, *, difference_to: int | None = None,
              **options: Any) -> Any:
-        """Draws the spins of a frame into matplotlib axes, which it returns: films and planes as
-        colours with arrows, crystals by their sites, chains as lines. `difference_to`: another
-        frame, and |difference| is drawn. Lengths are in the units of the scene.
+        """Draws the spins of a `frame` into matplotlib `axes` (default: new ones), which it
+        returns: films and planes as colours with arrows, crystals by their sites, chains as lines.
+        `difference_to`: another frame, and |difference| is drawn. Frames count from 0, or from the
+        end below 0. Lengths are in the units of the scene.
 
-        Options are those of cayspin.texture.draw: plane="z=0", quantity="charge", colors="safe",
-        limit, key. Raises CayspinError for other frames, planes and words.
+        Options are those of texture.draw(): plane="z=0", quantity="charge", colors="safe", limit,
+        key. Raises CayspinError for a frame, plane or word that is not there.
         """
         frame = arguments.whole(frame, "plot: frame")
         if difference_to is not None:
@@ -175,7 +187,8 @@ class Trajectory:
             raise CayspinError(f"{self.path}: {error}") from None
 
     def to_xarray(self):
-        """An xarray.Dataset of the frames, whose variables are read when they are used."""
+        """An xarray.Dataset of the frames, whose variables are read when they are used. Raises
+        ImportError without xarray."""
         import xarray
         from xarray.backends import BackendArray
         from xarray.core import indexing
@@ -221,7 +234,8 @@ class Trajectory:
     def __exit__(self, *_):
         self.close()
 
-    def __len__(self):
+    def __len__(self) -> int:
+        """The number of whole frames; a killed run may have written part of another."""
         names = (*self._names, "sublattice_magnetization", "shift", "stage")
         return builtins.min(len(self.file[name]) for name in names if name in self.file)
 
@@ -233,8 +247,10 @@ class Trajectory:
 
 
 def open(path: str | os.PathLike) -> Trajectory | Ensemble:
-    """Opens the file of a run, or of an ensemble. Raises CayspinError when it is none. Needs
-    h5py."""
+    """Opens the file `path` of a run, or of an ensemble. It needs h5py.
+
+    Raises CayspinError for a file that cannot be opened, or is neither.
+    """
     import h5py
 
     from cayspin.texture.replica import is_ensemble

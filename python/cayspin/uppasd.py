@@ -117,7 +117,7 @@ def _both_ends(file, cell, names, posfiletype, maptype, sym):
         if not is_bond:
             place = ", ".join(f"{part:g}" for part in vector)
             file.refuse(line, f"no atom of the type of site {j + 1} is at ({place}) from one of "
-                        f"the type of site {i + 1}", "vectors between atoms of posfile, in its unit")
+                        f"the type of site {i + 1}", "vectors between atoms of posfile")
     return found
 
 
@@ -171,25 +171,28 @@ def read_uppasd(jfile: str | os.PathLike, *, posfile: str | os.PathLike | None =
             initial={"uniform": [0, 0, 1]})
 
     `jfile` has lines of site, site, x, y, z and J in mRy, `dmfile` of D_x, D_y, D_z in place of J.
-    `posfile` (default: one atom at 0) and `momfile` are those of the cell, whose three vectors
-    `cell` has (default: unit vectors). `posfiletype`, `maptype` and `sym` are the keys of these
-    names in inpsd.dat: "C" or "D" for Cartesian numbers or multiples of the cell's vectors, 1 for
-    vectors between atoms or 2 for cells between them, and 0 to 3 for no symmetry, cubic, cubic in
-    the plane, hexagonal. As there, a line is for all atoms of the types of its two sites, and `sym`
-    turns only J.
+    `posfile` has the atoms of the cell (default: one at 0), `momfile` their moments, and `cell` its
+    three vectors (default: unit vectors), all in units of alat. The others are keys of inpsd.dat:
+
+    - `posfiletype`: "C" for Cartesian numbers, "D" for multiples of the cell's vectors
+    - `maptype`: 1 for vectors between atoms, 2 for the cells between them
+    - `sym`: 0 for none, 1 cubic, 2 cubic in the plane, 3 hexagonal; it turns only J
+
+    As there, a line is for all atoms of the types of its two sites.
 
     UppASD counts each bond in both orders, so J and D of the result are twice those of the files.
-    Each bond is in it once, with the mean of its two ends. `dm_sign` is the sign of its energy
-    D.(m x m'): -1 in its manual and up to version 6.0.2, where later ones may have 1.
+    Each bond is in the result once, with the mean of its two ends. `dm_sign` is the sign of
+    D.(m x m') in UppASD's energy: -1 in its manual and up to version 6.0.2, 1 in its source of
+    August 2026.
 
     Returns {"lattice": {"cell", "basis"}, "field": {"couplings"}} and, with `momfile`,
     "material": {"mu_s"}. Energies are { mRy = .. } and moments { bohr_magnetons = .. } for
     units = "SI"; `unit`, in mRy, gives plain numbers over it for a scene in reduced units, with
     lattice.moments in Bohr magnetons.
 
-    Raises CayspinError, with file and line, for what is no such file or has alloys, for a bond with
-    only one end, for ends that differ by more than 1e-4 of the largest number, and for a vector
-    that leads to no atom within 0.05. Directions in `momfile` are not read.
+    Raises CayspinError, with file and line, for what is no such file, and for alloys. So it does
+    for a bond with only one end, or whose ends differ by more than 1e-4 of the largest number, and
+    for a vector that leads to no atom within 0.05. Directions in `momfile` are not read.
     """
     posfiletype = arguments.word(posfiletype, "read_uppasd: posfiletype")
     if posfiletype not in ("C", "D"):

@@ -92,6 +92,19 @@ class Arrays(PackageTest):
                             lattice={"frozen": {"given": True}})
 
 
+class Modes(PackageTest):
+    def test_shapes_have_the_sites_first(self):
+        """Only spins of the second site and of the plane k = 1 move."""
+        frozen = "s == 0 || k != 1"
+        of = scene({"shape": [3, 2, 2], "frozen": frozen}, initial={"uniform": [0, 0, 1]},
+                   field={"applied": [0, 0, 1]})
+        shape = cayspin.Simulation(of).modes(1).shape
+        self.assertEqual(shape.shape, (1, *of.shape, 3))
+        moving = np.abs(shape[0]).max(-1) > 1e-9
+        self.assertTrue(moving.any())
+        self.assertFalse(moving[0].any() or moving[1, 0].any())
+
+
 class Grains(PackageTest):
     def test_the_values_of_expressions(self):
         solid = scene({"shape": [7, 4, 3]})

@@ -238,7 +238,8 @@ def largest(texture: Texture, *, plane: str | None = None, quantity: str = "spin
 def draw(texture: Texture, axes: Any = None, *, plane: str | None = None,
          quantity: str = "spins", colors: str = "hue", before: np.ndarray | None = None,
          limit: float | None = None, key: bool | None = None) -> Any:
-    """Draws a texture into matplotlib axes (None: those of a new figure), which it returns.
+    """Draws a `texture`, as Simulation.plot() and Trajectory.plot() make one, into matplotlib
+    `axes` (None: those of a new figure), which it returns.
 
     `plane`: "z=0", "y=3" and so on, numbers of planes from 0 (default: the middle one across the
     axis of fewest cells). One site across is a chain: components over it, and a strip of colours.

@@ -16,8 +16,8 @@ LONGEST_END = 90  # seconds: more than the server gives its run
 
 
 class View:
-    """A page, which a notebook shows in its output. A process of its own serves it, because HDF5
-    is not for several threads. `address` opens in any browser of this machine."""
+    """Result of view(): a page, which a notebook shows in its output. A process of its own serves
+    it, because HDF5 is not for several threads."""
 
     def __init__(self, path: str | os.PathLike):
         from cayspin import arguments
@@ -30,7 +30,7 @@ class View:
             self._server = subprocess.Popen(
                 command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=messages, text=True,
                 env={**os.environ, "CAYSPIN_PROGRAM": program()}, start_new_session=True)
-            self.address = ""
+            self.address: str = ""  #: for any browser of this machine
             if select.select([self._server.stdout], [], [], LONGEST_START)[0]:
                 self.address = self._server.stdout.readline().strip()
             if not self.address:
@@ -59,6 +59,9 @@ class View:
 
 
 def view(path: str | os.PathLike) -> View:
-    """Shows a trajectory file, or starts the run of a scene file and shows it. Needs h5py and
-    tornado. Raises CayspinError for other files."""
+    """Shows the trajectory file `path`, or starts the run of a scene file and shows it. It needs
+    h5py and tornado.
+
+    Raises CayspinError for other files, and where the page does not start.
+    """
     return View(path)
