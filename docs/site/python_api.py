@@ -188,7 +188,8 @@ def things() -> Dict[str, List[Thing]]:
 
 
 def markdown(doc):
-    """A docstring, whose indented blocks are code."""
+    """A docstring, whose indented blocks are code and whose named pages are links."""
+    doc = re.sub(r"docs/reference/(\w+\.md)", r"[\1](\1)", doc)
     lines, block = [], []
     for line in [*inspect.cleandoc(doc).split("\n"), "end"]:
         if line.startswith("    ") or (block and not line):

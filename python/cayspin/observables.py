@@ -55,7 +55,7 @@ class Dispersion:
         """The angular frequency of the largest intensity at each wave vector, (k,)."""
         return self.frequency[self.intensity.argmax(axis=1)]
 
-    def plot(self, axes: Any = None):
+    def plot(self, axes: Any = None) -> Any:
         """Draws the logarithm of S(k, w) into matplotlib `axes` (default: new ones), which it
         returns. Raises ImportError without matplotlib."""
         if axes is None:

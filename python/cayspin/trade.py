@@ -81,7 +81,7 @@ class Trade(list):
         #: the time up to which errors hold, in the scene's unit
         self.horizon: float = answer["horizon"]
 
-    def plot(self, axes: Any = None, cost: str = "seconds"):
+    def plot(self, axes: Any = None, cost: str = "seconds") -> Any:
         """Draws error over `cost` ("seconds" or "evaluations") into matplotlib `axes` (default: new
         ones), which it returns. Methods on the Pareto front have names. Raises CayspinError for
         another `cost`.

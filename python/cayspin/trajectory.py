@@ -186,7 +186,7 @@ class Trajectory:
         except ValueError as error:
             raise CayspinError(f"{self.path}: {error}") from None
 
-    def to_xarray(self):
+    def to_xarray(self) -> Any:
         """An xarray.Dataset of the frames, whose variables are read when they are used. Raises
         ImportError without xarray."""
         import xarray

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from typing import Any, Sequence
 
@@ -48,6 +49,19 @@ class _Cell:
         if posfiletype == "C":
             fractions = fractions @ self.inverse
         self.fractions, self.places = fractions, fractions @ self.vectors
+        self._fill_bins()
+
+    def _fill_bins(self):
+        """Divides the cell into bins; an atom is in each bin from which it is at most NEAR away."""
+        spans = 1 / np.linalg.norm(self.inverse, axis=0)  # between opposite faces of the cell
+        self.counts = np.clip(spans / (4 * NEAR), 1, 1e6).astype(int)
+        self.bins: dict = {}
+        for atom, place in enumerate(self.fractions):
+            ends = [np.floor((place + reach) * self.counts).astype(int)
+                    for reach in (-NEAR / spans, NEAR / spans)]
+            touched = itertools.product(*(range(low, high + 1) for low, high in zip(*ends)))
+            for key in {tuple(one) for one in (np.array(list(touched)) % self.counts).tolist()}:
+                self.bins.setdefault(key, []).append(atom)
 
     @staticmethod
     def _read(posfile):
@@ -73,13 +87,18 @@ class _Cell:
     def bonds(self, i, j, vector):
         """All (site, site, offset) from atoms of the type of i to those of the type of j, which are
         at this vector from them."""
-        ends = np.flatnonzero(self.types == self.types[j])
-        for start in np.flatnonzero(self.types == self.types[i]):
-            cells = self.fractions[start] + vector @ self.inverse - self.fractions[ends]
-            whole = np.rint(cells)
-            distances = np.linalg.norm((cells - whole) @ self.vectors, axis=1)
-            for n in np.flatnonzero(distances < NEAR):
-                yield int(start), int(ends[n]), tuple(int(number) for number in whole[n])
+        starts = np.flatnonzero(self.types == self.types[i])
+        targets = self.fractions[starts] + vector @ self.inverse
+        keys = np.floor(targets * self.counts).astype(int) % self.counts
+        near = [(n, end) for n, key in enumerate(keys.tolist())
+                for end in self.bins.get(tuple(key), ())]
+        rows, ends = np.array(near, int).reshape(-1, 2).T
+        cells = targets[rows] - self.fractions[ends]
+        whole = np.rint(cells)
+        distances = np.linalg.norm((cells - whole) @ self.vectors, axis=1)
+        is_bond = (distances < NEAR) & (self.types[ends] == self.types[j])
+        for row, end, offset in zip(rows[is_bond], ends[is_bond], whole[is_bond].astype(int)):
+            yield int(starts[row]), int(end), tuple(offset.tolist())
 
 
 def _orbit(vector, generators):

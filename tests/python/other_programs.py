@@ -139,6 +139,16 @@ class UppasdFiles(Files):
         found = self.pairs("1 1 0.3 0 0 2.0\n2 1 -0.3 0 0 2.0\n", posfile=posfile, unit=4)
         self.assertEqual(found, [{"between": [0, 1], "offset": [0, 0, 0], "J": 1.0}])
 
+    def test_positions_and_vectors_of_few_digits(self):
+        """A row of atoms at up to 0.02 from whole numbers, and vectors of whole numbers."""
+        places = np.arange(40) + np.random.default_rng(3).uniform(-0.02, 0.02, 40)
+        posfile = self.file(text_of((n + 1, 1, place, 0, 0) for n, place in enumerate(places)),
+                            "posfile")
+        found = self.pairs("1 1 1 0 0 1\n1 1 -1 0 0 1\n", posfile=posfile,
+                           cell=np.diag([40, 1, 1]))
+        self.assertEqual([(*pair["between"], pair["offset"][0]) for pair in found],
+                         [(n, (n + 1) % 40, n // 39) for n in range(40)])
+
     def test_ends_that_differ_by_their_last_digit(self):
         found = self.pairs("1 1 1 0 0 2.0001\n1 1 -1 0 0 2.0003\n", unit=1)
         self.assertAlmostEqual(found[0]["J"], 4.0004, delta=1e-15)
@@ -164,6 +174,8 @@ class UppasdFiles(Files):
                 ("1 1 0 0 0 0.5\n", "jfile:1: couples an atom to itself", {}),
                 ("1 2 1 0 0 0.5\n", "jfile:1: site 2 of a cell of 1; accepted: 1 to 1", {}),
                 ("1 1 0.4 0 0 0.5\n", "is at (0.4, 0, 0) from one of the type of site 1", {}),
+                ("1 1 0.5 0 0 0.5\n", "jfile:1: no atom of the type of site 1 is at (0.5, 0, 0)",
+                 {"posfile": self.file("1 1 0 0 0\n2 2 0.5 0 0\n", "two")}),
                 ("1 1 1 0 0 nan\n", "jfile:1: J nan; accepted: a finite number", {}),
                 ("x 1 1 0 0 1\n", "jfile:1: 0 numbers", {}),
                 ("1.5 1 1 0 0 1\n", "jfile:1: site 1.5; accepted: a whole number", {}),
