@@ -13,7 +13,8 @@ from cayspin import arguments
 from cayspin._cayspin import CayspinError
 from cayspin.bonds import File, as_float, couplings, reversed_bond, unit_of
 
-NEAR = 0.05  # of a length of the cell: how far from its atom a vector may point
+NEAR = 0.05  # how far from its atom a vector may point, in units of alat
+MOST_CELLS = 1e6  # in a vector or a position
 
 _TURN_X = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
 _TURN_Z = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]])
@@ -43,22 +44,28 @@ class _Cell:
         if self.vectors.shape != (3, 3) or not abs(np.linalg.det(self.vectors)) > 0:
             raise CayspinError("read_uppasd: cell: no volume; accepted: three vectors")
         self.inverse = np.linalg.inv(self.vectors)
+        self.spans = 1 / np.linalg.norm(self.inverse, axis=0)  # between opposite faces
+        if not self.spans.min() >= 4 * NEAR:
+            raise CayspinError(f"read_uppasd: cell: opposite faces are {self.spans.min():g} apart; "
+                               f"accepted: at least {4 * NEAR:g}, in units of alat")
         atoms = [(1, np.zeros(3))] if posfile is None else self._read(posfile)
         self.types = np.array([kind for kind, _ in atoms])
         fractions = np.array([place for _, place in atoms])
         if posfiletype == "C":
             fractions = fractions @ self.inverse
+        if not np.abs(fractions).max() <= MOST_CELLS:
+            raise CayspinError(f"{posfile}: an atom at {np.abs(fractions).max():g} cells; accepted: "
+                               f"at most {MOST_CELLS:g}")
         self.fractions, self.places = fractions, fractions @ self.vectors
         self._fill_bins()
 
     def _fill_bins(self):
         """Divides the cell into bins; an atom is in each bin from which it is at most NEAR away."""
-        spans = 1 / np.linalg.norm(self.inverse, axis=0)  # between opposite faces of the cell
-        self.counts = np.clip(spans / (4 * NEAR), 1, 1e6).astype(int)
+        self.counts = np.minimum(self.spans / (4 * NEAR), 1e6).astype(int)
         self.bins: dict = {}
         for atom, place in enumerate(self.fractions):
             ends = [np.floor((place + reach) * self.counts).astype(int)
-                    for reach in (-NEAR / spans, NEAR / spans)]
+                    for reach in (-NEAR / self.spans, NEAR / self.spans)]
             touched = itertools.product(*(range(low, high + 1) for low, high in zip(*ends)))
             for key in {tuple(one) for one in (np.array(list(touched)) % self.counts).tolist()}:
                 self.bins.setdefault(key, []).append(atom)
@@ -123,6 +130,8 @@ def _both_ends(file, cell, names, posfiletype, maptype, sym):
             vector = cell.places[j] - cell.places[i] + vector @ cell.vectors
         elif posfiletype == "D":
             vector = vector @ cell.vectors
+        if not np.abs(vector @ cell.inverse).max() <= MOST_CELLS:
+            file.refuse(line, "a vector out of all cells", f"one of at most {MOST_CELLS:g} cells")
         is_bond = False
         for image in _orbit(vector, _GENERATORS[sym]):
             for key in cell.bonds(i, j, image):
