@@ -7,7 +7,7 @@ from typing import Any, Callable
 
 import numpy as np
 
-version: str  #: of the package, as in 0.1.0
+version: str  #: of the package, as in 0.2.0
 git_commit: str
 complete_file: Callable[[str | os.PathLike], None]
 
