@@ -18,6 +18,9 @@ ReadingTrial trial_of_files = nullptr;
 
 void set_trial(ReadingTrial trial) { trial_of_files = trial; }
 
+WithoutTrial::WithoutTrial() : before_(trial_of_files) { trial_of_files = nullptr; }
+WithoutTrial::~WithoutTrial() { trial_of_files = before_; }
+
 void try_before(std::filesystem::path const& path, std::function<void()> const& reading) {
   QuietErrors const quiet;
   if (trial_of_files) trial_of_files(path, reading);

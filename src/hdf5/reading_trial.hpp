@@ -16,4 +16,16 @@ using ReadingTrial = void (*)(std::filesystem::path const& path,
 /// not start processes. Call it before other threads read files.
 void set_trial(ReadingTrial trial);
 
+/// Scope without trials, for files that this program has just written. No other thread may read.
+class WithoutTrial {
+ public:
+  WithoutTrial();
+  ~WithoutTrial();
+  WithoutTrial(WithoutTrial const&) = delete;
+  WithoutTrial& operator=(WithoutTrial const&) = delete;
+
+ private:
+  ReadingTrial before_;
+};
+
 }  // namespace cayspin::inline v0_2::io

@@ -5,6 +5,7 @@
 #include "launch/launched_ranks.hpp"
 #include "read_in_child.hpp"
 #include "simulation/command_line.hpp"
+#include "sweep/worker.hpp"
 
 #include <cayspin/version.hpp>
 
@@ -159,5 +160,8 @@ int perform(int count, char** given) {
 }  // namespace cayspin::program
 
 int main(int argc, char** argv) {
+  using namespace cayspin::program;
+  if (argc == 4 && std::string_view(argv[1]) == sweep::worker_word)
+    return sweep::work(argv[2], argv[3], perform);
   return cayspin::simulation::perform_and_report(cayspin::program::perform, argc, argv);
 }

@@ -4,6 +4,7 @@
 #include "io/checkpoint.hpp"
 #include "io/notes.hpp"
 #include "io/stages.hpp"
+#include "kokkos_of_command.hpp"
 #include "run_ensemble.hpp"
 #include "run_stages.hpp"
 #include "simulation/failure.hpp"
@@ -144,7 +145,7 @@ int run(RunOptions const& options, Ranks& ranks) {
     return run_ensemble(typed, options, options.listener);
   }
   auto const space = ranks.together([&] { return chosen_space(options.space); });
-  KokkosSession const kokkos(space, threads_of_rank(options, ranks), options.device);
+  KokkosOfCommand const kokkos(space, threads_of_rank(options, ranks), options.device);
   auto left = ranks.together(
       [&] { return options.restart ? std::make_unique<EarlierRun>(*options.restart) : nullptr; });
   auto const scene = with_method(typed, left.get(), options, space, ranks);

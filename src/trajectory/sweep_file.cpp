@@ -10,8 +10,13 @@
 #include "sweep_format.hpp"
 
 #include <array>
+#include <cstdint>
+#include <exception>
+#include <filesystem>
+#include <functional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace cayspin::inline v0_2::io {
@@ -99,20 +104,22 @@ void copy_run(fs::path const& file, hid_t group, std::string const& name) {
         "cannot copy the run into the sweep");
 }
 
-// Reads every frame and tries the copy, because the run's own file is removed afterwards, and HDF5
-// may crash on a damaged one.
-void require_whole(fs::path const& file) {
-  auto const info = read_info(file);
-  auto const trial = file.string() + ".trial";
+// Reads every frame and tries the copy, because the runs' own files are removed afterwards, and
+// HDF5 may crash on a damaged one.
+void try_copies(std::vector<fs::path> const& files) {
+  auto const trial = files.front().string() + ".trial";
   auto const read_and_copy = [&] {
-    StoredSpins const spins(file, info.header.shape, info.header.cell_sites);
-    for (std::int64_t frame = 0; frame < info.frames; ++frame) spins.frame(frame);
     FileHandle const copy(check(H5Fcreate(trial.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
                                 trial, "cannot create the file"));
-    copy_run(file, copy.get(), "run");
+    for (auto const& file : files) {
+      auto const info = read_info(file);
+      StoredSpins const spins(file, info.header.shape, info.header.cell_sites);
+      for (std::int64_t frame = 0; frame < info.frames; ++frame) spins.frame(frame);
+      copy_run(file, copy.get(), file.filename().string());
+    }
   };
   try {
-    try_reading(file, read_and_copy);
+    try_reading(files.front(), read_and_copy);
   } catch (...) {
     fs::remove(trial);
     throw;
@@ -120,18 +127,58 @@ void require_whole(fs::path const& file) {
   fs::remove(trial);
 }
 
-// Links are relative, so that the folder and the file can be moved together.
-void take_in(hid_t runs, fs::path const& path, std::int64_t run, bool copy) {
-  auto const file = swept_run_file(path, run);
-  auto const name = swept_run_name(run);
-  if (copy) {
-    require_whole(file);
-    copy_run(file, runs, name);
-    return;
+// Small files share a trial, which may start a process. Where it fails, each has its own, which
+// names the damaged one.
+void require_whole(std::vector<fs::path> const& files) {
+  if (files.empty()) return;
+  try {
+    try_copies(files);
+  } catch (std::exception const&) {
+    for (auto const& file : files) try_copies({file});
   }
-  auto const relative = file.parent_path().filename() / file.filename();
-  check(H5Lcreate_external(relative.c_str(), "/", runs, name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-        path, "cannot link to " + file.string());
+}
+
+// Calls take(runs) for the runs with files, several at a time where their files are small; stops
+// early if it returns false.
+template <class Take>
+bool for_each_group(fs::path const& path, std::vector<SweptRun> const& runs, Take const& take) {
+  constexpr std::size_t most_files = 64;
+  constexpr std::uintmax_t most_bytes = 4 << 20;
+  std::vector<std::int64_t> group;
+  std::uintmax_t bytes = 0;
+  for (std::size_t run = 0; run < runs.size(); ++run) {
+    if (!runs[run].has_file) continue;
+    auto const number = static_cast<std::int64_t>(run);
+    std::error_code unknown;
+    auto const size = fs::file_size(swept_run_file(path, number), unknown);
+    bool const is_full = group.size() == most_files || unknown || bytes + size > most_bytes;
+    if (!group.empty() && is_full) {
+      if (!take(group)) return false;
+      group.clear();
+      bytes = 0;
+    }
+    group.push_back(number);
+    bytes += size;
+  }
+  return group.empty() || take(group);
+}
+
+// Links are relative, so that the folder and the file can be moved together.
+void take_in(hid_t runs, fs::path const& path, std::vector<std::int64_t> const& group, bool copy) {
+  std::vector<fs::path> files;
+  for (auto const run : group) files.push_back(swept_run_file(path, run));
+  if (copy) require_whole(files);
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    auto const name = swept_run_name(group[i]);
+    auto const& file = files[i];
+    if (copy) {
+      copy_run(file, runs, name);
+      continue;
+    }
+    auto const relative = file.parent_path().filename() / file.filename();
+    check(H5Lcreate_external(relative.c_str(), "/", runs, name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+          path, "cannot link to " + file.string());
+  }
 }
 
 }  // namespace
@@ -157,11 +204,12 @@ bool write_sweep(fs::path const& path, SweepInfo const& sweep, std::function<boo
   write_grid(file.get(), sweep.header, path);
   write_results(file.get(), sweep.runs, path);
   auto runs = create_group(file.get(), "runs", path);
-  for (std::size_t run = 0; run < sweep.runs.size(); ++run) {
-    if (!sweep.runs[run].has_file) continue;
-    if (go_on && !go_on()) return false;
-    take_in(runs.get(), path, static_cast<std::int64_t>(run), sweep.one_file);
-  }
+  if (!for_each_group(path, sweep.runs, [&](std::vector<std::int64_t> const& group) {
+        if (go_on && !go_on()) return false;
+        take_in(runs.get(), path, group, sweep.one_file);
+        return true;
+      }))
+    return false;
   runs.close();
   check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), path, "cannot write the file");
   space.trim();

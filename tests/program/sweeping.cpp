@@ -3,10 +3,12 @@
 #include "io/sweep.hpp"
 #include "program_test.hpp"
 
+#include <fmt/format.h>
 #include <hdf5.h>
 
 #include <csignal>
 #include <fstream>
+#include <iterator>
 
 namespace cayspin::program::test {
 namespace {
@@ -154,6 +156,30 @@ TEST_F(Sweeping, RecordsARunThatFails) {
   auto const again = expect_status(3, all);
   EXPECT_EQ(again.errors, outcome.errors);
   EXPECT_FALSE(contains(again.output, "of 3  run"));
+}
+
+// The processes of a sweep's runs: the children of its process.
+std::vector<pid_t> children_of(pid_t process) {
+  std::ifstream list(fmt::format("/proc/{0}/task/{0}/children", process));
+  return {std::istream_iterator<pid_t>(list), {}};
+}
+
+TEST_F(Sweeping, GoesOnWithTheOtherRunsWhenOneCrashes) {
+  auto const all =
+      sweep_into("crashed.h5", {"--jobs", "1", "--over", "integrator.steps=20,1000000000,30"});
+  auto const file = in_folder("crashed.h5");
+  auto const process = begin(all);
+  EXPECT_TRUE(eventually([&] { return fs::exists(io::swept_run_file(file, 1)); }));
+  auto const children = children_of(process);
+  ASSERT_EQ(children.size(), 1u);
+  ::kill(children[0], SIGKILL);
+  EXPECT_EQ(end(process, 0), 2);
+  auto const sweep = sweep_in("crashed.h5");
+  EXPECT_EQ(sweep.runs[0].status, 0);
+  EXPECT_EQ(sweep.runs[1].status, 128 + SIGKILL);
+  EXPECT_EQ(sweep.runs[2].status, 0);
+  output_of(sweep_into("whole.h5", {"--jobs", "1", "--over", "integrator.steps=20,30"}));
+  EXPECT_EQ(spins("crashed.h5", 2), spins("whole.h5", 1));
 }
 
 TEST_F(Sweeping, AnInterruptKeepsWhatIsDone) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "session.hpp"
 
+#include "hdf5/reading_trial.hpp"
 #include "io/trajectory.hpp"
 #include "program/progress.hpp"
 #include "simulation/failure.hpp"
@@ -154,7 +155,12 @@ bool Session::read_run(std::int64_t number, io::SweptRun& run) const {
 
 void Session::take(std::int64_t number, std::int64_t status, std::string const& message) {
   io::SweptRun taken;
-  bool const whole = read_run(number, taken);
+  bool const whole = [&] {
+    if (status != Status::done) return read_run(number, taken);
+    // A worker has just written it, and it is tried before it becomes a part of the sweep's file.
+    io::WithoutTrial const scope;
+    return read_run(number, taken);
+  }();
   taken.status = status;
   // The file of this name becomes a group.
   auto const name = run_file(number).string();

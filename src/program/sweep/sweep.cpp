@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "child.hpp"
 #include "display.hpp"
 #include "files/available_memory.hpp"
 #include "grid.hpp"
@@ -11,6 +10,7 @@
 #include "simulation/plan.hpp"
 #include "simulation/text.hpp"
 #include "table.hpp"
+#include "worker.hpp"
 
 #include <fmt/format.h>
 
@@ -29,7 +29,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Job {
   std::int64_t run;
-  std::unique_ptr<Child> child;
+  std::unique_ptr<Worker> worker;
 };
 
 // Number of concurrent runs, and the threads of each.
@@ -74,11 +74,11 @@ std::vector<std::string> arguments_of(SweepOptions const& options, Grid const& g
 
 // Their files are not needed: interrupted runs start again.
 void stop(std::vector<Job>& jobs) {
-  for (auto const& job : jobs) job.child->send(SIGTERM);
+  for (auto const& job : jobs) job.worker->stop(SIGTERM);
   auto const deadline = Clock::now() + std::chrono::seconds(2);
   for (auto const& job : jobs)
-    while (!job.child->has_ended() && Clock::now() < deadline) {
-      job.child->read();
+    while (!job.worker->has_ended() && Clock::now() < deadline) {
+      job.worker->read();
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   jobs.clear();
@@ -90,24 +90,30 @@ bool run_all(SweepOptions const& options, Grid const& grid, Session& session) {
   std::deque<std::int64_t> open(list.begin(), list.end());
   auto const sharing = share_machine(options, grid, open.size());
   Display display(grid, list, options.quiet);
+  WorkerOptions const of_workers{grid.header.space, sharing.threads, sharing.jobs > 1};
+  std::vector<std::unique_ptr<Worker>> idle;
   std::vector<Job> jobs;
   auto const running = [&] {
     std::vector<Running> now;
-    for (auto const& job : jobs) now.push_back({job.run, job.child->share()});
+    for (auto const& job : jobs) now.push_back({job.run, job.worker->share()});
     return now;
+  };
+  auto const begin = [&](std::int64_t run) {
+    if (idle.empty()) idle.push_back(std::make_unique<Worker>(of_workers));
+    jobs.push_back({run, std::move(idle.back())});
+    idle.pop_back();
+    jobs.back().worker->begin(arguments_of(options, grid, run, session.run_file(run), sharing));
   };
   while (!open.empty() || !jobs.empty()) {
     while (!open.empty() && jobs.size() < static_cast<std::size_t>(sharing.jobs)) {
-      auto const run = open.front();
+      begin(open.front());
       open.pop_front();
-      auto const arguments = arguments_of(options, grid, run, session.run_file(run), sharing);
-      jobs.push_back({run, std::make_unique<Child>(arguments, sharing.jobs > 1)});
     }
     display.show(running());
     std::vector<pollfd> polled;
-    for (auto const& job : jobs) job.child->add_to(polled);
+    for (auto const& job : jobs) job.worker->add_to(polled);
     ::poll(polled.data(), polled.size(), 200);
-    for (auto const& job : jobs) job.child->read();
+    for (auto const& job : jobs) job.worker->read();
     if (interrupt_requested()) {
       display.clear();
       stop(jobs);
@@ -115,14 +121,15 @@ bool run_all(SweepOptions const& options, Grid const& grid, Session& session) {
       return false;
     }
     for (std::size_t i = 0; i < jobs.size();) {
-      if (!jobs[i].child->has_ended()) {
+      if (!jobs[i].worker->has_ended()) {
         ++i;
         continue;
       }
-      auto const job = std::move(jobs[i]);
+      auto job = std::move(jobs[i]);
       jobs.erase(jobs.begin() + static_cast<std::ptrdiff_t>(i));
-      auto const status = job.child->wait();
-      session.take(job.run, status, job.child->message());
+      auto const status = job.worker->status();
+      session.take(job.run, status, job.worker->message());
+      if (job.worker->can_go_on()) idle.push_back(std::move(job.worker));
       display.ended(job.run, session.run(job.run), running());
     }
   }

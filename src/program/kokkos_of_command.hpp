@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "simulation/kokkos_settings.hpp"
+
+#include <optional>
+#include <string>
+
+namespace cayspin::program {
+
+/// Scope in which a command uses Kokkos. In the worker of a sweep it is initialised for all
+/// commands, because a process can initialise it only once.
+class KokkosOfCommand {
+ public:
+  /// Throws like KokkosSession.
+  KokkosOfCommand(std::string const& space, std::optional<int> threads, std::optional<int> device) {
+    if (!Kokkos::is_initialized()) session_.emplace(space, threads, device);
+  }
+
+ private:
+  std::optional<simulation::KokkosSession> session_;
+};
+
+}  // namespace cayspin::program
