@@ -4,6 +4,7 @@
 #include "cayspin_git_commit.hpp"
 #include "describe.hpp"
 #include "io/ensemble_file.hpp"
+#include "kokkos_of_command.hpp"
 #include "simulation/ensemble_run.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/guard.hpp"
@@ -41,6 +42,12 @@ std::string kept(io::EnsembleFile const& file, std::filesystem::path const& path
              : fmt::format("the last good frame is {} in {}", file.frames() - 1, path.string());
 }
 
+// A check of a small lattice takes as long as a step, so there are few besides those at frames. A
+// replica that may end early ends where its own run would.
+std::int64_t period_of_checks(io::Scene const& scene) {
+  return scene.integrator.until_torque ? Guard::period_of(io::sites(scene)) : 100;
+}
+
 /// A run and its file, from frame to frame.
 class RecordedEnsemble {
  public:
@@ -48,9 +55,10 @@ class RecordedEnsemble {
                    Listener listener)
       : scene_(scene),
         run_(scene, settings_of(options, space), false),
-        looks_{.period = Guard::period_of(io::sites(scene)),
+        looks_{.period = period_of_checks(scene),
                .until_torque = true,
-               .interrupted = interrupt_requested},
+               .interrupted = interrupt_requested,
+               .at_end = true},
         progress_(io::sites(scene) * scene.ensemble.replicas, listener),
         path_(output_file(scene, options.output)) {
     warn_of_steps();
@@ -127,7 +135,7 @@ class RecordedEnsemble {
 
 int run_ensemble(io::Scene const& scene, DeviceOptions const& options, Listener listener) {
   auto const space = chosen_space(options.space);
-  KokkosSession const kokkos(space, options.threads, options.device);
+  KokkosOfCommand const kokkos(space, options.threads, options.device);
   warn_of_notes(scene);
   catch_signals();
   return RecordedEnsemble(scene, options, space, listener).run();
@@ -136,7 +144,7 @@ int run_ensemble(io::Scene const& scene, DeviceOptions const& options, Listener 
 int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
                    RelaxEnsembleOptions const& search) {
   auto const space = chosen_space(options.space);
-  KokkosSession const kokkos(space, options.threads, options.device);
+  KokkosOfCommand const kokkos(space, options.threads, options.device);
   warn_of_notes(scene);
   catch_signals();
   Kokkos::Timer const clock;
@@ -144,11 +152,11 @@ int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
   auto file = open_file(scene, options, run);
   std::vector<io::RelaxedReplica> found;
   io::RunCost cost;
-  for (std::size_t number = 0; number < run.replicas() && !interrupt_requested(); ++number) {
-    auto const minimum = run.replica(number).relax({.torque = search.torque,
-                                                    .evaluations = search.evaluations,
-                                                    .keep_saddles = search.keep_saddles,
-                                                    .interrupted = interrupt_requested});
+  for (auto const& minimum : run.relax({.torque = search.torque,
+                             .evaluations = search.evaluations,
+                             .keep_saddles = search.keep_saddles,
+                             .interrupted = interrupt_requested})) {
+    if (minimum.end == MinimizeEnd::interrupted) continue;
     cost.evaluations += minimum.evaluations;
     found.push_back({minimum.torque, minimum.end == MinimizeEnd::converged, minimum.evaluations});
   }

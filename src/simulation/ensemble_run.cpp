@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <span>
 
 namespace cayspin::simulation {
@@ -60,18 +61,43 @@ bool EnsembleRun::is_at_rest() const {
 }
 
 Advanced EnsembleRun::advance(std::int64_t count, Looks const& looks) {
+  std::vector<SceneRun*> moving;
+  std::vector<std::size_t> numbers;
   for (std::size_t number = 0; number < runs_.size(); ++number) {
     if (at_rest_[number]) continue;
-    try {
-      auto const advanced = runs_[number]->advance(count, looks);
-      if (advanced == Advanced::interrupted) return advanced;
-      at_rest_[number] = advanced == Advanced::at_rest;
-    } catch (NumbersFailed const& error) {
-      throw NumbersFailed(fmt::format("replica {}: {}", number, error.what()));
-    }
+    moving.push_back(runs_[number].get());
+    numbers.push_back(number);
   }
+  auto const outcomes = SceneRun::advance_all(moving, count, looks);
+  bool interrupted = false;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    auto const& [advanced, error] = outcomes[i];
+    try {
+      if (error) std::rethrow_exception(error);
+    } catch (NumbersFailed const& failure) {
+      throw NumbersFailed(fmt::format("replica {}: {}", numbers[i], failure.what()));
+    }
+    interrupted = interrupted || advanced == Advanced::interrupted;
+    at_rest_[numbers[i]] = advanced == Advanced::at_rest;
+  }
+  if (interrupted) return Advanced::interrupted;
   for (auto const& run : runs_) steps_ = std::max(steps_, run->steps());
   return is_at_rest() ? Advanced::at_rest : Advanced::whole;
+}
+
+std::vector<Minimum> EnsembleRun::relax(RelaxSettings const& settings) {
+  std::vector<SceneRun*> all;
+  for (auto const& run : runs_) all.push_back(run.get());
+  std::vector<Minimum> found;
+  for (auto const& [minimum, error] : SceneRun::relax_all(all, settings)) {
+    try {
+      if (error) std::rethrow_exception(error);
+    } catch (NumbersFailed const& failure) {
+      throw NumbersFailed(fmt::format("replica {}: {}", found.size(), failure.what()));
+    }
+    found.push_back(minimum);
+  }
+  return found;
 }
 
 std::vector<io::Scalars> EnsembleRun::scalars() {

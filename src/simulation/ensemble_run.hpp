@@ -11,8 +11,9 @@
 
 namespace cayspin::simulation {
 
-/// The replicas of a scene with [ensemble], each a run of its own, which go on in turns from one
-/// step to another. Replica r has the bits of a run of io::replica_of(scene, r).
+/// The replicas of a scene with [ensemble], each a run of its own, which go on together from one
+/// step to another; small ones side by side on the threads of the host. Replica r has the bits of a
+/// run of io::replica_of(scene, r).
 class EnsembleRun {
  public:
   /// For cayspin run, or where `relaxes` for cayspin relax. Throws what SceneRun::open throws, also
@@ -31,9 +32,13 @@ class EnsembleRun {
   /// Has each replica ended early, without torque?
   bool is_at_rest() const;
 
-  /// Takes `count` more steps in all replicas that have not ended early. Those before the one that
-  /// fails or is interrupted have taken them then.
+  /// Takes `count` more steps in all replicas that have not ended early. If one fails or is
+  /// interrupted, some of the others have taken them.
   Advanced advance(std::int64_t count, Looks const& looks);
+
+  /// Moves each replica to its own equilibrium, those that are small side by side. If one is
+  /// interrupted, some of the others have not moved. Throws what SceneRun::relax throws.
+  std::vector<Minimum> relax(RelaxSettings const& settings);
 
   std::vector<io::Scalars> scalars();
   /// Packed as (replica, nz, ny, nx, 3), in the precision of the run.

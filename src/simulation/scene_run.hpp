@@ -12,10 +12,12 @@
 
 #include <atomic>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,6 +42,7 @@ struct Looks {
   std::int64_t period = 100;               // steps between checks by the guard
   bool until_torque = false;               // ends as the scene's until_torque says
   std::function<bool()> interrupted = {};  // called between steps, about twenty times a second
+  bool at_end = false;                     // the guard also checks the last of the steps
 };
 
 enum class Advanced { whole, interrupted, at_rest };
@@ -107,6 +110,26 @@ class SceneRun {
   /// exception of a field of the program. steps() and the spins are then those before the step that
   /// failed.
   Advanced advance(std::int64_t count, Looks const& looks = {});
+
+  /// Result of advance_all for one run.
+  struct Outcome {
+    Advanced advanced = Advanced::whole;
+    std::exception_ptr error = {};  // what advance would have thrown
+  };
+  /// Takes `count` more steps in each of these runs, of one space. On hosts small ones go side by
+  /// side, one to a thread. Runs that have not begun when another is interrupted do not begin.
+  static std::vector<Outcome> advance_all(std::span<SceneRun* const> runs, std::int64_t count,
+                                          Looks const& looks);
+
+  /// Result of relax_all for one run.
+  struct Relaxed {
+    Minimum minimum = {};
+    std::exception_ptr error = {};  // what relax would have thrown
+  };
+  /// relax of each of these runs, side by side like advance_all. Those that have not begun when
+  /// another is interrupted end as interrupted.
+  static std::vector<Relaxed> relax_all(std::span<SceneRun* const> runs,
+                                        RelaxSettings const& settings);
 
   /// Continues with changed keys, given as for `cayspin run --set`, from the current state. Steps
   /// and time continue, and the end of [integrator] counts from here. Multistep methods restart.
@@ -176,6 +199,11 @@ class SceneRun {
   int threads_ = 1;
 
  private:
+  /// Calls work(number) for each run, on several threads at once if the runs are small.
+  static void side_by_side(std::span<SceneRun* const> runs,
+                           std::function<void(std::size_t)> const& work);
+  Minimum relaxed(RelaxSettings const& settings);
+
   Precision precision_;
   std::string space_;
   io::OwnField typed_own_;  // in the scene's units

@@ -74,11 +74,12 @@ class SceneRunInSpace final
     if (!is_adaptive) seen_ = step.number;
     // Do not poll after the last step: integrate() ignores a stop there.
     return step.number >= std::min(next_look_, seen_ + most_unseen) ||
-           (!step.last && (*interrupt_)());
+           (step.last ? looks_.at_end : (*interrupt_)());
   }
   Next operator()(Space const& exec, Step const& step, Spins const& spins) override {
     seen_ = step.number;
-    if (step.number >= next_look_ && judge(exec, step, spins) == Next::stop) return Next::stop;
+    bool const judges = step.number >= next_look_ || (step.last && looks_.at_end);
+    if (judges && judge(exec, step, spins) == Next::stop) return Next::stop;
     if (step.last || !(*interrupt_)()) return Next::proceed;
     ended_ = Advanced::interrupted;
     return Next::stop;

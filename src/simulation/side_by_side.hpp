@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "kokkos_settings.hpp"
+
+#include <cayspin/detail/execution.hpp>
+
+#include <Kokkos_Core.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace cayspin::simulation {
+
+template <class Work>
+struct WorkByNumber {
+  Work const& work;
+  void operator()(std::int64_t number) const { work(static_cast<std::size_t>(number)); }
+};
+
+/// Calls work(0) .. work(count - 1), each of which advances a run of at most `sites` sites in
+/// `space`. If the kernels of such runs stay on the calling thread, the calls share the threads of
+/// the host; otherwise they follow one another.
+template <class Work>
+void for_each_small_run(std::string const& space, std::int64_t sites, std::size_t count,
+                        Work const& work) {
+  using Host = Kokkos::DefaultHostExecutionSpace;
+  Host const host;
+  if (count > 1 && is_on_host(space) && host.concurrency() > 1 &&
+      cayspin::detail::runs_on_calling_thread<Host>(sites)) {
+    // The runs fence the default instance, which a kernel on it would keep locked.
+    auto const other = Kokkos::Experimental::partition_space(host, 1).front();
+    Kokkos::parallel_for("cayspin::advance_all",
+                         Kokkos::RangePolicy<Host, Kokkos::Schedule<Kokkos::Dynamic>,
+                                             Kokkos::IndexType<std::int64_t>>(
+                             other, 0, static_cast<std::int64_t>(count), Kokkos::ChunkSize(1)),
+                         WorkByNumber<Work>{work});
+    return;
+  }
+  for (std::size_t number = 0; number < count; ++number) work(number);
+}
+
+}  // namespace cayspin::simulation
