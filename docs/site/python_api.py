@@ -20,14 +20,14 @@ WIDTH = 100
 
 GROUPS = {
     "Scenes and simulations": ["Scene", "Simulation", "Minimum", "Modes", "Averages", "path",
-                               "MinimumEnergyPath"],
+                               "MinimumEnergyPath", "EnsembleSimulation"],
     "Choosing a method": ["advise", "Advice", "trade", "Trade"],
     "Files and pictures": ["open", "Trajectory", "Ensemble", "texture.draw", "view", "View"],
     "Numbers from spins": ["topological_charge", "dispersion", "Dispersion", "average", "Average"],
     "Input": ["occupied_of_mesh", "read_uppasd", "read_spirit_pairs"],
     "Errors and version": ["CayspinError", "SceneError", "NumbersFailed", "__version__"],
 }
-CONSTRUCTED = ("Scene", "Simulation")  # instances of other classes are results
+CONSTRUCTED = ("Scene", "Simulation", "EnsembleSimulation")  # instances of other classes are results
 
 HEAD = """# Python API
 

@@ -14,6 +14,7 @@ from cayspin._cayspin import CayspinError, NumbersFailed, SceneError
 from cayspin._cayspin import version as __version__
 from cayspin.averages import Averages
 from cayspin.ensemble import Ensemble
+from cayspin.ensemble_simulation import EnsembleSimulation
 from cayspin.mesh import occupied_of_mesh
 from cayspin.observables import Average, Dispersion, average, dispersion, topological_charge
 from cayspin.path import MinimumEnergyPath, path
@@ -25,8 +26,8 @@ from cayspin.trajectory import Trajectory, open
 from cayspin.uppasd import read_uppasd
 from cayspin.view import View, view
 
-__all__ = ["Advice", "Average", "Averages", "CayspinError", "Dispersion", "Ensemble", "Minimum",
-           "MinimumEnergyPath", "Modes", "NumbersFailed", "Scene", "SceneError", "Simulation",
-           "Trade", "Trajectory", "View", "__version__", "advise", "average", "dispersion",
-           "occupied_of_mesh", "open", "path", "read_spirit_pairs", "read_uppasd",
-           "topological_charge", "trade", "view"]
+__all__ = ["Advice", "Average", "Averages", "CayspinError", "Dispersion", "Ensemble",
+           "EnsembleSimulation", "Minimum", "MinimumEnergyPath", "Modes", "NumbersFailed", "Scene",
+           "SceneError", "Simulation", "Trade", "Trajectory", "View", "__version__", "advise",
+           "average", "dispersion", "occupied_of_mesh", "open", "path", "read_spirit_pairs",
+           "read_uppasd", "topological_charge", "trade", "view"]

@@ -2,7 +2,9 @@
 // The module _cayspin: scenes and runs, wrapped by the package python/cayspin.
 #include "arrays.hpp"
 #include "cayspin_git_commit.hpp"
+#include "ensemble.hpp"
 #include "io/relax.hpp"
+#include "shared.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/guard.hpp"
 #include "simulation/path_of_run.hpp"
@@ -27,6 +29,19 @@
 #include <variant>
 
 namespace cayspin::python {
+
+simulation::Precision precision_of(std::string const& name) {
+  using simulation::Precision;
+  for (auto const known : {Precision::double_precision, Precision::single_precision})
+    if (to_string(known) == name) return known;
+  throw simulation::UsageError("precision \"" + name + "\"; accepted: \"double\", \"single\"");
+}
+
+bool interrupted() {
+  nb::gil_scoped_acquire const gil;
+  return PyErr_CheckSignals() != 0;
+}
+
 namespace {
 
 using namespace simulation;
@@ -57,18 +72,6 @@ SiteNumbersOut at_sites(io::Scene const& scene, std::string const& expression) {
   } catch (std::invalid_argument const& error) {
     throw UsageError(std::string("at_sites: ") + error.what());
   }
-}
-
-Precision precision_of(std::string const& name) {
-  for (auto const known : {Precision::double_precision, Precision::single_precision})
-    if (to_string(known) == name) return known;
-  throw UsageError("precision \"" + name + "\"; accepted: \"double\", \"single\"");
-}
-
-// Returns true with Python's exception set, which the caller raises.
-bool interrupted() {
-  nb::gil_scoped_acquire const gil;
-  return PyErr_CheckSignals() != 0;
 }
 
 bool advance(SceneRun& run, std::int64_t count, std::int64_t period, bool until_torque) {
@@ -386,6 +389,7 @@ NB_MODULE(_cayspin, module) {
   python::define_minimum(module);
   python::define_run(module);
   python::define_recorder(module);
+  python::define_ensemble(module);
   module.def("complete_file", [](std::filesystem::path const& path) {
     python::as_error([&] { io::complete_file(path); });
   });

@@ -91,5 +91,67 @@ class Ensembles(unittest.TestCase):
             cayspin.Simulation(scene(ensemble={"replicas": 2}))
 
 
+class EnsembleSimulations(unittest.TestCase):
+    def alone(self, replica, **tables):
+        return cayspin.Simulation(scene(
+            field={"exchange": 1.0, "applied": [FIELDS[replica], 0, 0.5]},
+            initial={"random": {"seed": 4 + replica}}, **tables))
+
+    def together(self, precision="double", **tables):
+        made = scene(ensemble={"replicas": 3, "vary": {"field.applied.0": FIELDS}}, **tables)
+        return cayspin.EnsembleSimulation(made, precision)
+
+    def test_replicas_have_the_bits_of_their_own_runs(self):
+        for thermal in ({}, {"thermal": {"temperature": 0.01, "seed": 2}}):
+            sim = self.together(**thermal)
+            self.assertEqual((sim.replicas, sim.steps, sim.spins.shape), (3, 0, (3, 1, 4, 6, 3)))
+            sim.step(7)
+            sim.run()
+            self.assertEqual(sim.steps, 30)
+            self.assertEqual(sim.time, 0.6)
+            for replica in range(3):
+                if thermal:
+                    thermal["thermal"] = {"temperature": 0.01, "seed": 2 + replica}
+                alone = self.alone(replica, **thermal)
+                alone.run()
+                np.testing.assert_array_equal(sim.spins[replica], alone.spins)
+                self.assertEqual(sim.energy()[replica], alone.energy())
+                self.assertEqual(sim.norm_defect()[replica], alone.norm_defect())
+                np.testing.assert_array_equal(sim.magnetization()[replica], alone.magnetization())
+
+    def test_single_precision(self):
+        sim = self.together("single")
+        sim.run(until=0.2)
+        self.assertEqual((sim.steps, sim.precision, sim.spins.dtype), (10, "single", np.float32))
+        self.assertLess(sim.norm_defect().max(), 1e-6)
+
+    def test_each_relaxes_by_itself(self):
+        sim = self.together()
+        found = sim.relax(torque=1e-8)
+        self.assertEqual(len(found), 3)
+        for replica, minimum in enumerate(found):
+            alone = self.alone(replica)
+            self.assertEqual(alone.relax(torque=1e-8), minimum)
+            self.assertTrue(minimum.converged)
+            np.testing.assert_array_equal(sim.spins[replica], alone.spins)
+            field = np.array([FIELDS[replica], 0, 0.5])
+            np.testing.assert_allclose(sim.magnetization()[replica],
+                                       field / np.linalg.norm(field), atol=1e-7)
+
+    def test_wrong_calls_are_one_line(self):
+        for call, part in ((lambda: cayspin.EnsembleSimulation(scene()), "has no .ensemble."),
+                           (lambda: cayspin.EnsembleSimulation("scene"), "accepted: a Scene"),
+                           (lambda: self.together("half"), "double"),
+                           (lambda: self.together().step(-1), "step"),
+                           (lambda: self.together().run(until=0.013), "whole number of steps"),
+                           (lambda: self.together().relax(torque=-1), "torque")):
+            with self.assertRaisesRegex(cayspin.CayspinError, part) as caught:
+                call()
+            self.assertEqual(len(str(caught.exception).splitlines()), 1)
+        with self.assertRaisesRegex(cayspin.NumbersFailed, "replica 1"):
+            cayspin.EnsembleSimulation(scene(
+                integrator={"method": "classical_euler", "dt": 0.02, "steps": 3000},
+                ensemble={"replicas": 2, "vary": {"field.applied.0": [0.1, 1e300]}})).run()
+
 if __name__ == "__main__":
     unittest.main()

@@ -6,6 +6,7 @@
 #include <cayspin/demagnetization/dipole_tensor.hpp>
 #include <cayspin/demagnetization/good_length.hpp>
 #include <cayspin/demagnetization/images.hpp>
+#include <cayspin/detail/ghosts.hpp>
 #include <cayspin/lattice.hpp>
 #include <cayspin/part.hpp>
 

@@ -6,6 +6,7 @@
 #include <cayspin/demagnetization/images.hpp>
 #include <cayspin/demagnetization/tensor.hpp>
 #include <cayspin/detail/execution.hpp>
+#include <cayspin/detail/ghosts.hpp>
 #include <cayspin/lattice.hpp>
 #include <cayspin/part.hpp>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/ghosts.hpp>
 #include <cayspin/mpi/detail/exchange_with_all.hpp>
 #include <cayspin/mpi/detail/ghost_messages.hpp>
 #include <cayspin/mpi/division.hpp>
@@ -36,7 +37,7 @@ class Domain final : public Part {
         division_(division),
         depth_(in_whole_cells(depth, lattice)) {
     lattice.validate();
-    detail::require_one_replica("cayspin::mpi::Domain", lattice);
+    cayspin::detail::require_one_replica("cayspin::mpi::Domain", lattice);
     require_division(lattice, depth, division, size_of(comm));
     MPI_Comm_dup(comm, &comm_);
     MPI_Comm_rank(comm_, &rank_);

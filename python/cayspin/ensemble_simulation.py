@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""A scene with [ensemble] that runs."""
+
+from __future__ import annotations
+
+import dataclasses
+import warnings
+
+import numpy as np
+
+from cayspin import _cayspin, arguments, sites
+from cayspin.scene import Scene
+from cayspin.simulation import Minimum
+
+
+class EnsembleSimulation:
+    """The replicas of a `scene` with [ensemble], which run together: replica r has the bits of the
+    scene's own run with its values and seeds. Small ones share the threads.
+
+        sim = cayspin.EnsembleSimulation(scene)
+        sim.run()
+        sim.spins  # (replica, nz, ny, nx, 3)
+
+    `precision` is "double" or "single", `space` an execution space that was compiled in (default:
+    that of Kokkos), `threads` the number of its threads: the first simulation of a process decides
+    that. Ctrl-C stops it between two steps with KeyboardInterrupt; some replicas may then be
+    further than others. Lengths, times, fields and energies are in the units of the scene: reduced
+    ones, or with units = "SI" m, s, T and J.
+
+    Raises SceneError for a scene that cannot run here, CayspinError for other arguments and for a
+    scene without [ensemble].
+    """
+
+    def __init__(self, scene: Scene, precision: str = "double", space: str | None = None,
+                 threads: int | None = None):
+        if not isinstance(scene, Scene):
+            raise _cayspin.CayspinError(
+                f"EnsembleSimulation: a {type(scene).__name__}; accepted: a Scene")
+        self._run = _cayspin.EnsembleRun(
+            scene._scene, arguments.word(precision, "precision"),
+            None if space is None else arguments.word(space, "space"),
+            None if threads is None else arguments.whole(threads, "threads", 32))
+        self._scene = scene
+        self._dt_is_checked = False
+
+    def step(self, n: int = 1) -> None:
+        """Takes `n` steps of dt in every replica. The first step warns of a dt that is too large
+        for one of them.
+
+        Raises NumbersFailed when spins of a replica are not finite, leave the sphere or gain energy
+        that nothing gives, SceneError for a dt that integrator.refuse_unstable refuses, CayspinError
+        without an integrator or beyond the last possible step.
+        """
+        self._advance(arguments.whole(n, "step"), False)
+
+    def run(self, until: float | None = None) -> None:
+        """Steps to time `until`, in s in SI, or to the scene's end. A replica ends early where the
+        scene's until_torque says so.
+
+        Raises NumbersFailed and SceneError as step() does. Raises CayspinError for a time that has
+        passed or is no whole number of steps, and for a scene without end.
+        """
+        if self._scene._scene.has_integrator and until is None and self._scene.steps == 0:
+            raise _cayspin.CayspinError("run: the scene has no end; accepted: run(until=t), or "
+                                        "integrator.end in the scene")
+        end = self._run.last_step if until is None else self._run.step_at(
+            arguments.real(until, "run: until"))
+        if end < self.steps:
+            raise _cayspin.CayspinError(f"run: until step {end}, and {self.steps} are taken; "
+                                        "accepted: a later time")
+        self._advance(end - self.steps, True)
+
+    def relax(self, torque: float = 1e-6, evaluations: int = 100000,
+              keep_saddles: bool = False) -> list[Minimum]:
+        """Moves each replica to a state of least energy, as Simulation.relax() does, and returns
+        what each search found. It ends where max |m x H| is below `torque`, in the unit of H, T in
+        SI, or after `evaluations` of the field. With `keep_saddles` a state without torque is
+        enough, a saddle too.
+
+        Raises NumbersFailed for a field that is not finite, SceneError for rigid bodies and
+        temperatures, CayspinError for other arguments.
+        """
+        found = self._run.relax(arguments.real(torque, "relax: torque"),
+                                arguments.whole(evaluations, "relax: evaluations"),
+                                arguments.flag(keep_saddles, "relax: keep_saddles"))
+        return [Minimum(*(getattr(one, field.name) for field in dataclasses.fields(Minimum)))
+                for one in found]
+
+    def _advance(self, count, until_torque):
+        if not self._scene._scene.has_integrator:
+            raise _cayspin.CayspinError("the scene has no integrator; accepted: relax()")
+        self._run.require_reachable(count)
+        if not self._dt_is_checked:
+            warning = self._run.warning()
+            self._dt_is_checked = True
+            if warning:
+                warnings.warn(warning, stacklevel=3)
+        self._run.advance(count, until_torque)
+
+    @property
+    def spins(self) -> np.ndarray:
+        """The spins now, (replica, nz, ny, nx, 3), of a crystal with several sites in a cell
+        (replica, site, nz, ny, nx, 3): a copy."""
+        spins, cell_sites = self._run.spins(), self._scene._scene.cell_sites
+        if cell_sites == 1:
+            return spins
+        return np.stack([sites.by_site(replica, cell_sites) for replica in spins])
+
+    def energy(self) -> np.ndarray:
+        """The energy of each replica, (replica,), summed over its sites, in the scene's unit, J in
+        SI."""
+        return np.array(self._run.sample()[0])
+
+    def magnetization(self) -> np.ndarray:
+        """The mean spin of each replica, (replica, 3), weighted by the moments of the sites."""
+        return np.array(self._run.sample()[2]).reshape(-1, 3)
+
+    def norm_defect(self) -> np.ndarray:
+        """The largest | |m| - 1 | of each replica, (replica,), dimensionless."""
+        return np.array(self._run.sample()[1])
+
+    @property
+    def replicas(self) -> int:
+        """The number of replicas."""
+        return self._run.replicas
+
+    @property
+    def time(self) -> float:
+        """The time that the replicas have reached, in the scene's unit, s in SI."""
+        return self._run.time
+
+    @property
+    def steps(self) -> int:
+        """Steps of dt taken since the time 0."""
+        return self._run.steps
+
+    @property
+    def evaluations(self) -> int:
+        """Evaluations of the field of all sites of a replica so far, in all replicas."""
+        return self._run.evaluations
+
+    @property
+    def step_seconds(self) -> float:
+        """Seconds of stepping so far, summed over the replicas."""
+        return self._run.step_seconds
+
+    @property
+    def scene(self) -> Scene:
+        """The scene that runs."""
+        return self._scene
+
+    @property
+    def precision(self) -> str:
+        """"double" or "single"."""
+        return self._run.precision
+
+    @property
+    def space(self) -> str:
+        """The execution space, as in "openmp"."""
+        return self._run.space
+
+    @property
+    def threads(self) -> int:
+        """Threads of the space; 1 for a device."""
+        return self._run.threads
+
+    def __repr__(self):
+        return (f"<cayspin.EnsembleSimulation of {self.replicas}, step {self.steps}, "
+                f"t = {self.time:g}, {self.precision}, {self.space}>")

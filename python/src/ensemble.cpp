@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "ensemble.hpp"
+
+#include "arrays.hpp"
+#include "shared.hpp"
+#include "simulation/ensemble_run.hpp"
+#include "simulation/failure.hpp"
+#include "simulation/guard.hpp"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cayspin::python {
+namespace {
+
+using namespace simulation;
+using namespace nb::literals;
+
+// Python handles signals in its main thread only, and replicas run in others, too.
+class Interruption {
+ public:
+  std::function<bool()> question() {
+    return [this] { return asked_ = asked_ || interrupted(); };
+  }
+  void rethrow() const {
+    if (asked_) throw nb::python_error();
+  }
+
+ private:
+  std::atomic<bool> asked_ = false;
+};
+
+bool advance(EnsembleRun& run, std::int64_t count, bool until_torque) {
+  constexpr std::int64_t period_without_end = 100;
+  auto const& scene = run.replica(0).scene();
+  std::int64_t const period = until_torque && scene.integrator.until_torque
+                                  ? Guard::period_of(io::sites(scene))
+                                  : period_without_end;
+  Interruption interruption;
+  Advanced ended;
+  {
+    nb::gil_scoped_release const released;
+    ended = run.advance(count, {.period = period,
+                                .until_torque = until_torque,
+                                .interrupted = interruption.question(),
+                                .at_end = true});
+  }
+  if (ended == Advanced::interrupted) interruption.rethrow();
+  return ended == Advanced::at_rest;
+}
+
+std::vector<Minimum> relax(EnsembleRun& run, double torque, std::int64_t evaluations,
+                           bool keep_saddles) {
+  Interruption interruption;
+  std::vector<Minimum> found;
+  {
+    nb::gil_scoped_release const released;
+    found = run.relax({.torque = torque,
+                       .evaluations = evaluations,
+                       .keep_saddles = keep_saddles,
+                       .interrupted = interruption.question()});
+  }
+  interruption.rethrow();
+  return found;
+}
+
+template <class Real>
+NumbersOut array_of_bytes(std::vector<std::byte> const& bytes, std::array<std::size_t, 5> shape) {
+  auto* const numbers = new std::vector<Real>(bytes.size() / sizeof(Real));
+  std::memcpy(numbers->data(), bytes.data(), bytes.size());
+  nb::capsule const owner(
+      numbers, [](void* held) noexcept { delete static_cast<std::vector<Real>*>(held); });
+  return NumbersOut(numbers->data(), shape.size(), shape.data(), owner, nullptr, nb::dtype<Real>());
+}
+
+NumbersOut spins(EnsembleRun& run) {
+  auto const& [nx, ny, nz] = run.replica(0).scene().lattice.shape;
+  std::array const shape{run.replicas(), static_cast<std::size_t>(nz), static_cast<std::size_t>(ny),
+                         static_cast<std::size_t>(nx), std::size_t{3}};
+  std::vector<std::byte> bytes;
+  {
+    nb::gil_scoped_release const released;
+    bytes = run.spins();
+  }
+  return run.replica(0).precision() == Precision::double_precision
+             ? array_of_bytes<double>(bytes, shape)
+             : array_of_bytes<float>(bytes, shape);
+}
+
+// Returns energies, norm defects and magnetizations of the replicas.
+nb::tuple sample(EnsembleRun& run) {
+  std::vector<io::Scalars> scalars;
+  {
+    nb::gil_scoped_release const released;
+    scalars = run.scalars();
+  }
+  std::vector<double> energies, defects, magnetizations;
+  for (auto const& one : scalars) {
+    energies.push_back(one.energy);
+    defects.push_back(one.norm_defect);
+    magnetizations.insert(magnetizations.end(), one.magnetization.begin(), one.magnetization.end());
+  }
+  return nb::make_tuple(energies, defects, magnetizations);
+}
+
+}  // namespace
+
+void define_ensemble(nb::module_& module) {
+  nb::class_<EnsembleRun>(module, "EnsembleRun")
+      .def(nb::new_([](io::Scene const& scene, std::string const& precision,
+                       std::optional<std::string> const& space, std::optional<int> threads) {
+             if (!scene.ensemble.there())
+               throw UsageError(
+                   "EnsembleSimulation: the scene has no [ensemble]; accepted: Simulation");
+             RunSettings const settings{precision_of(precision), space, threads};
+             nb::gil_scoped_release const released;
+             return std::make_unique<EnsembleRun>(scene, settings, !io::has_integrator(scene));
+           }),
+           "scene"_a, "precision"_a, "space"_a.none(), "threads"_a.none())
+      .def("advance", advance, "count"_a, "until_torque"_a)
+      .def("relax", relax, "torque"_a, "evaluations"_a, "keep_saddles"_a)
+      .def("require_reachable",
+           [](EnsembleRun& run, std::int64_t count) { run.replica(0).require_reachable(count); })
+      .def("step_at", [](EnsembleRun& run, double t) { return run.replica(0).step_at(t); })
+      .def("warning",
+           [](EnsembleRun& run) {
+             std::optional<std::string> warning;
+             for (std::size_t number = 0; number < run.replicas() && !warning; ++number)
+               if (auto const of_replica = run.replica(number).warning())
+                 warning = "replica " + std::to_string(number) + ": " + *of_replica;
+             return warning;
+           })
+      .def("spins", spins)
+      .def("sample", sample)
+      .def_prop_ro("replicas", &EnsembleRun::replicas)
+      .def_prop_ro("last_step", &EnsembleRun::last_step)
+      .def_prop_ro("steps", &EnsembleRun::steps)
+      .def_prop_ro("time", &EnsembleRun::time)
+      .def_prop_ro("evaluations", &EnsembleRun::evaluations)
+      .def_prop_ro("step_seconds", &EnsembleRun::step_seconds)
+      .def_prop_ro("space", [](EnsembleRun& run) { return run.replica(0).space(); })
+      .def_prop_ro("threads", [](EnsembleRun& run) { return run.replica(0).threads(); })
+      .def_prop_ro("precision", [](EnsembleRun& run) {
+        return std::string(to_string(run.replica(0).precision()));
+      });
+}
+
+}  // namespace cayspin::python

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "simulation/precision.hpp"
+
+#include <string>
+
+namespace cayspin::python {
+
+/// Returns true with Python's exception set, which the caller raises.
+bool interrupted();
+
+/// Throws UsageError for another word than double and single.
+simulation::Precision precision_of(std::string const& name);
+
+}  // namespace cayspin::python
