@@ -6,7 +6,7 @@ import re
 import sys
 import tempfile
 
-# Lowest room first. A header may include headers of its own room and of the rooms above it in this
+# Lowest layer first. A header may include headers of its own layer and of the layers above it in this
 # list. The first matching pattern decides, relative to include/cayspin; "folder/" is all below it.
 LIBRARY = [
     ("numbers", ["vec3.hpp", "units.hpp", "detail/backend.hpp", "detail/pack.hpp", "detail/unrolled.hpp"]),
@@ -65,11 +65,11 @@ NAMESPACE = re.compile(r"^namespace (cayspin(?:::inline \w+)?)", re.M)
 INCLUDE = re.compile(r'^\s*#\s*include\s*(?:<(cayspin[a-z_]*/[^>]+)>|"([^"]+)")', re.MULTILINE)
 
 
-def room_of(rooms, name):
-    """Index and name of the room, or None."""
-    for index, (room, patterns) in enumerate(rooms):
+def layer_of(layers, name):
+    """Index and name of the layer, or None."""
+    for index, (layer, patterns) in enumerate(layers):
         if any(name == p or (p.endswith("/") and name.startswith(p)) for p in patterns):
-            return index, room
+            return index, layer
     return None
 
 
@@ -105,18 +105,18 @@ class Tree:
         self.problems.append(f"{self.name(path)}: there is no {public or quoted}")
         return None
 
-    def check_rooms(self, rooms, prefix=""):
-        """Nothing includes a higher room; every file below `prefix` has a room."""
+    def check_layers(self, layers, prefix=""):
+        """Nothing includes a higher layer; every file below `prefix` has a layer."""
         for name, included in self.includes.items():
             if not name.startswith(prefix):
                 continue
-            here = room_of(rooms, name.removeprefix(prefix))
+            here = layer_of(layers, name.removeprefix(prefix))
             if here is None:
                 if prefix:
-                    self.problems.append(f"{name}: in no room of the table")
+                    self.problems.append(f"{name}: in no layer of the table")
                 continue
             for other in filter(None, included):
-                there = room_of(rooms, other.removeprefix(prefix))
+                there = layer_of(layers, other.removeprefix(prefix))
                 if other.startswith(prefix) and there and there[0] > here[0]:
                     self.problems.append(f"{name} ({here[1]}) includes {other} ({there[1]})")
 
@@ -180,8 +180,8 @@ def problems_of(root):
     tree = Tree(root.resolve())
     if not tree.includes:
         tree.problems.append(f"{root}: no sources")
-    tree.check_rooms(LIBRARY, "include/cayspin/")
-    tree.check_rooms(PROGRAMS)
+    tree.check_layers(LIBRARY, "include/cayspin/")
+    tree.check_layers(PROGRAMS)
     tree.check_library_stands_alone()
     tree.check_cycles()
     tree.check_names_in_detail()
@@ -197,7 +197,7 @@ MISTAKES = [
     ("include/cayspin/vec3.hpp", "#include <cayspin/no.hpp>", "there is no cayspin/no.hpp"),
     ("include/cayspin/stepper/a.hpp", "#include <cayspin/stepper/euler.hpp>", "cycle: "),
     ("include/cayspin/stepper/b.hpp", '#include "../../../src/simulation/s.hpp"', "not of the lib"),
-    ("include/cayspin/other/a.hpp", "", "in no room"),
+    ("include/cayspin/other/a.hpp", "", "in no layer"),
     ("include/cayspin/detail/damping_loop.hpp", "", "damping is physics"),
     ("include/cayspin/vec3.hpp", "namespace cayspin::detail {", "not all of it is in"),
     ("include/cayspin/vec3.hpp", "#if defined(__CUDA_ARCH__)", "is of a backend"),
@@ -246,7 +246,7 @@ def main():
     if len(sys.argv) != 2:
         sys.exit("usage: check_layers.py ROOT | --self-test")
     problems = problems_of(pathlib.Path(sys.argv[1]))
-    print("\n".join(problems) or "every include is of its own room or of a lower one")
+    print("\n".join(problems) or "every include is of its own layer or of a lower one")
     sys.exit(1 if problems else 0)
 
 

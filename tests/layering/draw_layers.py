@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Draws the rooms of check_layers.py and their includes as docs/images/architecture.svg.
+"""Draws the layers of check_layers.py and their includes as docs/images/architecture.svg.
 
 Usage: draw_layers.py ROOT [--check]    --check: fails where the picture is not that of today
-A room stands one row above the highest room that it includes. An arrow that follows from others is
+A layer stands one row above the highest layer that it includes. An arrow that follows from others is
 left out.
 """
 
@@ -10,11 +10,11 @@ import pathlib
 import sys
 from html import escape
 
-from check_layers import LIBRARY, PROGRAMS, Tree, room_of
+from check_layers import LIBRARY, PROGRAMS, Tree, layer_of
 
 PICTURE = "docs/images/architecture.svg"
 
-# Where a room stands from left to right, in widths of a box, and what it holds.
+# Where a layer stands from left to right, in widths of a box, and what it holds.
 PLACES = {
     "numbers": (1, "vectors, SIMD packs, SI units"),
     "lattice": (2, "sites, boundaries, bonds, parts"),
@@ -53,7 +53,7 @@ text { font-family: system-ui, "Segoe UI", Helvetica, Arial, sans-serif; text-an
 rect { stroke-width: 1.2; }
 .library rect { fill: #e3eefb; stroke: #3d78b8; }
 .programs rect { fill: #e7f4e4; stroke: #4c924a; }
-.room { font-size: 14px; font-weight: 600; fill: #14212e; }
+.layer { font-size: 14px; font-weight: 600; fill: #14212e; }
 .folder { font-size: 10.5px; font-family: ui-monospace, Menlo, Consolas, monospace; fill: #3b4a59; }
 .holds { font-size: 11.5px; fill: #3b4a59; }
 path { fill: none; stroke: #7f8c99; stroke-width: 1.5; }
@@ -63,13 +63,13 @@ marker path { fill: #7f8c99; stroke: none; }
 
 def room_name(file):
     library = file.startswith("include/cayspin/")
-    found = room_of(LIBRARY if library else PROGRAMS, file.removeprefix("include/cayspin/"))
+    found = layer_of(LIBRARY if library else PROGRAMS, file.removeprefix("include/cayspin/"))
     return found and found[1]
 
 
-def includes_of_rooms(tree):
-    """Each room and the others that its files include."""
-    found = {room: set() for room, _ in LIBRARY + PROGRAMS}
+def includes_of_layers(tree):
+    """Each layer and the others that its files include."""
+    found = {layer: set() for layer, _ in LIBRARY + PROGRAMS}
     for file, included in tree.includes.items():
         here = room_name(file)
         if here:
@@ -78,17 +78,17 @@ def includes_of_rooms(tree):
 
 
 def reduced(includes):
-    """Without what a room includes by way of another."""
-    def below(room):
-        return includes[room].union(*map(below, includes[room]))
-    return {room: sorted(includes[room] - set().union(*map(below, includes[room])), key=list(
-        includes).index) for room in includes}
+    """Without what a layer includes by way of another."""
+    def below(layer):
+        return includes[layer].union(*map(below, includes[layer]))
+    return {layer: sorted(includes[layer] - set().union(*map(below, includes[layer])), key=list(
+        includes).index) for layer in includes}
 
 
 def rows_of(includes):
-    def row(room):
-        return 1 + max(map(row, includes[room]), default=-1)
-    return {room: row(room) for room in includes}
+    def row(layer):
+        return 1 + max(map(row, includes[layer]), default=-1)
+    return {layer: row(layer) for layer in includes}
 
 
 class Picture:
@@ -98,11 +98,11 @@ class Picture:
         self.width = max(map(self.middle, includes)) + WIDTH / 2 + EDGE
         self.height = 2 * EDGE + self.top * ROW + HEIGHT
         # Objects in a row: the boxes, then the arrows that pass between them.
-        self.taken = {row: [(self.middle(room), WIDTH / 2 + 9) for room in includes
-                            if self.rows[room] == row] for row in range(self.top + 1)}
+        self.taken = {row: [(self.middle(layer), WIDTH / 2 + 9) for layer in includes
+                            if self.rows[layer] == row] for row in range(self.top + 1)}
 
-    def middle(self, room):
-        return EDGE + WIDTH / 2 + PLACES[room][0] * (WIDTH + GAP)
+    def middle(self, layer):
+        return EDGE + WIDTH / 2 + PLACES[layer][0] * (WIDTH + GAP)
 
     def upper(self, row):
         return EDGE + (self.top - row) * ROW
@@ -115,12 +115,12 @@ class Picture:
         self.taken[row].append((place, 9))
         return place
 
-    def ends(self, room, others, down):
-        """Where the arrows between a room and the others leave or reach its box."""
+    def ends(self, layer, others, down):
+        """Where the arrows between a layer and the others leave or reach its box."""
         order = sorted(others, key=lambda other: (self.middle(other), self.rows[other]))
         step = min(26, (WIDTH - 40) / max(len(order), 1))
-        first = self.middle(room) - step * (len(order) - 1) / 2
-        y = self.upper(self.rows[room]) + (HEIGHT if down else -5)
+        first = self.middle(layer) - step * (len(order) - 1) / 2
+        y = self.upper(self.rows[layer]) + (HEIGHT if down else -5)
         return {other: (first + step * place, y) for place, other in enumerate(order)}
 
     def arrow(self, begin, end, rows):
@@ -138,24 +138,24 @@ class Picture:
         return f'<path d="{line}" marker-end="url(#head)"/>'
 
     def draw_arrows(self):
-        users = {room: [other for other in self.arrows if room in self.arrows[other]]
-                 for room in self.arrows}
-        begins = {room: self.ends(room, self.arrows[room], True) for room in self.arrows}
-        ends = {room: self.ends(room, users[room], False) for room in self.arrows}
-        for room, others in self.arrows.items():
+        users = {layer: [other for other in self.arrows if layer in self.arrows[other]]
+                 for layer in self.arrows}
+        begins = {layer: self.ends(layer, self.arrows[layer], True) for layer in self.arrows}
+        ends = {layer: self.ends(layer, users[layer], False) for layer in self.arrows}
+        for layer, others in self.arrows.items():
             for other in others:
-                between = range(self.rows[room] - 1, self.rows[other], -1)
-                yield self.arrow(begins[room][other], ends[other][room], between)
+                between = range(self.rows[layer] - 1, self.rows[other], -1)
+                yield self.arrow(begins[layer][other], ends[other][layer], between)
 
-    def draw_box(self, room, patterns):
-        x, y, name = self.middle(room), self.upper(self.rows[room]), ""
+    def draw_box(self, layer, patterns):
+        x, y, name = self.middle(layer), self.upper(self.rows[layer]), ""
         for number, pattern in enumerate(patterns):
             longer = f"{name}, {pattern}" if name else pattern
             if len(longer) > (LETTERS if number == len(patterns) - 1 else LETTERS - 4):
                 name += ", .."
                 break
             name = longer
-        texts = (("room", 18, room), ("folder", 34, name), ("holds", 50, PLACES[room][1]))
+        texts = (("layer", 18, layer), ("folder", 34, name), ("holds", 50, PLACES[layer][1]))
         return (f'<rect x="{x - WIDTH / 2:.0f}" y="{y}" width="{WIDTH}" height="{HEIGHT}" rx="6"/>'
                 + "".join(f'<text class="{kind}" x="{x:.0f}" y="{y + down}">{escape(text)}</text>'
                           for kind, down, text in texts))
@@ -163,13 +163,13 @@ class Picture:
     def draw(self):
         lines = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width:.0f} '
                  f'{self.height}" role="img">',
-                 "<title>The rooms of cayspin: an arrow leads to what a room includes</title>",
+                 "<title>The layers of cayspin: an arrow leads to what a layer includes</title>",
                  f"<style>{STYLE}</style>",
                  '<marker id="head" viewBox="0 0 8 8" refX="3" refY="4" markerWidth="7" '
                  'markerHeight="7" orient="auto"><path d="M0 0L8 4L0 8z"/></marker>',
                  *self.draw_arrows()]
-        for group, rooms in (("library", LIBRARY), ("programs", PROGRAMS)):
-            lines += [f'<g class="{group}">', *(self.draw_box(*room) for room in rooms), "</g>"]
+        for group, layers in (("library", LIBRARY), ("programs", PROGRAMS)):
+            lines += [f'<g class="{group}">', *(self.draw_box(*layer) for layer in layers), "</g>"]
         return "\n".join([*lines, "</svg>", ""])
 
 
@@ -178,9 +178,9 @@ def main():
     if len(arguments) != 1:
         sys.exit(__doc__)
     root = pathlib.Path(arguments[0]).resolve()
-    includes = includes_of_rooms(Tree(root))
+    includes = includes_of_layers(Tree(root))
     if set(includes) != set(PLACES):
-        sys.exit(f"PLACES and the rooms differ: {sorted(set(includes) ^ set(PLACES))}")
+        sys.exit(f"PLACES and the layers differ: {sorted(set(includes) ^ set(PLACES))}")
     picture, file = Picture(includes).draw(), root / PICTURE
     if "--check" not in sys.argv:
         file.write_text(picture, encoding="utf-8")
