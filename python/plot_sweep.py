@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Draws the file of `cayspin sweep`: the ends of its runs over one key, or as a map over two."""
+"""Draws the file of `cayspin sweep`: the final values of its runs over one key, or as a map over
+two."""
 
 import argparse
 import pathlib

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Draws the spins of a trajectory file: films and planes as colours with arrows, crystals by their
-sites, chains as lines; as a picture of one frame or a movie of all. Of a path its energy and some
-of its images, of modes their spectrum and shapes, of waves their bands; of an ensemble one
-replica."""
+sites, chains as lines; as a picture of one frame or a movie of all. For a path, draws its energy
+and some of its images; for modes, their spectrum and shapes; for waves, their bands; for an
+ensemble, one replica."""
 
 import argparse
 import pathlib

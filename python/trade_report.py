@@ -22,7 +22,7 @@ PAGES = (ROOT / "docs/reports/trade.md", ROOT / "docs/reports/appendix.md")
 SCENES = (
     ("One switching spin", "switching_spin", ()),
     ("Film, 16 x 16", "film", ()),
-    ("The same, damping 0.02", "film_low_damping", ()),
+    ("Film, damping 0.02", "film_low_damping", ()),
     ("Slab", "slab_switching", ()),
     ("Heisenberg, 8^3", "heisenberg", ()),
     ("Film, 256 x 256", "film_256",
@@ -39,8 +39,6 @@ SCENES = (
     ("Slab, weak field, damping 1", "slab_weak_field_overdamped", ()),
 )
 ONCE = ("film_256", "heisenberg_64")  # take many minutes
-HEADINGS = {"The same, damping 0.02": "Film, damping 0.02"}
-
 
 GAINS = ("scene", "1e-2", "1e-4", "1e-6", "1e-8")
 COLUMNS = (*GAINS, "single: 1e-2", "1e-4", "1e-6", "spread")
@@ -113,17 +111,16 @@ def cost_row(method, unit):
 
 
 def with_tables(page, trades, rows):
-    """The page with new rows in its tables of ratios or gains, and in those of scenes the methods
-    that their pictures have."""
+    """The page with new rows in its tables of ratios or gains. The tables of scenes get the methods
+    in their pictures."""
     trade, lines, replaced, in_ratios, only_gains = None, [], False, False, False
-    by_heading = {HEADINGS.get(title, title): title for title in trades}
     for line in page.splitlines():
         heading, first = re.match("### (.*)", line), re.match(r"\| ?([^|]*?) ?\|", line)
         if lines and lines[-1] == row_of(COLUMNS):
             line = "|---" * len(COLUMNS) + "|"
         replaced, in_ratios = replaced and bool(first), in_ratios and bool(first)
         if line.startswith("#"):
-            trade = trades.get(by_heading.get(heading and heading[1]))
+            trade = trades.get(heading and heading[1])
         if line.startswith(row_of(COLUMNS[:2])):
             in_ratios, only_gains = True, line == row_of(GAINS)
             line = row_of(GAINS if only_gains else COLUMNS)
@@ -146,7 +143,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--program", default=ROOT / "build/release/bin/cayspin", type=pathlib.Path)
     parser.add_argument("--folder", default=ROOT / "build/trade", type=pathlib.Path,
-                        help="for what trade prints; what is there is not measured again")
+                        help="for the output of trade; existing results are not measured again")
     parser.add_argument("--repetitions", default=1, type=int,
                         help="ratios are medians; the spread is that of the median ratio")
     arguments = parser.parse_args()
@@ -165,7 +162,7 @@ def main():
         rows[title] = f"{ratio_row(title, medians)} {spread} |"
         print(rows[title], flush=True)
         trade_figure.draw(trades[title], ROOT / f"docs/images/trade_{name}.png")
-    named = [trade | {"name": HEADINGS.get(title, title)} for title, trade in trades.items()]
+    named = [trade | {"name": title} for title, trade in trades.items()]
     trade_overview.draw(named, ROOT / "docs/images/trade_overview.png")
     for page in PAGES:
         page.write_text(with_tables(page.read_text(), trades, rows))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Checks of arguments: each returns the value, or raises an error of one line.
 
-NumPy's scalars and arrays without axes are what they hold."""
+NumPy's scalars, and arrays without axes, count as the value that they hold."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from cayspin._cayspin import CayspinError
 
 
 def _one(thing: Any) -> Any:
-    """The Python object that a scalar of NumPy stands for, or an array without axes."""
+    """Converts a NumPy scalar, or an array without axes, to a Python object."""
     is_numpy = isinstance(thing, (np.generic, np.ndarray))
     return thing.item() if is_numpy and thing.ndim == 0 else thing
 
 
 def _shown(thing: Any) -> str:
-    """A thing in a message of one line."""
+    """A value as text for a message of one line."""
     text = " ".join(repr(thing).split())
     return text if len(text) <= 80 else text[:77] + "..."
 
 
 def whole(number: Any, name: str, bits: int = 64) -> int:
-    """A whole number of so many bits."""
+    """A whole number that fits into `bits` bits."""
     try:
         if isinstance(number, np.ndarray) and number.ndim:
             raise TypeError
@@ -40,7 +40,7 @@ def whole(number: Any, name: str, bits: int = 64) -> int:
 
 
 def real(number: Any, name: str) -> float:
-    """A number, no text."""
+    """A number; text is refused."""
     value = _one(number)
     try:
         is_number = hasattr(type(value), "__float__") or hasattr(type(value), "__index__")
@@ -60,7 +60,7 @@ def flag(truth: Any, name: str) -> bool:
 
 
 def is_false(thing: Any) -> bool:
-    """Whether a thing is False, of Python or NumPy: no number 0, nothing empty."""
+    """Whether a value is False, of Python or NumPy. The number 0 and empty values are not."""
     return _one(thing) is False
 
 
@@ -86,7 +86,7 @@ def word(text: Any, name: str) -> str:
 
 
 def entries(things: Any, name: str, accepted: str) -> list:
-    """The entries of a list, a tuple or another sequence in order; text is none."""
+    """The entries of a list, a tuple or another sequence; text is not a sequence."""
     if not isinstance(things, (str, bytes, bytearray, dict, set, frozenset)):
         try:
             return list(things)
@@ -107,7 +107,7 @@ def file_name(path: Any, name: str) -> str:
 
 
 def numbers(array: Any, name: str) -> np.ndarray:
-    """A numpy array of float32 or float64 in whole, aligned steps; of these it is no copy."""
+    """A numpy array of float32 or float64 with aligned elements; a copy only if necessary."""
     try:
         array = np.asarray(array)
     except ValueError:

@@ -40,12 +40,12 @@ class Averages:
         return average(looks) if looks else Average(np.nan, np.nan, 0)
 
     def restart(self) -> None:
-        """Forgets all samples, as for a simulation that has come to equilibrium."""
+        """Discards all samples, for example once the simulation has reached equilibrium."""
         for looks in (*self._looks.values(), *self._terms.values()):
             looks.clear()
 
     def __len__(self) -> int:
-        """The number of samples that the means are over."""
+        """The number of samples in the means."""
         return len(self._looks["energy"])
 
     @property

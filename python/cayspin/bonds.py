@@ -12,7 +12,7 @@ from cayspin._cayspin import CayspinError
 
 
 def as_float(word):
-    """A number, also of Fortran as in 1.0d-3; None for other words."""
+    """A number, also in Fortran's form 1.0d-3; None for other words."""
     try:
         return float(word.lower().replace("d", "e"))
     except ValueError:
@@ -20,7 +20,7 @@ def as_float(word):
 
 
 class File:
-    """The words of each line without its comment, and errors that name a line."""
+    """The lines of a file as words, without comments. Its errors name the line."""
 
     def __init__(self, path, name, comments="#"):
         self.path = arguments.file_name(path, name)
@@ -57,7 +57,7 @@ class File:
 
 
 def _energy(value, unit, name):
-    """A number or a vector with its unit, or over `unit`."""
+    """A number or a vector with its unit, or divided by `unit`."""
     value = np.asarray(value, float)
     return {name: value.tolist()} if unit is None else (value / unit).tolist()
 
@@ -77,7 +77,7 @@ def reversed_bond(key):
 
 
 def couplings(exchange, dmi, unit, name):
-    """The table field.couplings of bonds {(i, j, offset): J} and {(i, j, offset): D}."""
+    """The table field.couplings for bonds {(i, j, offset): J} and {(i, j, offset): D}."""
     pairs = []
     for key in dict.fromkeys((*exchange, *dmi)):
         pair: dict[str, Any] = {"between": list(key[:2]), "offset": list(key[2])}

@@ -37,10 +37,10 @@ def occupied_of_mesh(mesh: Any, shape: tuple[int, ...], spacing: float | tuple[f
     """Finds the cells of a lattice whose middle is inside a closed surface: True in an array
     (nz, ny, nx) for lattice.occupied.
 
-    `mesh` is a file of triangles (STL, OBJ, PLY, ..; read by trimesh), something with an attribute
+    `mesh` is a file of triangles (STL, OBJ, PLY, ..; read by trimesh), an object with an attribute
     `triangles`, or an array (count, 3, 3) of corners. `shape` (nx, ny, nz) and `spacing` are those
-    of the lattice; the corners times `scale` are in the unit of `spacing`. With `center` the middle
-    of the mesh's bounding box is that of the lattice, otherwise both have one origin, the lattice's
+    of the lattice; the corners times `scale` are in the unit of `spacing`. With `center` the mesh's
+    bounding box is centred in the lattice; otherwise the origin of the mesh is the lattice's
     corner. Bodies that overlap are united, if the corners of all triangles are counter-clockwise
     seen from outside.
 
@@ -74,6 +74,6 @@ def occupied_of_mesh(mesh: Any, shape: tuple[int, ...], spacing: float | tuple[f
     below = np.clip(np.ceil(z), 0, cells[2]).astype(int)  # cells whose middle is below
     turns = np.zeros((cells[2] + 1, cells[1], cells[0]), dtype=int)
     np.add.at(turns, (below, y, x), np.where(area[of] > 0, 1, -1))
-    # A cell is inside where the surfaces above it go out of the body more often than into it.
+    # A cell is inside if more of the surfaces above it lead out of the body than into it.
     above = np.cumsum(turns[::-1], axis=0)[::-1][1:]
     return above != 0

@@ -48,7 +48,7 @@ class Dispersion:
 
     @property
     def resolution(self) -> float:
-        """The angular frequency from one to the next. A sharp line is four of these wide."""
+        """The spacing of angular frequencies. A sharp line is four of these wide."""
         return float(self.frequency[1] - self.frequency[0])
 
     def peak(self) -> np.ndarray:
@@ -72,8 +72,8 @@ class Dispersion:
 
 
 def _on_segment(begin, end, shape):
-    """The wave vectors of a lattice of `shape` cells on the way from one corner to another: how far
-    on the way, 0 .. 1, rising, and their numbers (k, 3)."""
+    """The wave vectors of a lattice of `shape` cells between two corners: their positions along the
+    way, rising from 0 to 1, and their numbers (k, 3)."""
     step = (end - begin) * shape
     axis = np.abs(step).argmax()
     first, last = sorted((begin[axis] * shape[axis], end[axis] * shape[axis]))
@@ -149,20 +149,21 @@ def dispersion(spins: Any, dt: float, path: Any, *, labels: Sequence[str] | None
     several sites in a cell. They are read frame by frame, also from a dataset of h5py.
     `path`: the corners, each (h, k, l) in fractions of the reciprocal vectors of the cell; also
     beyond the first zone. S is given at the lattice's own wave vectors on it, multiples of
-    (1 / nx, 1 / ny, 1 / nz), between which nothing is made up. `labels` names the corners.
+    (1 / nx, 1 / ny, 1 / nz), without interpolation between them. `labels` names the corners.
     `cell`: the three vectors of the cell, along x, y and z of the array (default: unit cubes).
     `positions`: of the sites of a cell, (site, 3), in fractions of its vectors.
     `periodic`: where an axis is not, the spins are windowed along it (Hann).
 
     `component` "transverse": S = |sum of (m_1 - i m_2) exp(-i (k.r - w t))|^2, with m_1 and m_2
-    across the mean direction of all spins, or across `about`, right-handed with it. So what turns
-    about that direction with the right hand, as spins do about their field, has w > 0, and a wave
-    exp(i (k.r - w t)) of it runs along k. Others appear at (-k, -w). Components "x", "y" and "z"
-    are real: they show both.
+    normal to the mean direction of all spins, or to `about`, and right-handed with it. Right-handed
+    motion about that direction, such as precession about a field, has w > 0, and its wave
+    exp(i (k.r - w t)) runs along k. Left-handed motion appears at (-k, -w). Components "x", "y"
+    and "z" are real: they show both.
 
-    The time window is Hann's. The sum of S over w is the mean over the frames, so weighted, of
-    |sum of (..) exp(-i k.r)|^2 over the number of sites. Frequencies are angular, apart by
-    2 pi / (frames dt), and seen up to pi / dt: faster motion appears less a multiple of 2 pi / dt.
+    The time window is Hann's. The sum of S over w is |sum of (..) exp(-i k.r)|^2 divided by the
+    number of sites, averaged over the frames with that window. Frequencies are angular,
+    2 pi / (frames dt) apart, up to pi / dt. Faster motion is aliased: it appears shifted by a
+    multiple of 2 pi / dt.
 
     Raises CayspinError for arrays and words that do not fit, fewer than four frames, and a path
     without wave vectors of the lattice.
@@ -259,14 +260,14 @@ def _block_error(values):
 def average(values: Any, skip: int = 0) -> Average:
     """The mean of `values` (time, ...) over time and its standard error, without the first `skip`.
 
-    Values that follow each other in time are alike, so the error is that of means of blocks
-    (Flyvbjerg and Petersen 1989). Their length is doubled from 1 until it is B with
-    B^3 > 2 n (error_B / error_1)^4 (Lee et al. 2011). There the correlation of blocks and the
-    spread of few blocks weigh the same. B is about (2 n (2 tau)^2)^(1/3) for a correlation time of
-    tau values. The values are to be in equilibrium, at equal steps in time. Where they span too
-    few correlation times, the error is NaN.
+    Successive values are correlated, so the error is that of means of blocks
+    (Flyvbjerg and Petersen 1989). The length of blocks is doubled from 1 until it is B with
+    B^3 > 2 n (error_B / error_1)^4 (Lee et al. 2011). There the errors due to the correlation of
+    blocks and due to their small number are balanced. B is about (2 n (2 tau)^2)^(1/3) for a
+    correlation time of tau values. The values have to be in equilibrium, at equal steps in time. If
+    they span too few correlation times, the error is NaN.
 
-    Raises CayspinError when no values are left, or they are no real numbers.
+    Raises CayspinError when no values are left, or they are not real numbers.
     """
     values = arguments.numbers(values, "average").astype(np.float64, copy=False)
     skip = arguments.whole(skip, "average: skip")

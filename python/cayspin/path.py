@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Paths of least energy between two states."""
+"""Minimum-energy paths between two states."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from cayspin.scene import Scene
 
 @dataclasses.dataclass(frozen=True)
 class MinimumEnergyPath:
-    """Result of path(). Energies are in the scene's unit, J in SI. Without a saddle, what belongs
-    to it is None. `prefactor_*` and `langer_*` are those of
+    """Result of path(). Energies are in the scene's unit, J in SI. Without a saddle, the values
+    that belong to it are None. `prefactor_*` and `langer_*` are those of
     rate = prefactor T^((n - n_s) / 2) exp(-barrier / kT), n and n_s numbers of zero modes."""
 
     spins: np.ndarray  #: (image, nz, ny, nx, 3), of a crystal (image, site, nz, ny, nx, 3)
@@ -41,7 +41,7 @@ _SADDLE = [("energy", float), ("curvature", float), ("next_curvature", float), (
 
 
 def _end(state, name, shape, cell_sites):
-    """The name of a file, or an array as the library has it."""
+    """The name of a file, or an array in the library's order."""
     if isinstance(state, (str, bytes, os.PathLike)):
         return arguments.file_name(state, f"path: {name}")
     spins = arguments.numbers(state, f"path: {name}")
@@ -55,7 +55,7 @@ def path(scene: Scene, start: np.ndarray | str | os.PathLike, end: np.ndarray | 
          images: int = 16, torque: float = 1e-6, evaluations: int = 1000000, rates: bool = False,
          precision: str = "double", space: str | None = None,
          threads: int | None = None) -> MinimumEnergyPath:
-    """Finds a path of least energy between two states, and the saddle that is its barrier, as
+    """Finds the minimum-energy path between two states, and the saddle that sets its barrier, as
     `cayspin path` does.
 
         found = cayspin.path(scene, skyrmion, uniform)
@@ -64,13 +64,13 @@ def path(scene: Scene, start: np.ndarray | str | os.PathLike, end: np.ndarray | 
     `scene` needs no integrator. `start` and `end` are arrays in the shape of Simulation.spins, or
     files as initial.file takes them: both are relaxed first. `images`, both ends among them, is
     from 3 to 1000. `torque` bounds max |m x H| of the ends and saddles, in the unit of H, T in SI.
-    `evaluations` of the field of all sites are the most. `rates` adds prefactors of rates, up to
-    4096 sites. `precision`, `space` and `threads` are those of Simulation.
+    `evaluations` limits the evaluations of the field of all sites. `rates` adds prefactors of
+    rates, up to 4096 sites. `precision`, `space` and `threads` are those of Simulation.
 
-    A search that ends early has `converged` False, and what was found. Raises NumbersFailed where
-    there is no path: an end cannot be relaxed, or both relax to one state. Raises SceneError for
-    rigid bodies, temperatures, torques of currents and fields of t, CayspinError for wrong options
-    and ends. Ctrl-C raises KeyboardInterrupt.
+    If the search ends early, `converged` is False, and the result has what was found. Raises
+    NumbersFailed if there is no path: an end cannot be relaxed, or both relax to one state. Raises
+    SceneError for rigid bodies, temperatures, torques of currents and fields that depend on t,
+    CayspinError for wrong options and ends. Ctrl-C raises KeyboardInterrupt.
     """
     if not isinstance(scene, Scene):
         raise _cayspin.CayspinError(f"path: a {type(scene).__name__}; accepted: a Scene")

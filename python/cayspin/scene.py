@@ -16,7 +16,7 @@ _VECTORS = re.compile(r".*(sources\[\d+\]\.profile|axis|axes\[\d+\]|in_plane|nor
 
 
 def _without_arrays(thing, key, arrays):
-    """A value of a scene, whose arrays of numbers of sites go into `arrays` by their keys."""
+    """A value of a scene. Moves its arrays of values per site into `arrays`, by their keys."""
     if isinstance(thing, np.ndarray) and thing.ndim in (4, 5) and thing.shape[-1] == 3 \
             and _VECTORS.fullmatch(key):
         thing = [thing[..., component] for component in range(3)]
@@ -31,8 +31,8 @@ def _without_arrays(thing, key, arrays):
 
 
 def _split(tables):
-    """The tables without what no text holds: the spins of the start, functions of the field, and
-    arrays of numbers of sites."""
+    """The tables without what text cannot hold: the initial spins, functions of the field, and
+    arrays of values per site."""
     tables = {name: table for name, table in tables.items() if table is not None}
     spins, own = None, {}
     initial = tables.get("initial")
@@ -51,20 +51,20 @@ def _split(tables):
 
 
 def _as_planes(spins):
-    """An array for the start as the library has it."""
+    """An array of initial spins in the library's order."""
     if spins is None or spins.ndim == 4:
         return spins
     return spins[0] if len(spins) == 1 else sites.by_plane(spins, len(spins))
 
 
 def _flat(arrays):
-    """Numbers of sites as the library has them."""
+    """Values per site in the library's order."""
     return {key: np.ascontiguousarray(_as_planes(array[..., None]), np.float64).ravel()
             for key, array in arrays.items()}
 
 
 def _nonlocal_by_planes(function, shape, cell_sites):
-    """A function of the field of crystals, to be called with arrays as the library has them."""
+    """A function of the field of crystals, to be called with arrays in the library's order."""
     def called(spins, t):
         field = np.asarray(function(sites.by_site(spins, cell_sites), t))
         if field.shape != (*shape, 3):
@@ -86,13 +86,13 @@ class Scene:
     `system`, `lattice`, `field`, `integrator` and `output` are dicts of the keys of these tables,
     `tables` further ones: material, torque, thermal, ensemble, and units="SI". Without `end` and
     `steps` in `integrator` the scene has no end. Without `integrator` it is only for
-    Simulation.relax() and what needs no steps.
+    Simulation.relax() and other calls that need no steps.
 
     `initial` is a dict, or an array (nz, ny, nx, 3) of vectors, which are copied and normalised.
-    Arrays of a crystal with several sites in a cell are (site, nz, ny, nx, 3). Numbers of sites may
+    Arrays of a crystal with several sites in a cell are (site, nz, ny, nx, 3). Values per site may
     be arrays (nz, ny, nx), of a crystal (site, nz, ny, nx): lattice={"shape": [20, 20],
-    "occupied": mask}. So may vectors of sites, with a last axis of 3: field={"sources":
-    [{"profile": array}]}.
+    "occupied": mask}. Vectors per site may be arrays with a last axis of 3:
+    field={"sources": [{"profile": array}]}.
 
     `field["applied"]` may be a function of t that returns three numbers: the uniform field, in T in
     SI. `field["nonlocal"]` may be a function of (spins, t) that returns H of all sites in the shape
@@ -116,7 +116,7 @@ class Scene:
     @classmethod
     def from_file(cls, path: str | os.PathLike, **overrides: Any) -> Scene:
         """Reads a scene from the TOML file `path`, with keys changed by `overrides`, as in
-        from_file("film.toml", integrator={"dt": 0.1}). Overrides are tables as of Scene(); one of
+        from_file("film.toml", integrator={"dt": 0.1}). Overrides are tables as in Scene(); one of
         `initial` replaces the whole table, and may be an array.
 
         Raises SceneError with file and line for what is wrong in it.
@@ -156,7 +156,7 @@ class Scene:
         """The values of an `expression` at the sites, (nz, ny, nx), of a crystal with several sites
         in a cell (site, nz, ny, nx): at_sites("grain(20, 1)") numbers the grains.
 
-        Raises CayspinError for what is no expression of sites.
+        Raises CayspinError for an invalid expression.
         """
         values = self._scene.at_sites(arguments.word(expression, "at_sites"))
         return sites.by_site(values, self._scene.cell_sites)
@@ -169,7 +169,7 @@ class Scene:
         return changed
 
     def _changes(self, tables):
-        """Tables and dotted keys without their arrays of numbers of sites, and these."""
+        """Tables and dotted keys without their arrays of values per site, and those arrays."""
         def refuse_functions(thing, key):
             if callable(thing):
                 raise _cayspin.SceneError(f"{key}: a function; accepted: numbers and expressions")
@@ -194,7 +194,8 @@ class Scene:
 
     @property
     def text(self) -> str:
-        """The TOML text, which the program `cayspin` runs unless a function or an array is in it."""
+        """The TOML text. The program `cayspin` can run it, unless the scene has functions or
+        arrays."""
         return self._scene.text
 
     @property

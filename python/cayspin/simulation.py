@@ -14,7 +14,7 @@ from cayspin import _cayspin, arguments, sites, texture, toml_text
 from cayspin.averages import Averages
 from cayspin.scene import Scene
 
-_GUARD_PERIOD = 100  # steps between two looks at energy and lengths in step()
+_GUARD_PERIOD = 100  # steps between two checks of energy and lengths in step()
 
 
 @dataclasses.dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Minimum:
 
     @property
     def converged(self) -> bool:
-        """Whether the torque is below its bound, and no direction leads down."""
+        """Whether the torque is below its bound, and the energy falls in no direction."""
         return self.end == "converged"
 
 
@@ -54,13 +54,13 @@ class Simulation:
     that of Kokkos), `threads` the number of its threads: the first simulation of a process decides
     that.
 
-    `restart` names a file of save(), or the trajectory of a run: the simulation goes on from there
-    with the bits of one without a break. Its lattice has to be the scene's; a warning names what
-    else differs.
+    `restart` names a file of save(), or the trajectory of a run: the simulation continues from
+    there, with the bits of a run without a break. The lattice in the file has to be the scene's; a
+    warning names other differences.
 
     While it steps, other Python threads run. Ctrl-C stops it between two steps with
-    KeyboardInterrupt, and it can go on from there. N calls of step() give the bits of one step(N),
-    and those of `cayspin run`.
+    KeyboardInterrupt, and it can continue from there. N calls of step() give the bits of one
+    step(N), and those of `cayspin run`.
 
     Lengths, times, fields and energies are in the units of the scene: reduced ones, or with
     units = "SI" m, s, T and J.
@@ -89,10 +89,10 @@ class Simulation:
         """Takes `n` steps of dt, or fewer when an observer returns True. The first step warns of a
         dt that is too large, as `cayspin run` does.
 
-        Raises NumbersFailed when spins are not finite, leave the sphere or gain energy that nothing
-        gives, SceneError for a dt that integrator.refuse_unstable refuses, CayspinError without an
+        Raises NumbersFailed when spins are not finite, leave the sphere or gain energy without a
+        source, SceneError for a dt that integrator.refuse_unstable refuses, CayspinError without an
         integrator or beyond the last possible step. An exception of an observer or of a field of
-        your own reaches you; the spins are then those of the last whole step.
+        your own reaches you; the spins are then those of the last complete step.
         """
         n = arguments.whole(n, "step")
         if not self._scene._scene.has_integrator:
@@ -109,12 +109,12 @@ class Simulation:
         """Steps to time `until`, in s in SI, or to the scene's end, as `cayspin run` does.
 
         Frames go into the HDF5 file `output`, or into the scene's output.file; output=False writes
-        none. `overwrite` replaces a file that is there. The run ends early where the scene's
-        until_torque or an observer says so.
+        none. `overwrite` replaces an existing file. The run ends early if the scene's until_torque
+        or an observer says so.
 
         Raises NumbersFailed and SceneError as step() does. Raises CayspinError for a time that has
-        passed or is no whole number of steps, for a scene without end, and for a file that is there
-        or cannot be written.
+        passed or is not a whole number of steps, for a scene without end, and for a file that
+        exists or cannot be written.
         """
         overwrite = arguments.flag(overwrite, "run: overwrite")
         if not self._scene._scene.has_integrator:
@@ -158,9 +158,9 @@ class Simulation:
         takes at most `evaluations` of the field of all sites.
 
         `applied`, three numbers in the unit of H, takes the place of the scene's field.applied. A
-        hysteresis is [sim.relax(applied=h) and sim.magnetization() for h in fields]: each search
-        begins at the state before. Otherwise H is that at the time now. Time and steps stay as they
-        are. With `keep_saddles` a state without torque is enough, a saddle too.
+        hysteresis loop is [sim.relax(applied=h) and sim.magnetization() for h in fields]: each
+        search starts from the state before. Without `applied`, H is that of the current time. Time
+        and steps do not change. With `keep_saddles` the search may end at a saddle.
 
         The scene needs no integrator. After Ctrl-C the spins hold the last state of the search.
 
@@ -180,8 +180,8 @@ class Simulation:
 
     def modes(self, count: int = 8, tolerance: float = 1e-9,
               evaluations: int = 100000) -> Modes:
-        """Finds the `count` slowest normal modes, at most 128, about the spins. These are taken to
-        be in equilibrium: call relax() before. They move by the real part of
+        """Finds the `count` slowest normal modes, at most 128, about the spins. The spins have to
+        be in equilibrium: call relax() before. In a mode they move by the real part of
         shape e^((i w - decay) t), with w the angular frequency, 2 pi frequency in SI.
 
         `tolerance` is the relative error of the shapes; frequencies are more accurate. The search
@@ -201,21 +201,21 @@ class Simulation:
         return Modes(*(np.array(each) for each in numbers), shape, converged, cost)
 
     def set(self, keys: str | dict[str, Any], value: Any = None) -> None:
-        """Goes on with other keys of the scene, from the spins, time and steps now. `keys` is one
+        """Changes keys of the scene. Spins, time and steps are kept. `keys` is one
         key with its `value`, or a dict of keys or tables:
 
             sim.set("field.applied", [0.1, 0, 0])
             sim.set({"system.damping": 0.02, "integrator.dt": 0.01})
             sim.set({"integrator": {"method": "tsit5", "tolerance": 1e-6, "end": 50}})
 
-        Units are the scene's, and numbers of sites may be arrays (nz, ny, nx).
+        Units are the scene's, and values per site may be arrays (nz, ny, nx).
 
         Keys are changed as by a table [[stage]] of a scene, with the same rules. integrator.method
-        begins a new [integrator], and its end or steps are counted from now. Where no integrator is
-        among the keys, run() goes on for as long again as the scene did. Methods that remember
-        earlier steps begin again.
+        starts a new [integrator], and its end or steps are counted from now. If the keys do not
+        include an integrator, run() takes the scene's duration again. Methods that remember earlier
+        steps start afresh.
 
-        Raises SceneError for keys that stay as they are, such as those of lattice, and for wrong
+        Raises SceneError for keys that cannot change, such as those of lattice, and for wrong
         values, CayspinError for other arguments; nothing is changed then.
         """
         changes = {arguments.word(keys, "set"): value} if isinstance(keys, str) else keys
@@ -232,7 +232,7 @@ class Simulation:
 
     def save(self, checkpoint: str | os.PathLike) -> None:
         """Stores in the file `checkpoint` all that Simulation(scene, restart=checkpoint) needs to
-        go on with the same bits. A file of that name is replaced as a whole.
+        continue with the same bits. A file of that name is replaced as a whole.
 
         Raises CayspinError where it cannot be written.
         """
@@ -261,9 +261,9 @@ class Simulation:
 
     def observe(self, every: int, f: Callable[[Simulation], Any]) -> None:
         """Calls the function `f` with this simulation after each step whose number is a multiple of
-        `every`. Where it returns True, the current step(n) or run() ends.
+        `every`. If it returns True, the current step(n) or run() ends.
 
-        Raises CayspinError for an `every` below 1, and for what is no function.
+        Raises CayspinError for an `every` below 1, and if `f` is not a function.
         """
         every = arguments.whole(every, "observe: every")
         if not callable(f):
@@ -273,7 +273,7 @@ class Simulation:
         self._observers.append((every, f))
 
     def averages(self, every: int, window: int | None = None) -> Averages:
-        """Begins running means of magnetizations and energies, with their errors. Samples are taken
+        """Starts running means of magnetizations and energies, with their errors. Samples are taken
         after each step whose number is a multiple of `every`, from now on. With `window` the means
         are over that many latest samples, otherwise over all since the result's last restart().
 
@@ -292,9 +292,9 @@ class Simulation:
         """The spins now, (nz, ny, nx, 3), of a crystal with several sites in a cell
         (site, nz, ny, nx, 3): a read-only view of the library's memory, no copy.
 
-        A view never changes: a simulation that goes on while you hold one moves to other memory.
+        A view never changes: while you hold one, the next step moves the spins to other memory.
         Assigning to `spins` copies and normalises any array that broadcasts to the shape, and
-        methods that remember earlier steps begin again. Raises CayspinError for another shape, and
+        methods that remember earlier steps start afresh. Raises CayspinError for another shape, and
         for vectors that are zero or not finite.
         """
         return sites.by_site(self._run.spins(), self._scene._scene.cell_sites)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Vectors of crystals with several sites in a cell. The library has (nz * sites, ny, nx, 3), where
-plane k * sites + s has the sites s of the cells k; programs have (site, nz, ny, nx, 3)."""
+plane k * sites + s holds site s of the cells in plane k; programs have (site, nz, ny, nx, 3)."""
 
 from __future__ import annotations
 
@@ -24,6 +24,6 @@ def by_plane(vectors: np.ndarray, sites: int) -> np.ndarray:
 
 
 def shape_by_site(shape: tuple[int, ...], sites: int) -> tuple[int, ...]:
-    """(nz, ny, nx) of the library as programs have it, with the sites first."""
+    """An array (nz, ny, nx) of the library in the order of the package, with the sites first."""
     planes, *rest = shape
     return shape if sites == 1 else (sites, planes // sites, *rest)

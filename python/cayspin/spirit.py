@@ -38,15 +38,15 @@ def read_spirit_pairs(path: str | os.PathLike, *, unit: float | None = None) -> 
         field = {"couplings": cayspin.read_spirit_pairs("pairs.txt")}
 
     `path` has a header with the columns i, j, da, db, dc, Jij, Dijx, Dijy, Dijz in any order, and
-    Dij, the length of D, whose direction the vector then is. Others are not read. Numbers are
-    in meV, and D is Cartesian. E = -J m.m' - D.(m x m') with each pair once, as in a scene. A pair
-    that is there twice, or from its other end, is the sum of both, as in Spirit.
+    Dij. With Dij, the length of D, the vector gives only its direction. Other columns are not read.
+    Numbers are in meV, and D is Cartesian. E = -J m.m' - D.(m x m') with each pair once, as in a
+    scene. A pair that is listed twice, or from both ends, is the sum of both, as in Spirit.
 
-    Energies are { meV = .. } for units = "SI"; `unit`, in meV, gives plain numbers over it for a
-    scene in reduced units. Sites i and j count as lattice.basis does, from 0.
+    Energies are { meV = .. } for units = "SI"; with `unit`, in meV, they are numbers divided by it,
+    for a scene in reduced units. Sites i and j count as in lattice.basis, from 0.
 
-    Raises CayspinError, with file and line, for what is no such table, and for columns Dija, Dijb
-    and Dijc, which mean something else in Spirit's documentation than in its source.
+    Raises CayspinError, with file and line, for a file without such a table, and for columns Dija,
+    Dijb and Dijc, which mean something else in Spirit's documentation than in its source.
     """
     unit = unit_of(unit, "read_spirit_pairs: unit")
     file = File(path, "read_spirit_pairs: path")

@@ -146,7 +146,7 @@ def advise(scene: Scene, error: float, precision: str | None = None, space: str 
     1e-13 to 1, at a dozen times from the first step on, as `cayspin advise` does. `precision`,
     `space` and `threads` are as of trade().
 
-    Raises NumbersFailed where no method gets there, CayspinError for a scene that the program
+    Raises NumbersFailed if no method reaches the error, CayspinError for a scene that the program
     cannot run, as one with functions or arrays.
     """
     answer = _ask("advise", scene, "--error", repr(arguments.real(error, "error")),

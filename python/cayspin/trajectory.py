@@ -89,7 +89,7 @@ class Trajectory:
 
     @property
     def terms(self) -> list[str]:
-        """The names of the terms of scalars["term_energy"]; none where it is not there."""
+        """The names of the terms of scalars["term_energy"]; empty if the file has none."""
         if "term_energy" not in self.scalars:
             return []
         return [name.decode() for name in self.scalars["term_energy"].attrs["terms"]]
@@ -225,7 +225,7 @@ class Trajectory:
         return xarray.Dataset(variables, coordinates, attributes)
 
     def close(self) -> None:
-        """Closes the file; arrays that were read stay."""
+        """Closes the file; arrays that were read remain valid."""
         self.file.close()
 
     def __enter__(self):

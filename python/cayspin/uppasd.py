@@ -13,7 +13,7 @@ from cayspin import arguments
 from cayspin._cayspin import CayspinError
 from cayspin.bonds import File, as_float, couplings, reversed_bond, unit_of
 
-NEAR = 0.05  # how far from its atom a vector may point, in units of alat
+NEAR = 0.05  # largest distance from the end of a vector to its atom, in units of alat
 MOST_CELLS = 1e6  # in a vector or a position
 
 _TURN_X = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
@@ -25,8 +25,8 @@ _GENERATORS: dict[int, list] = {0: [], 1: [_TURN_X, _TURN_Z, -np.eye(3)], 2: [_T
 
 
 def _columns(file, line, words, accepted, spare=0):
-    """The leading words, as many as `accepted` names, with up to `spare` numbers behind them. More
-    numbers belong to another kind of file."""
+    """The leading words, as many as `accepted` names, with up to `spare` numbers after them. More
+    numbers mean another kind of file."""
     names = accepted.split()
     numbers = 0
     while numbers < len(words) and as_float(words[numbers]) is not None:
@@ -92,8 +92,8 @@ class _Cell:
         return site - 1
 
     def bonds(self, i, j, vector):
-        """All (site, site, offset) from atoms of the type of i to those of the type of j, which are
-        at this vector from them."""
+        """All (site, site, offset) from atoms of the type of i to atoms of the type of j at this
+        vector from them."""
         starts = np.flatnonzero(self.types == self.types[i])
         targets = self.fractions[starts] + vector @ self.inverse
         keys = np.floor(targets * self.counts).astype(int) % self.counts
@@ -150,7 +150,7 @@ def _both_ends(file, cell, names, posfiletype, maptype, sym):
 
 
 def _once(file, both, sign):
-    """The same, once for each bond: the mean of its two ends."""
+    """Bonds as above, but each only once, with the mean of its two ends."""
     once: dict = {}
     largest = max((np.abs(values).max() for _, values in both.values()), default=0)
     for key, (line, values) in both.items():
@@ -206,21 +206,21 @@ def read_uppasd(jfile: str | os.PathLike, *, posfile: str | os.PathLike | None =
     - `maptype`: 1 for vectors between atoms, 2 for the cells between them
     - `sym`: 0 for none, 1 cubic, 2 cubic in the plane, 3 hexagonal; it turns only J
 
-    As there, a line is for all atoms of the types of its two sites.
+    As in UppASD, a line applies to all atoms with the types of its two sites.
 
     UppASD counts each bond in both orders, so J and D of the result are twice those of the files.
     Each bond is in the result once, with the mean of its two ends. `dm_sign` is the sign of
     D.(m x m') in UppASD's energy: -1 in its manual and up to version 6.0.2, 1 in its source of
     August 2026.
 
-    Returns {"lattice": {"cell", "basis"}, "field": {"couplings"}} and, with `momfile`,
-    "material": {"mu_s"}. Energies are { mRy = .. } and moments { bohr_magnetons = .. } for
-    units = "SI"; `unit`, in mRy, gives plain numbers over it for a scene in reduced units, with
+    Returns {"lattice": {"cell", "basis"}, "field": {"couplings"}} and, with `momfile`, "material":
+    {"mu_s"}. Energies are { mRy = .. } and moments { bohr_magnetons = .. } for units = "SI"; with
+    `unit`, in mRy, they are numbers divided by it, for a scene in reduced units, with
     lattice.moments in Bohr magnetons.
 
-    Raises CayspinError, with file and line, for what is no such file, and for alloys. So it does
-    for a bond with only one end, or whose ends differ by more than 1e-4 of the largest number, and
-    for a vector that leads to no atom within 0.05. Directions in `momfile` are not read.
+    Raises CayspinError, with file and line, for an invalid file, for alloys, for a bond with only
+    one end or whose ends differ by more than 1e-4 of the largest number, and for a vector that
+    leads to no atom within 0.05. Directions in `momfile` are not read.
     """
     posfiletype = arguments.word(posfiletype, "read_uppasd: posfiletype")
     if posfiletype not in ("C", "D"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Reads what bench/run.sh left: medians over repetitions, and what bounds a step."""
+"""Reads the results of bench/run.sh: medians over repetitions, and the limits of a step."""
 
 import json
 import statistics
@@ -49,8 +49,8 @@ class Results:
         return 1e9 * self.median(kind, "GB/s", file)
 
     def limit(self, case):
-        """ns per spin and step that no such step goes below, and what sets it: memory for the
-        numbers it must move, or the same kernels with all fields in the second cache."""
+        """Lower limit of a step, in ns per spin and step, and what sets it: memory for the numbers
+        it must move, or the same kernels with all fields in the second-level cache."""
         precision, method, _ = case.split("/")
         file = next(iter(self.files(case)), None)
         words = self.median(case, "words", file)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The goals of the benchmarks, and what was measured beside them."""
+"""The goals of the benchmarks, beside the measured values."""
 
 PRECISIONS = ("f64", "f32")
 METHODS = ("Euler", "Heun", "RKMK4", "Euler orthogonal", "Heun orthogonal", "RKMK4 orthogonal",
@@ -16,7 +16,7 @@ def yardstick(method):
 
 
 class Goal:
-    """One line: a ratio, of which more is better, or less where `at_most`."""
+    """One line: a ratio; a larger one is better, or with `at_most` a smaller one."""
 
     def __init__(self, text, value, goal, floor=None, at_most=False):
         self.text, self.value, self.goal, self.at_most = text, value, goal, at_most
@@ -75,7 +75,7 @@ def against_hand_written(results):
 
 
 def against_probes(results):
-    """One core, second cache: the time over that of the step written out for this scene."""
+    """One core, second-level cache: the time over that of the step written out for this scene."""
     for precision in PRECISIONS:
         for method in METHODS:
             case = f"{precision}/probe {method}/L2"

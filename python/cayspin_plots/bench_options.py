@@ -14,8 +14,9 @@ def beside(method):
 
 
 def predicted(results, method, size):
-    """ns per spin and step: what must be moved at the speed of a non-temporal copy, or the same
-    kernels with all fields in the second cache. Code on the host runs after it, on one thread."""
+    """ns per spin and step: the necessary data at the speed of a non-temporal copy, or the same
+    kernels with all fields in the second-level cache. Code on the host runs after it, on one
+    thread."""
     def in_cache(name):
         return results.median(f"options/{name}/L2", "ns/spin")
     bound = results.limit(f"options/{method}/{size}")

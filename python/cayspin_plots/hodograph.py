@@ -83,14 +83,14 @@ def draw_path(axis, path, color, linewidth=1.4, fade=True):
 
 
 def draw_ends(axis, path, color):
-    """An open circle at the begin of the path, a full one at its end."""
+    """An open circle at the start of the path, a full one at its end."""
     page, _ = project(path[[0, -1]])
     axis.plot(*page[0], "o", markersize=6, markerfacecolor="white", markeredgecolor=INK, zorder=5)
     axis.plot(*page[1], "o", markersize=7, color=color, markeredgecolor="white", zorder=5)
 
 
 def reach_of(path):
-    """How far the page has to show for the sphere, its axes and a path."""
+    """Half the width of the page that shows the sphere, its axes and a path."""
     return max(1.27, 1.05 * float(np.abs(project(path)[0]).max()))
 
 

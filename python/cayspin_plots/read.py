@@ -41,7 +41,7 @@ class Trajectory:
 
 @contextlib.contextmanager
 def opened(path, what):
-    """An HDF5 file; what is wrong with it ends the program with one line."""
+    """An HDF5 file; an error ends the program with one line."""
     if not os.path.isfile(path):
         raise SystemExit(f"{path}: there is no such file")
     try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The ends of a sweep's runs: curves over one key, maps over two."""
+"""The final values of a sweep's runs: curves over one key, maps over two."""
 
 import itertools
 import pathlib

@@ -46,7 +46,7 @@ def cheapest(methods, error, key="seconds"):
 
 def gain(trade, error):
     """Time of the best baseline over that of the best other method in double precision, and that
-    method. None where no method gets there; infinite where no baseline does."""
+    method. None if no method reaches the error; infinite if no baseline does."""
     double = [method for method in trade["methods"] if is_double(method)]
     here, winner = cheapest([method for method in double
                              if method["method"] not in (*BASELINES, WITHOUT_GEOMETRY)], error)

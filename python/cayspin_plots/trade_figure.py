@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Error over cost of the methods that `cayspin trade` tried: those one would take, and baselines."""
+"""Error over cost of the methods that `cayspin trade` tried: the cheapest ones, and baselines."""
 
 import numpy as np
 
@@ -76,7 +76,7 @@ def draw_methods(axis, trade, key, everything):
 
 
 def draw_front(axis, trade):
-    """The line one would follow, each piece in the colour of its method."""
+    """The lower envelope, each piece in the colour of its method."""
     front, _ = chosen(trade)
     rungs = sorted(((rung["seconds"], rung["error"], method) for method in trade["methods"]
                     for rung in method["rungs"] if rung["front"] and rung["error"] > 0),

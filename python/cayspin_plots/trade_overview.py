@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Which method to take: scenes as rows, errors as columns."""
+"""Which method to use: scenes as rows, errors as columns."""
 
 import math
 

@@ -83,7 +83,7 @@ herr_t write(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t offset, size_t bytes, void
   return report(file_of(file).write(offset, data, bytes));
 }
 
-// Reserved space stays: closing truncates the file.
+// Reserved space is kept; closing truncates the file.
 herr_t truncate(H5FD_t*, hid_t, hbool_t) { return 0; }
 
 herr_t change_lock(H5FD_t* file, int operation) {

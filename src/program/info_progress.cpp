@@ -50,7 +50,7 @@ struct PlannedSteps {
 };
 
 PlannedSteps planned_steps(io::TrajectoryInfo const& info) {
-  if (info.cost.relaxed) return {};  // its frames are states
+  if (info.cost.relaxed) return {};  // its frames are equilibria, not steps
   auto const& header = info.header;
   io::Scene scene;
   scene.path = info.path;
@@ -97,7 +97,7 @@ std::vector<std::pair<std::string, std::string>> progress_lines(io::TrajectoryIn
   auto const plan = planned_steps(info);
   lines.emplace_back("progress", progress_text(info, *now, plan.steps));
 
-  bool const has_ended = info.cost.wall_seconds > 0;  // and reports its cost
+  bool const has_ended = info.cost.wall_seconds > 0;  // a run writes this at its end
   if (has_ended || age.written == 0) return lines;
   auto time = duration_text(age.written);
   auto const first = info.frames > 0 ? info.frame_steps.front() : now->step;

@@ -43,7 +43,7 @@ int print_methods() {
   fmt::print(line, "method", "isotropy", "generator", "rotation", "order", "evaluations",
              "work fields");
   for (auto const& variant : variants()) {
-    // Has the name of the method on spins.
+    // Printed once already, as the method for spins.
     if (variant.of_rigid_bodies && variant.isotropy == io::Isotropy::zero) continue;
     fmt::print(line, method(variant), isotropies(variant), generators(variant), rotations(variant),
                variant.order, evaluations(variant), variant.work_fields);

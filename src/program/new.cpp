@@ -37,7 +37,7 @@ int write_new(NewOptions const& options) {
     throw UsageError(fmt::format("new {}: accepted: {}", options.kind, names_of_new_scenes()));
   auto const path = options.output.value_or(options.kind + ".toml");
   io::FileBeside file(path, options.overwrite);
-  // The new scene's own name stands for that of the shipped one.
+  // The names of the shipped scene and of its results are replaced by the new ones.
   auto const results = [](std::filesystem::path name) {
     return name.filename().replace_extension(".h5").string();
   };

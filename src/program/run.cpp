@@ -99,7 +99,7 @@ Plan plan_of(io::Stage const& stage, Precision precision) {
                      : make_plan(stage.scene, precision);
 }
 
-// Returns all stages, with plans from the one on in which the run continues.
+// Returns all stages, with plans from the stage in which the run continues.
 std::vector<PlannedStage> planned_stages(io::Scene const& scene, EarlierRun* left,
                                          RunOptions const& options, Ranks& ranks) {
   return ranks.together([&] {

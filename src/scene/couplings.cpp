@@ -177,7 +177,7 @@ std::vector<Coupling> read_pairs(Item const& item, Scene& scene, bool both_direc
   return bonds;
 }
 
-// Bonds that both have are one, with the sum of what they say.
+// A bond in both lists becomes one bond, with the sum of their values.
 void add_bonds(std::vector<Coupling> const& more, std::vector<Coupling>& bonds) {
   std::map<Key, std::size_t> seen;
   for (std::size_t i = 0; i < bonds.size(); ++i) seen.emplace(key_of(bonds[i]), i);

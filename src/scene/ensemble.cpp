@@ -19,7 +19,7 @@ constexpr std::int64_t most_replicas = 1'000'000;
 constexpr std::string_view accepted_values =
     "as many numbers as replicas, or { from = number, to = number }";
 
-// Tables whose numbers a replica may have of its own.
+// Tables whose numbers may differ between replicas.
 constexpr std::array varied_tables{"field.", "torque.", "material.", "thermal.temperature",
                                    "system.damping"};
 // Moments are part of the units and of the lattice.

@@ -87,7 +87,7 @@ void require_alike_where_followed(Scene const& scene) {
     detail::refuse(
         scene, "lattice.follow",
         fmt::format("{} differs along {}, along which the lattice follows", key, axes[axis]),
-        fmt::format("numbers of sites that are the same along {}, or no such key", axes[axis]));
+        fmt::format("values per site that are the same along {}, or no such key", axes[axis]));
   };
   auto const check = [&](SiteNumbers const& numbers, std::string_view key) {
     if (numbers.there())

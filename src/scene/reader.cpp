@@ -107,7 +107,7 @@ void Table::accept_only(std::vector<std::string_view> const& known) const {
   for (auto const& [key, node] : *item_.node->as_table()) {
     if (std::ranges::find(known, key.str()) != known.end()) continue;
     if (key.str() == "given" && scene_->given.numbers.contains(item_.key))
-      item_.fail("is an array of numbers of sites", fmt::format("{}", fmt::join(known, ", ")));
+      item_.fail("is an array of values per site", fmt::format("{}", fmt::join(known, ", ")));
     auto const place = place_of(node.source(), item_.place);
     auto const full =
         item_.key.empty() ? std::string(key.str()) : fmt::format("{}.{}", item_.key, key.str());

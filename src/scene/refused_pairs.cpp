@@ -72,7 +72,7 @@ constexpr RefusedPair pairs[] = {
     {"slab_demag on the host", "red_black2, red_black4", neighbors_alone, "field.slab_demag",
      "no where = \"host\", or another method",
      [](Scene const& scene) { return is_nonlocal(scene.field); }, by_two_colours},
-    {"couplings, cubic axes, torques, vacancies, numbers of sites, in_time",
+    {"couplings, cubic axes, torques, vacancies, values per site, in_time",
      "red_black2, red_black4",
      "\"{}\" needs a field of the neighbours alone: it moves spins while their neighbours stay, and "
      "these terms are evaluated for all spins beforehand",

@@ -13,7 +13,7 @@ namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 constexpr std::string_view accepted_temperature =
-    "a number >= 0, an expression in t, numbers of sites, or { profile = numbers of sites, time = "
+    "a number >= 0, an expression in t, values per site, or { profile = values per site, time = "
     "an expression in t }";
 
 void read_temperature(Item const& item, Scene& scene, Thermal& thermal) {
@@ -124,7 +124,7 @@ std::vector<double> noise_of_sites(Scene const& scene, SiteBox const& box) {
   multiply(scene.system.dampings, "system.damping");
   multiply(scene.thermal->of_sites, "thermal.temperature");
   if (!scene.system.gilbert_of_sites) return noise;
-  // Divided like the torques.
+  // Gilbert's form divides the noise by the same factor as the torques.
   auto const dampings = numbers_of_sites(scene, scene.system.dampings, "system.damping", box);
   for (std::size_t site = 0; site < noise.size(); ++site)
     noise[site] /= 1 + dampings[site] * dampings[site];

@@ -74,7 +74,7 @@ void write_attributes(hid_t file, TrajectoryHeader const& header, std::int64_t r
   attributes.create(ensemble_format, ensemble_format_version);
   attributes.create("replicas", replicas);
   attributes.create("scene", header.scene_text);
-  // A trajectory is known by `cayspin_version`.
+  // Only trajectories have `cayspin_version`, which identifies them.
   attributes.create("written_by", "cayspin " + header.cayspin_version);
   attributes.create("git_commit", header.git_commit);
   attributes.create("kokkos_version", header.kokkos_version);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Files of paths and of modes, without their vectors of sites.
+// Files of paths and of modes, without their vectors per site.
 #include "format.hpp"
 #include "hdf5/attribute.hpp"
 #include "hdf5/dataset.hpp"
@@ -27,7 +27,7 @@ bool has_attribute(fs::path const& path, char const* name) {
   });
 }
 
-/// All numbers of a dataset, by the rows of its last extents.
+/// Returns all numbers of a dataset of `rank` extents.
 template <class Number>
 std::vector<Number> read_numbers(hid_t group, char const* name, std::size_t rank, hid_t type,
                                  fs::path const& path) {

@@ -85,7 +85,7 @@ void require_valid(TrajectoryHeader const& header, TrajectoryStorage const& stor
     throw std::invalid_argument("the positions are not three numbers of each site");
 }
 
-// Checked by HDF5, unlike other data besides the frames.
+// HDF5 adds its own checksums to this dataset, which the frames' checksums do not cover.
 void write_positions(hid_t file, TrajectoryHeader const& header,
                      std::vector<double> const& positions, std::filesystem::path const& path) {
   auto block = header.shape;

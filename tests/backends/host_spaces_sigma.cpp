@@ -31,7 +31,7 @@ TYPED_TEST(HostSpacesOfSigma, StepAlike) {
       natural);
 }
 
-// On lattices with a checkerboard.
+// Red-black splitting needs a checkerboard, so an even number of sites along periodic axes.
 TYPED_TEST(HostSpacesOfSigma, RedBlack) {
   auto checkerboards = odd_lattices();
   for (Lattice& lattice : checkerboards)

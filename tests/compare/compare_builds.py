@@ -108,7 +108,7 @@ def toml_value(value):
 
 
 def scene_text(scene, combination, steps):
-    """The scene with another method, shortened, and with a lattice that is not large."""
+    """The scene with another method, shortened, and with a smaller lattice if it is large."""
     in_si = scene.get("units") == "SI"
     top = {key: value for key, value in scene.items() if not isinstance(value, dict)}
     scene = {section: dict(keys) for section, keys in scene.items() if isinstance(keys, dict)}
@@ -147,7 +147,7 @@ def contents(path):
 
 
 def run(program, scene, output, case, options):
-    """Exit status, what was said, and what is in the file, if there is one."""
+    """Exit status, messages, and the contents of the file, if there is one."""
     command = [program, "run", scene, "--output", output, "--precision", case.precision, "--quiet",
                *options]
     environment = {**os.environ, "OMP_PROC_BIND": "false", "OMP_WAIT_POLICY": "passive"}

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The model of a GPU says what its counts say, and reaches what is asked of the kernels; the report
-of a run on a GPU is made, here of results from a host."""
+"""The model of a GPU follows from its counts, and the kernels reach the required share of it. The
+report of a run on a GPU is made, here from results of a host."""
 
 import json
 import pathlib
@@ -14,7 +14,7 @@ import gpu_report  # noqa: E402
 import model_gpu  # noqa: E402
 
 H100 = model_gpu.CARDS["H100"]
-# Geometric Euler in double, as of a loop that divided and branched.
+# Geometric Euler in double, counted in a loop that divided and branched.
 BRANCHING = model_gpu.Kernel("f64_LieEuler_0 577 126 21 388 3 39 45")
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Checks what the pages say of the project: links, named files and commands; and their lines.
+"""Checks the links, named files, commands and line lengths of the pages.
 
 Usage: check_docs.py [ROOT]              the pages: README and others beside it, .github/ and docs/
        check_docs.py --sources [ROOT]    files and commands in comments and texts of the sources, and

@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Runs the examples of the README, the guide and three pages of the reference, each in its folder.
 
-Usage: page_examples.py PROGRAM, with the package cayspin on PYTHONPATH
-Blocks of `cayspin` and `python3` commands are run, and a block of output after them is compared.
-In a block of `console` the lines after `$ ` are run, may fail, and have to print the others, where
-`...` is any text.
-Blocks of Python are run as one script after the commands: `print(...)  # text` has to print the
-text, and a block of output after one is compared. Scenes are checked; keys alone are set in the
-scene before. Other pages name a program of examples/ that is built and tested; blocks of C++ in a
-tutorial are parts of those that it names.
+Usage: page_examples.py PROGRAM, with the package cayspin on PYTHONPATH Blocks of `cayspin` and
+`python3` commands are run, and a block of output after them is compared. In a block of `console`
+the lines that start with `$ ` are run and may fail. They have to print the other lines, in which
+`...` is any text. Blocks of Python are run as one script after the commands: `print(...)  # text`
+has to print the text, and a block of output after the script is compared. Scenes are checked; a
+block of only keys is set in the scene before it. Other pages name a program of examples/ that is
+built and tested; blocks of C++ in a tutorial are parts of those that it names.
 """
 import glob
 import pathlib

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The reference of the Python package is that of its docstrings, which say what users need."""
+"""The reference page of the Python package is up to date, and docstrings say what users need."""
 import pathlib
 import re
 import sys
@@ -18,7 +18,7 @@ PAGE = "docs/reference/python_api.md"
 
 
 def faults_of(name, member):
-    """What is missing in a docstring, of a class with its constructor's parameters."""
+    """Faults of a docstring. That of a class has to name its constructor's parameters."""
     doc = " ".join(member.doc.split())
     if not doc:
         return [f"{name}: no docstring"]

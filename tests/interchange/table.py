@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The table of samples as numpy reads it, beside /scalars."""
+"""The table of samples, as numpy reads it, agrees with /scalars."""
 
 import numpy as np
 from interchange_test import InterchangeTest, main

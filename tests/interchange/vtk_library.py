@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The XDMF file of a run as VTK's reader sees it, beside the HDF5 file as h5py reads it."""
+"""The XDMF file of a run, as VTK reads it, agrees with the HDF5 file, as h5py reads it."""
 
 import xml.etree.ElementTree
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Holds the include graph to the data flow: check_layers.py ROOT, or check_layers.py --self-test."""
+"""Checks includes against the layers: check_layers.py ROOT, or check_layers.py --self-test."""
 
 import pathlib
 import re

@@ -78,7 +78,7 @@ def includes_of_layers(tree):
 
 
 def reduced(includes):
-    """Without what a layer includes by way of another."""
+    """The includes without those that follow from others."""
     def below(layer):
         return includes[layer].union(*map(below, includes[layer]))
     return {layer: sorted(includes[layer] - set().union(*map(below, includes[layer])), key=list(
@@ -108,7 +108,7 @@ class Picture:
         return EDGE + (self.top - row) * ROW
 
     def free(self, row, wish):
-        """The free place of a row that is nearest to the wish."""
+        """The free place of a row that is nearest to the wanted one."""
         places = sorted(range(EDGE, int(self.width) - EDGE + 1), key=lambda x: (abs(x - wish), x))
         place = next(x for x in places
                      if all(abs(x - middle) >= half for middle, half in self.taken[row]))
@@ -124,7 +124,7 @@ class Picture:
         return {other: (first + step * place, y) for place, other in enumerate(order)}
 
     def arrow(self, begin, end, rows):
-        """A smooth line from begin to end, straight through the rows between them."""
+        """A smooth line from start to end, straight through the rows between them."""
         points = [begin]
         for row in rows:
             x = self.free(row, end[0])

@@ -138,7 +138,7 @@ TEST_F(OnRanks, RunRandomScenesOfEveryMethod) {
   auto const variants = simulation::variants();
   for (int draw = 0; scenes < wanted && draw < 20 * wanted && !HasFailure(); ++draw) {
     RandomRun random(static_cast<std::uint64_t>(setting("CAYSPIN_SEED", 1)), draw);
-    // A prime beyond their number, so that all come in turn.
+    // Steps by a prime larger than the number of variants, so that each is drawn once per round.
     auto const& variant = variants[(10007 * static_cast<std::size_t>(draw)) % variants.size()];
     auto const text = random.scene(variant);
     auto const scene = write("scene.toml", text);

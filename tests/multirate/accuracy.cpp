@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Expensive fields: orders, stability where a single pass fails, and the energy law.
+// Expensive fields: orders, stability where a single pass fails, and conservation of energy.
 #include "long_range.hpp"
 
 #include <algorithm>

@@ -92,7 +92,7 @@ TYPED_TEST(Evaluations, EnergiesOfTermsInWrappers) {
   EXPECT_LT(expected[1].magnitude, 0.9 * energy(this->exec, field, this->spins).magnitude);
   for (std::size_t i = 0; i < 2; ++i)
     EXPECT_NEAR(found[i].value, expected[i].value, 16 * epsilon<double> * expected[i].magnitude);
-  // A generator has the terms of its field; a term and a rigid body are sums of one; an empty field
+  // A generator has the terms of its field; a term and a rigid body count as one; an empty field
   // has none.
   auto const same = term_energies(this->exec, orthogonal(LandauLifshitz(among, 0.1)), this->spins);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(same[i].value, found[i].value);

@@ -30,7 +30,7 @@ void expect_energy(char const* what, Generator const& generator, std::vector<int
   });
 }
 
-// Numbers of steps: order 4 is near round-off where the others begin to follow their order.
+// Numbers of steps. With the fine ones, order 4 would be lost in round-off.
 std::vector<int> const fine{4000, 5657, 8000}, coarse{177, 250, 354, 500, 707};
 
 TEST(ChainEnergyOrder, LieEuler) {

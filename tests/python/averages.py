@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Running means of a simulation, beside means of what it was."""
+"""Running means of a simulation, compared with means of its stored values."""
 
 import unittest
 

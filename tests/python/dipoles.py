@@ -25,7 +25,7 @@ def energy_per_site(lattice, initial, dipoles=True):
 
 
 def direct_energy(places, moments):
-    """Of moments at places, by pairs."""
+    """Energy of moments at positions, summed over pairs."""
     total = 0.0
     for i in range(1, len(places)):
         r = places[i] - places[:i]
@@ -159,7 +159,7 @@ class OtherPrograms(PackageTest):
                              images and {"periodic_images": [images, 0, 0]} or True)
             return 4 * math.pi * sim.energy()
 
-        # Of a pair five cells apart or fewer the nearest image, and four beyond it on each side.
+        # For pairs at most five cells apart: the nearest image, and four more on each side.
         total, n = 0.0, 5
         for shift in range(-2 - 4 * n, 3 + 4 * n):
             for a, b in itertools.product(range(n), repeat=2):
@@ -176,7 +176,7 @@ class OtherPrograms(PackageTest):
                         * np.einsum("jc,ijc->ij", v, r) / d**5
                 total += pairs[d > 0].sum() / 2
         self.assertAlmostEqual(with_images(4), total, delta=1e-10 * abs(total))
-        # What lies beyond n images falls with n^-2.
+        # The sum beyond n images falls with n^-2.
         off = [with_images(images) - with_images(None) for images in (50, 100)]
         self.assertAlmostEqual(off[0] / off[1], 4, delta=0.1)
         self.assertLess(abs(off[1] / total), 1e-4)

@@ -21,12 +21,12 @@ TILTED = {"uniform": [1, 0.1, 0]}
 TO_SWITCH = [-24.6e-3, 4.3e-3, 0]
 
 
-# Of some seconds each.
+# For tests that take some seconds each.
 long = unittest.skipUnless(os.environ.get("CAYSPIN_ALL_TESTS"), "long")
 
 
 def scene(lattice, material, initial, **tables):
-    """With what their scripts have by default."""
+    """A scene with the defaults of mumax3."""
     return cayspin.Scene(
         units="SI", system={"kind": "llg"}, lattice=lattice, initial=initial,
         material={"gamma": 1.7595e11, "damping_form": "gilbert", "alpha": 0.1, **material},
@@ -253,7 +253,7 @@ class Mumax3Tests(PackageTest):
         self.assertLess(energies[1], energies[0])
         self.assertLess(energies[2], energies[0])
 
-    # Currents with their Lambda and EpsilonPrime, whose numbers are OOMMF's. 1e-5 there for both.
+    # Currents with Lambda and EpsilonPrime. The expected numbers are OOMMF's; mumax3 allows 1e-5.
     @long
     def test_std5b_and_std5c(self):
         for initial, end, torque, expected, limit in (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Files of UppASD and Spirit: energies of what is read, beside sums over the files by hand."""
+"""Files of UppASD and Spirit: energies of the scenes, compared with sums over the files by hand."""
 
 import itertools
 import unittest
@@ -134,7 +134,7 @@ class UppasdFiles(Files):
         self.assertEqual(len(self.pairs("1 1 1 0 0 0.5\n", sym=3, cell=HEXAGONAL)), 3)
 
     def test_lines_are_of_types(self):
-        """Of two sites of a type, only one has a neighbour along +x."""
+        """Only one of two sites of a type has a neighbour along +x."""
         posfile = self.file("2 4 0.3 0 0\n1 4 0 0 0\n", "posfile")
         found = self.pairs("1 1 0.3 0 0 2.0\n2 1 -0.3 0 0 2.0\n", posfile=posfile, unit=4)
         self.assertEqual(found, [{"between": [0, 1], "offset": [0, 0, 0], "J": 1.0}])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""A program's own field beside every term of a scene: they add up, and it may stand for the term."""
+"""A program's own field with each term of a scene: they add up, and it can replace the term."""
 
 import unittest
 
@@ -90,7 +90,7 @@ class OwnFields(PackageTest):
                     self.assertAlmostEqual(both.energy(), without.energy() + of_own,
                                            delta=200 * limit)
 
-    # A slab of the scene beside the own demagnetising field, and the other way round.
+    # A slab in the scene with the demagnetising field as own field, and the other way round.
     def exchanged(self, whole, lattice, precision="double", **tables):
         more = {"exchange": 0.5, "applied": [0.1, 0, 0.2]}
         strength = {"normal": NORMAL.tolist(), "strength": 0.7}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """The field that drives a wall from a soft half of a chain into its hard half (Heistracher et al.,
-J. Magn. Magn. Mater. 548, 168875), beside its closed form and the chain's own equations."""
+J. Magn. Magn. Mater. 548, 168875), compared with its closed form and the chain's own equations."""
 
 import math
 import unittest
@@ -29,7 +29,7 @@ def closed_form(case):
 
 
 def error(case, cells, cell):
-    """Of the largest field that holds the wall, by bisection of searches for equilibria."""
+    """Error of the largest field that holds the wall, by bisection of searches for equilibria."""
     of_regions = {key: {"regions": [ratio(case, key) * value, value]}
                   for key, value in HARD.items()}
     sim = cayspin.Simulation(cayspin.Scene(
@@ -67,7 +67,7 @@ class Pinning(unittest.TestCase):
                 self.assertAlmostEqual(found, expected, delta=1e-5)
                 self.assertLess(found, {"a": 0.021, "aj": 0.032}.get(case, 0.02))
 
-    # Of 120 nm, whose ends are too far to be felt.
+    # Chains of 120 nm, whose ends are too far away to matter.
     def test_the_error_is_of_order_two_in_the_cell(self):
         for case in OF_EQUATIONS:
             with self.subTest(case):

@@ -57,7 +57,7 @@ class Scenes(PackageTest):
                 "thermic: unknown key": {"thermic": {"temperature": 1}}}.items():
             with self.assertRaises(cayspin.SceneError) as caught:
                 scene(**tables)
-            # Tables have no lines.
+            # Tables have no line numbers to name.
             self.assertEqual(str(caught.exception)[:len(part)], part)
         self.assert_refused(cayspin.SceneError, "cannot be read", cayspin.Scene.from_file,
                             self.folder / "missing.toml")
@@ -133,7 +133,7 @@ class OwnFields(PackageTest):
                 raise ZeroDivisionError("at half past")
             return 0, 0, 1
 
-        endless = {"steps": None}  # a scene with an end is looked at up to there beforehand
+        endless = {"steps": None}  # with an end, the field is first sampled up to there
         sim = cayspin.Simulation(scene(field={"applied": failing}, integrator=endless))
         self.assert_refused(ZeroDivisionError, "at half past", sim.step, 40)
         self.assertEqual(sim.steps, 10)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Simulation.set: a run that goes on with other keys is the program's run in stages."""
+"""Simulation.set: a run with keys changed on the way equals the program's run in stages."""
 
 import os
 import unittest

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Simulation steps to the bits of the program, whole after Ctrl-C, beside other threads."""
+"""Simulation gives the bits of the program, complete steps after Ctrl-C, and runs while other
+threads do."""
 
 import os
 import signal

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The rate of a particle across its barrier in thermal runs, beside that of cayspin.path and the
-lowest eigenvalue of Brown's equation, which has no other approximation than its basis."""
+"""The rate of a particle across its barrier in thermal runs, compared with that of cayspin.path and
+the lowest eigenvalue of Brown's equation, whose only approximation is its basis."""
 
 import unittest
 

@@ -34,7 +34,7 @@ class PlotTrade(ScriptTest):
         per_step = evaluations or cost
 
         def costs(error):
-            dt = 0.95 * (error / 0.1)**0.25  # no power law between the runs would have that
+            dt = 0.95 * (error / 0.1)**0.25  # not the power law through the runs
             known = dt > 0.04
             return {"error": error, "seconds": 1e-3 * cost / dt if known else None,
                     "evaluations": 40 * per_step / dt if known else None}

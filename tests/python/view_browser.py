@@ -203,13 +203,13 @@ class Controls(Browser):
         self.wait(lambda: self.shown() > 2)  # it follows by itself
         self.element("pause").click()
         self.wait(lambda: self.element("state").text == "paused")
-        shown = self.shown_at_last()  # what is written already appears
+        shown = self.shown_at_last()  # frames that are written appear
         self.assertEqual(self.element("pause").text, "Go on")
         self.element("pause").click()
         self.wait(lambda: self.shown() > shown)
         self.go_to(1)
         time.sleep(3)
-        self.assertEqual(self.shown(), 1)  # one that is looked at stays
+        self.assertEqual(self.shown(), 1)  # the page stays at a chosen frame
         self.element("stop").click()
         self.wait(lambda: self.element("state").text == "ended early")
         self.wait(lambda: not self.element("pause").is_displayed())

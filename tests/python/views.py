@@ -30,7 +30,7 @@ class Views(PackageTest):
             self.assertIn(b"<canvas", page.read())
             self.assertIn("frame-ancestors http://127.0.0.1:* http://localhost:*",
                           page.headers["Content-Security-Policy"])
-        sim = cayspin.Simulation(scene())  # goes on beside the page
+        sim = cayspin.Simulation(scene())  # may run while the page is open
         sim.run(output=self.folder / "other.h5")
         view.close()
         view.close()

@@ -84,7 +84,7 @@ TEST(AcceptedKeys, ArraysWhereNoneIsTakenAreNamed) {
     ADD_FAILURE();
   } catch (SceneError const& error) {
     std::string const message = error.what();
-    EXPECT_NE(message.find("output: is an array of numbers of sites; accepted: "), message.npos)
+    EXPECT_NE(message.find("output: is an array of values per site; accepted: "), message.npos)
         << message;
   }
 }

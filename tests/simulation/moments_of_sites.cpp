@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Moments, sources and temperatures that differ from site to site, beside closed forms. Statistical
-// limits are three standard errors of fixed seeds. Both precisions have one noise, so that of the 8
-// numbers at most one seed in 46 puts one beyond.
+// Moments, sources and temperatures that differ from site to site, against closed forms.
+// Statistical limits are three standard errors of fixed seeds. Both precisions have the same noise,
+// so at most one seed in 46 puts any of the 8 numbers beyond its limit.
 #include "scenes_of_text.hpp"
 
 #if defined(CAYSPIN_HAS_FFTW)

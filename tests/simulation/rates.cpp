@@ -85,8 +85,8 @@ TEST_F(Rates, OfABiaxialParticleWithDamping) {
     }
 }
 
-// The stiff modes of spins that exchange holds together count as in the undamped theory, where
-// they are not slow beside the barrier.
+// Stiff modes of exchange contribute as in the undamped theory, if they are fast compared with the
+// motion at the barrier.
 TEST_F(Rates, OfAStiffChainWithDamping) {
   double const easy = 1.3, hard = 0.7, damping = 0.3;
   auto const lattice = cayspin::Lattice::chain(3);

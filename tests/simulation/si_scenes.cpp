@@ -222,7 +222,7 @@ TEST(SiScenes, IronHasTheExchangeFieldOfItsEightNeighbours) {
         EXPECT_EQ(field[3 * site], 0);
         EXPECT_NEAR(field[3 * site + 2], expected, 8 * epsilon(precision) * expected);
       }
-      // Its bonds, 4 per site, each once; the energy of only this term.
+      // Each of the 4 bonds per site counts once.
       double const energy = -4 * 120 * 7.05e-21;
       EXPECT_NEAR(run->sample().energy.value, energy, 8 * epsilon(precision) * -energy);
       auto const terms = run->energies();

@@ -68,7 +68,7 @@ TEST_F(ThermalRuns, HaveTheSameBitsInRandomScenes) {
   std::set<std::string_view> methods;
   for (std::int64_t draw = 0; scenes < wanted && draw < 50 * wanted && !HasFailure(); ++draw) {
     RandomRun random(random_seed(), draw);
-    // A prime beyond their number, so that all come in turn.
+    // Steps by a prime larger than the number of variants, so that each is drawn once per round.
     auto const& variant = variants()[(10007 * static_cast<std::size_t>(draw)) % variants().size()];
     auto const text =
         random.scene(variant) + fmt::format("[thermal]\ntemperature = {}\nseed = {}\n",

@@ -42,8 +42,8 @@ def of_frame(step, numbers, spins, more=None):
 
 
 def require_undamaged(file, first, spins):
-    """Compares frames of an open trajectory file, the first of this number, with their checksums,
-    which files of early versions have none of. Raises ValueError."""
+    """Compares frames of an open trajectory file, from number `first` on, with their checksums.
+    Files of early versions have none. Raises ValueError."""
     if "checksum" not in file:
         return
     those = slice(first, first + len(spins))

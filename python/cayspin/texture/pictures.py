@@ -11,7 +11,7 @@ from . import colors as palette
 from .charge import half_solid_angles
 from .spins import AXES, Plane, Texture, plane_of
 
-_COMPONENTS = ("#d55e00", "#009e73", "#0072b2")  # apart for all eyes
+_COMPONENTS = ("#d55e00", "#009e73", "#0072b2")  # distinct also for colour-blind readers
 _ARROWS, _INCHES_OF_ARROW = 24, 0.2
 
 
@@ -98,7 +98,7 @@ def _middles(count, step):
 
 
 def _draw_arrows(axes, x, y, spins, rgb, longest):
-    """Arrows along the part of spins (n, 3) in the plane, on a ground of these colours."""
+    """Arrows along the part of spins (n, 3) in the plane, on a background of these colours."""
     spins = spins / np.maximum(np.linalg.norm(spins, axis=-1, keepdims=True), 1e-300)
     seen = np.hypot(spins[:, 0], spins[:, 1]) > 0.2
     dark = rgb @ (0.299, 0.587, 0.114) < 0.25
@@ -204,7 +204,7 @@ def _draw_chain(axes, picture, texture):
 
 
 def _picture(texture, plane, quantity, colors, before, limit):
-    """Checks what draw() is called with. Returns the picture, and "film", "crystal" or "chain"."""
+    """Checks the arguments of draw(). Returns the picture, and "film", "crystal" or "chain"."""
     for name, word, accepted in (("quantity", quantity, ("spins", "charge")),
                                  ("colors", colors, ("hue", "safe"))):
         if not isinstance(word, str) or word not in accepted:
@@ -242,7 +242,8 @@ def draw(texture: Texture, axes: Any = None, *, plane: str | None = None,
     `axes` (None: those of a new figure), which it returns.
 
     `plane`: "z=0", "y=3" and so on, numbers of planes from 0 (default: the middle one across the
-    axis of fewest cells). One site across is a chain: components over it, and a strip of colours.
+    axis of fewest cells). A plane that is one site wide is drawn as a chain: components along it,
+    and a strip of colours.
     `colors` "hue": the angle in the plane, lighter along its normal and darker against it; "safe":
     the component along the normal, from blue to red. Both with arrows, about 24 across.
     `quantity` "charge": the topological charge of each cell of a film, seen against the normal.

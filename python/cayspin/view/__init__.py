@@ -16,8 +16,8 @@ LONGEST_END = 90  # seconds: more than the server gives its run
 
 
 class View:
-    """Result of view(): a page, which a notebook shows in its output. A process of its own serves
-    it, because HDF5 is not for several threads."""
+    """Result of view(): a page, which a notebook shows in its output. A separate process serves it,
+    because HDF5 does not support several threads."""
 
     def __init__(self, path: str | os.PathLike):
         from cayspin import arguments

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Shows the spins of a trajectory file on a page in the browser, also while a run writes it. Of a
-scene it starts the run first."""
+"""Shows the spins of a trajectory file on a page in the browser, also while a run writes it. For a
+scene it first starts the run."""
 
 from __future__ import annotations
 

@@ -43,12 +43,12 @@ def _is_locked(path):
 
 
 class Reader:
-    """Opens the file for each answer, and only reads it. Of a run under way it believes what two
-    looks have seen: the last row may be half written."""
+    """Opens the file for each answer, and only reads it. During a run it trusts only rows that were
+    there in two readings: the last row may be half written."""
 
     def __init__(self, path: str | pathlib.Path):
         self.path = pathlib.Path(path)
-        self.frames = self.samples = 0  # that are believed
+        self.frames = self.samples = 0  # that are trusted
         self._seen, self._identity, self._kept = (0, 0), None, (None, None)
         if not self.path.is_file():
             raise ValueError(f"{path}: there is no such file; accepted: a file that cayspin wrote")

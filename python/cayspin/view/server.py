@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The page and its data, for this machine and for the one who has the token."""
+"""Serves the page and its data, only on this machine and only with the token."""
 
 from __future__ import annotations
 
