@@ -137,7 +137,7 @@ TEST_F(Ensembles, OfCrystalsLieSiteBySite) {
                                       fmt::format("initial.random.seed={}", 3 + replica))));
 }
 
-// A spin that falls at a rate of its damping rests earlier.
+// A spin falls at a rate proportional to its damping, so replicas come to rest at different times.
 TEST_F(Ensembles, EndEachByItself) {
   auto const scene = macrospin_scene();
   Arguments const until =

@@ -161,7 +161,7 @@ TEST_F(Trading, AnAdvisedRunHasTheErrorAskedFor) {
   auto const reference = exact();
   for (bool const fine : {false, true}) {
     std::string const error = fine ? "1e-6" : "1e-3";
-    // The finer of a scene with keys that not every method accepts.
+    // The scene of the smaller error has keys that not every method accepts.
     auto const advice = advise(
         error,
         set(fine
@@ -171,7 +171,7 @@ TEST_F(Trading, AnAdvisedRunHasTheErrorAskedFor) {
     auto const arguments = advised_arguments(advice);
     ASSERT_FALSE(arguments.empty()) << advice;
     EXPECT_LT(distance(end(arguments), reference), 2 * std::stod(error)) << advice;
-    // As in the scene, for any steps.
+    // Frames and samples keep the scene's times, whatever the steps.
     expect_equal_times("/time", 1.0, 5);
     expect_equal_times("/scalars/time", 0.4, 11);
     auto const text = info_of("out.h5").header.scene_text;
