@@ -100,7 +100,7 @@ class Trajectory:
         return bool(self.file.attrs["complete"])
 
     def _tables(self, key: str, argument: str) -> dict:
-        """The tables of the scene, for its lattice.KEY."""
+        """The tables of the scene, from which lattice.KEY is read."""
         try:
             import tomllib
         except ImportError:  # before Python 3.11

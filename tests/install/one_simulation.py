@@ -13,7 +13,7 @@ import subprocess
 import sys
 
 OF_EVERY_PROGRAM = {"_init", "_fini", "_start", "_edata", "_end", "__bss_start", "main"}
-# Functions that the library has: of the simulation, and of scenes and files.
+# Functions that the library must contain: those of the simulation, of scenes and of files.
 EXPECTED = (r"N7cayspin10simulation", r"N7cayspin\w*?2io\d")
 
 

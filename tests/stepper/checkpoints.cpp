@@ -51,8 +51,8 @@ std::tuple<std::int64_t, std::int64_t> counts(Stepper const& stepper) {
     return {0, 0};
 }
 
-// At every step, including the first ones of a multistep method, and within steps of an adaptive
-// one.
+// Interrupted at every step, including the first ones of a multistep method, and within adaptive
+// steps.
 TYPED_TEST(Checkpoints, GoOnAsTheRunWouldHave) {
   static_assert(remembers_steps<TypeParam>);
   using Spins = typename TypeParam::spins_type;

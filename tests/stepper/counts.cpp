@@ -18,7 +18,7 @@ struct CountingSolver {
   }
 };
 
-/// The field in kernels, which counts packs.
+/// A term that counts how often kernels evaluate it, once for each pack.
 struct CountingTerm {
   static constexpr int degree = 2;
   std::int64_t* calls;

@@ -62,7 +62,7 @@ TYPED_TEST(Remembering, StateBefore) {
   EXPECT_EQ(copy_to_host(spins), copy_to_host(run<TypeParam>(chain.natural(), start, 0.05, 2)));
 }
 
-/// A field that throws after a time.
+/// A field that throws from a given time on.
 struct FieldUntil {
   static constexpr bool depends_on_time = true;
   double end;

@@ -157,7 +157,7 @@ TYPED_TEST(UnitsInMotion, EnergyInJoulesIsTheDirectSum) {
         auto const stiff = [&](Vector const& next, double d) {
           add(A * volume / (d * d) * dot(next - m, next - m));
         };
-        // D (m_z d_e m_e - m_e d_e m_z), by the mean of both ends and their difference.
+        // D (m_z d_e m_e - m_e d_e m_z), with m the mean of both ends and d_e m their difference.
         if (i < 3) {
           auto const next = at(i + 1, j, k);
           stiff(next, cell[0]);
