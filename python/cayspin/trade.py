@@ -32,7 +32,7 @@ def _ask(command: str, scene: Scene, *options: str) -> dict:
         raise CayspinError(f"{command}: a {type(scene).__name__}; accepted: a Scene")
     if scene._only_here:
         raise CayspinError(f"{command}: the scene has {scene._only_here[0]}, which the program "
-                           "cannot run; accepted: a scene of text alone")
+                           "cannot run; accepted: a scene that is only text")
     with tempfile.TemporaryDirectory() as folder:
         if scene._overrides is None:
             file = pathlib.Path(folder, "scene.toml")

@@ -42,7 +42,7 @@ std::optional<double> repeated_on(CheckOptions const& options, io::Scene const& 
                                   Plan const& plan) {
   if (!options.ranks) return std::nullopt;
   if (plan.variant.ghosts == 0)
-    throw UsageError(fmt::format("--ranks {}: the method runs on one rank alone; accepted: another",
+    throw UsageError(fmt::format("--ranks {}: the method runs only on one rank; accepted: another",
                                  *options.ranks));
   auto const parts = read_parts(*options.ranks, plan.lattice, depth_of_parts(scene, plan));
   return repeated_share(plan.lattice, plan.variant.ghosts, parts);

@@ -74,7 +74,7 @@ int print_sweep(std::filesystem::path const& file) {
   auto const& header = sweep.header;
   fmt::print("{:<12} {}, a sweep of {} runs\n", "file", file.string(), sweep.runs.size());
   fmt::print("{:<12} {}\n", "complete",
-             sweep.complete ? "yes" : "no: the same command goes on with it");
+             sweep.complete ? "yes" : "no: the same command continues it");
   fmt::print("{:<12} {}\n{:<12} {}\n", "precision", header.precision, "space", header.space);
   fmt::print("{:<12} cayspin {} ({})\n", "written by", header.cayspin_version, header.git_commit);
   sweep::print_table(sweep);

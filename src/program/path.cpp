@@ -138,7 +138,7 @@ int find_path(PathCommandOptions const& options) {
 Command add_path(CLI::App& program) {
   auto const options = std::make_shared<PathCommandOptions>();
   auto* const command = program.add_subcommand(
-      "path", "Find a path of least energy between two states, and its barrier (HDF5)");
+      "path", "Find the minimum-energy path between two states, and its barrier (HDF5)");
   add_device_options(*command, *options);
   command->add_option("--from", options->from, "The state where it begins: HDF5 or OVF")
       ->required()

@@ -34,10 +34,10 @@ void require_one_rank(io::Stage const& stage, Plan const& plan, Ranks const& ran
   auto const& scene = stage.scene;
   if (ranks.many() && stage.relax)
     throw io::scene_error(scene, fmt::format("stage[{}].relax", scene.begin.stage - 1),
-                          "runs on one rank alone; accepted: one rank");
+                          "runs only on one rank; accepted: one rank");
   if (ranks.many() && plan.variant.ghosts == 0)
     throw io::scene_error(scene, "integrator.method",
-                          "runs on one rank alone; accepted: one rank, or another method");
+                          "runs only on one rank; accepted: one rank, or another method");
 }
 
 Restart restart_of(EarlierRun left, io::Stage const& stage, Plan const& plan,

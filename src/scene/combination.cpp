@@ -60,7 +60,7 @@ void check_isotropy(Scene const& scene) {
   constexpr std::string_view key = "integrator.isotropy";
   bool const is_energy = integrator.isotropy == Isotropy::energy;
   if (is_energy && system.kind != SystemKind::rigid_body)
-    refuse(scene, key, "\"energy\" corrects steps of kind = \"rigid_body\" alone",
+    refuse(scene, key, "\"energy\" corrects only steps of kind = \"rigid_body\"",
            accepted_isotropies(integrator, system.kind));
   if (!integrator.method->takes(integrator.isotropy, system.kind))
     refuse(scene, key,

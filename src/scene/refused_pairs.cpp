@@ -57,7 +57,7 @@ constexpr std::string_view
     own_numbers = "damping or frozen spins of sites",
     moments = "moments and gyromagnetic ratios other than 1";
 
-constexpr std::string_view neighbors_alone = "method \"{}\" needs a field of the neighbours alone";
+constexpr std::string_view neighbors_alone = "method \"{}\" needs a field of the neighbours only";
 
 constexpr RefusedPair pairs[] = {
     {"a program's own nonlocal field", "red_black2, red_black4", neighbors_alone, "field",
@@ -74,7 +74,7 @@ constexpr RefusedPair pairs[] = {
      [](Scene const& scene) { return is_nonlocal(scene.field); }, by_two_colours},
     {"couplings, cubic axes, torques, vacancies, values per site, in_time",
      "red_black2, red_black4",
-     "\"{}\" needs a field of the neighbours alone: it moves spins while their neighbours stay, and "
+     "\"{}\" needs a field of the neighbours only: it moves spins while their neighbours stay, and "
      "these terms are evaluated for all spins beforehand",
      method_key, another_method, needs_pass, by_two_colours},
     {nonlinear, "series4, series4_paper",

@@ -265,7 +265,7 @@ TEST_F(CrystalsOnRanks, NeedPartsOfWholeCellsAsThickAsBondsReach) {
   EXPECT_EQ(outcome.errors,
             "warning: 1 of 3 ranks have no part: one has at least 4 rows or 6 planes\n");
   auto const stiff = write("stiff.toml", scene_of(bcc, "method = \"stiff2\"\ndt = 0.02"));
-  expect_refused(start_on(2, run_of(stiff, "out.h5")), "runs on one rank alone");
+  expect_refused(start_on(2, run_of(stiff, "out.h5")), "runs only on one rank");
 }
 
 // An expression that fails on a rank ends all of them with one line.

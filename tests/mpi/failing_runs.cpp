@@ -40,7 +40,7 @@ TEST_F(OnRanks, AreRefusedInOneLine) {
   refused({"--ranks", "many"}, "--ranks many: accepted: two numbers");
   refused({"--set", "lattice.shape=[7,9,-1]"}, "lattice.shape");
   refused({"--set", "integrator.method='rkmk4_as_printed'"},
-          "integrator.method: runs on one rank alone");
+          "integrator.method: runs only on one rank");
   refused({"--set", "initial={expression=['0','0','k-12']}"}, "the spin of site (0, 0, 12)");
   refused({"--restart", "nothing.h5"}, "nothing.h5");
   refused({"--space", "nowhere"}, "--space nowhere");

@@ -117,7 +117,7 @@ TEST_F(OnRanks, RunEveryShippedScene) {
       if (!cut.empty()) in_parts.insert(in_parts.end(), {"--ranks", cut});
       auto const outcome = start_on(ranks, run_of(scene, "other.h5", in_parts));
       if (ranks > 1 && contains(text, "method = \"stiff")) {
-        expect_refused(outcome, "runs on one rank alone");
+        expect_refused(outcome, "runs only on one rank");
         continue;
       }
       // A chain or a film is not divided along every axis.
@@ -150,7 +150,7 @@ TEST_F(OnRanks, RunRandomScenesOfEveryMethod) {
     if (start(run_of(scene, "one.h5", same)).status != 0) continue;  // invalid, or fails
     auto const outcome = start_on(ranks, run_of(scene, "other.h5", same));
     if (outcome.status == 2 && variant.ghosts == 0) {
-      EXPECT_TRUE(contains(outcome.errors, "runs on one rank alone")) << outcome.errors;
+      EXPECT_TRUE(contains(outcome.errors, "runs only on one rank")) << outcome.errors;
       ++refused;
       continue;
     }

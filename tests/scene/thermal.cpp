@@ -84,7 +84,7 @@ integrator.generator =; integrator.isotropy =; integrator.rotation =;
 integrator.compensated = true | : | does not go with a temperature
 integrator.until_torque = 1e-6 | : | do not come to rest
 integrator.energy_control = true | : | conserves its energy
-integrator.isotropy = 'energy' | : | kind = "rigid_body" alone
+integrator.isotropy = 'energy' | : | only steps of kind = "rigid_body"
 thermal.temperature = 4000 | integrator.dt: | a dt up to 0.005
 )");
 }

@@ -17,10 +17,10 @@ integrator.method = 'implicit_euler'; integrator.isotropy = 'finite_difference' 
   | accepted: "zero", { constant = sigma }, "analytic"
 integrator.method = 'implicit_midpoint'; integrator.isotropy = {constant=1} | : | accepted: "zero"
 integrator.method = 'series4'; integrator.isotropy = {constant=1} | : | accepted: "zero"
-integrator.isotropy = 'energy' | : "energy" corrects steps of kind = "rigid_body" alone
+integrator.isotropy = 'energy' | : "energy" corrects only steps of kind = "rigid_body"
   | accepted: "zero", { constant = sigma }
 integrator.method = 'series4'; integrator.isotropy = 'energy' | :
- "energy" corrects steps of kind = "rigid_body" alone | accepted: "zero"
+ "energy" corrects only steps of kind = "rigid_body" | accepted: "zero"
 integrator.method = 'series4_paper'; field.applied = [0,0,1]; integrator.rotation = 'exponential'
   | : | belongs to Cayley coordinates
 integrator.method = 'implicit_midpoint'; integrator.rotation = 'exponential' | :
@@ -35,7 +35,7 @@ integrator = {method='cf4',generator='tangent',dt=0.1,end=1.0} | .generator:
 integrator.method = 'red_black2'; lattice = {shape=[7],boundary='periodic'} | .shape:
   | does not close on itself over the 7 sites of the periodic x
 integrator.method = 'red_black4'; lattice.boundary = 'open';
- field.slab_demag = {normal=[1,0,0],where='host'} | : | a field of the neighbours alone
+ field.slab_demag = {normal=[1,0,0],where='host'} | : | a field of the neighbours only
 integrator.method = 'red_black2'; integrator.generator = 'orthogonal' | : | accepted: "default"
 integrator.tolerance = 1e-6 | : | takes steps of dt
 integrator.method = 'tsit5'; integrator.tolerance = 2.0 | : | a number > 0, at most 1
@@ -114,7 +114,7 @@ TEST(Combinations, OfAProgramsOwnFieldWithThoseOfTheScene) {
                                    "field={demag=true}", "field={dipoles=true}"})
     EXPECT_EQ(with(nonlocal, {beside}), "accepted");
   expect_holds(with(nonlocal, {"integrator.method='red_black2'", "lattice.boundary='open'"}),
-               ": field: method \"red_black2\" needs a field of the neighbours alone; accepted: no "
+               ": field: method \"red_black2\" needs a field of the neighbours only; accepted: no "
                "nonlocal field, or another method");
 }
 

@@ -160,7 +160,7 @@ TEST(GyromagneticOfSites, IsRefusedInOneLine) {
   expect_refused(with("'1+i'", "method = 'euler', isotropy = 'analytic'"),
                  "gyromagnetic ratios that differ");
   expect_refused(with("'1+i'", "method = 'heun', energy_control = true"), "other than 1");
-  expect_refused(with("'1+i'", "method = 'red_black2'"), "neighbours alone");
+  expect_refused(with("'1+i'", "method = 'red_black2'"), "neighbours only");
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ def parse_arguments():
     parser = argparse.ArgumentParser(prog="cayspin view", description=__doc__)
     parser.add_argument("file", type=pathlib.Path, metavar="FILE.h5|SCENE.toml")
     parser.add_argument("--port", type=_port, default=0, help="default: a free one")
-    parser.add_argument("--no-browser", action="store_true", help="print the address alone")
+    parser.add_argument("--no-browser", action="store_true", help="only print the address")
     parser.add_argument("--in-notebook", action="store_true", help=argparse.SUPPRESS)
     return parser.parse_args()
 
