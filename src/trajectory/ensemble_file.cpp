@@ -19,15 +19,13 @@
 #include <utility>
 
 namespace cayspin::inline v0_2::io {
-namespace {
-
-constexpr hsize_t numbers_per_chunk = 4096;
-constexpr std::uint64_t overhead = 1 << 20;  // index nodes and new chunks of a frame
 
 /// The datasets time, step, energy, norm_defect and magnetization of one group: an entry for each
 /// sample, or in it one for each replica.
 class ReplicaSeries {
  public:
+  static constexpr hsize_t numbers_per_chunk = 4096;
+
   static ReplicaSeries create(hid_t group, hsize_t replicas, std::filesystem::path const& path) {
     ReplicaSeries series;
     series.replicas_ = replicas;
@@ -67,6 +65,10 @@ class ReplicaSeries {
   DatasetHandle time_, step_, energy_, norm_defect_, magnetization_;
   hsize_t replicas_ = 0, size_ = 0;
 };
+
+namespace {
+
+constexpr std::uint64_t overhead = 1 << 20;  // index nodes and new chunks of a frame
 
 void write_attributes(hid_t file, TrajectoryHeader const& header, std::int64_t replicas,
                       std::filesystem::path const& path) {
