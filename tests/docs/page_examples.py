@@ -2,14 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Runs the examples of the README, the guide and three pages of the reference, each in its folder.
 
-Usage: page_examples.py PROGRAM, with the package cayspin on PYTHONPATH Blocks of `cayspin` and
-`python3` commands are run, and a block of output after them is compared. In a block of `console`
-the lines that start with `$ ` are run and may fail. They have to print the other lines, in which
-`...` is any text. Blocks of Python are run as one script after the commands: `print(...)  # text`
-has to print the text, and a block of output after the script is compared. Scenes are checked; a
-block of only keys is set in the scene before it. Other pages name a program of examples/ that is
-built and tested; blocks of C++ in a tutorial are parts of those that it names.
+Usage: page_examples.py PROGRAM, with the package cayspin on PYTHONPATH
+Blocks of `cayspin` and `python3` commands are run, and a block of output after them is compared.
+In a block of `console` the lines after `$ ` are run, may fail, and have to print the others, where
+`...` is any text.
+Blocks of Python are run as one script after the commands: `print(...)  # text` has to print the
+text, and a block of output after one is compared. Scenes are checked, and saved by the name in the
+sentence before, or as scene.toml; keys alone are set in the scene before. Other pages name a
+program of examples/ that is built and tested; blocks of C++ in a tutorial are parts of those that
+it names.
 """
+import collections
 import glob
 import pathlib
 import re
@@ -22,6 +25,7 @@ sys.path.insert(0, str(ROOT / "python"))
 import gallery  # noqa: E402  python/gallery.py
 
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+SAVED = re.compile(r"Save this as\s`(\w+\.toml)`:\s*\Z")
 PRINTED = re.compile(r"^ *print\(.*\)  # ([^;:\n]+)", re.MULTILINE)
 KEY = re.compile(r"^(\w+) = (.*?)\s*(?:# .*)?$", re.MULTILINE)
 TESTED = re.compile(r"examples/(?:\d\d_\w+\.cpp|c_and_fortran|ranks/main\.cpp)\)")
@@ -46,13 +50,13 @@ def commands_of(block):
 
 
 class Examples(unittest.TestCase):
-    def run_scene(self, block, folder, environment):
-        scene, overrides = folder / "scene.toml", ""
+    def run_scene(self, block, saved, folder, environment):
+        name, overrides = saved[1] if saved else "scene.toml", ""
         if "[system]" in block:
-            scene.write_text(block, encoding="utf-8")
+            (folder / name).write_text(block, encoding="utf-8")
         else:
             overrides = "".join(f" --set '{key}={value}'" for key, value in KEY.findall(block))
-        return gallery.run(f"cayspin check scene.toml{overrides}", folder, environment)
+        return gallery.run(f"cayspin check {name}{overrides}", folder, environment)
 
     def run_console(self, block, folder, environment):
         lines = block.splitlines()
@@ -67,15 +71,16 @@ class Examples(unittest.TestCase):
     def run_python(self, blocks, expected, folder, environment):
         script = "\n".join(blocks)
         (folder / "page.py").write_text(script, encoding="utf-8")
-        printed = gallery.run("python3 page.py", folder, environment).splitlines()
-        for text in [*PRINTED.findall(script), *expected]:
-            self.assertIn(text.strip(), map(str.strip, printed))
+        printed = map(str.strip, gallery.run("python3 page.py", folder, environment).splitlines())
+        wanted = map(str.strip, [*PRINTED.findall(script), *expected])
+        self.assertFalse(collections.Counter(wanted) - collections.Counter(printed))
 
     def examples_run(self, page, program):
         text, count, output, scripts = page.read_text(encoding="utf-8"), 0, "", []
         before, expected = "", []  # the language of the block before; what Python has to print
         with gallery.workspace(program) as (folder, environment):
-            for language, block in BLOCK.findall(text):
+            for match in BLOCK.finditer(text):
+                language, block = match.groups()
                 if language == "sh":
                     commands = commands_of(block)
                     output = "".join(gallery.run(f"{command} 2>&1", folder, environment)
@@ -89,7 +94,8 @@ class Examples(unittest.TestCase):
                     for line in block.splitlines():
                         self.assertIn(line, output)
                 elif language == "toml":
-                    self.run_scene(block, folder, environment)
+                    saved = SAVED.search(text, 0, match.start())
+                    self.run_scene(block, saved, folder, environment)
                     count += 1
                 elif language == "python":
                     scripts.append(block)
