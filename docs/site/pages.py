@@ -10,7 +10,7 @@ import shutil
 TREE = {
     "Tutorials": ["docs/guide/tutorial_film", "docs/guide/tutorial_skyrmions",
                   "docs/guide/tutorial_spin_waves", "docs/guide/tutorial_lifetime",
-                  "docs/guide/tutorial_kokkos"],
+                  "docs/guide/tutorial_switches", "docs/guide/tutorial_kokkos"],
     "Guide": ["docs/README", "docs/guide/installing", "docs/guide/first_run",
               "docs/guide/first_program", "docs/gallery", "docs/guide/theory",
               "docs/guide/what_a_scene_can_hold", "docs/guide/choosing_a_method",
