@@ -2,6 +2,7 @@
 #include "ensemble.hpp"
 
 #include "arrays.hpp"
+#include "io/relax.hpp"
 #include "shared.hpp"
 #include "simulation/ensemble_run.hpp"
 #include "simulation/failure.hpp"

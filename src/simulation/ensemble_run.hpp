@@ -19,6 +19,8 @@ class EnsembleRun {
   /// For cayspin run, or where `relaxes` for cayspin relax. Throws what SceneRun::open throws, also
   /// for too little memory.
   EnsembleRun(io::Scene const& scene, RunSettings const& settings, bool relaxes);
+  EnsembleRun(EnsembleRun const&) = delete;
+  EnsembleRun& operator=(EnsembleRun const&) = delete;
 
   std::size_t replicas() const { return runs_.size(); }
   SceneRun& replica(std::size_t number) { return *runs_[number]; }
