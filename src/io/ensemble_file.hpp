@@ -60,11 +60,11 @@ struct EnsembleInfo {
   Ensemble ensemble;
   RunCost cost;
   bool complete = false;
-  std::int64_t frames = 0, samples = 0;   ///< whole ones
-  std::int64_t step = 0;                  ///< of the last frame
-  double time = 0;                        ///< of the last frame
-  std::vector<Scalars> last;              ///< of each replica, in the last frame
-  std::optional<std::int64_t> converged;  ///< replicas of a search
+  std::int64_t frames = 0, samples = 0;  ///< whole ones
+  std::int64_t step = 0;                 ///< of the last frame
+  double time = 0;                       ///< of the last frame
+  std::vector<Scalars> last;             ///< of each replica, in the last frame
+  std::vector<RelaxedReplica> relaxed;   ///< each replica's search; empty for a run
 };
 
 bool is_ensemble(std::filesystem::path const& path);

@@ -4,6 +4,7 @@
 #include "describe.hpp"
 #include "io/notes.hpp"
 #include "io/relax.hpp"
+#include "print_json.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/multirate_method.hpp"
@@ -18,11 +19,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace cayspin::program {
 namespace {
@@ -48,72 +47,77 @@ std::optional<double> repeated_on(CheckOptions const& options, io::Scene const& 
   return repeated_share(plan.lattice, plan.variant.ghosts, parts);
 }
 
-std::string memory_json(Plan const& plan) {
+void add_memory(Json& object, Plan const& plan) {
   auto const& memory = plan.memory;
-  return fmt::format(
-      "\"sites\": {}, \"bytes_per_site\": {}, \"spins_bytes\": {}, \"work_bytes\": {}, "
-      "\"field_bytes\": {}, \"host_buffer_bytes\": {}, \"memory_bytes\": {}",
-      plan.lattice.sites(), bytes_per_site(plan), memory.spins, memory.work, memory.field,
-      memory.files, memory.total());
-}
-
-// Empty in reduced units.
-std::string units_json(io::Units const& units) {
-  if (!units.si) return {};
-  return fmt::format(
-      ", \"units\": \"SI\", \"time_unit\": {}, \"length_unit\": {}, \"field_unit\": {}, "
-      "\"energy_unit\": {}",
-      units.time, units.length, units.field, units.energy);
+  object["sites"] = plan.lattice.sites();
+  object["bytes_per_site"] = bytes_per_site(plan);
+  object["spins_bytes"] = memory.spins;
+  object["work_bytes"] = memory.work;
+  object["field_bytes"] = memory.field;
+  object["host_buffer_bytes"] = memory.files;
+  object["memory_bytes"] = memory.total();
 }
 
 void print_notes(io::Scene const& scene) {
   for (auto const& note : io::notes(scene)) print("note", note);
 }
 
-// Empty without notes.
-std::string notes_json(io::Scene const& scene) {
-  auto const all = io::notes(scene);
-  return all.empty() ? std::string()
-                     : fmt::format(", \"notes\": {}",
-                                   nlohmann::json(all).dump(
-                                       -1, ' ', false, nlohmann::json::error_handler_t::replace));
+void add_notes(Json& object, io::Scene const& scene) {
+  if (auto const all = io::notes(scene); !all.empty()) object["notes"] = all;
 }
 
-void print_json(io::Scene const& scene, Plan const& plan, Precision precision,
-                std::optional<double> const& repeated) {
+Json run_json(io::Scene const& scene, Plan const& plan, Precision precision,
+              std::optional<double> const& repeated) {
   auto const& units = scene.units;
-  auto const per_step = evaluations(scene, plan.variant);
-  auto const stable_in = [&](double unit) {
-    return has_stable_dt(plan) ? fmt::format("{}", plan.stable_dt * unit) : "null";
-  };
-  fmt::print(
-      "{{\"stable_dt\": {}, \"dt\": {}, \"steps\": {}, {}, \"evaluations_per_step\": {}, "
-      "\"order\": {}, \"frames\": {}, \"file_bytes\": {:.0f}, \"method\": \"{}\", "
-      "\"precision\": \"{}\"{}",
-      stable_in(units.time), plan.times.dt * units.time, scene.integrator.steps, memory_json(plan),
-      per_step ? fmt::format("{}", *per_step) : "null", order(scene, plan.variant), plan.frames,
-      plan.file_bytes, plan.variant.method->word, to_string(precision), units_json(units));
-  if (units.si)
-    fmt::print(", \"reduced\": {{\"stable_dt\": {}, \"dt\": {}}}", stable_in(1), plan.times.dt);
-  if (is_thermal(scene))
-    fmt::print(", \"temperature\": {}, \"noise_turn\": {}", typed_temperature(scene),
-               plan.noise_turn);
-  if (scene.system.kind == io::SystemKind::llg && io::depends_on_time(scene.field))
-    fmt::print(", \"shortest_feature\": {}, \"jumps\": {}",
-               plan.features->shortest
-                   ? fmt::format("{}", plan.features->shortest->length * units.time)
-                   : "null",
-               plan.features->jumps);
-  if (repeated) fmt::print(", \"repeated\": {}", *repeated);
-  fmt::print("{}}}\n", notes_json(scene));
+  // Infinite where none is known, which is printed as null.
+  Json object{{"stable_dt", plan.stable_dt * units.time},
+              {"dt", plan.times.dt * units.time},
+              {"steps", scene.integrator.steps}};
+  add_memory(object, plan);
+  object["evaluations_per_step"] = or_null(evaluations(scene, plan.variant));
+  object["order"] = order(scene, plan.variant);
+  object["frames"] = plan.frames;
+  object["file_bytes"] = bytes_json(plan.file_bytes);
+  object["method"] = std::string(plan.variant.method->word);
+  object["precision"] = std::string(to_string(precision));
+  add_units(object, units);
+  if (units.si) object["reduced"] = {{"stable_dt", plan.stable_dt}, {"dt", plan.times.dt}};
+  if (is_thermal(scene)) {
+    object["temperature"] = typed_temperature(scene);
+    object["noise_turn"] = plan.noise_turn;
+  }
+  if (scene.system.kind == io::SystemKind::llg && io::depends_on_time(scene.field)) {
+    auto const& shortest = plan.features->shortest;
+    object["shortest_feature"] = shortest ? Json(shortest->length * units.time) : Json();
+    object["jumps"] = plan.features->jumps;
+  }
+  if (repeated) object["repeated"] = *repeated;
+  add_notes(object, scene);
+  return object;
 }
 
-void print_json_to_relax(io::Scene const& scene, Plan const& plan, Precision precision) {
-  fmt::print(
-      "{{\"stable_dt\": null, {}, \"evaluations_per_step\": null, \"states\": {}, "
-      "\"file_bytes\": {:.0f}, \"precision\": \"{}\"{}{}}}\n",
-      memory_json(plan), plan.frames, plan.file_bytes, to_string(precision),
-      units_json(scene.units), notes_json(scene));
+Json relax_json(io::Scene const& scene, Plan const& plan, Precision precision) {
+  Json object;
+  object["stable_dt"] = nullptr;
+  add_memory(object, plan);
+  object["evaluations_per_step"] = nullptr;
+  object["states"] = plan.frames;
+  object["file_bytes"] = bytes_json(plan.file_bytes);
+  object["precision"] = std::string(to_string(precision));
+  add_units(object, scene.units);
+  add_notes(object, scene);
+  return object;
+}
+
+Json staged_json(io::Scene const& scene, std::vector<CheckedStage> const& stages,
+                 Plan const& largest, Precision precision) {
+  Json object;
+  object["stages"] = stages_json(stages);
+  add_memory(object, largest);
+  object["precision"] = std::string(to_string(precision));
+  add_units(object, scene.units);
+  add_notes(object, scene);
+  return object;
 }
 
 std::string output_text(io::Scene const& scene, Plan const& plan) {
@@ -192,7 +196,7 @@ int check_to_relax(CheckOptions const& options, io::Scene const& scene) {
   auto const plan = make_plan_to_relax(scene, options.precision);
   auto const start = is_start_checked(plan) ? check_start(scene) : std::vector<double>();
   if (options.json) {
-    print_json_to_relax(scene, plan, options.precision);
+    print_json(relax_json(scene, plan, options.precision));
     return Status::done;
   }
   for (auto const& [name, text] : describe(scene)) print(name, text);
@@ -215,9 +219,7 @@ int check_in_stages(CheckOptions const& options, io::Scene const& scene) {
       planned, {}, [](auto const& one) { return one.plan.memory.total(); });
   auto const start = is_start_checked(largest.plan) ? check_start(scene) : std::vector<double>();
   if (options.json) {
-    fmt::print("{{{}, {}, \"precision\": \"{}\"{}{}}}\n", stages_json(planned),
-               memory_json(largest.plan), to_string(options.precision), units_json(scene.units),
-               notes_json(scene));
+    print_json(staged_json(scene, planned, largest.plan, options.precision));
     return Status::done;
   }
   for (auto const& [name, text] : describe(planned.front().stage.scene)) print(name, text);
@@ -263,7 +265,7 @@ int check(CheckOptions const& options) {
   auto const repeated = repeated_on(options, scene, plan);
   auto const start = is_start_checked(plan) ? check_start(scene) : std::vector<double>();
   if (options.json) {
-    print_json(scene, plan, options.precision, repeated);
+    print_json(run_json(scene, plan, options.precision, repeated));
   } else {
     print_text(scene, plan, options.precision, repeated);
     draw(scene, start);
@@ -278,7 +280,7 @@ Command add_check(CLI::App& program) {
   auto* const command = program.add_subcommand(
       "check", "Validate a scene and say what it models, the stable dt, memory and cost");
   add_scene_options(*command, *options);
-  command->add_flag("--json", options->json, "The numbers as JSON");
+  add_json_option(*command, options->json);
   add_ranks_option(*command, options->ranks,
                    "Say what a run with so many parts along y and z repeats");
   return {command, [options](Ranks&) { return check(*options); }};

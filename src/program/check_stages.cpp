@@ -8,7 +8,6 @@
 #include "simulation/text.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <optional>
@@ -55,29 +54,28 @@ void print_stages(std::vector<CheckedStage> const& stages) {
   }
 }
 
-std::string stages_json(std::vector<CheckedStage> const& stages) {
-  auto all = nlohmann::json::array();
+Json stages_json(std::vector<CheckedStage> const& stages) {
+  auto all = Json::array();
   for (auto const& [stage, plan] : stages) {
     auto const& scene = stage.scene;
     auto const& units = scene.units;
-    nlohmann::json one{{"name", stage.name},
-                       {"begin_step", scene.begin.step},
-                       {"begin_time", scene.begin.time * units.time},
-                       {"frames", plan.frames},
-                       {"file_bytes", plan.file_bytes}};
+    Json one{{"name", stage.name},
+             {"begin_step", scene.begin.step},
+             {"begin_time", scene.begin.time * units.time},
+             {"frames", plan.frames},
+             {"file_bytes", bytes_json(plan.file_bytes)}};
     if (stage.relax) {
       one["relax"] = {{"torque", stage.relax->torque}, {"evaluations", stage.relax->evaluations}};
     } else if (io::has_integrator(scene)) {
-      one["method"] = plan.variant.method->word;
+      one["method"] = std::string(plan.variant.method->word);
       one["dt"] = plan.times.dt * units.time;
       one["steps"] = scene.integrator.steps;
-      one["stable_dt"] = has_stable_dt(plan) ? nlohmann::json(plan.stable_dt * units.time)
-                                             : nlohmann::json(nullptr);
+      one["stable_dt"] = plan.stable_dt * units.time;
       one["order"] = order(scene, plan.variant);
     }
     all.push_back(std::move(one));
   }
-  return "\"stages\": " + all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return all;
 }
 
 }  // namespace cayspin::program

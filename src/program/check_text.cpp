@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace cayspin::program {
@@ -58,6 +59,11 @@ std::string features_text(io::Scene const& scene, TimeFeatures const& features) 
 }
 
 }  // namespace
+
+Json bytes_json(double bytes) {
+  constexpr double largest_whole = 0x1p53;
+  return bytes < largest_whole ? Json(std::llround(bytes)) : Json(bytes);
+}
 
 void print(std::string_view name, std::string_view text) { fmt::print("{:<11} {}\n", name, text); }
 

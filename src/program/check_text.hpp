@@ -2,6 +2,7 @@
 #pragma once
 
 #include "io/stages.hpp"
+#include "print_json.hpp"
 #include "simulation/plan.hpp"
 
 #include <cmath>
@@ -27,6 +28,9 @@ std::optional<std::int64_t> evaluations(io::Scene const& scene, Variant const& v
 /// Prints method, time, stable dt, noise and cost.
 void print_steps(io::Scene const& scene, Plan const& plan);
 
+/// Returns a whole number where a double can be one.
+Json bytes_json(double bytes);
+
 struct CheckedStage {
   io::Stage stage;
   Plan plan;
@@ -36,7 +40,6 @@ struct CheckedStage {
 std::vector<CheckedStage> plan_stages(io::Scene const& scene, Precision precision);
 /// Prints what each stage changes, and its steps.
 void print_stages(std::vector<CheckedStage> const& stages);
-/// Returns "stages": [...].
-std::string stages_json(std::vector<CheckedStage> const& stages);
+Json stages_json(std::vector<CheckedStage> const& stages);
 
 }  // namespace cayspin::program

@@ -2,12 +2,9 @@
 #include "command.hpp"
 #include "describe.hpp"
 #include "info_ensemble.hpp"
+#include "info_file.hpp"
 #include "info_found.hpp"
 #include "info_progress.hpp"
-#include "io/ensemble_file.hpp"
-#include "io/modes.hpp"
-#include "io/path.hpp"
-#include "io/trajectory.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/text.hpp"
 #include "sweep/table.hpp"
@@ -15,9 +12,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
-#include <thread>
+#include <optional>
+#include <variant>
 
 namespace cayspin::program {
 namespace {
@@ -69,8 +66,7 @@ void print_scene(char const* name, std::string const& text) {
   fmt::print("{}:\n{}{}", name, text, text.ends_with('\n') ? "" : "\n");
 }
 
-int print_sweep(std::filesystem::path const& file) {
-  auto const sweep = io::read_sweep(file);
+void print_sweep(std::filesystem::path const& file, io::SweepInfo const& sweep) {
   auto const& header = sweep.header;
   fmt::print("{:<12} {}, a sweep of {} runs\n", "file", file.string(), sweep.runs.size());
   fmt::print("{:<12} {}\n", "complete",
@@ -79,32 +75,11 @@ int print_sweep(std::filesystem::path const& file) {
   fmt::print("{:<12} cayspin {} ({})\n", "written by", header.cayspin_version, header.git_commit);
   sweep::print_table(sweep);
   print_scene("scene of run 0000", header.scene_text);
-  return Status::done;
 }
 
-// Retries for a while: a half-written part may soon be complete.
-io::TrajectoryInfo read_beside_writer(std::filesystem::path const& file) {
-  for (int tries = 20;; --tries) {
-    try {
-      return io::read_info_while_written(file);
-    } catch (std::runtime_error const&) {
-      if (tries == 1) throw;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
-}
-
-int print_info(std::filesystem::path const& file) {
-  auto const being_written = io::is_being_written(file);
-  if (being_written != true) {
-    if (io::is_sweep(file)) return print_sweep(file);
-    if (io::is_ensemble(file)) return print_ensemble(file);
-    if (io::is_path(file)) return print_path(file);
-    if (io::is_modes(file)) return print_modes(file);
-  }
-  auto const info = being_written == false ? io::read_info(file) : read_beside_writer(file);
+void print_trajectory(io::TrajectoryInfo const& info, std::optional<bool> being_written) {
   auto const& header = info.header;
-  fmt::print("{:<12} {} (format {})\n", "file", file.string(), info.format);
+  fmt::print("{:<12} {} (format {})\n", "file", info.path.string(), info.format);
   if (info.complete) fmt::print("{:<12} yes\n", "complete");
   if (!info.complete)
     for (auto const& [name, text] : progress_lines(info, being_written))
@@ -134,19 +109,45 @@ int print_info(std::filesystem::path const& file) {
              header.git_commit, header.kokkos_version);
   print_scene("scene", header.scene_text);
   if (!header.resolved_scene.empty()) print_scene("scene as resolved", header.resolved_scene);
+}
+
+void print_text(InfoFile const& file) {
+  struct Printer {
+    InfoFile const& file;
+
+    void operator()(io::TrajectoryInfo const& info) const {
+      print_trajectory(info, file.being_written);
+    }
+    void operator()(io::SweepInfo const& sweep) const { print_sweep(file.path, sweep); }
+    void operator()(io::EnsembleInfo const& info) const { print_ensemble(file.path, info); }
+    void operator()(io::Path const& path) const { print_path(file.path, path); }
+    void operator()(io::BandsContents const& found) const { print_modes(file.path, found); }
+  };
+  std::visit(Printer{file}, file.contents);
+}
+
+struct InfoOptions {
+  std::filesystem::path file;
+  bool json = false;
+};
+
+int print_info(InfoOptions const& options) {
+  auto const file = read_info_file(options.file);
+  options.json ? print_json(as_json(file)) : print_text(file);
   return Status::done;
 }
 
 }  // namespace
 
 Command add_info(CLI::App& program) {
-  auto const file = std::make_shared<std::filesystem::path>();
+  auto const options = std::make_shared<InfoOptions>();
   auto* const command = program.add_subcommand(
       "info",
       "Summarise a file of cayspin: a trajectory, also while a run writes it, an ensemble, a sweep, "
       "a path or modes");
-  command->add_option("FILE", *file, "The file (HDF5)")->required();
-  return {command, [file](Ranks&) { return print_info(*file); }};
+  command->add_option("FILE", options->file, "The file (HDF5)")->required();
+  add_json_option(*command, options->json);
+  return {command, [options](Ranks&) { return print_info(*options); }};
 }
 
 }  // namespace cayspin::program

@@ -2,8 +2,6 @@
 #include "info_ensemble.hpp"
 
 #include "describe.hpp"
-#include "io/ensemble_file.hpp"
-#include "simulation/failure.hpp"
 #include "simulation/text.hpp"
 
 #include <fmt/format.h>
@@ -24,8 +22,7 @@ void print_range(std::string const& name, std::vector<double> const& values) {
 
 }  // namespace
 
-int print_ensemble(std::filesystem::path const& file) {
-  auto const info = io::read_ensemble_info(file);
+void print_ensemble(std::filesystem::path const& file, io::EnsembleInfo const& info) {
   auto const& header = info.header;
   auto const* const joule = header.units.si ? " J" : "";
   fmt::print("{:<12} {}, an ensemble of {} replicas\n", "file", file.string(),
@@ -50,8 +47,10 @@ int print_ensemble(std::filesystem::path const& file) {
     if (info.last.size() > most_shown)
       fmt::print("{:<12} {} in all\n", "replicas", info.last.size());
   }
-  if (info.converged)
-    fmt::print("{:<12} {} of {} replicas\n", "converged", *info.converged, info.ensemble.replicas);
+  if (!info.relaxed.empty())
+    fmt::print("{:<12} {} of {} replicas\n", "converged",
+               std::ranges::count(info.relaxed, true, &io::RelaxedReplica::converged),
+               info.ensemble.replicas);
   if (info.cost.wall_seconds > 0)
     fmt::print("{:<12} {} evaluations, {} in all, {} stepping\n", "cost", info.cost.evaluations,
                duration_text(info.cost.wall_seconds), duration_text(info.cost.step_seconds));
@@ -59,7 +58,6 @@ int print_ensemble(std::filesystem::path const& file) {
   fmt::print("{:<12} {} ({}), Kokkos {}\n", "written by", header.cayspin_version, header.git_commit,
              header.kokkos_version);
   fmt::print("scene:\n{}{}", header.scene_text, header.scene_text.ends_with('\n') ? "" : "\n");
-  return Status::done;
 }
 
 }  // namespace cayspin::program

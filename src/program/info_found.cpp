@@ -3,8 +3,6 @@
 
 #include "command.hpp"
 #include "describe.hpp"
-#include "io/modes.hpp"
-#include "io/path.hpp"
 #include "simulation/text.hpp"
 
 #include <fmt/format.h>
@@ -84,8 +82,7 @@ void print_bands(io::BandsContents const& found) {
 
 }  // namespace
 
-int print_path(std::filesystem::path const& file) {
-  auto const path = io::read_path(file);
+void print_path(std::filesystem::path const& file, io::Path const& path) {
   auto const& header = path.header;
   fmt::print("{:<12} {}, a path of {} images\n", "file", file.string(), path.energy.size());
   fmt::print("{:<12} {}\n", "converged", path.converged ? "yes" : "no: " + path.end);
@@ -102,11 +99,9 @@ int print_path(std::filesystem::path const& file) {
   fmt::print("{:<12} {}, {} threads\n", "space", header.space, header.threads);
   fmt::print("{:<12} {} ({})\n", "written by", header.cayspin_version, header.git_commit);
   print_scene(header.scene_text);
-  return Status::done;
 }
 
-int print_modes(std::filesystem::path const& file) {
-  auto const found = io::read_modes(file);
+void print_modes(std::filesystem::path const& file, io::BandsContents const& found) {
   bool const has_waves = !found.wave_vectors.empty();
   fmt::print("{:<12} {}, {} of an equilibrium\n", "file", file.string(),
              has_waves ? "waves" : "modes");
@@ -118,7 +113,6 @@ int print_modes(std::filesystem::path const& file) {
   fmt::print("{:<12} {} evaluations\n{:<12} {}\n", "cost", found.evaluations, "space", found.space);
   fmt::print("{:<12} cayspin {} ({})\n", "written by", found.cayspin_version, found.git_commit);
   print_scene(found.scene_text);
-  return Status::done;
 }
 
 }  // namespace cayspin::program

@@ -65,52 +65,67 @@ PlannedSteps planned_steps(io::TrajectoryInfo const& info) {
   }
 }
 
-std::string state_text(io::TrajectoryInfo const& info, std::optional<bool> being_written,
-                       double idle) {
-  auto const last_written = fmt::format(", last written {} ago", duration_text(idle));
-  if (being_written == true) return "no: still running" + (idle < 2 ? "" : last_written);
-  if (info.cost.wall_seconds > 0) return "no: interrupted or failed";
-  if (!being_written) return "no: still running or killed" + last_written;
+std::string state_text(RunProgress const& progress, bool has_cost) {
+  auto const last_written = fmt::format(", last written {} ago", duration_text(progress.idle));
+  if (progress.is_running == true)
+    return "no: still running" + (progress.idle < 2 ? "" : last_written);
+  if (has_cost) return "no: interrupted or failed";
+  if (!progress.is_running) return "no: still running or killed" + last_written;
   return "no: killed, or ended by an error such as a full disk";
 }
 
-std::string progress_text(io::TrajectoryInfo const& info, io::Sample const& now,
-                          std::int64_t planned) {
+std::string progress_text(io::Sample const& now, std::optional<std::int64_t> planned, bool si) {
   auto text = fmt::format("step {}", now.step);
-  if (planned > 0)
-    text += fmt::format(" of {} ({:.1f} %)", planned,
-                        100 * static_cast<double>(now.step) / static_cast<double>(planned));
-  return text + fmt::format(", t = {:.9g}{}", now.time, info.header.units.si ? " s" : "");
+  if (planned)
+    text += fmt::format(" of {} ({:.1f} %)", *planned,
+                        100 * static_cast<double>(now.step) / static_cast<double>(*planned));
+  return text + fmt::format(", t = {:.9g}{}", now.time, si ? " s" : "");
 }
+
+bool has_cost(io::TrajectoryInfo const& info) { return info.cost.wall_seconds > 0; }
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> progress_lines(io::TrajectoryInfo const& info,
-                                                                std::optional<bool> being_written) {
+RunProgress progress_of(io::TrajectoryInfo const& info, std::optional<bool> being_written) {
   auto const age = age_of(info.path);
-  std::vector<std::pair<std::string, std::string>> lines{
-      {"complete", state_text(info, being_written, age.idle)}};
-  auto now = info.last_sample;
-  if (info.frames > 0 && (!now || info.frame_steps.back() > now->step))
-    now = {info.frame_steps.back(), info.frame_times.back(), info.frame_scalars.back()};
-  if (!now) return lines;
+  RunProgress progress{.is_running = being_written, .idle = age.idle, .last = info.last_sample};
+  if (!being_written && has_cost(info)) progress.is_running = false;
+  auto& last = progress.last;
+  if (info.frames > 0 && (!last || info.frame_steps.back() > last->step))
+    last = {info.frame_steps.back(), info.frame_times.back(), info.frame_scalars.back()};
+  if (!last) return progress;
   auto const plan = planned_steps(info);
-  lines.emplace_back("progress", progress_text(info, *now, plan.steps));
+  if (plan.steps > 0) progress.steps = plan.steps;
 
-  bool const has_ended = info.cost.wall_seconds > 0;  // a run writes this at its end
-  if (has_ended || age.written == 0) return lines;
-  auto time = duration_text(age.written);
-  auto const first = info.frames > 0 ? info.frame_steps.front() : now->step;
-  double const rate = static_cast<double>(now->step - first) / age.written;  // steps per second
+  if (has_cost(info) || age.written == 0) return progress;
+  progress.seconds = age.written;
+  auto const first = info.frames > 0 ? info.frame_steps.front() : last->step;
+  double const rate = static_cast<double>(last->step - first) / age.written;  // steps per second
   if (rate > 0 && plan.equal_steps) {
     auto const& shape = info.header.shape;
     auto const sites = static_cast<double>(shape[0]) * static_cast<double>(shape[1] * shape[2]);
-    time += fmt::format(", {}spin updates/s", rate_text(rate * sites));
+    progress.updates_per_second = rate * sites;
   }
-  if (rate > 0 && plan.steps > 0 && being_written != false) {
-    double const left = static_cast<double>(plan.steps - now->step) / rate - age.idle;
-    time += fmt::format(", {} left", duration_text(std::max(0.0, left)));
-  }
+  if (rate > 0 && plan.steps > 0 && being_written != false)
+    progress.seconds_left =
+        std::max(0.0, static_cast<double>(plan.steps - last->step) / rate - age.idle);
+  return progress;
+}
+
+std::vector<std::pair<std::string, std::string>> progress_lines(io::TrajectoryInfo const& info,
+                                                                std::optional<bool> being_written) {
+  auto const progress = progress_of(info, being_written);
+  std::vector<std::pair<std::string, std::string>> lines{
+      {"complete", state_text(progress, has_cost(info))}};
+  if (!progress.last) return lines;
+  lines.emplace_back("progress",
+                     progress_text(*progress.last, progress.steps, info.header.units.si));
+  if (!progress.seconds) return lines;
+  auto time = duration_text(*progress.seconds);
+  if (progress.updates_per_second)
+    time += fmt::format(", {}spin updates/s", rate_text(*progress.updates_per_second));
+  if (progress.seconds_left)
+    time += fmt::format(", {} left", duration_text(*progress.seconds_left));
   lines.emplace_back("time", time);
   return lines;
 }

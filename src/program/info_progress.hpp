@@ -3,6 +3,7 @@
 
 #include "io/trajectory.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,9 +11,22 @@
 
 namespace cayspin::program {
 
-/// Returns headings and lines on an incomplete run: whether it is still running, its progress, and
-/// the time left. `being_written`: the result of io::is_being_written for its file, obtained before
-/// `info` was read.
+/// How far an incomplete run is.
+struct RunProgress {
+  std::optional<bool> is_running = {};            ///< unknown where files are not locked
+  double idle = 0;                                ///< seconds since the file was last written
+  std::optional<io::Sample> last = {};            ///< the last frame or sample
+  std::optional<std::int64_t> steps = {};         ///< planned
+  std::optional<double> seconds = {};             ///< so far, of a run without a cost
+  std::optional<double> updates_per_second = {};  ///< of spins
+  std::optional<double> seconds_left = {};
+};
+
+/// `being_written`: the result of io::is_being_written for its file, obtained before `info` was
+/// read.
+RunProgress progress_of(io::TrajectoryInfo const& info, std::optional<bool> being_written);
+
+/// Returns its headings and lines for users.
 std::vector<std::pair<std::string, std::string>> progress_lines(io::TrajectoryInfo const& info,
                                                                 std::optional<bool> being_written);
 

@@ -1,36 +1,55 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
+#include "print_json.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/variant.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace cayspin::program {
 namespace {
 
-std::string method(Variant const& variant) {
-  return std::string(variant.method->word) + (variant.compensated ? " compensated" : "");
+using Words = std::vector<std::string>;
+
+Words isotropies(Variant const& variant) {
+  if (variant.method->is_baseline()) return {};
+  Words words{std::string(io::to_string(variant.isotropy))};
+  if (variant.isotropy == io::Isotropy::zero && !variant.in_chart &&
+      variant.method->takes(io::Isotropy::constant, io::SystemKind::llg))
+    words.emplace_back("constant");
+  return words;
 }
 
-std::string isotropies(Variant const& variant) {
-  if (variant.method->is_baseline()) return "-";
-  if (variant.isotropy == io::Isotropy::energy) return "energy (rigid_body)";
-  bool const constant = variant.isotropy == io::Isotropy::zero && !variant.in_chart &&
-                        variant.method->takes(io::Isotropy::constant, io::SystemKind::llg);
-  return std::string(io::to_string(variant.isotropy)) + (constant ? ", constant" : "");
+Words generators(Variant const& variant) {
+  if (variant.method->is_baseline()) return {};
+  return variant.in_chart ? Words{"tangent"} : Words{"default", "orthogonal"};
 }
 
-std::string generators(Variant const& variant) {
-  if (variant.method->is_baseline()) return "-";
-  return variant.in_chart ? "tangent" : "default, orthogonal";
-}
-
-std::string rotations(Variant const& variant) {
-  std::string text;
+Words rotations(Variant const& variant) {
+  Words words;
   for (auto const& [name, rotation] : io::words<io::Rotation>())
-    if (variant.rotations.contains(rotation))
-      text += fmt::format("{}{}", text.empty() ? "" : ", ", name);
-  return text.empty() ? "-" : text;
+    if (variant.rotations.contains(rotation)) words.emplace_back(name);
+  return words;
+}
+
+std::vector<Variant> listed_variants() {
+  std::vector<Variant> listed;
+  for (auto const& variant : variants()) {
+    // Has the name of the method on spins.
+    if (variant.of_rigid_bodies && variant.isotropy == io::Isotropy::zero) continue;
+    listed.push_back(variant);
+  }
+  return listed;
+}
+
+std::string joined(Words const& words) {
+  return words.empty() ? "-" : fmt::format("{}", fmt::join(words, ", "));
 }
 
 std::string evaluations(Variant const& variant) {
@@ -38,15 +57,16 @@ std::string evaluations(Variant const& variant) {
   return variant.method->adaptive ? "adaptive" : "iterates";
 }
 
-int print_methods() {
+void print_table() {
   constexpr auto line = "{:<25} {:<27} {:<20} {:<20} {:>5} {:>11} {:>11}\n";
   fmt::print(line, "method", "isotropy", "generator", "rotation", "order", "evaluations",
              "work fields");
-  for (auto const& variant : variants()) {
-    // Printed once already, as the method for spins.
-    if (variant.of_rigid_bodies && variant.isotropy == io::Isotropy::zero) continue;
-    fmt::print(line, method(variant), isotropies(variant), generators(variant), rotations(variant),
-               variant.order, evaluations(variant), variant.work_fields);
+  for (auto const& variant : listed_variants()) {
+    auto const* const bodies = variant.isotropy == io::Isotropy::energy ? " (rigid_body)" : "";
+    fmt::print(
+        line, std::string(variant.method->word) + (variant.compensated ? " compensated" : ""),
+        joined(isotropies(variant)) + bodies, joined(generators(variant)),
+        joined(rotations(variant)), variant.order, evaluations(variant), variant.work_fields);
   }
   fmt::print(
       "\nevaluations: of the generator, per step; adaptive methods choose their steps by\n"
@@ -55,14 +75,37 @@ int print_methods() {
       "{{ constant = SIGMA }}, compensated as integrator.compensated = true. The baselines, at "
       "the\n"
       "end, take neither generator, isotropy nor rotation.\n");
+}
+
+Json table_json() {
+  auto rows = Json::array();
+  for (auto const& variant : listed_variants())
+    rows.push_back(Json{{"method", std::string(variant.method->word)},
+                        {"compensated", variant.compensated},
+                        {"adaptive", variant.method->adaptive},
+                        {"isotropy", isotropies(variant)},
+                        {"generator", generators(variant)},
+                        {"rotation", rotations(variant)},
+                        {"order", variant.order},
+                        {"evaluations", or_null(variant.evaluations)},
+                        {"work_fields", variant.work_fields}});
+  Json object;
+  object["methods"] = std::move(rows);
+  return object;
+}
+
+int print_methods(bool json) {
+  json ? print_json(table_json()) : print_table();
   return Status::done;
 }
 
 }  // namespace
 
 Command add_methods(CLI::App& program) {
-  return {program.add_subcommand("methods", "List the integrators and their options"),
-          [](Ranks&) { return print_methods(); }};
+  auto const json = std::make_shared<bool>(false);
+  auto* const command = program.add_subcommand("methods", "List the integrators and their options");
+  add_json_option(*command, *json);
+  return {command, [json](Ranks&) { return print_methods(*json); }};
 }
 
 }  // namespace cayspin::program

@@ -5,6 +5,7 @@
 #include "command.hpp"
 #include "describe.hpp"
 #include "files/file_beside.hpp"
+#include "info_file.hpp"
 #include "io/notes.hpp"
 #include "io/relax.hpp"
 #include "io/trajectory.hpp"
@@ -38,7 +39,7 @@ namespace {
 struct ModesCommand : DeviceOptions {
   double torque = 1e-6;
   ModesOptions search{.poll = [] { return interrupt_requested() ? Next::stop : Next::proceed; }};
-  bool at_rest = false, hessian = false, quiet = false;
+  bool at_rest = false, hessian = false, quiet = false, json = false;
   std::vector<std::string> corners;  // of a path of wave vectors
   int points = 50;                   // from one corner to the next
 };
@@ -175,7 +176,10 @@ class ModesOfScene {
     contents.curvatures = curvatures.values;
     contents.curvature_vectors = curvatures.vectors;
     io::write_modes(path, contents, options_.overwrite);
-    if (!options_.quiet) report(contents);
+    if (options_.json)
+      print_json(as_json(read_info_file(path)));
+    else if (!options_.quiet)
+      report(contents);
     if (contents.converged) return Status::done;
     fmt::print(stderr, "{}: modes not converged, for: {}\n", scene_.path.string(), to_string(end));
     return Status::numbers_failed;
@@ -208,7 +212,8 @@ class ModesOfScene {
     for (auto const& branches : found.decays)
       contents.decays.insert(contents.decays.end(), branches.begin(), branches.end());
     io::write_bands(path, contents, options_.overwrite);
-    if (options_.quiet) return Status::done;
+    if (options_.json) print_json(as_json(read_info_file(path)));
+    if (options_.json || options_.quiet) return Status::done;
     fmt::print("wave vector, in cycles a cell; frequencies{}\n", scene_.units.si ? ", GHz" : "");
     for (std::size_t i = 0; i < found.frequencies.size(); ++i) {
       auto const& k = contents.wave_vectors[i];
@@ -317,6 +322,7 @@ Command add_modes(CLI::App& program) {
   command->add_option("--points", options->points, "From one corner to the next (default: 50)")
       ->check(CLI::Range(1, 100000));
   command->add_flag("--quiet", options->quiet, "No table");
+  add_json_option(*command, options->json);
   return {command, [options](Ranks&) { return find_modes_of_scene(*options); }};
 }
 

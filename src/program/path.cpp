@@ -4,6 +4,7 @@
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
 #include "describe.hpp"
+#include "info_file.hpp"
 #include "io/notes.hpp"
 #include "io/relax.hpp"
 #include "progress.hpp"
@@ -23,7 +24,7 @@ namespace {
 struct PathCommandOptions : DeviceOptions {
   std::filesystem::path from, to;
   ScenePathOptions search;
-  bool quiet = false;
+  bool quiet = false, json = false;
 };
 
 std::string as_toml(std::filesystem::path const& file) {
@@ -124,7 +125,9 @@ int find_path(PathCommandOptions const& options) {
   }
   bool const has_path = !path.energy.empty() && end != PathEnd::same_ends;
   if (has_path) io::write_path(output, path, options.overwrite);
-  if (!options.quiet && end == PathEnd::converged)
+  if (options.json && has_path)
+    print_json(as_json(read_info_file(output)));
+  else if (!options.quiet && !options.json && end == PathEnd::converged)
     fmt::print("{} after {} evaluations, {} images\n{}\n", path.end, path.evaluations,
                path.energy.size(), barrier_text(scene, path));
   if (end == PathEnd::converged) return Status::done;
@@ -158,6 +161,7 @@ Command add_path(CLI::App& program) {
       "--rates", options->search.rates,
       "Prefactors of harmonic transition state theory and of Langer's, of small lattices");
   command->add_flag("--quiet", options->quiet, "No report");
+  add_json_option(*command, options->json);
   return {command, [options](Ranks&) { return find_path(*options); }};
 }
 

@@ -4,6 +4,7 @@
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
 #include "describe.hpp"
+#include "info_file.hpp"
 #include "io/notes.hpp"
 #include "io/run_output.hpp"
 #include "progress.hpp"
@@ -33,7 +34,7 @@ namespace {
 struct RelaxOptions : DeviceOptions {
   double torque = 1e-6;
   std::int64_t evaluations = 100000;  // for each field
-  bool keep_saddles = false, quiet = false;
+  bool keep_saddles = false, quiet = false, json = false;
 };
 
 template <class Real, class Space>
@@ -66,7 +67,11 @@ class Relaxation {
       cost_.relaxed->torque = std::max(cost_.relaxed->torque, found.torque * scene_.units.field);
       bool const interrupted = found.end == MinimizeEnd::interrupted;
       if (found.end != MinimizeEnd::converged && failures_++ == 0) first_failure_ = found.end;
-      if (!options_.quiet) report(fields.size(), found);
+      searches_.push_back({{"converged", found.end == MinimizeEnd::converged},
+                           {"end", std::string(to_string(found.end))},
+                           {"evaluations", found.evaluations},
+                           {"torque", found.torque * scene_.units.field}});
+      if (!options_.quiet && !options_.json) report(fields.size(), found);
       if (interrupted) break;
       ++states_;
     }
@@ -74,6 +79,7 @@ class Relaxation {
     cost_.relaxed->converged = failures_ == 0;
     bool const interrupted = states_ < static_cast<std::int64_t>(fields.size());
     interrupted ? file_->close(cost_) : file_->finish(cost_);
+    if (options_.json) print_found();
     if (failures_ == 0) return Status::done;
     fmt::print(stderr, "{}: {} of {} states not converged, the first for: {}\n",
                scene_.path.string(), failures_, fields.size(), to_string(first_failure_));
@@ -103,6 +109,12 @@ class Relaxation {
     return found;
   }
 
+  void print_found() const {
+    auto object = as_json(read_info_file(output_file(scene_, options_.output)));
+    object["searches"] = searches_;
+    print_json(object);
+  }
+
   void report(std::size_t count, Minimum const& found) const {
     auto const& m = last_.magnetization;
     fmt::print(
@@ -125,6 +137,7 @@ class Relaxation {
   Sample last_;
   std::int64_t states_ = 0, failures_ = 0;
   MinimizeEnd first_failure_ = MinimizeEnd::converged;
+  Json searches_ = Json::array();
 };
 
 int relax(RelaxOptions const& options) {
@@ -139,7 +152,8 @@ int relax(RelaxOptions const& options) {
                                  least * scene.units.field));
   if (scene.ensemble.there())
     return relax_ensemble(
-        scene, options, {options.torque, options.evaluations, options.keep_saddles, options.quiet});
+        scene, options,
+        {options.torque, options.evaluations, options.keep_saddles, options.quiet, options.json});
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, options.device);
   auto const plan = make_plan_to_relax(scene, options.precision);
@@ -166,6 +180,7 @@ Command add_relax(CLI::App& program) {
   command->add_flag("--keep-saddles", options->keep_saddles,
                     "End at a state without torque, also where the energy falls from there");
   command->add_flag("--quiet", options->quiet, "No progress");
+  add_json_option(*command, options->json);
   return {command, [options](Ranks&) { return relax(*options); }};
 }
 

@@ -3,6 +3,7 @@
 
 #include "cayspin_git_commit.hpp"
 #include "describe.hpp"
+#include "info_file.hpp"
 #include "io/ensemble_file.hpp"
 #include "kokkos_of_command.hpp"
 #include "simulation/ensemble_run.hpp"
@@ -173,7 +174,9 @@ int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
   file.write_relaxed(found);
   file.finish(cost);
   auto const failures = std::ranges::count(found, false, &io::RelaxedReplica::converged);
-  if (!search.quiet)
+  if (search.json)
+    print_json(as_json(read_info_file(output_file(scene, options.output))));
+  else if (!search.quiet)
     fmt::print("{}: {} of {} replicas converged after {} evaluations in {}\n",
                output_file(scene, options.output).string(), std::ssize(found) - failures,
                found.size(), cost.evaluations, duration_text(cost.wall_seconds));

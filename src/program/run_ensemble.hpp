@@ -13,7 +13,7 @@ int run_ensemble(io::Scene const& scene, DeviceOptions const& options, Listener 
 struct RelaxEnsembleOptions {
   double torque = 1e-6;
   std::int64_t evaluations = 100000;
-  bool keep_saddles = false, quiet = false;
+  bool keep_saddles = false, quiet = false, json = false;
 };
 
 /// `cayspin relax` of such a scene: each replica to its own equilibrium.

@@ -2,6 +2,7 @@
 #include "command.hpp"
 #include "io/notes.hpp"
 #include "io/stages.hpp"
+#include "print_json.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/multirate_method.hpp"
@@ -11,7 +12,6 @@
 #include "trade/verdict.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -97,13 +97,8 @@ void print_text(Pilot const& pilot, Reference const& reference,
   }
 }
 
-nlohmann::json finite_or_null(double amount) {
-  return std::isfinite(amount) ? nlohmann::json(amount) : nlohmann::json();
-}
-
-nlohmann::json as_json(Pilot const& pilot, Reference const& reference,
-                       std::vector<Ladder> const& ladders) {
-  nlohmann::json all;
+Json as_json(Pilot const& pilot, Reference const& reference, std::vector<Ladder> const& ladders) {
+  Json all;
   all["scene"] = pilot.scene().path.string();
   auto const& units = pilot.scene().units;
   all["units"] = units.si ? "SI" : "reduced";
@@ -111,28 +106,28 @@ nlohmann::json as_json(Pilot const& pilot, Reference const& reference,
   all["end"] = pilot.end() * units.time;
   all["why_shorter"] = reference.horizon.why_shorter;
   all["uncertainty"] = reference.uncertainty;
-  all["methods"] = nlohmann::json::array();
+  all["methods"] = Json::array();
   for (auto const& ladder : ladders) {
-    nlohmann::json one;
+    Json one;
     one["method"] = ladder.candidate.name();
     one["baseline"] = ladder.candidate.method->is_baseline();
-    one["rungs"] = nlohmann::json::array();
+    one["rungs"] = Json::array();
     for (auto const& rung : ladder.rungs) {
-      nlohmann::json step{{"error", rung.error},
-                          {"seconds", rung.seconds},
-                          {"evaluations", rung.evaluations},
-                          {"front", rung.on_front}};
+      Json step{{"error", rung.error},
+                {"seconds", rung.seconds},
+                {"evaluations", rung.evaluations},
+                {"front", rung.on_front}};
       if (ladder.candidate.method->adaptive)
         step["tolerance"] = rung.steps.tolerance;
       else
         step["dt"] = rung.dt * units.time;
       one["rungs"].push_back(step);
     }
-    one["costs"] = nlohmann::json::array();
+    one["costs"] = Json::array();
     for (double const error : errors_compared)
       one["costs"].push_back({{"error", error},
-                              {"seconds", finite_or_null(seconds_to(ladder, error))},
-                              {"evaluations", finite_or_null(evaluations_to(ladder, error))}});
+                              {"seconds", seconds_to(ladder, error)},
+                              {"evaluations", evaluations_to(ladder, error)}});
     all["methods"].push_back(one);
   }
   return all;
@@ -183,25 +178,25 @@ std::optional<std::string> warning_of(io::Scene const& scene, Resolved const& re
   return dt_warning(plan, scene.units);
 }
 
-nlohmann::json as_json(io::Scene const& scene, Advised const& advised, Resolved const& resolved,
-                       std::string const& space) {
+Json as_json(io::Scene const& scene, Advised const& advised, Resolved const& resolved,
+             std::string const& space) {
   auto const& units = scene.units;
   auto const& choice = *advised.choice;
-  nlohmann::json all{{"method", choice.candidate.name()},
-                     {"precision", to_string(choice.candidate.precision)},
-                     {"dt", resolved.dt},
-                     {"steps", resolved.steps},
-                     {"tolerance", nullptr},
-                     {"error", choice.error},
-                     {"seconds", choice.seconds},
-                     {"memory", choice.memory},
-                     {"horizon", advised.horizon * units.time},
-                     {"space", space},
-                     {"threads", threads_in(space)},
-                     {"units", units.si ? "SI" : "reduced"},
-                     {"overrides", resolved.overrides},
-                     {"warning", nullptr},
-                     {"others", nlohmann::json::array()}};
+  Json all{{"method", choice.candidate.name()},
+           {"precision", to_string(choice.candidate.precision)},
+           {"dt", resolved.dt},
+           {"steps", resolved.steps},
+           {"tolerance", nullptr},
+           {"error", choice.error},
+           {"seconds", choice.seconds},
+           {"memory", choice.memory},
+           {"horizon", advised.horizon * units.time},
+           {"space", space},
+           {"threads", threads_in(space)},
+           {"units", units.si ? "SI" : "reduced"},
+           {"overrides", resolved.overrides},
+           {"warning", nullptr},
+           {"others", Json::array()}};
   if (auto const reason = warning_of(scene, resolved, choice.candidate.precision))
     all["warning"] = *reason;
   if (choice.candidate.method->adaptive) all["tolerance"] = choice.steps.tolerance;
@@ -269,7 +264,7 @@ int trade_off(TradeOptions const& options) {
   progress.clear();
   mark_front(ladders);
   if (options.json)
-    fmt::print("{}\n", as_json(pilot, reference, ladders).dump(1));
+    print_json(as_json(pilot, reference, ladders));
   else
     print_text(pilot, reference, ladders);
   if (!options.advice) return Status::done;
@@ -308,7 +303,7 @@ int advise_on(AdviseOptions const& options) {
   }
   auto const resolved = resolve(scene, *advised.choice);
   if (options.json)
-    fmt::print("{}\n", as_json(scene, advised, resolved, space).dump(1));
+    print_json(as_json(scene, advised, resolved, space));
   else
     print_text(options, scene, advised, resolved);
   return Status::done;
@@ -328,7 +323,7 @@ Command add_trade(CLI::App& program) {
       "trade", "Measure error against time and evaluations for every method on a scene");
   add_try_options(*command, *options);
   command->add_option("--seconds", options->seconds, "Longest run (default: 10)");
-  auto* const json = command->add_flag("--json", options->json, "The numbers as JSON");
+  auto* const json = add_json_option(*command, options->json);
   command->add_flag("--advice", options->advice, "Also judge what `advise` says of the scene")
       ->excludes(json);
   return {command, [options](Ranks&) { return trade_off(*options); }};
@@ -347,7 +342,7 @@ Command add_advise(CLI::App& program) {
           CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}},
                                 CLI::AsNumberWithUnit::CASE_SENSITIVE, "TIME"))
       ->type_name("TIME");
-  command->add_flag("--json", options->json, "The answer as JSON");
+  add_json_option(*command, options->json);
   return {command, [options](Ranks&) { return advise_on(*options); }};
 }
 

@@ -74,8 +74,12 @@ EnsembleInfo read_whole_info(std::filesystem::path const& path) {
     for (auto const& key : read_names(vary.get(), "keys", path))
       info.ensemble.vary.push_back({key, read_row(vary.get(), key.c_str(), {0}, {replicas}, path)});
   if (H5Lexists(file.get(), "converged", H5P_DEFAULT) > 0) {
-    auto const converged = read_row(file.get(), "converged", {0}, {replicas}, path);
-    info.converged = std::ranges::count(converged, 1.0);
+    auto const torque = read_row(file.get(), "torque", {0}, {replicas}, path),
+               converged = read_row(file.get(), "converged", {0}, {replicas}, path),
+               evaluations = read_row(file.get(), "evaluations", {0}, {replicas}, path);
+    for (std::size_t r = 0; r < replicas; ++r)
+      info.relaxed.push_back(
+          {torque[r], converged[r] == 1, static_cast<std::int64_t>(evaluations[r])});
   }
   if (info.frames == 0) return info;
   auto const last = static_cast<hsize_t>(info.frames) - 1;

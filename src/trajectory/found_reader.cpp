@@ -113,7 +113,9 @@ Path read_whole_path(fs::path const& path) {
   rates.langer_backward = attributes.read_real("langer_backward");
   auto const modes =
       read_numbers<std::int64_t>(file.get(), "zero_modes", 1, H5T_NATIVE_INT64, path);
+  auto const volumes = read_reals(file.get(), "zero_mode_volumes", path);
   std::copy_n(modes.begin(), std::min<std::size_t>(3, modes.size()), rates.zero_modes.begin());
+  std::copy_n(volumes.begin(), std::min<std::size_t>(3, volumes.size()), rates.volumes.begin());
   return found;
 }
 

@@ -23,8 +23,9 @@ TEST_F(OutputFiles, StandBesideTheTrajectoryWhenAskedFor) {
 // /dev/full represents a full disk.
 TEST_F(OutputFiles, StandardOutputThatCannotBeWrittenIsAnError) {
   run(chain_scene());
-  for (std::string const command : {"check chain.toml", "check chain.toml --json", "info out.h5",
-                                    "methods", "export out.h5 --ovf frames"}) {
+  for (std::string const command :
+       {"check chain.toml", "check chain.toml --json", "info out.h5", "info out.h5 --json",
+        "methods", "methods --json", "export out.h5 --ovf frames"}) {
     expect_status(2, {"-c", "exec '" CAYSPIN_PROGRAM "' " + command + " > /dev/full"},
                   {.program = "/bin/sh"});
   }

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "io/ensemble_file.hpp"
+#include "io/modes.hpp"
+#include "io/path.hpp"
+#include "io/sweep.hpp"
+#include "io/trajectory.hpp"
+#include "print_json.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <variant>
+
+namespace cayspin::program {
+
+/// What `cayspin info` reads of a file: all but its spins.
+struct InfoFile {
+  std::filesystem::path path;
+  std::optional<bool> being_written;  ///< the result of io::is_being_written, obtained before
+  std::variant<io::TrajectoryInfo, io::SweepInfo, io::EnsembleInfo, io::Path, io::BandsContents>
+      contents;
+};
+
+/// Reads a file of any kind, also while a run writes it. Throws std::runtime_error with one line.
+InfoFile read_info_file(std::filesystem::path const& path);
+
+/// Returns its numbers by the names of its attributes and datasets.
+Json as_json(InfoFile const& file);
+
+}  // namespace cayspin::program
