@@ -125,11 +125,12 @@ TEST_F(Pulses, CheckNamesTheShortestFeature) {
 TEST_F(Pulses, APeakJustAfterTheStartOrBeforeTheEndIsNoShortFeature) {
   for (std::string const value : {"cos(9*t-0.1)", "cos(9*(0.3-t)-0.1)"}) {
     auto const shortest = [&](double end) {
-      write("scene.toml",
-            fmt::format("system = {{ kind = \"llg\" }}\nlattice = {{ shape = [1] }}\n"
-                        "field.applied = [0, 0, \"{}\"]\ninitial.uniform = [1, 0, 1]\n"
-                        "integrator = {{ method = 'rkmk4', dt = 0.02, end = {} }}\n",
-                        value, end));
+      write(
+          "scene.toml",
+          fmt::format("system = {{ kind = \"llg\", damping = 0.1 }}\nlattice = {{ shape = [1] }}\n"
+                      "field.applied = [0, 0, \"{}\"]\ninitial.uniform = [1, 0, 1]\n"
+                      "integrator = {{ method = 'rkmk4', dt = 0.02, end = {} }}\n",
+                      value, end));
       return nlohmann::json::parse(output_of({"check", "scene.toml", "--json"}))
           .at("shortest_feature");
     };

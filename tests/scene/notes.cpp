@@ -80,7 +80,9 @@ TEST(Notes, SayWhatActsNowhere) {
     auto const found = notes_with(overrides);
     SCOPED_TRACE(testing::PrintToString(overrides) + testing::PrintToString(found));
     ASSERT_EQ(found.size(), expected.empty() ? 0U : 1U);
-    if (!expected.empty()) EXPECT_NE(found[0].find(expected), found[0].npos);
+    if (!expected.empty()) {
+      EXPECT_NE(found[0].find(expected), found[0].npos);
+    }
   }
 }
 
@@ -100,7 +102,9 @@ TEST(Notes, SayWhereImagesAndBoundariesDiffer) {
     auto const found = notes_with(overrides);
     SCOPED_TRACE(testing::PrintToString(overrides) + testing::PrintToString(found));
     ASSERT_EQ(found.size(), expected.empty() ? 0U : 1U);
-    if (!expected.empty()) EXPECT_NE(found[0].find(expected), found[0].npos);
+    if (!expected.empty()) {
+      EXPECT_NE(found[0].find(expected), found[0].npos);
+    }
   }
 }
 
