@@ -14,7 +14,8 @@ namespace cayspin::inline v0_2::detail {
 template <class Real>
 struct RowSweepPart {
   SweepPlan const& plan;
-  SweepRange y, z;
+  SweepRange<Axis> y;
+  SweepRange<PlaneAxis> z;
   Real* memory;
   std::int32_t ticks, tick = 0;
 

@@ -31,44 +31,58 @@ struct RowOutput {
   bool streaming = false;
 };
 
-/// Indices of planes or rows along an axis. On a periodic axis they repeat with its extent, or with
-/// that of a replica.
+/// Indices of rows along y. On a periodic axis they repeat with its extent.
 struct Axis {
-  std::int32_t extent = 1, replica = 1;
-  bool wraps = false;           // past the ends of the extent
-  bool wraps_replicas = false;  // at the ends of replicas
+  std::int32_t extent = 1;
+  bool wraps = false;
 
   Axis() = default;
   KOKKOS_FUNCTION Axis(RowLayout const& layout, int axis)
-      : extent(axis == 1 ? layout.ny : layout.nz),
-        replica(axis == 1 ? layout.ny : layout.replica_planes) {
-    bool const repeats = layout.periodic[axis] && replica > 1;
-    wraps = repeats && replica == extent;
-    wraps_replicas = repeats && replica != extent;
-  }
+      : extent(axis == 1 ? layout.ny : layout.nz), wraps(layout.periodic[axis] && extent > 1) {}
 
   /// Returns the neighbours of i; at an open end i itself.
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t previous(std::int32_t i) const {
-    if (wraps || !begins_replica(i)) return i - 1;
-    return wraps_replicas ? i + replica - 1 : i;
+    return i > 0 || wraps ? i - 1 : i;
   }
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t next(std::int32_t i) const {
-    if (wraps || !(i + 1 == extent || begins_replica(i + 1))) return i + 1;
-    return wraps_replicas ? i + 1 - replica : i;
-  }
-  /// Returns true if no row before i has a neighbour from i on.
-  KOKKOS_FORCEINLINE_FUNCTION bool is_cut(std::int32_t i) const {
-    return !wraps && (i == extent || begins_replica(i));
+    return i + 1 < extent || wraps ? i + 1 : i;
   }
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t wrapped(std::int32_t i) const {
     if (0 <= i && i < extent) return i;
     std::int32_t const rest = i % extent;
     return rest < 0 ? rest + extent : rest;
   }
+  /// Returns true if nothing before i has a neighbour from i on.
+  KOKKOS_FORCEINLINE_FUNCTION bool is_cut(std::int32_t i) const {
+    return !wraps && (i <= 0 || i >= extent);
+  }
+};
 
- private:
-  KOKKOS_FORCEINLINE_FUNCTION bool begins_replica(std::int32_t i) const {
-    return i == 0 || (replica != extent && i % replica == 0);
+/// Indices of planes along z, which end or repeat within each replica.
+struct PlaneAxis : Axis {
+  std::int32_t replica = 1;     // planes of one
+  bool wraps_replicas = false;  // if there are several
+
+  PlaneAxis() = default;
+  KOKKOS_FUNCTION explicit PlaneAxis(RowLayout const& layout)
+      : Axis(layout, 2), replica(layout.replica_planes) {
+    if (replica == extent) return;
+    wraps = false;
+    wraps_replicas = layout.periodic[2];
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t previous(std::int32_t i) const {
+    if (replica == extent) return Axis::previous(i);
+    if (i % replica != 0) return i - 1;
+    return wraps_replicas ? i + replica - 1 : i;
+  }
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t next(std::int32_t i) const {
+    if (replica == extent) return Axis::next(i);
+    if ((i + 1) % replica != 0) return i + 1;
+    return wraps_replicas ? i + 1 - replica : i;
+  }
+  KOKKOS_FORCEINLINE_FUNCTION bool is_cut(std::int32_t i) const {
+    return Axis::is_cut(i) || (replica != extent && i % replica == 0);
   }
 };
 

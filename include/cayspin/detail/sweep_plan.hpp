@@ -16,9 +16,10 @@ namespace cayspin::inline v0_2::detail {
 
 /// The planes or rows of one part. At an end inside the lattice, at ghosts or at a periodic end,
 /// each earlier stage works on one more plane or row, which the next part computes, too.
+template <class AlongAxis>
 struct SweepRange {
   std::int32_t begin, end, stages;
-  Axis axis;
+  AlongAxis axis;
 
   std::int32_t low(int stage) const { return begin - (ends_inside(begin) ? ahead(stage) : 0); }
   std::int32_t high(int stage) const { return end + (ends_inside(end) ? ahead(stage) : 0); }
@@ -61,13 +62,13 @@ struct SweepPlan {
   /// Returns how many numbers all buffers hold.
   std::size_t size() const { return static_cast<std::size_t>(parts() * part_size()); }
 
-  SweepRange range_y(std::int64_t part) const {
+  SweepRange<Axis> range_y(std::int64_t part) const {
     return range(static_cast<std::int32_t>(part % parts_y), parts_y, layout.own.y_begin,
                  layout.own.ny(), Axis(layout, 1));
   }
-  SweepRange range_z(std::int64_t part) const {
+  SweepRange<PlaneAxis> range_z(std::int64_t part) const {
     return range(static_cast<std::int32_t>(part / parts_y), parts_z, layout.own.z_begin,
-                 layout.own.nz(), Axis(layout, 2));
+                 layout.own.nz(), PlaneAxis(layout));
   }
   /// Returns by how many planes a seam shifts from block to block, so that planes of the previous
   /// block are not overwritten while a strip some planes behind still needs them.
@@ -115,8 +116,9 @@ struct SweepPlan {
   /// Cost of one synchronisation between two strips, in sites that could be stepped instead.
   static constexpr double meeting = 100;
 
-  SweepRange range(std::int32_t part, std::int32_t parts, std::int32_t begin, std::int32_t extent,
-                   Axis const& axis) const {
+  template <class AlongAxis>
+  SweepRange<AlongAxis> range(std::int32_t part, std::int32_t parts, std::int32_t begin,
+                              std::int32_t extent, AlongAxis const& axis) const {
     auto const bound = [&](std::int32_t i) {
       return begin + static_cast<std::int32_t>(std::int64_t(extent) * i / parts);
     };
@@ -185,7 +187,7 @@ struct SweepPlan {
     ring_rows = std::min(2 * block, longest) + 2 * stages;
     seam_planes = (layout.nz + parts_z - 1) / parts_z + 2 * stages;
     std::ptrdiff_t size = line;  // a pack may read before the first row
-    bool const all_planes = strips == 1 && parts_z == 1 && !Axis(layout, 2).wraps;
+    bool const all_planes = strips == 1 && parts_z == 1 && !PlaneAxis(layout).wraps;
     std::int32_t const most_planes = all_planes ? layout.nz : seam_planes;
     for (int b = 0; b < buffers; ++b) {
       SweepBuffer& of_stage = buffer[b];
@@ -223,7 +225,8 @@ struct FillSweepBuffers {
 template <class Real>
 struct SweepPart {
   SweepPlan const& plan;
-  SweepRange y, z;
+  SweepRange<Axis> y;
+  SweepRange<PlaneAxis> z;
   Real* memory;
   std::int32_t strip, blocks, steps_per_block;
 

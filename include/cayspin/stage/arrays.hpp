@@ -137,7 +137,7 @@ struct ToPlane {
     return plane_rows(array, layout, z);
   }
   KOKKOS_FUNCTION typename Planes<Real>::Spins spins(SiteArray<Real, 3> const& array) const {
-    Axis const along_z(layout, 2);
+    PlaneAxis const along_z(layout);
     return {plane_rows(array, layout, along_z.wrapped(along_z.previous(z))),
             plane_rows(array, layout, z),
             plane_rows(array, layout, along_z.wrapped(along_z.next(z)))};
