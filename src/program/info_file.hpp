@@ -14,7 +14,7 @@
 
 namespace cayspin::program {
 
-/// What `cayspin info` reads of a file: all but its spins.
+/// Contents of a file for `cayspin info`: everything but its spins.
 struct InfoFile {
   std::filesystem::path path;
   std::optional<bool> being_written;  ///< the result of io::is_being_written, obtained before
