@@ -6,7 +6,6 @@
 #include "shared.hpp"
 #include "simulation/ensemble_run.hpp"
 #include "simulation/failure.hpp"
-#include "simulation/guard.hpp"
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -45,19 +44,11 @@ class Interruption {
 };
 
 bool advance(EnsembleRun& run, std::int64_t count, bool until_torque) {
-  constexpr std::int64_t period_without_end = 100;
-  auto const& scene = run.replica(0).scene();
-  std::int64_t const period = until_torque && scene.integrator.until_torque
-                                  ? Guard::period_of(io::sites(scene))
-                                  : period_without_end;
   Interruption interruption;
   Advanced ended;
   {
     nb::gil_scoped_release const released;
-    ended = run.advance(count, {.period = period,
-                                .until_torque = until_torque,
-                                .interrupted = interruption.question(),
-                                .at_end = true});
+    ended = run.advance(count, run.looks(until_torque, interruption.question()));
   }
   if (ended == Advanced::interrupted) interruption.rethrow();
   return ended == Advanced::at_rest;

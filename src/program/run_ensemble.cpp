@@ -8,7 +8,6 @@
 #include "kokkos_of_command.hpp"
 #include "simulation/ensemble_run.hpp"
 #include "simulation/failure.hpp"
-#include "simulation/guard.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/run_files.hpp"
 #include "simulation/text.hpp"
@@ -43,12 +42,6 @@ std::string kept(io::EnsembleFile const& file, std::filesystem::path const& path
              : fmt::format("the last good frame is {} in {}", file.frames() - 1, path.string());
 }
 
-// A check of a small lattice takes as long as a step, so there are few besides those at frames. A
-// replica that may end early ends where its own run would.
-std::int64_t period_of_checks(io::Scene const& scene) {
-  return scene.integrator.until_torque ? Guard::period_of(io::sites(scene)) : 100;
-}
-
 /// A run and its file, from frame to frame.
 class RecordedEnsemble {
  public:
@@ -56,10 +49,7 @@ class RecordedEnsemble {
                    Listener listener)
       : scene_(scene),
         run_(scene, settings_of(options, space), false),
-        looks_{.period = period_of_checks(scene),
-               .until_torque = true,
-               .interrupted = interrupt_requested,
-               .at_end = true},
+        looks_(run_.looks(true, interrupt_requested)),
         progress_(io::sites(scene) * scene.ensemble.replicas, listener),
         path_(output_file(scene, options.output)) {
     warn_of_steps();
@@ -153,10 +143,11 @@ int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
   auto file = open_file(scene, options, run);
   std::vector<io::RelaxedReplica> found;
   io::RunCost cost;
-  for (auto const& minimum : run.relax({.torque = search.torque,
-                             .evaluations = search.evaluations,
-                             .keep_saddles = search.keep_saddles,
-                             .interrupted = interrupt_requested})) {
+  auto const minima = run.relax({.torque = search.torque,
+                                 .evaluations = search.evaluations,
+                                 .keep_saddles = search.keep_saddles,
+                                 .interrupted = interrupt_requested});
+  for (auto const& minimum : minima) {
     if (minimum.end == MinimizeEnd::interrupted) continue;
     cost.evaluations += minimum.evaluations;
     found.push_back({minimum.torque, minimum.end == MinimizeEnd::converged, minimum.evaluations});

@@ -2,6 +2,7 @@
 #include "ensemble_run.hpp"
 
 #include "failure.hpp"
+#include "guard.hpp"
 #include "plan.hpp"
 #include "run_files.hpp"
 #include "scene_minimizer.hpp"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <exception>
 #include <span>
+#include <utility>
 
 namespace cayspin::simulation {
 namespace {
@@ -58,6 +60,15 @@ double EnsembleRun::step_seconds() const {
 
 bool EnsembleRun::is_at_rest() const {
   return std::ranges::all_of(at_rest_, [](bool rests) { return rests; });
+}
+
+Looks EnsembleRun::looks(bool until_torque, std::function<bool()> interrupted) const {
+  auto const& scene = runs_.front()->scene();
+  bool const may_end = until_torque && scene.integrator.until_torque;
+  return {.period = may_end ? Guard::period_of(io::sites(scene)) : 100,
+          .until_torque = until_torque,
+          .interrupted = std::move(interrupted),
+          .at_end = true};
 }
 
 Advanced EnsembleRun::advance(std::int64_t count, Looks const& looks) {

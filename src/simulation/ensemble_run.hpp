@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -33,6 +34,11 @@ class EnsembleRun {
   double step_seconds() const;
   /// Has each replica ended early, without torque?
   bool is_at_rest() const;
+
+  /// Returns when advance checks the replicas: at its last step, and rarely before, because a check
+  /// of a small lattice takes as long as a step. With the scene's until_torque as often as a run
+  /// of its own, so that a replica ends where that would.
+  Looks looks(bool until_torque, std::function<bool()> interrupted) const;
 
   /// Takes `count` more steps in all replicas that have not ended early. If one fails or is
   /// interrupted, some of the others have taken them.
