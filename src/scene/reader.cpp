@@ -147,7 +147,7 @@ double number(Item const& item, Limits const& limits) {
   if (!item.node->is_number()) item.wrong_type(limits.accepted);
   double const value = value_of(*item.node);
   if (!std::isfinite(value)) item.fail(fmt::format("{} is not finite", value), limits.accepted);
-  if (limits.without_least && value <= limits.least)
+  if (limits.excludes_least && value <= limits.least)
     item.fail(fmt::format("{} is not positive", value), limits.accepted);
   if (value < limits.least)
     item.fail(fmt::format("{} is {}", value, limits.least == 0 ? "negative" : "too small"),

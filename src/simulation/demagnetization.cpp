@@ -36,8 +36,8 @@ DemagnetizationOptions options_of(io::Demagnetization const& demag, double mu0,
                                   Lattice const& lattice) {
   DemagnetizationOptions options{.strength = mu0 * demag.strength,
                                  .periodic_images = demag.periodic_images};
-  if (!demag.kept_in.empty())
-    options.kept = [file = InteractionsFile(demag.kept_in, text_of(lattice, options))](
+  if (!demag.cache.empty())
+    options.kept = [file = InteractionsFile(demag.cache, text_of(lattice, options))](
                        auto const& compute) { return file.read_or(compute); };
   return options;
 }

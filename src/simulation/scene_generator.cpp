@@ -74,7 +74,7 @@ SceneField<Spins> field_of(io::Scene const& scene, Lattice const& lattice, bool 
   if (slab_of_moments(scene)) field.slab_demag.reset();
   std::error_code ignored;
   if (field.demag && !field.demag->dipoles && std::filesystem::is_regular_file(scene.path, ignored))
-    field.demag->kept_in = std::filesystem::path(scene.path).replace_extension(".demag");
+    field.demag->cache = std::filesystem::path(scene.path).replace_extension(".demag");
   field = with_joined_own_field<typename Spins::value_type>(scene, std::move(field), lattice);
   return SceneField<Spins>(field, lattice, has_slow, std::move(pass));
 }

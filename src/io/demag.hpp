@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "io/key.hpp"
+
+#include <cayspin/crystal.hpp>
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace cayspin::inline v0_2::io {
+
+/// The local field of a slab, H = -strength (m.n) n.
+struct SlabDemagnetization {
+  Triple normal = {};  ///< unit vector n
+  double strength = 1;
+  bool on_host = false;    ///< computed on the host through a mirror copy
+  bool multirate = false;  ///< evaluated once or twice a step, between substeps of the other terms
+
+  static constexpr auto keys() {
+    using Slab = SlabDemagnetization;
+    return std::to_array<Key<Slab>>({{"normal", &Slab::normal, {"three numbers"}, true},
+                                     {"strength", &Slab::strength},
+                                     {"where"},
+                                     {"multirate", &Slab::multirate}});
+  }
+};
+
+/// The field of all cells on all cells, H = -strength sum N m, or that of point dipoles.
+struct Demagnetization {
+  double strength = 1;
+  std::array<int, 3> periodic_images{};  ///< on each side, besides the nearest one
+  std::optional<Crystal> dipoles;        ///< their positions; empty: cells of DemagnetizingField
+  Triple demagnetizing_factors = {};     ///< for dipoles with three periodic axes
+  std::string key = "demag";             ///< its key in [field]
+  std::optional<bool> multirate;         ///< default: true if the method supports it
+  std::filesystem::path cache;           ///< file for tensors, which take long to compute; or empty
+
+  static constexpr auto keys() {
+    return std::to_array<Key<Demagnetization>>({{"strength", &Demagnetization::strength},
+                                                {"periodic_images"},
+                                                {"multirate", &Demagnetization::multirate}});
+  }
+};
+
+}  // namespace cayspin::inline v0_2::io

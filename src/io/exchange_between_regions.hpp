@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace cayspin::inline v0_2::io {
+
+/// A factor on the exchange of bonds between two regions.
+struct ExchangeBetween {
+  std::array<std::int64_t, 2> regions = {};
+  double factor = 1;
+};
+
+/// E = -J m.m' - B (m.m')^2 across each face between two regions, with J and B per area. m is the
+/// spin at the face; exchange turns the spins between the face and the centre of its cell.
+struct Interlayer {
+  std::array<std::int64_t, 2> regions = {};
+  double bilinear = 0, biquadratic = 0;  ///< J, B
+  std::int64_t range = 0;                ///< number of cells without a spin in between
+};
+
+}  // namespace cayspin::inline v0_2::io

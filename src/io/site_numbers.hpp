@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "io/given.hpp"
+#include "io/key.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cayspin::inline v0_2::io {
+
+/// One number for each site: from an expression as in [initial], an HDF5 or OVF file, the pixels of
+/// an image, one number for each of the lattice's regions, or passed by a program.
+struct SiteNumbers {
+  std::string expression;
+  std::filesystem::path file;
+  std::vector<double> of_regions;
+  GivenNumbers given;
+  double unit = 1;  ///< multiplies each number, which may be typed in SI
+  std::string key;  ///< in SI, the key of [material] that they replace
+  std::filesystem::path image = {};
+  std::vector<int> levels = {};  ///< thresholds of grey: a pixel's number is how many it reaches
+
+  bool there() const {
+    return !expression.empty() || !file.empty() || !image.empty() || !of_regions.empty() || given;
+  }
+  std::string_view key_or(std::string_view other) const {
+    return key.empty() ? other : std::string_view(key);
+  }
+};
+
+/// One vector for each site: from components that are numbers or site-dependent, from the dataset
+/// /values (.., 3) of an HDF5 file, from an OVF file, or one vector for each of the lattice's
+/// regions.
+struct SiteVectors {
+  Triple uniform = {};
+  std::array<SiteNumbers, 3> components = {};  ///< each replaces its number if not empty
+  std::filesystem::path file;
+  std::vector<Triple> of_regions;
+  double unit = 1;  ///< multiplies each number
+
+  bool there() const {
+    return !file.empty() || !of_regions.empty() || uniform != Triple{} ||
+           std::ranges::any_of(components, &SiteNumbers::there);
+  }
+};
+
+}  // namespace cayspin::inline v0_2::io
