@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <functional>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace cayspin::inline v0_2::io {
 
-/// Numbers that a program passes with the text of a scene; those of sites have x fastest.
+/// Numbers in the memory of a program. Those of sites are in the order of initial_spins.
 using GivenNumbers = std::shared_ptr<std::vector<double> const>;
+
+/// Data that a program passes with the text of a scene.
+struct Given {
+  GivenNumbers spins;                                        ///< for initial.given = true
+  std::map<std::string, GivenNumbers, std::less<>> numbers;  ///< for keys with { given = true }
+};
 
 }  // namespace cayspin::inline v0_2::io

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "io/field.hpp"
+#include "io/key.hpp"
 
 #include <array>
 #include <cstddef>

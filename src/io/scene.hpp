@@ -3,28 +3,33 @@
 
 #include "io/ensemble.hpp"
 #include "io/field.hpp"
-#include "io/follow.hpp"
-#include "io/initial_state.hpp"
-#include "io/method.hpp"
+#include "io/given.hpp"
+#include "io/initial.hpp"
+#include "io/integrator.hpp"
+#include "io/key.hpp"
+#include "io/lattice.hpp"
+#include "io/material.hpp"
+#include "io/output.hpp"
 #include "io/site_box.hpp"
+#include "io/site_numbers.hpp"
 #include "io/stage.hpp"
+#include "io/system.hpp"
+#include "io/thermal.hpp"
 #include "io/units.hpp"
-#include "io/words.hpp"
 
+#include <cayspin/coupling.hpp>
 #include <cayspin/crystal.hpp>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
+#include <functional>
 #include <map>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 /// A scene file as plain data. docs/reference/scene.md describes every key.
@@ -37,198 +42,16 @@ class SceneError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-using PrincipalMoments = Triple;
-using InertiaTensor = std::array<double, 9>;  ///< symmetric 3x3, row by row
-/// An inertia tensor for each body, from an HDF5 file.
-struct InertiaFile {
-  std::filesystem::path path;  ///< dataset /inertia (count, 3, 3)
-};
-
-/// The table [system].
-struct System {
-  SystemKind kind = SystemKind::llg;
-  double damping = 0;             ///< llg: lambda >= 0
-  SiteNumbers dampings;           ///< llg: instead of it, which then is 0
-  bool gilbert_of_sites = false;  ///< torques are divided by 1 + damping^2
-  bool precession = true;         ///< llg: false is the overdamped A = lambda m x H
-  std::variant<PrincipalMoments, InertiaTensor, InertiaFile> inertia;  ///< rigid_body
-};
-
-/// The table [lattice].
-struct Lattice {
-  /// nx, ny, nz; for rigid bodies count, 1, 1. For a crystal nz is cells times sites of a cell:
-  /// plane k * basis.size() + s has the sites s of the cells k.
-  std::array<std::int64_t, 3> shape = {1, 1, 1};
-  Triple spacing = {1, 1, 1};
-  std::array<BoundaryKind, 3> boundary = {};
-  std::array<Triple, 3> cell = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< in units of spacing
-  std::vector<Triple> basis = {{0, 0, 0}};    ///< in fractions of the cell's vectors
-  std::vector<double> moments, gyromagnetic;  ///< one for each site of the cell; empty: all 1
-  SiteNumbers moments_of_sites;               ///< instead of moments; 0: no spin
-  SiteNumbers gyromagnetic_of_sites;          ///< instead of gyromagnetic
-  SiteNumbers occupied, frozen;  ///< true where not 0; default: all occupied, none frozen
-  SiteNumbers regions;           ///< whole numbers, starting at 0
-  std::optional<Follow> follow;
-};
-
-/// All spins along one direction.
-struct UniformStart {
-  Triple direction = {};  ///< unit vector
-};
-/// A start by expressions, normalised per spin.
-struct ExpressionStart {
-  std::array<std::string, 3> components;  ///< in x, y, z, i, j, k
-};
-/// Random spins, distributed uniformly on the sphere.
-struct RandomStart {
-  std::int64_t seed = 0;
-};
-/// A start from the last frame of an HDF5 file, or from an OVF file, normalised per spin.
-struct FileStart {
-  std::filesystem::path path;  ///< dataset /spins, or OVF 2.0
-};
-/// A start that a program passes with the text of its scene, normalised per spin.
-struct GivenStart {
-  GivenNumbers spins;  ///< sites x 3, x fastest
-};
-using Initial =
-    std::variant<UniformStart, ExpressionStart, RandomStart, FileStart, GivenStart, InitialState>;
-
-/// Data that a program passes with the text of its scene.
-struct Given {
-  GivenNumbers spins;                                        ///< for initial.given = true
-  std::map<std::string, GivenNumbers, std::less<>> numbers;  ///< for keys with { given = true }
-};
-
-/// The table [integrator]: method, coordinates and steps.
-struct Integrator {
-  Method const* method = nullptr;
-  Generator generator = Generator::standard;
-  Isotropy isotropy = Isotropy::zero;
-  double sigma = 0;  ///< isotropy constant, added to A along m
-  double isotropy_cap = std::numeric_limits<double>::infinity();  ///< bound on |dt sigma|
-  Rotation rotation = Rotation::cayley;
-  double dt = 0;              ///< of adaptive methods: interval between observations of the spins
-  std::int64_t steps = 0;     ///< computed from `end` when the scene gives that
-  std::int64_t substeps = 1;  ///< of the method in each step, for an expensive field
-  std::optional<double> tolerance;  ///< only of adaptive methods
-  std::optional<double> error;      ///< of method "auto": target that its choice must meet
-  double min_dt = 0,
-         max_dt =
-             std::numeric_limits<double>::infinity();  ///< of an adaptive method's internal steps
-  bool compensated = false;      ///< adds the rounding error of the spins to the next step
-  bool energy_guard = true;      ///< stops a run whose energy rises although it can only fall
-  bool energy_control = false;   ///< holds the energy of a run without damping
-  bool refuse_unstable = false;  ///< a dt that `run` would warn of is an error
-  std::optional<double> until_torque;
-
-  static constexpr auto keys() {
-    return std::to_array<Key<Integrator>>(
-        {{"method"},
-         {"generator"},
-         {"isotropy"},
-         {"isotropy_cap"},
-         {"rotation"},
-         {"dt"},
-         {"end"},
-         {"steps"},
-         {"substeps", &Integrator::substeps, {"a whole number >= 1", 1}},
-         {"tolerance"},
-         {"min_dt", &Integrator::min_dt, not_negative},
-         {"max_dt", &Integrator::max_dt, positive},
-         {"error"},
-         {"compensated", &Integrator::compensated},
-         {"energy_guard", &Integrator::energy_guard},
-         {"energy_control", &Integrator::energy_control},
-         {"refuse_unstable", &Integrator::refuse_unstable},
-         {"until_torque", &Integrator::until_torque, positive}});
-  }
-};
-
-/// The table [thermal]. kB T over the energy of a site is temperature * in_time(t) * of_sites.
-struct Thermal {
-  double temperature = 0;          ///< >= 0
-  AppliedComponent in_time = 1.0;  ///< an expression in t, or 1
-  SiteNumbers of_sites;            ///< empty: 1
-  std::int64_t seed = 0;
-
-  static constexpr auto keys() {
-    return std::to_array<Key<Thermal>>(
-        {{"temperature"}, {"seed", &Thermal::seed, {"a whole number >= 0", 0}}});
-  }
-};
-
-/// How often a run stores FILE.checkpoint.h5, from which it can continue with the same bits: after
-/// so many steps, or after so many seconds. Never if both are 0.
-struct CheckpointPeriod {
-  double seconds = 600;
-  std::int64_t steps = 0;
-
-  bool is_never() const { return seconds == 0 && steps == 0; }
-};
-
-/// The table [output].
-struct Output {
-  std::optional<std::filesystem::path> file;  ///< as typed: relative to the working directory
-  std::int64_t every = 1;                     ///< steps between frames, >= 1; default: steps
-  std::int64_t scalars_every = 1;  ///< steps between scalar samples, >= 1; default: every
-  int compression = 0;             ///< of /spins: 0 (none) to 9
-  std::int64_t chunk = 0;          ///< planes along z in a chunk of /spins; 0: all
-  bool xdmf = false;               ///< FILE.xdmf for viewers
-  bool table = false;              ///< FILE.txt with the scalar samples
-  bool sync = false;               ///< a power cut loses at most the frame being written
-  bool regions = false;            ///< magnetization and energy of each region, in each sample
-  bool terms = false;              ///< the energy of each term, in each sample
-  CheckpointPeriod checkpoint_every;
-
-  static constexpr auto keys() {
-    return std::to_array<Key<Output>>(
-        {{"file"},
-         {"every"},
-         {"scalars_every"},
-         {"compression", &Output::compression, {"a level from 0 (none) to 9", 0, 9}},
-         {"chunk", &Output::chunk, {"a whole number of planes along z >= 1", 1}},
-         {"checkpoint_every"},
-         {"xdmf", &Output::xdmf},
-         {"table", &Output::table},
-         {"sync", &Output::sync},
-         {"regions", &Output::regions},
-         {"terms", &Output::terms}});
-  }
-};
-
-/// The table [material] of a scene in SI, as typed. System, Lattice and Field have its values in
-/// reduced units.
-struct Material {
-  bool atomistic = false;  ///< mu_s, J and K instead of Ms, A and Ku
-  double moment =
-      0;  ///< Ms, A/m, or mu_s, J/T, of the first site; if site-dependent, the one that counts as 1
-  std::vector<double> moments;        ///< J/T, one for each site of the cell; empty: all equal
-  std::optional<double> exchange;     ///< A, J/m, or J of a bond, J
-  std::optional<double> anisotropy;   ///< Ku, J/m^3, or K of a site, J
-  std::optional<double> anisotropy2;  ///< Ku2, J/m^3, or K2 of a site, J
-  std::optional<double> dmi;          ///< D, J/m^2, or D of a bond, J, of an interface
-  std::optional<double> bulk_dmi;     ///< D of the bulk
-  std::optional<double> d2d_dmi;      ///< D of a crystal of symmetry D2d
-  SiteNumbers moment_factors, exchange_factors, anisotropy_factors, anisotropy2_factors,
-      dmi_factors, alpha_factors, gamma_factors;  ///< in SI
-  SiteVectors axes, normals;                      ///< instead of one axis, one normal
-  Triple axis = {}, normal = {};                  ///< unit vectors
-  double alpha = 0;
-  bool gilbert = true;  ///< Gilbert's equation, or that of Landau and Lifshitz
-  double gamma = 0;     ///< rad/(s T); if site-dependent, the one that counts as 1
-};
-
 struct Stage;
 
-/// A scene: one member for each table, and the place of each key. All numbers except those of
-/// Material are in reduced units, even if the scene is typed in SI.
+/// A scene: a member for each table, and where each key was typed. Numbers are in reduced units,
+/// also if the scene is typed in SI, except in the members for units = "SI".
 struct Scene {
   Units units;
-  std::optional<Material> material;  ///< with units = "SI"
-  std::optional<std::array<AppliedComponent, 3>>
-      applied_in_tesla;  ///< field.applied as typed, with t in s: with units = "SI"
-  Torque torque_in_si;   ///< with velocities in m/s, strengths in T and t in s: with units = "SI"
+  /// For units = "SI", as typed: t in s, velocities in m/s, strengths in T.
+  std::optional<Material> material;
+  std::optional<std::array<AppliedComponent, 3>> applied_in_tesla;
+  Torque torque_in_si;
   System system;
   Lattice lattice;
   Field field;
@@ -300,11 +123,13 @@ std::int64_t sites(Scene const& scene);
 /// values. Throws SceneError.
 void check_files(Scene const& scene);
 
-/// Returns the start on the host, sites x 3 normalised in double: component c of site (i, j, k) is
-/// at ((k*ny + j)*nx + i)*3 + c. Throws SceneError naming the site of a zero or non-finite spin.
+/// Returns the initial spins on the host, sites x 3, normalised in double: component c of site (i,
+/// j, k) is at ((k*ny + j)*nx + i)*3 + c. Throws SceneError naming the site of a zero or non-finite
+/// spin.
 std::vector<double> initial_spins(Scene const& scene);
 
-/// Returns the start of only these sites, in the same order. An OVF file is read completely.
+/// Returns the initial spins of only these sites, in the same order. An OVF file is read
+/// completely.
 std::vector<double> initial_spins(Scene const& scene, SiteBox const& box);
 
 /// Returns the bonds of a scene, each once: the typed ones, or those of its unit-cell file. Throws
@@ -320,8 +145,8 @@ std::vector<unsigned char> frozen(Scene const& scene, SiteBox const& box);
 /// Throws SceneError for a negative one.
 std::vector<double> moments_of_sites(Scene const& scene, SiteBox const& box);
 
-/// Returns the moment of each site, also if lattice.moments gives them, 0 where there is no spin.
-/// Empty if all are 1.
+/// Returns the moment of each site, also if lattice.moments gives them; 0 where there is no spin,
+/// empty if all are 1.
 std::vector<double> all_moments(Scene const& scene, SiteBox const& box);
 /// Returns the gyromagnetic ratio of each site; empty if lattice.gyromagnetic gives them. Throws
 /// SceneError for one that is not positive.
@@ -375,7 +200,7 @@ std::vector<double> numbers_across(Scene const& scene, SiteNumbers const& number
 /// Returns the longest `reach` of interlayers with a range above 0, or 0.
 std::int64_t reach_of_interlayers(Scene const& scene);
 
-/// Returns true if the field needs a separate pass, for terms that few scenes have.
+/// Returns true if H needs a separate pass over the sites, for terms that few scenes have.
 bool needs_pass(Scene const& scene);
 
 /// Returns true if each site has its own moment, instead of those of a cell: by lattice.moments,
@@ -385,8 +210,8 @@ bool has_moments_of_sites(Scene const& scene);
 /// Returns true if a site has no spin, by lattice.occupied or a moment of 0.
 bool has_vacancies(Scene const& scene);
 
-/// Returns true if H is linear in the spins, apart from the applied field. Unknown for a unit-cell
-/// file, which may have biquadratic couplings.
+/// Returns true if H is linear in the spins, apart from the applied field. False for a file of
+/// couplings, of which some may be biquadratic.
 bool has_linear_field(Scene const& scene);
 
 /// Returns the number of a site of the cell; 1 without numbers.
@@ -407,7 +232,7 @@ std::vector<double> noise_of_sites(Scene const& scene, SiteBox const& box);
 /// Returns the largest of these, or of those of the cell's sites.
 double largest_noise(Scene const& scene);
 /// Refuses a dt for which the noise of half a step would turn spins too far. `heat`: the largest
-/// damping times temperature times gyromagnetic ratio over moment.
+/// product of damping, temperature, and gyromagnetic ratio over moment. Throws SceneError.
 void require_moderate_noise(Scene const& scene, double heat);
 
 /// Returns a lattice's cell.

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "io/key.hpp"
+#include "io/site_numbers.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace cayspin::inline v0_2::io {
+
+/// The table [material] of a scene in SI, as typed. System, Lattice and Field have its values in
+/// reduced units.
+struct Material {
+  bool atomistic = false;  ///< mu_s, J and K instead of Ms, A and Ku
+  /// Ms, A/m, or mu_s, J/T, of the first site; if site-dependent, the unit of reduced moments.
+  double moment = 0;
+  std::vector<double> moments;        ///< J/T, one for each site of the cell; empty: all equal
+  std::optional<double> exchange;     ///< A, J/m, or J of a bond, J
+  std::optional<double> anisotropy;   ///< Ku, J/m^3, or K of a site, J
+  std::optional<double> anisotropy2;  ///< Ku2, J/m^3, or K2 of a site, J
+  std::optional<double> dmi;          ///< D, J/m^2, or D of a bond, J, of an interface
+  std::optional<double> bulk_dmi;     ///< D of the bulk
+  std::optional<double> d2d_dmi;      ///< D of a crystal of symmetry D2d
+  SiteNumbers moment_factors, exchange_factors, anisotropy_factors, anisotropy2_factors,
+      dmi_factors, alpha_factors, gamma_factors;  ///< site-dependent, in SI
+  SiteVectors axes, normals;                      ///< instead of one axis, one normal
+  Triple axis = {}, normal = {};                  ///< unit vectors
+  double alpha = 0;
+  bool gilbert = true;  ///< Gilbert's equation, or that of Landau and Lifshitz
+  double gamma = 0;     ///< rad/(s T); if site-dependent, the unit of reduced ratios
+};
+
+}  // namespace cayspin::inline v0_2::io

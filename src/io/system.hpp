@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "io/key.hpp"
+#include "io/site_numbers.hpp"
+#include "io/words.hpp"
+
+#include <array>
+#include <filesystem>
+#include <variant>
+
+namespace cayspin::inline v0_2::io {
+
+using PrincipalMoments = Triple;
+using InertiaTensor = std::array<double, 9>;  ///< symmetric 3x3, row by row
+/// An inertia tensor for each body, from an HDF5 file.
+struct InertiaFile {
+  std::filesystem::path path;  ///< dataset /inertia (count, 3, 3)
+};
+
+/// The table [system].
+struct System {
+  SystemKind kind = SystemKind::llg;
+  double damping = 0;             ///< llg: lambda >= 0
+  SiteNumbers dampings;           ///< llg: instead of damping, which then is 0
+  bool gilbert_of_sites = false;  ///< torques are divided by 1 + damping^2
+  bool precession = true;         ///< llg: false is the overdamped A = lambda m x H
+  std::variant<PrincipalMoments, InertiaTensor, InertiaFile> inertia;  ///< rigid_body
+};
+
+}  // namespace cayspin::inline v0_2::io
