@@ -12,7 +12,7 @@ template <class Spins>
 SiteArray<typename Spins::value_type, 1> FieldInPass<Spins>::Terms::keep_constants(
     std::vector<double> const& constants, double of_energy) {
   none_.magnitude += of_energy * largest_of_parts(lattice_, constants);
-  constants_of_axes_.push_back(field_of<Real, Memory>("anisotropy", lattice_, constants));
+  constants_of_axes_.push_back(scalar_field_of<Real, Memory>("anisotropy", lattice_, constants));
   return constants_of_axes_.back().array();
 }
 

@@ -14,7 +14,7 @@
 #include <set>
 #include <vector>
 
-// Bonds between regions, for FieldInPass. For compile_field_in_pass.hpp.
+// Bonds between regions. For compile_field_in_pass.hpp.
 namespace cayspin::simulation {
 
 // Half a sweep reduces the error of the spins at a face by a factor of at most r / (1 - r), where r
@@ -26,7 +26,7 @@ void FieldInPass<Spins>::Terms::add_exchange_at_faces(io::Scene const& scene,
   if (!numbers.there()) return;
   constexpr double most = 1.0 / 3;
   auto const constants = io::numbers_of_sites(scene, numbers, "field.exchange", box);
-  exchange_at_faces_ = field_of<Real, Memory>("exchange_at_faces", lattice_, constants);
+  exchange_at_faces_ = scalar_field_of<Real, Memory>("exchange_at_faces", lattice_, constants);
   double strongest = 0, spacing = longest_of_distant_;
   for (auto const& bond : scene.field.interlayers)
     strongest = std::max(strongest, std::abs(bond.bilinear) + 4 * std::abs(bond.biquadratic));
@@ -76,8 +76,8 @@ void FieldInPass<Spins>::Terms::add_bonds_between(io::Scene const& scene, io::Si
       for (double& constant : *constants) constant /= lattice_.spacing[axis];
     none_.magnitude +=
         largest_of_parts(lattice_, bilinear) + largest_of_parts(lattice_, biquadratic);
-    interlayers_[axis] = {field_of<Real, Memory>("interlayer", lattice_, bilinear),
-                          field_of<Real, Memory>("interlayer", lattice_, biquadratic)};
+    interlayers_[axis] = {scalar_field_of<Real, Memory>("interlayer", lattice_, bilinear),
+                          scalar_field_of<Real, Memory>("interlayer", lattice_, biquadratic)};
   }
 }
 
@@ -86,7 +86,8 @@ template <class Spins>
 void FieldInPass<Spins>::Terms::add_distant_bonds(io::Scene const& scene, io::SiteBox const& box) {
   std::vector<DistantBonds<Real>> all;
   auto const keep = [&](std::vector<double> const& values) {
-    return numbers_of_distant_.emplace_back(field_of<Real, Memory>("interlayer", lattice_, values))
+    return numbers_of_distant_
+        .emplace_back(scalar_field_of<Real, Memory>("interlayer", lattice_, values))
         .array();
   };
   std::set<std::int64_t> ranges;

@@ -3,11 +3,16 @@
 
 #include "anisotropies_of_scene.hpp"
 #include "bonds_between_regions.hpp"
+#include "exchange_and_dmi_of_scene.hpp"
+#include "moments_and_rates_of_scene.hpp"
+#include "sources_of_scene.hpp"
 #include "terms_of_scene.hpp"
+#include "torques_of_scene.hpp"
 
 #include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/reduce_sites.hpp>
+#include <cayspin/scalars.hpp>
 
 #include <Kokkos_Profiling_ScopedRegion.hpp>
 
@@ -112,38 +117,6 @@ SceneLatticeTerms FieldInPass<Spins>::Terms::lattice_terms_at(Factors const& fac
     if (term) term->strength() *= scale * (is_exchange ? factors.exchange : factors.dmi);
   });
   return lattice_terms_of(field, lattice_);
-}
-
-template <class Spins>
-auto FieldInPass<Spins>::Terms::slonczewski_of_sites(Vec3<double> const& strengths) const
-    -> SlonczewskiOfSites<Real> {
-  SlonczewskiOfSites<Real> now{.damping_like = strengths.x,
-                               .field_like = strengths.y,
-                               .polarization = torques_.polarization,
-                               .square = torques_.lambda * torques_.lambda};
-  if (torques_.damping_like) now.damping_like_of_sites = torques_.damping_like->array();
-  if (torques_.field_like) now.field_like_of_sites = torques_.field_like->array();
-  if (torques_.polarizations) now.polarizations = torques_.polarizations->array();
-  return now;
-}
-
-template <class Spins>
-auto FieldInPass<Spins>::Terms::sources_at(double t) const -> SourcesNow<Real> {
-  SourcesNow<Real> now;
-  for (auto const& [profile, time, largest] : sources_) {
-    now.profiles[now.count] = profile.array();
-    now.factors[now.count++] = time(t).x;
-  }
-  return now;
-}
-
-template <class Spins>
-double FieldInPass<Spins>::Terms::applied_magnitude(Vec3<double> const& applied,
-                                                    SourcesNow<Real> const& sources) const {
-  double magnitude = std::sqrt(dot(applied, applied));
-  for (std::size_t i = 0; i < sources_.size(); ++i)
-    magnitude += sources_[i].largest * std::abs(sources.factors[i]);
-  return largest_moment_ * magnitude;
 }
 
 template <class Spins>

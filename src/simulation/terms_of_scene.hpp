@@ -11,30 +11,28 @@
 #include "space.hpp"
 #include "terms_along_row.hpp"
 
-#include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/ghosts.hpp>
 #include <cayspin/detail/sweep_plan.hpp>
 #include <cayspin/detail/table.hpp>
 #include <cayspin/field/site_dependent_exchange.hpp>
-#include <cayspin/scalars.hpp>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <stdexcept>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
-// The terms of FieldInPass for a scene. For compile_field_in_pass.hpp.
+// The terms of FieldInPass for a scene; further headers define the functions that add them. For
+// compile_field_in_pass.hpp, which includes them all.
 namespace cayspin::simulation {
 
-// Returns the largest magnitude over all parts: words of doubles >= 0 have the order of the
+// Returns the largest magnitude over all parts. The words of doubles >= 0 have the order of the
 // doubles.
 inline double largest_of_parts(Lattice const& lattice, std::vector<double> const& values) {
   double largest = 0;
@@ -45,18 +43,18 @@ inline double largest_of_parts(Lattice const& lattice, std::vector<double> const
   return std::bit_cast<double>(words[0]);
 }
 
-// Returns the site of the cell that each of a part's own planes holds.
+// Returns the site of the cell to which site `number` of a part belongs: each plane holds one.
 inline std::size_t site_of_cell(Lattice const& lattice, std::size_t number) {
   auto const in_plane = static_cast<std::size_t>(lattice.own(0) * lattice.own(1));
   return number / in_plane % static_cast<std::size_t>(lattice.cell_sites);
 }
 
 template <class Real, class Memory>
-ScalarField<Real, Memory> field_of(char const* name, Lattice const& lattice,
-                                   std::vector<double> const& numbers) {
+ScalarField<Real, Memory> scalar_field_of(char const* name, Lattice const& lattice,
+                                          std::vector<double> const& numbers) {
   ScalarField<Real, Memory> made(std::string("FieldInPass::") + name, lattice);
   copy_from_host(numbers, made);
-  // Terms also read the numbers of neighbours.
+  // Terms read the numbers of neighbours, too.
   cayspin::detail::update_ghosts(typename Memory::execution_space(), lattice, made);
   return made;
 }
@@ -94,12 +92,20 @@ class FieldInPass<Spins>::Terms {
  private:
   friend FieldInPass;
 
-  void add_numbers_of_sites(io::Scene const& scene, io::SiteBox const& box,
-                            std::vector<double> moves, std::vector<double> const& moments);
+  // In moments_and_rates_of_scene.hpp.
   void add_moments_of_sites(std::vector<double> const& moments);
   void add_vacancies(io::Scene const& scene);
+  void add_rates(io::Scene const& scene, io::SiteBox const& box, std::vector<double> moves);
 
-  void add_dmi(io::Scene const& scene, io::SiteBox const& box);
+  // In exchange_and_dmi_of_scene.hpp.
+  void add_exchange_of_sites(io::Scene const& scene, io::SiteBox const& box);
+  void add_dmi_of_sites(io::Scene const& scene, io::SiteBox const& box);
+
+  // In bonds_between_regions.hpp.
+  void add_bonds_between(io::Scene const& scene, io::SiteBox const& box);
+  void add_distant_bonds(io::Scene const& scene, io::SiteBox const& box);
+  void add_exchange_at_faces(io::Scene const& scene, io::SiteBox const& box);
+
   // In anisotropies_of_scene.hpp.
   void add_axes(io::Scene const& scene, io::SiteBox const& box, std::vector<double> const& moments);
   void add_crystal_axes(io::Scene const& scene, io::SiteBox const& box);
@@ -109,21 +115,21 @@ class FieldInPass<Spins>::Terms {
                                         double constant, io::SiteNumbers const& numbers,
                                         int site) const;
 
+  // In sources_of_scene.hpp.
+  void add_sources(io::Scene const& scene, io::SiteBox const& box);
+  SourcesNow<Real> sources_at(double t) const;
+  /// Returns the largest |energy| of a site in the applied field and the sources.
+  double applied_magnitude(Vec3<double> const& applied, SourcesNow<Real> const& sources) const;
+
+  // In torques_of_scene.hpp.
+  void add_torques(io::Scene const& scene, io::SiteBox const& box);
+  SlonczewskiOfSites<Real> slonczewski_of_sites(Vec3<double> const& strengths) const;
+
   struct Factors {
     double exchange = 1, anisotropy = 1, dmi = 1;
   };
   Factors factors_at(double t) const;
   SceneLatticeTerms lattice_terms_at(Factors const& factors, double scale) const;
-
-  void add_exchange_at_faces(io::Scene const& scene, io::SiteBox const& box);
-  void add_bonds_between(io::Scene const& scene, io::SiteBox const& box);
-  void add_distant_bonds(io::Scene const& scene, io::SiteBox const& box);
-  void add_sources(io::Scene const& scene, io::SiteBox const& box);
-  void add_torques(io::Scene const& scene, io::SiteBox const& box);
-  SourcesNow<Real> sources_at(double t) const;
-  SlonczewskiOfSites<Real> slonczewski_of_sites(Vec3<double> const& strengths) const;
-  /// Returns the largest |energy| of a site in the applied field and the sources.
-  double applied_magnitude(Vec3<double> const& applied, SourcesNow<Real> const& sources) const;
 
   template <class Element>
   using Table = Kokkos::View<Element*, Memory>;
@@ -140,7 +146,7 @@ class FieldInPass<Spins>::Terms {
 
   struct Source {
     SiteField<Real, 3, Memory> profile;
-    AppliedField time;  // along x
+    AppliedField time;  // its x component
     double largest;     // largest |profile|
   };
 
@@ -155,7 +161,7 @@ class FieldInPass<Spins>::Terms {
   std::optional<ScalarField<Real, Memory>> moves_, dampings_;
   // moves_ times gyromagnetic ratios, over Gilbert's 1 + damping^2.
   std::optional<ScalarField<Real, Memory>> rates_;
-  std::optional<ScalarField<Real, Memory>> per_gyromagnetic_;  // besides torques; or empty
+  std::optional<ScalarField<Real, Memory>> per_gyromagnetic_;  // for torques; or empty
   std::optional<SiteDependentExchange<Real, Memory>> exchange_of_sites_;
   struct Dmi {
     ScalarField<Real, Memory> constants;
@@ -170,7 +176,7 @@ class FieldInPass<Spins>::Terms {
   Interlayer interlayers_[3];
   std::vector<ScalarField<Real, Memory>> numbers_of_distant_;
   Table<DistantBonds<Real>> distant_bonds_;
-  double longest_of_distant_ = 0;  // spacing across their faces
+  double longest_of_distant_ = 0;  // largest spacing across their faces
   std::optional<ScalarField<Real, Memory>> exchange_at_faces_;
   std::int32_t sweeps_of_faces_ = 0;
   std::vector<ScalarField<Real, Memory>> constants_of_axes_;
@@ -230,13 +236,20 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
   auto moments = io::all_moments(scene, box);
   if (moments.empty()) moments = moves;
   for (std::size_t site = 0; site < frozen.size(); ++site) moves[site] = frozen[site] ? 0 : 1;
-  if (!frozen.empty()) moves_ = field_of<Real, Memory>("moves", lattice, moves);
-  moments_ = field_of<Real, Memory>("moments", lattice, moments);
+  if (!frozen.empty()) moves_ = scalar_field_of<Real, Memory>("moves", lattice, moves);
+  moments_ = scalar_field_of<Real, Memory>("moments", lattice, moments);
   if (io::has_moments_of_sites(scene)) add_moments_of_sites(moments);
   if (has_vacancies_ && !per_moments_) add_vacancies(scene);
 
   add_torques(scene, box);
-  add_numbers_of_sites(scene, box, std::move(moves), moments);
+  add_exchange_of_sites(scene, box);
+  add_bonds_between(scene, box);
+  add_distant_bonds(scene, box);
+  add_exchange_at_faces(scene, box);
+  add_dmi_of_sites(scene, box);
+  add_rates(scene, box, std::move(moves));
+  add_axes(scene, box, moments);
+  add_crystal_axes(scene, box);
   add_sources(scene, box);
 
   // Round-off of a site's energy is proportional to this.
@@ -252,174 +265,6 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
     none_.magnitude += 0.5 * std::abs(term.constant);
   for (auto const& term : scene.field.crystal_anisotropies)
     if (term.is_plain()) none_.magnitude += std::abs(term.constant);
-}
-
-// Adds sources; those with equal time factors are summed.
-template <class Spins>
-void FieldInPass<Spins>::Terms::add_sources(io::Scene const& scene, io::SiteBox const& box) {
-  std::vector<std::pair<io::AppliedComponent, std::vector<double>>> profiles;
-  for (auto const& [profile, time] : scene.field.sources) {
-    auto vectors = io::vectors_of_sites(scene, profile, "field.sources", box);
-    for (double& number : vectors) number *= scene.field.mu0;
-    auto const same = std::ranges::find(profiles, time, [](auto const& one) { return one.first; });
-    if (same == profiles.end())
-      profiles.emplace_back(time, std::move(vectors));
-    else
-      std::ranges::transform(vectors, same->second, same->second.begin(), std::plus<>());
-  }
-  constexpr auto most = static_cast<std::size_t>(SourcesNow<Real>::most);
-  if (profiles.size() > most)
-    throw io::scene_error(scene, "field.sources",
-                          "has " + std::to_string(profiles.size()) +
-                              " times that differ; accepted: at most " + std::to_string(most));
-  for (auto const& [time, vectors] : profiles) {
-    std::vector<double> lengths(vectors.size() / 3);
-    for (std::size_t site = 0; site < lengths.size(); ++site)
-      lengths[site] = std::hypot(vectors[3 * site], vectors[3 * site + 1], vectors[3 * site + 2]);
-    SiteField<Real, 3, Memory> profile("FieldInPass::source", lattice_);
-    copy_from_host(vectors, profile);
-    cayspin::detail::update_ghosts(typename Memory::execution_space(), lattice_, profile);
-    sources_.push_back({profile, AppliedField({time, 0.0, 0.0}, "field.sources"),
-                        largest_of_parts(lattice_, lengths)});
-  }
-}
-
-template <class Spins>
-void FieldInPass<Spins>::Terms::add_moments_of_sites(std::vector<double> const& moments) {
-  std::vector<double> per_moments(moments.size()), is_vacant(moments.size());
-  for (std::size_t site = 0; site < moments.size(); ++site) {
-    per_moments[site] = moments[site] > 0 ? 1 / moments[site] : 0;
-    is_vacant[site] = moments[site] > 0 ? 0 : 1;
-  }
-  per_moments_ = field_of<Real, Memory>("per_moments", lattice_, per_moments);
-  has_vacancies_ = largest_of_parts(lattice_, is_vacant) > 0;
-  largest_moment_ = largest_of_parts(lattice_, moments);
-}
-
-// The exchange of stages takes a vacancy, the zero vector, for a neighbour m': it adds A (m' - m).
-template <class Spins>
-void FieldInPass<Spins>::Terms::add_vacancies(io::Scene const& scene) {
-  auto const field = io::without_numbers_of_sites(scene.field);
-  if (!field.exchange) return;
-  missing_.emplace("FieldInPass::missing", lattice_);
-  FindMissing<Real> find{moments_.array(), missing_->output(false), {0, 0, 0}};
-  double const seen = cell_[0].gyromagnetic * cell_[0].per_moment * field.exchange->constant;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (lattice_.has_neighbors(static_cast<int>(axis)))
-      find.bonds[axis] = seen / (lattice_.spacing[axis] * lattice_.spacing[axis]);
-  typename Memory::execution_space const exec;
-  cayspin::detail::for_each_site<Real>(exec, "cayspin::FieldInPass::find_missing",
-                                       missing_->layout(), find, missing_->layout().own);
-  cayspin::detail::update_ghosts(exec, lattice_, *missing_);
-  exec.fence("cayspin::FieldInPass: missing neighbours found");
-}
-
-template <class Spins>
-void FieldInPass<Spins>::Terms::add_numbers_of_sites(io::Scene const& scene, io::SiteBox const& box,
-                                                     std::vector<double> moves,
-                                                     std::vector<double> const& moments) {
-  auto const& field = scene.field;
-  if (field.exchange_factors.there()) {
-    auto const constants =
-        io::numbers_of_sites(scene, field.exchange_factors, "field.exchange", box);
-    none_.magnitude +=
-        field.exchange->energy_magnitude(lattice_) * largest_of_parts(lattice_, constants);
-    try {
-      exchange_of_sites_.emplace(field_of<Real, Memory>("exchange", lattice_, constants));
-    } catch (std::invalid_argument const& error) {
-      std::string_view const message = error.what();
-      throw io::scene_error(scene, field.exchange_factors.key_or("field.exchange"),
-                            message.substr(message.find(": ") + 2));
-    }
-  }
-  add_bonds_between(scene, box);
-  add_distant_bonds(scene, box);
-  add_exchange_at_faces(scene, box);
-  if (field.dmi_factors.there()) add_dmi(scene, box);
-  if (scene.system.dampings.there()) {
-    auto const dampings = io::numbers_of_sites(scene, scene.system.dampings, "system.damping", box);
-    dampings_ = field_of<Real, Memory>("dampings", lattice_, dampings);
-    if (scene.system.gilbert_of_sites) {
-      for (std::size_t site = 0; site < moves.size(); ++site)
-        moves[site] /= 1 + dampings[site] * dampings[site];
-    }
-  }
-  auto ratios = io::gyromagnetic_of_sites(scene, box);
-  if (!ratios.empty()) std::ranges::transform(moves, ratios, moves.begin(), std::multiplies<>());
-  if (!ratios.empty() || scene.system.gilbert_of_sites)
-    rates_ = field_of<Real, Memory>("rates", lattice_, moves);
-  if (!ratios.empty() && io::has_torque(field)) {
-    for (double& ratio : ratios) ratio = 1 / ratio;
-    per_gyromagnetic_ = field_of<Real, Memory>("per_gyromagnetic", lattice_, ratios);
-  }
-  add_axes(scene, box, moments);
-  add_crystal_axes(scene, box);
-}
-
-// Site-dependent normals are split into three interfaces, with normals along x, y and z.
-template <class Spins>
-void FieldInPass<Spins>::Terms::add_dmi(io::Scene const& scene, io::SiteBox const& box) {
-  constexpr std::string_view key = "field.dmi";
-  auto const& field = scene.field;
-  auto const constants = io::numbers_of_sites(scene, field.dmi_factors, key, box);
-  none_.magnitude += 6 * largest_of_parts(lattice_, constants);
-  auto const add = [&](std::vector<double> const& of_sites, auto const& vector_along) {
-    auto& dmi = dmis_of_sites_.emplace_back(field_of<Real, Memory>("dmi", lattice_, of_sites));
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!lattice_.has_neighbors(axis)) continue;
-      Vec3<double> const e{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
-      auto const a = static_cast<std::size_t>(axis);
-      dmi.vectors[a] = (1 / lattice_.spacing[a]) * vector_along(e);
-    }
-  };
-  using Vector = Vec3<double>;
-  if (field.bulk_dmi) {
-    add(constants, [](Vector const& e) { return -1.0 * e; });
-  } else if (field.d2d_dmi) {
-    add(constants, [](Vector const& e) { return Vector{e.x, -e.y, 0}; });
-  } else if (!field.dmi_normals.there()) {
-    add(constants, [&](Vector const& e) { return cross(vector(field.dmi->normal), e); });
-  } else {
-    auto const normals = io::directions_of_sites(scene, field.dmi_normals, key, box);
-    for (std::size_t c = 0; c < 3; ++c) {
-      auto along = constants;
-      for (std::size_t site = 0; site < along.size(); ++site) along[site] *= normals[3 * site + c];
-      Vector const n{c == 0 ? 1.0 : 0.0, c == 1 ? 1.0 : 0.0, c == 2 ? 1.0 : 0.0};
-      add(along, [&](Vector const& e) { return cross(n, e); });
-    }
-  }
-}
-
-template <class Spins>
-void FieldInPass<Spins>::Terms::add_torques(io::Scene const& scene, io::SiteBox const& box) {
-  auto const& [zhang_li, slonczewski] = scene.field.torque;
-  if (zhang_li) {
-    torques_.velocity.emplace(zhang_li->velocity, "torque.zhang_li.velocity");
-    torques_.nonadiabaticity = zhang_li->nonadiabaticity;
-  }
-  if (!slonczewski) return;
-  constexpr char const* key = "torque.slonczewski";
-  torques_.strengths.emplace(
-      std::array<io::AppliedComponent, 3>{slonczewski->damping_like, slonczewski->field_like, 0.0},
-      key);
-  if (!slonczewski->polarizations.there())
-    torques_.polarization = vector(slonczewski->polarization);
-  torques_.lambda = slonczewski->lambda;
-  torques_.are_of_sites = slonczewski->is_of_sites();
-  auto const keep = [&](io::SiteNumbers const& numbers,
-                        std::optional<ScalarField<Real, Memory>>& in) {
-    if (numbers.there())
-      in = field_of<Real, Memory>("strengths", lattice_,
-                                  io::numbers_of_sites(scene, numbers, key, box));
-  };
-  keep(slonczewski->damping_like_of_sites, torques_.damping_like);
-  keep(slonczewski->field_like_of_sites, torques_.field_like);
-  if (!slonczewski->polarizations.there()) return;
-  auto& polarizations = torques_.polarizations.emplace("FieldInPass::polarizations", lattice_);
-  copy_from_host(io::directions_of_sites(scene, slonczewski->polarizations,
-                                         "torque.slonczewski.polarization", box),
-                 polarizations);
-  cayspin::detail::update_ghosts(typename Memory::execution_space(), lattice_, polarizations);
 }
 
 }  // namespace cayspin::simulation
