@@ -19,9 +19,9 @@ struct Anisotropy {
   SiteNumbers factors2 = {};  ///< multiply K2, which then is 1
   SiteVectors axes = {};      ///< instead of one axis; normalised when used
 
-  /// Returns true unless the term has one constant and one axis.
-  bool is_of_sites() const {
-    return factors.there() || constant2 != 0 || factors2.there() || axes.there();
+  /// Returns true if the term has one constant and one axis.
+  bool is_plain() const {
+    return !factors.there() && constant2 == 0 && !factors2.there() && !axes.there();
   }
 
   static constexpr std::string_view formula = "H = {} (m.e) e, e = {}";

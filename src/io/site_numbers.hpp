@@ -18,7 +18,7 @@ namespace cayspin::inline v0_2::io {
 struct SiteNumbers {
   std::string expression;
   std::filesystem::path file;
-  std::vector<double> of_regions;
+  std::vector<double> per_region;
   GivenNumbers given;
   double unit = 1;  ///< multiplies each number, which may be typed in SI
   std::string key;  ///< in SI, the key of [material] that they replace
@@ -26,7 +26,7 @@ struct SiteNumbers {
   std::vector<int> levels = {};  ///< thresholds of grey: a pixel's number is how many it reaches
 
   bool there() const {
-    return !expression.empty() || !file.empty() || !image.empty() || !of_regions.empty() || given;
+    return !expression.empty() || !file.empty() || !image.empty() || !per_region.empty() || given;
   }
   std::string_view key_or(std::string_view other) const {
     return key.empty() ? other : std::string_view(key);
@@ -40,11 +40,11 @@ struct SiteVectors {
   Triple uniform = {};
   std::array<SiteNumbers, 3> components = {};  ///< each replaces its number if not empty
   std::filesystem::path file;
-  std::vector<Triple> of_regions;
+  std::vector<Triple> per_region;
   double unit = 1;  ///< multiplies each number
 
   bool there() const {
-    return !file.empty() || !of_regions.empty() || uniform != Triple{} ||
+    return !file.empty() || !per_region.empty() || uniform != Triple{} ||
            std::ranges::any_of(components, &SiteNumbers::there);
   }
 };

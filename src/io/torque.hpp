@@ -30,10 +30,10 @@ struct Slonczewski {
   SiteNumbers damping_like_of_sites, field_like_of_sites;  ///< multiply a and b if set
   SiteVectors polarizations;  ///< instead of one vector; normalised when used
 
-  /// Returns true if a, b or p is site-dependent, or a depends on the angle.
-  bool is_of_sites() const {
-    return lambda != 1 || damping_like_of_sites.there() || field_like_of_sites.there() ||
-           polarizations.there();
+  /// Returns true if a, b and p are uniform, and a does not depend on the angle.
+  bool is_plain() const {
+    return lambda == 1 && !damping_like_of_sites.there() && !field_like_of_sites.there() &&
+           !polarizations.there();
   }
 
   static constexpr auto keys() {

@@ -29,8 +29,8 @@ std::string vector_text(io::Triple const& v) {
 
 std::string text_of(io::SiteNumbers const& numbers) {
   if (numbers.given) return "numbers of the program";
-  if (!numbers.of_regions.empty())
-    return fmt::format("of regions [{:.6g}]", fmt::join(numbers.of_regions, ", "));
+  if (!numbers.per_region.empty())
+    return fmt::format("of regions [{:.6g}]", fmt::join(numbers.per_region, ", "));
   if (!numbers.image.empty()) return numbers.image.string();
   return numbers.file.empty() ? numbers.expression : numbers.file.string();
 }
@@ -130,8 +130,8 @@ std::string applied_text(io::Scene const& scene) {
 
 std::string vectors_text(io::SiteVectors const& vectors) {
   if (!vectors.file.empty()) return vectors.file.string();
-  if (!vectors.of_regions.empty())
-    return fmt::format("of regions {}", fmt::join(vectors.of_regions, ", "));
+  if (!vectors.per_region.empty())
+    return fmt::format("of regions {}", fmt::join(vectors.per_region, ", "));
   auto const component = [&](std::size_t c) {
     auto const& numbers = vectors.components[c];
     return numbers.there() ? text_of(numbers) : fmt::format("{:.6g}", vectors.uniform[c]);

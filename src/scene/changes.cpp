@@ -44,7 +44,7 @@ bool same_sites(Scene const& before, Scene const& now, SiteNumbers Lattice::*num
   if (!a.there() && !b.there()) return true;
   if (a.there() == b.there() && a.expression == b.expression && a.file == b.file &&
       a.image == b.image && a.levels == b.levels && !a.given == !b.given && a.unit == b.unit &&
-      a.of_regions.empty() && b.of_regions.empty())
+      a.per_region.empty() && b.per_region.empty())
     return true;
   auto const& [nx, ny, nz] = now.lattice.shape;
   auto const at_once = planes_to_read(now.lattice.shape, sizeof(double));

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -291,7 +292,7 @@ Field without_numbers_of_sites(Field field) {
     field.bulk_dmi.reset();
     field.d2d_dmi.reset();
   }
-  std::erase_if(field.anisotropies, &Anisotropy::is_of_sites);
+  std::erase_if(field.anisotropies, std::not_fn(&Anisotropy::is_plain));
   return field;
 }
 

@@ -50,10 +50,10 @@ bool read_moments_of_sites(Item const& item, Scene& scene, Material& material) {
   read_site_numbers(item, scene, numbers);
   numbers.key = item.key;
   material.moment = material.atomistic ? units::bohr_magneton : 1 / units::vacuum_permeability;
-  if (numbers.of_regions.empty()) return true;
-  for (double const moment : numbers.of_regions)
+  if (numbers.per_region.empty()) return true;
+  for (double const moment : numbers.per_region)
     if (!(moment >= 0)) item.fail(fmt::format("{} is negative", moment), "numbers >= 0");
-  material.moment = std::ranges::max(numbers.of_regions);
+  material.moment = std::ranges::max(numbers.per_region);
   if (material.moment == 0) item.fail("leaves no spin", "a number > 0 among those of the regions");
   return true;
 }

@@ -86,7 +86,7 @@ std::vector<double> typed_numbers(Scene const& scene, SiteNumbers const& numbers
       throw scene_error(scene, key, "a number that was given is not finite");
     return numbers_in(box, scene.lattice.shape, 1, *numbers.given);
   }
-  if (!numbers.of_regions.empty()) return numbers_of_regions(scene, numbers.of_regions, key, box);
+  if (!numbers.per_region.empty()) return numbers_of_regions(scene, numbers.per_region, key, box);
   if (auto at_sides = detail::numbers_at_free_sides(scene, numbers, box)) return *at_sides;
   if (!numbers.image.empty())
     return detail::for_key(scene, key,
@@ -112,7 +112,7 @@ void read_numbers_of_regions(Item const& item, Scene& scene, SiteNumbers& number
     item.fail("stands without lattice.regions, which says the region of each site",
               "lattice.regions beside it");
   for (auto const& entry : entries(item, 1, most_regions, "a list of numbers, one for each region"))
-    numbers.of_regions.push_back(number(entry));
+    numbers.per_region.push_back(number(entry));
 }
 
 }  // namespace

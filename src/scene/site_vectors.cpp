@@ -121,7 +121,7 @@ SiteVectors read_site_vectors(Item const& item, Scene& scene) {
                       "lattice.regions beside it");
       for (auto const& entry :
            entries(*regions, 1, std::numeric_limits<std::size_t>::max(), "a list of vectors"))
-        vectors.of_regions.push_back(triple(entry));
+        vectors.per_region.push_back(triple(entry));
     } else {
       vectors.file = input_file(table, "file", "the name of an HDF5 or OVF file");
     }
@@ -140,8 +140,8 @@ Triple axis_of_sites(Item const& item, Scene& scene, SiteVectors& axes) {
                                       [](auto const& entry) { return entry.is_number(); });
   if (is_one || (array == nullptr && !item.node->is_table())) return direction(item);
   axes = read_site_vectors(item, scene);
-  for (std::size_t region = 0; region < axes.of_regions.size(); ++region)
-    if (!normalise(axes.of_regions[region]))
+  for (std::size_t region = 0; region < axes.per_region.size(); ++region)
+    if (!normalise(axes.per_region[region]))
       item.fail(fmt::format("the vector of region {} has no direction", region),
                 "vectors that are not zero");
   return {};
@@ -169,7 +169,7 @@ std::vector<double> vectors_of_sites(Scene const& scene, SiteVectors const& vect
     all.resize(3 * count);
     for (std::size_t c = 0; c < 3; ++c) {
       SiteNumbers component = vectors.components[c];
-      for (auto const& of_region : vectors.of_regions) component.of_regions.push_back(of_region[c]);
+      for (auto const& vector : vectors.per_region) component.per_region.push_back(vector[c]);
       auto const numbers = component.there() ? numbers_of_sites(scene, component, key, box)
                                              : std::vector(count, vectors.uniform[c]);
       for (std::size_t site = 0; site < count; ++site) all[3 * site + c] = numbers[site];

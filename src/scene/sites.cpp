@@ -68,7 +68,7 @@ bool has_vacancies(Scene const& scene) {
     return std::ranges::find(numbers, 0) != numbers.end();
   };
   return lattice.occupied.there() || has_zero(lattice.moments) ||
-         (of_sites.there() && (of_sites.of_regions.empty() || has_zero(of_sites.of_regions)));
+         (of_sites.there() && (of_sites.per_region.empty() || has_zero(of_sites.per_region)));
 }
 
 std::vector<unsigned char> occupied(Scene const& scene, SiteBox const& box) {
@@ -133,7 +133,7 @@ bool needs_pass(Scene const& scene) {
   bool const has_sites = scene.system.dampings.there() || field.exchange_factors.there() ||
                          field.dmi_factors.there() ||
                          std::ranges::any_of(field.anisotropies, [](auto const& term) {
-                           return term.site >= 0 || term.is_of_sites();
+                           return term.site >= 0 || !term.is_plain();
                          });
   return lattice.basis.size() > 1 || !lattice.moments.empty() || !lattice.gyromagnetic.empty() ||
          lattice.moments_of_sites.there() || lattice.gyromagnetic_of_sites.there() ||

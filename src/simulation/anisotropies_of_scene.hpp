@@ -46,7 +46,7 @@ void FieldInPass<Spins>::Terms::add_axes(io::Scene const& scene, io::SiteBox con
                                          std::vector<double> const& moments) {
   std::vector<AnisotropyOfSites<Real>> axes;
   for (auto const& term : scene.field.anisotropies) {
-    if (!term.is_of_sites()) continue;
+    if (term.is_plain()) continue;
     auto const of_sites = [&](double constant, io::SiteNumbers const& numbers) {
       return constants_of_site(scene, box, constant, numbers, term.site);
     };

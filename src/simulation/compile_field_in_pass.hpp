@@ -71,14 +71,14 @@ auto FieldInPass<Spins>::Terms::at(Exec const& exec, SceneFieldNow<Real> const& 
                         .has_usual = has_usual,
                         .has_pairs = has_pairs_,
                         .has_zhang_li = torques_.velocity.has_value(),
-                        .has_slonczewski = torques_.strengths && !torques_.are_of_sites,
-                        .has_slonczewski_of_sites = torques_.are_of_sites,
+                        .has_slonczewski = torques_.strengths && !torques_.needs_site_term,
+                        .has_slonczewski_of_sites = torques_.needs_site_term,
                         .has_vacancies = has_vacancies_,
                         .has_of_all = per_moments_ && usual.has_stored,
                         .is_gradient = purpose == FieldFor::energy};
   if (per_moments_) terms.per_moments = per_moments_->array();
   if (per_gyromagnetic_) terms.per_gyromagnetic = per_gyromagnetic_->array();
-  if (torques_.are_of_sites) terms.slonczewski_of_sites = slonczewski_of_sites(strengths);
+  if (torques_.needs_site_term) terms.slonczewski_of_sites = slonczewski_of_sites(strengths);
   if (exchange_of_sites_) terms.exchange_of_sites = exchange_of_sites_->prepared();
   terms.interlayer_of_sites.distant = distant_bonds_.data();
   terms.interlayer_of_sites.distant_count = static_cast<std::int32_t>(distant_bonds_.size());

@@ -183,7 +183,7 @@ double bound_of_numbers(io::Scene const& scene, Lattice const& lattice,
       if (lattice.has_neighbors(axis)) bound += 2 * largest / lattice.spacing[axis];
   }
   for (auto const& term : field.anisotropies)
-    if (term.is_of_sites()) bound += factors.anisotropy * largest_anisotropy(scene, term);
+    if (!term.is_plain()) bound += factors.anisotropy * largest_anisotropy(scene, term);
   for (auto const& term : field.crystal_anisotropies)
     if (!term.is_plain()) bound += factors.anisotropy * largest_crystal_anisotropy(scene, term);
   if (!field.interlayers.empty()) bound += largest_interlayer(scene, lattice);
@@ -270,7 +270,7 @@ double slonczewski_bound(io::Scene const& scene, io::Slonczewski const& torque, 
   auto const largest_of = [&](io::AppliedComponent const& a, io::AppliedComponent const& b) {
     return largest(AppliedField({a, b, 0.0}, key), key, scene, times, features);
   };
-  if (!torque.is_of_sites()) return largest_of(torque.damping_like, torque.field_like);
+  if (torque.is_plain()) return largest_of(torque.damping_like, torque.field_like);
   auto const of_sites = [&](io::SiteNumbers const& numbers) {
     return numbers.there() ? range_of_sites(scene, numbers, key).magnitude() : 1;
   };

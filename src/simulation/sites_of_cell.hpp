@@ -29,7 +29,7 @@ inline SitesOfCell sites_of_cell(io::Scene const& scene) {
     site.per_moment = io::over_moment(scene.lattice, number, 1);
     site.gyromagnetic = io::of_cell_site(scene.lattice.gyromagnetic, number);
     for (auto const& term : field.anisotropies)
-      if (is_here(term.site) && !term.is_of_sites()) site.quadratic.add(term.constant, term.axis);
+      if (is_here(term.site) && term.is_plain()) site.quadratic.add(term.constant, term.axis);
     site.first_cubic = static_cast<std::int32_t>(all.cubics.size());
     for (auto const& term : field.crystal_anisotropies)
       if (is_here(term.site) && term.is_plain())

@@ -139,7 +139,7 @@ class FieldInPass<Spins>::Terms {
     double nonadiabaticity = 0;
     Vec3<double> polarization{0, 0, 1};
     double lambda = 1;
-    bool are_of_sites = false;  // strengths or polarization, or an angular dependence
+    bool needs_site_term = false;  // site-dependent, or dependent on the angle
     std::optional<ScalarField<Real, Memory>> damping_like, field_like;  // site-dependent; or empty
     std::optional<SiteField<Real, 3, Memory>> polarizations;            // instead of one; or empty
   };

@@ -26,7 +26,7 @@ void FieldInPass<Spins>::Terms::add_torques(io::Scene const& scene, io::SiteBox 
   if (!slonczewski->polarizations.there())
     torques_.polarization = vector(slonczewski->polarization);
   torques_.lambda = slonczewski->lambda;
-  torques_.are_of_sites = slonczewski->is_of_sites();
+  torques_.needs_site_term = !slonczewski->is_plain();
   auto const keep = [&](io::SiteNumbers const& numbers,
                         std::optional<ScalarField<Real, Memory>>& in) {
     if (numbers.there())
