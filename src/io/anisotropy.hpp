@@ -9,9 +9,9 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// H = (constant (m.axis) + constant2 (m.axis)^3) axis.
+/// H = (K (m.e) + K2 (m.e)^3) e.
 struct Anisotropy {
-  double constant = 0;        ///< K in H = K (m.e) e
+  double constant = 0;        ///< K
   Triple axis = {};           ///< unit vector e
   int site = -1;              ///< index in the cell; below 0: all sites
   SiteNumbers factors = {};   ///< multiply the constant, which then is 1
@@ -31,9 +31,10 @@ struct Anisotropy {
   }
 };
 
-/// Anisotropy of a crystal, from m's components along two orthogonal axes and their cross product.
-/// Cubic, with components a, b, c: E = constant (a^2 b^2 + b^2 c^2 + c^2 a^2) + constant2 a^2 b^2
-/// c^2. Hexagonal, with components c, a, b: E = constant Re (a + i b)^6.
+/// Anisotropy of a crystal, from the components of m along two orthogonal axes and their cross
+/// product. Cubic, with components a, b, c:
+///   E = constant (a^2 b^2 + b^2 c^2 + c^2 a^2) + constant2 a^2 b^2 c^2.
+/// Hexagonal, with components c, a, b: E = constant Re (a + i b)^6.
 struct CrystalAnisotropy {
   bool hexagonal = false;
   double constant = 0;
