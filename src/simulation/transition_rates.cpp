@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <fmt/format.h>
 
@@ -13,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <utility>
 
 // Harmonic transition state theory for spins: Bessarab, Uzdin and Jonsson, Phys. Rev. B 85, 184409
@@ -181,16 +183,35 @@ class State {
       turned.col(axis) = coordinates([&](std::size_t site) -> Eigen::Vector3d {
         return Eigen::Vector3d::Unit(axis).cross(at(state_.spins, site));
       });
-    // Axes for which most of the rotation is not a zero mode come last.
     Matrix const beside = turned - zeros_ * (zeros_.transpose() * turned);
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> const axes(beside.transpose() * beside);
+    // Axes for which most of the rotation is not a zero mode come last.
+    Eigen::Matrix3d const axes =
+        zero_modes() == 1
+            ? axes_of_symmetry()
+            : Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(beside.transpose() * beside)
+                  .eigenvectors();
     std::vector<Vector> found;
     for (Eigen::Index i = 0; i < 3; ++i) {
-      Vector const v = turned * axes.eigenvectors().col(i);
+      Vector const v = turned * axes.col(i);
       bool const moves = v.norm() > 1e-3 * turned.norm();
-      if (moves && (beside * axes.eigenvectors().col(i)).norm() < 1e-2 * v.norm())
-        found.push_back(v);
+      if (moves && (beside * axes.col(i)).norm() < 1e-2 * v.norm()) found.push_back(v);
     }
+    return found;
+  }
+
+  /// Returns the axis about which the energy is symmetric, and zeros; zeros if there is none. The
+  /// zero mode does not determine it where all spins are collinear: adding a rotation about their
+  /// own direction gives the same mode.
+  Eigen::Matrix3d axes_of_symmetry() const {
+    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+    for (auto const& torque : state_.torques) {
+      Eigen::Map<Eigen::Vector3d const> const t(torque.data());
+      squares += t * t.transpose();
+    }
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> const axes(squares);
+    Eigen::Matrix3d found = Eigen::Matrix3d::Zero();
+    if (axes.eigenvalues()[0] < 1e-4 * axes.eigenvalues()[1])
+      found.col(0) = axes.eigenvectors().col(0);
     return found;
   }
 
@@ -233,17 +254,24 @@ double square_of_velocity(State const& saddle, Numbers const& mobilities) {
 
 }  // namespace
 
-StateHessian::StateHessian(std::vector<double> numbers_of_spins)
-    : spins(std::move(numbers_of_spins)) {
-  for (std::size_t site = 0; site < spins.size() / 3; ++site) {
-    Eigen::Vector3d const m = at(spins, site);
-    if (m.isZero()) continue;
-    sites.push_back(site);
-    Eigen::Vector3d const beside =
-        std::abs(m.x()) < 0.6 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
-    Eigen::Vector3d const first = m.cross(beside).normalized(), second = m.cross(first);
-    for (auto const& v : {first, second}) basis.insert(basis.end(), v.data(), v.data() + 3);
+std::vector<double> StateHessian::far_state(unsigned sample) const {
+  std::mt19937 generator(sample);
+  auto const number = [&] {
+    return 2 * static_cast<double>(generator()) / static_cast<double>(std::mt19937::max()) - 1;
+  };
+  Eigen::Quaterniond const turn(Eigen::Vector4d::NullaryExpr(number).normalized());
+  auto state = spins;
+  for (auto const site : sites) {
+    Eigen::Map<Eigen::Vector3d> m(&state[3 * site]);
+    m = (turn * m + 0.5 * Eigen::Vector3d::NullaryExpr(number)).normalized();
   }
+  return state;
+}
+
+void StateHessian::add_torque(std::vector<double> const& state, std::vector<double> const& field) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (auto const site : sites) sum += at(state, site).cross(at(field, site));
+  torques.push_back({sum.x(), sum.y(), sum.z()});
 }
 
 io::RatesOfPath rates_between(io::Scene const& scene, StateHessian const& start,

@@ -3,10 +3,13 @@
 
 #include "io/path.hpp"
 #include "io/scene.hpp"
+#include "tangent_basis.hpp"
 
+#include <cayspin/evaluate.hpp>
 #include <cayspin/minimizer/hessian.hpp>
 #include <cayspin/spin_field.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -14,18 +17,19 @@
 
 namespace cayspin::simulation {
 
-/// An equilibrium and the Hessian of its energy, in two coordinates of each spin on its tangent
-/// plane. Sites without a spin have none.
-struct StateHessian {
-  std::vector<double> spins;       // sites x 3
-  std::vector<std::size_t> sites;  // sites that have coordinates
-  std::vector<double> basis;       // two vectors for each of them
-  std::vector<double> numbers;     // matrix elements, row by row
+/// An equilibrium and the Hessian of its energy.
+struct StateHessian : TangentBasis {
+  std::vector<double> numbers;  // matrix elements, row by row
+  /// Sums of m x H in states far from the equilibrium. Those about an axis vanish if turning all
+  /// spins about it does not change the energy.
+  std::vector<std::array<double, 3>> torques;
 
-  /// Fills sites and basis.
-  explicit StateHessian(std::vector<double> numbers_of_spins);
-  std::size_t size() const { return 2 * sites.size(); }
-  double const* vector(std::size_t coordinate) const { return &basis[3 * coordinate]; }
+  using TangentBasis::TangentBasis;
+
+  /// Returns the spins after one rotation of all of them, and a small one of each. `sample` chooses
+  /// the rotations.
+  std::vector<double> far_state(unsigned sample) const;
+  void add_torque(std::vector<double> const& state, std::vector<double> const& field);
 };
 
 /// Returns the prefactors of harmonic transition state theory, in the units of the scene.
@@ -38,11 +42,12 @@ io::RatesOfPath rates_between(io::Scene const& scene, StateHessian const& start,
 
 /// Computes the Hessian by a product for each coordinate.
 template <class Exec, class Field, class Spins>
-StateHessian hessian_of(Exec const& exec, Field const& field, Spins const& spins) {
+StateHessian hessian_of(Exec const& exec, Field const& field, Spins const& spins,
+                        std::vector<unsigned char> const& frozen) {
   using Real = typename Spins::value_type;
   auto const& lattice = spins.lattice();
   auto const numbers = copy_to_host(spins);
-  StateHessian state({numbers.begin(), numbers.end()});
+  StateHessian state({numbers.begin(), numbers.end()}, frozen);
   ScalarField<Real, typename Spins::memory_space> const is_mobile("rates::is_mobile", lattice,
                                                                   Real(1));
   auto const fields = cayspin::detail::numbered_fields<Spins, 5>("rates", lattice);
@@ -66,6 +71,13 @@ StateHessian hessian_of(Exec const& exec, Field const& field, Spins const& spins
     }
     for (std::size_t c = 0; c < 3; ++c) given[at + c] = 0;
   }
+  for (unsigned sample = 0; sample < 8; ++sample) {
+    auto const far = state.far_state(sample);
+    copy_from_host(far, vector);
+    evaluate_field(exec, field, vector, 0, product);
+    auto const found = copy_to_host(product);
+    state.add_torque(far, {found.begin(), found.end()});
+  }
   return state;
 }
 
@@ -73,8 +85,10 @@ template <class Exec, class Field, class Spins>
 io::RatesOfPath rates_of(io::Scene const& scene, Exec const& exec, Field const& field,
                          Spins const& start, Spins const& saddle, Spins const& end,
                          double saddle_curvature) {
-  return rates_between(scene, hessian_of(exec, field, start), hessian_of(exec, field, saddle),
-                       hessian_of(exec, field, end), saddle_curvature);
+  auto const frozen = io::frozen(scene, {{0, 0, 0}, scene.lattice.shape});
+  return rates_between(scene, hessian_of(exec, field, start, frozen),
+                       hessian_of(exec, field, saddle, frozen),
+                       hessian_of(exec, field, end, frozen), saddle_curvature);
 }
 
 }  // namespace cayspin::simulation

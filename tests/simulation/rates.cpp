@@ -117,6 +117,42 @@ TEST_F(Rates, FindARotationOfAllSpins) {
   }
 }
 
+// The cosine z of the angle to the axis diffuses by damping kT (1 - z^2) in -K z^2 / 2 - h z. The
+// probability flux over the top at z = -h / K gives the rate of one spin,
+//   damping (1 - z^2) sqrt(K / 2 pi kT) (K +- h).
+// In a chain each mode of exchange contributes the ratio of its curvatures in the well and at the
+// top, where it has one along the ring of saddles and one across it.
+TEST_F(Rates, InAFieldAlongTheEasyAxis) {
+  double const k = 1.3, damping = 0.4, exchange = 8;
+  for (double const h : {0.0, -0.2, 0.6, 1.1})
+    for (cayspin::Vec3<double> const axis :
+         {cayspin::Vec3<double>{0, 0, 1}, {2. / 3, -1. / 3, 2. / 3}})
+      for (std::int64_t const count : {1, 4}) {
+        auto const lattice = cayspin::Lattice::chain(count);
+        EffectiveField const field(Exchange(lattice, exchange), UniaxialAnisotropy(k, axis),
+                                   Zeeman{{h * axis.x, h * axis.y, h * axis.z}});
+        std::vector<double> up, down;
+        for (std::int64_t site = 0; site < count; ++site)
+          for (double const c : {axis.x, axis.y, axis.z}) up.push_back(c), down.push_back(-c);
+        auto const found = rate(field, lattice, up, down, damping);
+        double const square = 1 - h * h / (k * k);
+        auto const exact = [&](double curvature) {  // of the well
+          double factor = damping * square * std::sqrt(k / (2 * std::numbers::pi)) * curvature *
+                          std::sqrt(static_cast<double>(count));
+          for (std::int64_t mode = 1; mode < count; ++mode) {
+            double const angle =
+                std::numbers::pi * static_cast<double>(mode) / static_cast<double>(count);
+            double const bending = 2 * exchange * (1 - std::cos(angle));
+            factor *= (bending + curvature) / std::sqrt(bending * (bending - k * square));
+          }
+          return factor;
+        };
+        EXPECT_EQ(found.rates.zero_modes, (std::array<std::int64_t, 3>{0, 1, 0}));
+        EXPECT_NEAR(found.rates.langer_forward / exact(k + h), 1, 1e-6) << h << ' ' << count;
+        EXPECT_NEAR(found.rates.langer_backward / exact(k - h), 1, 1e-6) << h << ' ' << count;
+      }
+}
+
 // tests/regressionGNEB of UppASD, in mRy: 9 shells of exchange of von Malottki et al. (2017).
 TEST_F(Rates, OfASkyrmionOfPdFeIr) {
   std::int64_t const n = 40;

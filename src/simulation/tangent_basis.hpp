@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace cayspin::simulation {
+
+/// A state and two coordinates of each spin on its tangent plane. Vacant sites and frozen spins
+/// have none.
+struct TangentBasis {
+  std::vector<double> spins;       // sites x 3
+  std::vector<std::size_t> sites;  // sites that have coordinates
+  std::vector<double> basis;       // two vectors for each of them
+
+  /// `frozen`: as io::frozen.
+  TangentBasis(std::vector<double> numbers_of_spins, std::vector<unsigned char> const& frozen);
+  std::size_t size() const { return 2 * sites.size(); }
+  double const* vector(std::size_t coordinate) const { return &basis[3 * coordinate]; }
+};
+
+}  // namespace cayspin::simulation
