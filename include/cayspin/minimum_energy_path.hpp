@@ -23,6 +23,19 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
+template <class Real>
+struct KeepMobile {
+  SiteArray<Real, 3> vectors;
+  SiteArray<Real, 1> is_mobile;
+  OutputArray<Real, 3> output;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    using Value = typename Site::value_type;
+    site.store(Value(site.load(is_mobile)) * Vec3<Value>(site.load(vectors)), output);
+  }
+};
+
 /// A smooth pattern without symmetry that turns no spin by more than 1.
 template <class Exec, class Spins>
 void make_disturbance(Exec const& exec, Preconditioner<Spins>& preconditioner, Spins const& work,
@@ -80,6 +93,9 @@ class PathFinder {
   void make_start() {
     auto const &work = saddle_.spins(), &pattern = saddle_.vector();
     make_disturbance(exec_, preconditioner_, work, pattern);
+    for_each_site<Real>(
+        exec_, "cayspin::path::keep_mobile", work.layout(),
+        KeepMobile<Real>{pattern.array(), is_mobile_.array(), pattern.output(false)});
     std::size_t const last = string_.size() - 1;
     for (std::size_t k = 1; k < last; ++k) {
       double const fraction = static_cast<double>(k) / static_cast<double>(last);

@@ -280,8 +280,9 @@ io::RatesOfPath rates_between(io::Scene const& scene, StateHessian const& start,
   if (!(saddle_curvature < 0))
     throw NumbersFailed("rates: the energy does not fall from the saddle: it is a plateau");
   State const of_saddle(saddle, "the saddle", saddle_curvature);
+  // Round-off may make a square of 0 negative.
   double const velocity =
-      std::sqrt(square_of_velocity(of_saddle, mobilities(scene, saddle))) / (2 * pi);
+      std::sqrt(std::max(square_of_velocity(of_saddle, mobilities(scene, saddle)), 0.0)) / (2 * pi);
   auto const saddle_modes = of_saddle.zero_modes();
   double const saddle_volume = of_saddle.zero_volume(scene.lattice);
 

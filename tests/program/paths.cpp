@@ -4,8 +4,10 @@
 #include "hdf5/handle.hpp"
 #include "program_test.hpp"
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace cayspin::program::test {
 namespace {
@@ -86,6 +88,31 @@ TEST_F(PathCommand, GivesTheRateOfABiaxialParticle) {
   double const one = std::sqrt(easy * (easy + hard)) / (2 * std::numbers::pi);
   EXPECT_NEAR(attribute("prefactor_forward"), one * std::sqrt(rest), 1e-6 * one);
   EXPECT_NEAR(attribute("prefactor_backward"), one * std::sqrt(rest), 1e-6 * one);
+}
+
+// A frozen neighbour along x acts as a field.
+TEST_F(PathCommand, GivesTheRateBesideAFrozenSpin) {
+  auto const ends = [&](std::string const& text, std::string const& up, std::string const& down) {
+    auto const file = write("scene.toml", text);
+    for (auto const& [start, end] : {std::pair{up, "a.h5"}, {down, "b.h5"}})
+      expect_status(0, {"relax", file, "--output", end, "--quiet", "--overwrite", "--set",
+                        "initial=" + start});
+    expect_status(0, arguments({"--rates", "--quiet", "--overwrite"}));
+    return std::array{attribute("barrier_forward"), attribute("prefactor_forward"),
+                      attribute("langer_forward")};
+  };
+  auto const of = [](std::string const& lattice, std::string const& field) {
+    return "[system]\nkind = \"llg\"\ndamping = 0.1\n[lattice]\n" + lattice +
+           "\n[field]\nanisotropy = [{ constant = 1.3, axis = [0, 0, 1] }, "
+           "{ constant = -0.7, axis = [0, 1, 0] }]\n" +
+           field + "\n[initial]\nuniform = [0, 0, 1]\n";
+  };
+  auto const in_field =
+      ends(of("shape = [1]", "applied = [0.4, 0, 0]"), "{uniform=[0,0,1]}", "{uniform=[0,0,-1]}");
+  auto const beside = ends(of("shape = [2]\nfrozen = \"i < 1\"", "exchange = 0.4"),
+                           "{expression=[\"i<1\",\"0\",\"i<1 ? 0 : 1\"]}",
+                           "{expression=[\"i<1\",\"0\",\"i<1 ? 0 : -1\"]}");
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(beside[i] / in_field[i], 1, 1e-6) << i;
 }
 
 // In SI, for a particle of one cell: K V, and gamma sqrt(H_K (H_K + H_hard)) / 2 pi.

@@ -150,6 +150,7 @@ TEST_F(Rates, InAFieldAlongTheEasyAxis) {
         EXPECT_EQ(found.rates.zero_modes, (std::array<std::int64_t, 3>{0, 1, 0}));
         EXPECT_NEAR(found.rates.langer_forward / exact(k + h), 1, 1e-6) << h << ' ' << count;
         EXPECT_NEAR(found.rates.langer_backward / exact(k - h), 1, 1e-6) << h << ' ' << count;
+        EXPECT_LT(found.rates.prefactor_forward, 1e-4 * exact(k + h));
       }
 }
 
