@@ -184,11 +184,14 @@ class Simulation:
         be in equilibrium: call relax() before. In a mode they move by the real part of
         shape e^((i w - decay) t), with w the angular frequency, 2 pi frequency in SI.
 
+        With [torque], for at most 1024 sites, run() until the spins rest under the current. A
+        negative decay is that of a mode that grows.
+
         `tolerance` is the relative error of the shapes; frequencies are more accurate. The search
         takes at most `evaluations` of the field of all sites.
 
         Raises CayspinError for other arguments, SceneError for rigid bodies, temperatures and spins
-        that neither precess nor are damped.
+        that neither precess nor are damped, NumbersFailed for spins that a current keeps moving.
         """
         *numbers, shapes, converged, cost = self._run.modes(
             arguments.whole(count, "modes: count"), arguments.real(tolerance, "modes: tolerance"),

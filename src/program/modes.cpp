@@ -146,7 +146,9 @@ class ModesOfScene {
 
   int run(std::filesystem::path const& path) {
     auto const field = field_of<Spins>(scene_, spins_.lattice(), false).made_for(FieldFor::energy);
-    auto const at = equilibrium(field);
+    auto at = equilibrium(field);
+    if (at.end == MinimizeEnd::converged && io::has_torque(scene_.field))
+      at = equilibrium_with_torques(at.evaluations);
     if (at.end == MinimizeEnd::interrupted) return interrupted();
     if (at.end != MinimizeEnd::converged)
       throw NumbersFailed(fmt::format("{}: no equilibrium was found: {} after {} evaluations",
@@ -201,6 +203,21 @@ class ModesOfScene {
     return minimizer.minimize(exec_, scene_, field, spins_, minimize);
   }
 
+  // Starts at an equilibrium of the energy.
+  Minimum equilibrium_with_torques(std::int64_t evaluations) {
+    auto found =
+        find_rest_with_torques<Real, Space>(exec_, scene_, spins_, options_.search,
+                                            options_.torque / scene_.units.field, options_.at_rest);
+    found.evaluations += evaluations;
+    if (found.end == MinimizeEnd::stagnated)
+      throw NumbersFailed(fmt::format(
+          "{}: {}: max |m x H| is {:.3g}, with the torque's field in H; accepted: at most {:.3g}",
+          scene_.path.string(),
+          options_.at_rest ? "the start is not at rest" : "no equilibrium with [torque] was found",
+          found.torque * scene_.units.field, options_.torque));
+    return found;
+  }
+
   int find_waves(std::filesystem::path const& path, SceneField<Spins> const& field,
                  io::ModesContents const& state) const {
     io::BandsContents contents{state, path_of(options_)};
@@ -253,6 +270,14 @@ class ModesOfScene {
     for (std::size_t i = 0; i < found.frequencies.size(); ++i)
       fmt::print("{:>4}  {:>16.9g}  {:>16.9g}  {:>8.1e}\n", i, giga * found.frequencies[i],
                  giga * found.decays[i], found.residuals[i]);
+    double fastest = 0;
+    for (std::size_t i = 0; i < found.decays.size(); ++i)
+      fastest = std::max(fastest, std::hypot(found.frequencies[i], found.decays[i]));
+    // Zero modes have decays of either sign.
+    if (auto const growing = std::ranges::count_if(
+            found.decays, [&](double decay) { return decay < -1e-7 * fastest; }))
+      fmt::print("{} of these modes {}: the decay is negative\n", growing,
+                 growing == 1 ? "grows" : "grow");
     if (!found.curvatures.empty()) fmt::print("{:>4}  curvature{}\n", "", si ? ", J" : "");
     for (std::size_t i = 0; i < found.curvatures.size(); ++i)
       fmt::print("{:>4}  {:.9g}\n", i, found.curvatures[i]);
@@ -266,7 +291,11 @@ class ModesOfScene {
 
 int find_modes_of_scene(ModesCommand const& options) {
   auto const scene = scene_of(options);
-  require_rest(scene);
+  require_rest(without_torque(scene));
+  if (io::has_torque(scene.field) && (options.hessian || !options.corners.empty()))
+    throw io::scene_error(scene, "torque",
+                          fmt::format("does not go with {0}; accepted: no such table, or no {0}",
+                                      options.hessian ? "--hessian" : "--wave-vector"));
   auto const path = options.output.value_or("modes.h5");
   io::require_free(path, options.overwrite);
   check_files(scene, options.scene);
@@ -297,7 +326,9 @@ int find_modes_of_scene(ModesCommand const& options) {
 Command add_modes(CLI::App& program) {
   auto const options = std::make_shared<ModesCommand>();
   auto* const command = program.add_subcommand(
-      "modes", "Find the normal modes of a scene's equilibrium: frequencies, decays and shapes");
+      "modes",
+      "Find the normal modes of a scene's equilibrium, also under [torque]: frequencies, decays and "
+      "shapes");
   add_device_options(*command, *options);
   command->get_option("SCENE")->description(
       "Scene file (TOML), or a trajectory file (HDF5), whose last frame is the start");

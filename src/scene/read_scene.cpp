@@ -75,7 +75,8 @@ void check_purpose(Purpose purpose, Scene const& scene) {
   }
   if (scene.system.kind != SystemKind::llg)
     detail::refuse(scene, "system.kind", "rigid bodies have no equilibrium", "\"llg\"");
-  if (has_torque(scene.field))
+  // For modes; relax and path refuse it.
+  if (has_torque(scene.field) && purpose != Purpose::relax)
     detail::refuse(scene, "torque",
                    "moves spins for ever, and an equilibrium needs an energy that falls",
                    "no such table");

@@ -3,17 +3,22 @@
 
 #include "failure.hpp"
 #include "io/scene.hpp"
+#include "scene_generator.hpp"
 #include "scene_minimizer.hpp"
 #include "space.hpp"
+#include "torque_modes.hpp"
 #include "turning_of_sites.hpp"
 
+#include <cayspin/evaluate.hpp>
 #include <cayspin/modes.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdlib>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -38,14 +43,85 @@ void require_motion(io::Scene const& scene) {
                           "above 0, or precession = true");
 }
 
+template <class Spins>
+std::vector<double> shape_of(Spins const& real, Spins const& imaginary) {
+  auto const x = copy_to_host(real), y = copy_to_host(imaginary);
+  std::vector<double> shape(2 * x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    shape[2 * i] = static_cast<double>(x[i]);
+    shape[2 * i + 1] = static_cast<double>(y[i]);
+  }
+  return shape;
+}
+
+template <class Exec, class Spins>
+void normalize_shape(Exec const& exec, Spins const& like, std::vector<double>& shape) {
+  std::vector<double> x(shape.size() / 2), y(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] = shape[2 * i];
+    y[i] = shape[2 * i + 1];
+  }
+  Spins const real("modes::real", like.lattice()), imaginary("modes::imaginary", like.lattice());
+  copy_from_host(x, real);
+  copy_from_host(y, imaginary);
+  cayspin::detail::normalize_mode(exec, real, imaginary);
+  shape = shape_of(real, imaginary);
+}
+
+template <class Real, class Space>
+TorqueMotion motion_of(Space const& exec, io::Scene scene, Lattice const& lattice,
+                       ModesOptions const& options) {
+  using Spins = SpinField<Real, typename Space::memory_space>;
+  if (auto& demag = scene.field.demag) demag->multirate = false;
+  if (auto& slab = scene.field.slab_demag) slab->multirate = false;
+  TorqueMotion motion;
+  motion.frozen = io::frozen(scene, {{0, 0, 0}, lattice.shape});
+  motion.epsilon = std::numeric_limits<Real>::epsilon();
+  auto const [precession, damping] = turning_of_sites(scene);
+  for (std::size_t site = 0; site < precession.size(); ++site)
+    motion.turning.push_back(std::hypot(precession[site], damping[site]));
+  motion.is_interrupted = [poll = options.poll] { return poll && poll() == Next::stop; };
+  motion.rates = [exec, generator = SceneGenerator<Spins>(scene, lattice),
+                  spins = Spins("modes::shifted", lattice),
+                  turning = Spins("modes::turning", lattice),
+                  time = options.time](Vectors const& from) {
+    copy_from_host(from, spins);
+    evaluate_generator(exec, generator, spins, time, turning);
+    auto const a = copy_to_host(turning);
+    Vectors rates(from.size());
+    for (std::size_t i = 0; i < from.size(); i += 3)
+      for (std::size_t c = 0; c < 3; ++c) {
+        std::size_t const d = i + (c + 1) % 3, e = i + (c + 2) % 3;
+        rates[i + c] = static_cast<double>(a[d]) * from[e] - static_cast<double>(a[e]) * from[d];
+      }
+    return rates;
+  };
+  return motion;
+}
+
 }  // namespace
+
+io::Scene without_torque(io::Scene scene) {
+  scene.field.torque = {};
+  return scene;
+}
 
 Plan make_plan_of_modes(io::Scene const& scene, Precision precision, ModesOptions const& options,
                         bool with_hessian) {
   require_motion(scene);
-  auto plan = make_plan_to_relax(scene, precision);
+  auto plan = make_plan_to_relax(without_torque(scene), precision);
   auto const modes = static_cast<std::int64_t>(options.count);
   plan.memory.work = std::max(plan.memory.work, plan.memory.spins * (6 * modes + 100));
+  if (io::has_torque(scene.field)) {
+    auto const sites = io::sites(scene);
+    if (sites > most_sites_with_torques)
+      throw io::scene_error(
+          scene, "lattice.shape",
+          fmt::format("has {} sites; accepted for modes with [torque]: at most {}", sites,
+                      most_sites_with_torques));
+    constexpr std::int64_t matrices = 6;
+    plan.memory.work += matrices * 4 * sites * sites * static_cast<std::int64_t>(sizeof(double));
+  }
   auto const numbers = io::sites(scene) * (modes * (with_hessian ? 9 : 6) + 3);
   plan.memory.files += numbers * static_cast<std::int64_t>(sizeof(double));
   return plan;
@@ -57,25 +133,48 @@ FoundModes find_modes(Space const& exec, io::Scene const& scene,
                       SpinField<Real, typename Space::memory_space> const& spins,
                       ModesOptions const& options) {
   require_motion(scene);
-  auto const turning = turning_of<Real, typename Space::memory_space>(scene, spins.lattice());
-  auto const found = normal_modes(exec, field, turning, spins, options);
   FoundModes modes;
-  modes.end = found.end;
-  modes.evaluations = found.evaluations;
-  double const per_time = 1 / scene.units.time;
-  double const cycles = scene.units.si ? 2 * std::numbers::pi : 1;
-  for (auto const& mode : found.modes) {
-    modes.frequencies.push_back(mode.frequency * per_time / cycles);
-    modes.decays.push_back(mode.decay * per_time);
-    modes.errors.push_back(mode.error);
-    auto const real = copy_to_host(mode.real), imaginary = copy_to_host(mode.imaginary);
-    auto& shape = modes.shapes.emplace_back(2 * real.size());
-    for (std::size_t i = 0; i < real.size(); ++i) {
-      shape[2 * i] = static_cast<double>(real[i]);
-      shape[2 * i + 1] = static_cast<double>(imaginary[i]);
+  if (io::has_torque(scene.field)) {
+    auto const numbers = copy_to_host(spins);
+    modes = find_modes_with_torques(motion_of<Real>(exec, scene, spins.lattice(), options),
+                                    {numbers.begin(), numbers.end()}, options.count,
+                                    options.evaluations);
+    for (auto& shape : modes.shapes) normalize_shape(exec, spins, shape);
+  } else {
+    auto const turning = turning_of<Real, typename Space::memory_space>(scene, spins.lattice());
+    auto const found = normal_modes(exec, field, turning, spins, options);
+    modes.end = found.end;
+    modes.evaluations = found.evaluations;
+    for (auto const& mode : found.modes) {
+      modes.frequencies.push_back(mode.frequency);
+      modes.decays.push_back(mode.decay);
+      modes.errors.push_back(mode.error);
+      modes.shapes.push_back(shape_of(mode.real, mode.imaginary));
     }
   }
+  double const per_time = 1 / scene.units.time;
+  double const cycles = scene.units.si ? 2 * std::numbers::pi : 1;
+  for (auto& frequency : modes.frequencies) frequency = frequency * per_time / cycles;
+  for (auto& decay : modes.decays) decay *= per_time;
   return modes;
+}
+
+template <class Real, class Space>
+Minimum find_rest_with_torques(Space const& exec, io::Scene const& scene,
+                               SpinField<Real, typename Space::memory_space> const& spins,
+                               ModesOptions const& options, double torque, bool at_rest) {
+  auto const motion = motion_of<Real>(exec, scene, spins.lattice(), options);
+  auto const numbers = copy_to_host(spins);
+  auto const found = find_rest_with_torques(motion, {numbers.begin(), numbers.end()}, torque,
+                                            at_rest ? 1 : options.evaluations);
+  copy_from_host(found.spins, spins);
+  Minimum rest;
+  rest.torque = found.torque;
+  rest.evaluations = found.evaluations;
+  rest.end = found.is_interrupted     ? MinimizeEnd::interrupted
+             : found.torque <= torque ? MinimizeEnd::converged
+                                      : MinimizeEnd::stagnated;
+  return rest;
 }
 
 template <class Real, class Space>
@@ -147,6 +246,9 @@ FoundBands find_bands(Space const& exec, io::Scene const& scene,
   template FoundModes find_modes(                                                              \
       Space const&, io::Scene const&, SceneField<SpinField<Real, Space::memory_space>> const&, \
       SpinField<Real, Space::memory_space> const&, ModesOptions const&);                       \
+  template Minimum find_rest_with_torques(Space const&, io::Scene const&,                      \
+                                          SpinField<Real, Space::memory_space> const&,         \
+                                          ModesOptions const&, double, bool);                  \
   template FoundCurvatures find_curvatures(                                                    \
       Space const&, io::Scene const&, SceneField<SpinField<Real, Space::memory_space>> const&, \
       SpinField<Real, Space::memory_space> const&, ModesOptions const&);                       \

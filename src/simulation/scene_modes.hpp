@@ -5,16 +5,30 @@
 #include "plan.hpp"
 #include "scene_field.hpp"
 
+#include <cayspin/minimizer/minimum.hpp>
+
 #include <array>
 #include <vector>
 
 namespace cayspin::simulation {
 
-/// Plans a search for modes after one for the equilibrium. Throws like make_plan_to_relax.
+/// Returns the scene without [torque], for what needs an energy.
+io::Scene without_torque(io::Scene scene);
+
+/// Plans a search for modes after one for the equilibrium. Throws like make_plan_to_relax, except
+/// that torques are accepted, for up to most_sites_with_torques sites.
 Plan make_plan_of_modes(io::Scene const& scene, Precision precision, ModesOptions const& options,
                         bool with_hessian);
 
-/// Finds the normal modes of a scene at an equilibrium. `field`: made for energies.
+/// Finds the state of rest of a scene with torques, near `spins`, or only checks them. Sets the
+/// torque, the evaluations and the end of the result.
+template <class Real, class Space>
+Minimum find_rest_with_torques(Space const& exec, io::Scene const& scene,
+                               SpinField<Real, typename Space::memory_space> const& spins,
+                               ModesOptions const& options, double torque, bool at_rest);
+
+/// Finds the normal modes of a scene at an equilibrium. `field`: made for energies; not used for
+/// scenes with torques.
 template <class Real, class Space>
 FoundModes find_modes(Space const& exec, io::Scene const& scene,
                       SceneField<SpinField<Real, typename Space::memory_space>> const& field,

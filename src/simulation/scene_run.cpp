@@ -349,7 +349,7 @@ FoundModes SceneRun::modes(ModesOptions const& options) {
     throw UsageError(
         fmt::format("tolerance {}; accepted: a number between 0 and 1", options.tolerance));
   Turn const turn;
-  require_rest(scene_);
+  require_rest(without_torque(scene_));
   auto now = options;
   now.time = reduced_time();
   auto found = modes_of_field(now);

@@ -74,6 +74,18 @@ class Relaxing(PackageTest):
                                 lambda count=count: sim.modes(count))
         self.assert_refused(cayspin.CayspinError, "tolerance", lambda: sim.modes(tolerance=2.0))
 
+    # A polarization along the spins adds a to the decay and -damping a to both stiffnesses.
+    def test_a_torque_makes_modes_grow(self):
+        torque = {"slonczewski": {"damping_like": -0.2, "polarization": [1, 0, 0]}}
+        film = {"torque": torque, "lattice": {"shape": [4, 3]}}
+        modes = cayspin.Simulation(scene(**film, initial={"uniform": [1, 0, 0]})).modes(1)
+        frequency = np.sqrt((0.1 + 0.02) * (1.1 + 0.02) - (0.1 * (1.1 - 0.1) / 2)**2)
+        self.assertAlmostEqual(modes.frequency[0], frequency, delta=1e-10)
+        self.assertAlmostEqual(modes.decay[0], 0.06 - 0.2, delta=1e-10)
+        moving = cayspin.Simulation(scene(**film, initial={"uniform": [0, 0.6, 0.8]}))
+        self.assert_refused(cayspin.NumbersFailed, "not at rest", lambda: moving.modes(1))
+        self.assert_refused(cayspin.SceneError, "torque", moving.relax)
+
     # Along the easy axis a uniform film switches at |h| = K.
     def test_hysteresis(self):
         fields = [[0.03 * i, 0, 0.0003] for i in range(10, -11, -1)]

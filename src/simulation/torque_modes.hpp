@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "found_modes.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+// Equilibria and modes of spins that also currents turn. There is no energy that falls, and the
+// linearised equation of motion is a general matrix, which is stored.
+namespace cayspin::simulation {
+
+/// Unit spins, or the spins' rates dm/dt: sites x 3.
+using Vectors = std::vector<double>;
+
+struct TorqueMotion {
+  std::function<Vectors(Vectors const& spins)> rates;
+  std::vector<unsigned char> frozen;  ///< as io::frozen
+  double epsilon = 0;                 ///< round-off of the rates, relative
+  std::vector<double> turning;  ///< of each site: |dm/dt| / |m x H|, with the torque's field in H
+  std::function<bool()> is_interrupted;
+};
+
+/// Most sites of a scene with torques: the matrix has 2 x 2 numbers for each pair of them.
+constexpr std::int64_t most_sites_with_torques = 1024;
+
+struct RestWithTorques {
+  Vectors spins;
+  double torque = 0;  ///< max |m x H|, with the torque's field in H
+  std::int64_t evaluations = 0;
+  bool is_interrupted = false;
+};
+
+double largest_torque(TorqueMotion const& motion, Vectors const& spins);
+
+/// Searches a state with max |m x H| <= torque by Newton's method. Where it ends without, the
+/// result has a larger one.
+RestWithTorques find_rest_with_torques(TorqueMotion const& motion, Vectors const& start,
+                                       double torque, std::int64_t evaluations);
+
+/// Returns the modes about a state of rest, in reduced units. The longest vector of a shape has no
+/// particular length. Throws NumbersFailed if the spins are not at rest.
+FoundModes find_modes_with_torques(TorqueMotion const& motion, Vectors const& spins,
+                                   std::size_t count, std::int64_t evaluations);
+
+}  // namespace cayspin::simulation
