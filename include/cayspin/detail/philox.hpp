@@ -22,11 +22,12 @@ struct LanesOf<Number, 1> {
 /// The key schedule of Philox: two words for each round.
 struct PhiloxKeys {
   static constexpr int rounds = 10;
+  static constexpr std::uint64_t step_0 = 0x9E3779B9, step_1 = 0xBB67AE85;
   std::uint64_t of_round[std::size_t{rounds}][2] = {};
 
   PhiloxKeys() = default;
   KOKKOS_FORCEINLINE_FUNCTION explicit PhiloxKeys(std::uint64_t key) {
-    constexpr std::uint64_t low_half = 0xFFFFFFFF, step_0 = 0x9E3779B9, step_1 = 0xBB67AE85;
+    constexpr std::uint64_t low_half = 0xFFFFFFFF;
     std::uint64_t key_0 = key & low_half, key_1 = key >> 32U;
     for (auto& words : of_round) {
       words[0] = key_0;
@@ -61,7 +62,19 @@ struct Philox {
     word[3] = (numbers ^ numbers) + (draw >> 32U);
   }
 
-  KOKKOS_FORCEINLINE_FUNCTION void round(std::uint64_t const (&key)[2]) {
+  /// Sets the counter (number, draw) in each lane, for lanes with keys of their own.
+  KOKKOS_FORCEINLINE_FUNCTION static Philox with_equal_counters(std::uint64_t number,
+                                                                std::uint64_t draw) {
+    Philox equal(number, draw);
+    Words const none = equal.word[0] ^ equal.word[0];
+    equal.word[0] = none + number;
+    equal.word[1] = none + (number >> 32U);
+    return equal;
+  }
+
+  /// `key`: two numbers, or two Words with a key for each lane.
+  template <class Key>
+  KOKKOS_FORCEINLINE_FUNCTION void round(Key const (&key)[2]) {
     Words const a = product(word[0], 0xD2511F53), b = product(word[2], 0xCD9E8D57);
     word[0] = mixed(b >> 32, word[1], key[0]);
     word[1] = b;
@@ -96,6 +109,11 @@ struct Philox {
 #endif
     return a ^ b ^ key;
   }
+  KOKKOS_FORCEINLINE_FUNCTION static Words mixed(Words const& a, Words const& b, Words const& keys)
+    requires(Lanes > 1)
+  {
+    return a ^ b ^ keys;
+  }
 };
 
 /// Turns counters into random words. Several generators run in step, because each is a long chain
@@ -106,6 +124,26 @@ KOKKOS_FORCEINLINE_FUNCTION void encrypt(PhiloxKeys const& keys, Philox<Lanes>& 
   for (auto const& key : keys.of_round) {
     random.round(key);
     (others.round(key), ...);
+  }
+}
+
+/// Turns one counter into random words under the keys first_key, first_key + 1, .. of the lanes.
+template <int Lanes>
+KOKKOS_FORCEINLINE_FUNCTION void encrypt_with_keys(std::uint64_t first_key, Philox<Lanes>& random) {
+  using Words = typename Philox<Lanes>::Words;
+  Words keys{};
+  if constexpr (Lanes == 1) {
+    keys = first_key;
+  } else {
+    for (int lane = 0; lane < Lanes; ++lane) keys[lane] = static_cast<std::uint64_t>(lane);
+    keys += first_key;
+  }
+  constexpr std::uint64_t low_half = 0xFFFFFFFF;
+  Words key[2] = {keys & low_half, keys >> 32U};
+  for (int round = 0; round < PhiloxKeys::rounds; ++round) {
+    random.round(key);
+    key[0] = (key[0] + PhiloxKeys::step_0) & low_half;
+    key[1] = (key[1] + PhiloxKeys::step_1) & low_half;
   }
 }
 

@@ -10,10 +10,14 @@
 
 namespace cayspin::inline v0_2::detail {
 
+class RandomBitsOfColumns;
+
 /// 16 random bits for each numbered place, by Philox with 64 places to eight counters. A place gets
 /// equal bits whether drawn singly or in a register. Devices draw for one place at a time.
 template <bool OnHost>
 class RandomBits {
+  friend class RandomBitsOfColumns;
+
  public:
   /// Places side by side in a register start at a multiple of their count.
   static constexpr std::uint64_t most_lanes = 16;
@@ -41,8 +45,16 @@ class RandomBits {
   static constexpr std::uint64_t places = 64, drawn_at_once = 2 * places;
 
   KOKKOS_FORCEINLINE_FUNCTION std::uint64_t alone(std::uint64_t place) const {
-    Philox<1> random(place / places * counters + place % 16 / 2, draw_);
+    Philox<1> random(counter_of(place), draw_);
     encrypt(keys_, random);
+    return bits_of(place, random);
+  }
+  KOKKOS_FORCEINLINE_FUNCTION static std::uint64_t counter_of(std::uint64_t place) {
+    return place / places * counters + place % 16 / 2;
+  }
+  template <int Lanes>
+  KOKKOS_FORCEINLINE_FUNCTION static auto bits_of(std::uint64_t place,
+                                                  Philox<Lanes> const& random) {
     // Constant indices: an array on the stack of a device is slow.
     auto const& word = random.word;
     auto const even = place % 32 < 16 ? word[0] : word[2];
@@ -93,6 +105,46 @@ class RandomBits {
   PhiloxKeys keys_;
   std::uint64_t draw_ = 0;
   mutable std::conditional_t<OnHost, Last, Nothing> last_;
+};
+
+/// One number for each lattice: adjacent lanes get what RandomBits of seed + column, seed + column
+/// + 1, .. gives for the same place.
+class RandomBitsOfColumns {
+ public:
+  RandomBitsOfColumns() = default;
+  RandomBitsOfColumns(std::uint64_t seed, std::uint64_t draw) : seed_(seed), draw_(draw) {}
+
+  template <class Number, int Lanes>
+  KOKKOS_FORCEINLINE_FUNCTION typename LanesOf<Number, Lanes>::type get(std::uint64_t column,
+                                                                        std::uint64_t place) const {
+    if constexpr (Lanes == 1) {
+      return static_cast<Number>(bits<1>(column, place));
+    } else {
+      using Bits = typename LanesOf<std::uint64_t, lanes>::type;
+      using Part = typename LanesOf<Number, lanes>::type;
+      static_assert(Lanes % lanes == 0);
+      typename LanesOf<Number, Lanes>::type found;
+      for (int lane = 0; lane < Lanes; lane += lanes) {
+        Bits const some = bits<lanes>(column + static_cast<std::uint64_t>(lane), place);
+        Part const part = __builtin_convertvector(some, Part);
+        std::memcpy(reinterpret_cast<Number*>(&found) + lane, &part, sizeof part);
+      }
+      return found;
+    }
+  }
+
+ private:
+  static constexpr int lanes = host_lanes<double>;
+
+  template <int Lanes>
+  KOKKOS_FORCEINLINE_FUNCTION auto bits(std::uint64_t column, std::uint64_t place) const {
+    using Bits = RandomBits<false>;
+    auto random = Philox<Lanes>::with_equal_counters(Bits::counter_of(place), draw_);
+    encrypt_with_keys(seed_ + column, random);
+    return Bits::bits_of(place, random);
+  }
+
+  std::uint64_t seed_ = 0, draw_ = 0;
 };
 
 /// The bits of replica r are those of seed + r.

@@ -2,12 +2,11 @@
 #pragma once
 
 #include <cayspin/detail/for_each_site.hpp>
-#include <cayspin/detail/random_bits.hpp>
 #include <cayspin/detail/reduce_sites.hpp>
 #include <cayspin/field/coefficient.hpp>
 #include <cayspin/integrate.hpp>
+#include <cayspin/observer/turns_at_random.hpp>
 #include <cayspin/part.hpp>
-#include <cayspin/rotation/random_turn.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/step.hpp>
 
@@ -23,177 +22,6 @@
 
 namespace cayspin::inline v0_2 {
 
-namespace detail {
-
-/// A single turn for all sites.
-template <class Real, bool OnHost>
-struct OneTurn {
-  RandomTurn<Real, OnHost> turn;
-
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION RandomTurn<Real, OnHost> const& at(Site const&) const {
-    return turn;
-  }
-  template <class Site, class Vector>
-  KOKKOS_FORCEINLINE_FUNCTION Vector kept(Site const&, Vector const&, Vector const& after) const {
-    return after;
-  }
-};
-
-template <class Real, bool OnHost>
-struct TurnOrNone {
-  RandomTurn<Real, OnHost> turn;
-  bool is_none;
-};
-
-/// One turn for each site of a crystal's cell, or of each replica's cell; none where a spin does
-/// not move.
-template <class Real, bool OnHost>
-struct TurnOfCellSite {
-  TurnOrNone<Real, OnHost> const* turns;
-  std::int32_t cell_sites;
-  std::int32_t replica_planes;  // 0: all replicas have the same turns
-  SiteArray<Real, 1> moves;     // without data: all move
-
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION RandomTurn<Real, OnHost> const& at(Site const& site) const {
-    return turns[number(site)].turn;
-  }
-  template <class Site, class Vector>
-  KOKKOS_FORCEINLINE_FUNCTION Vector kept(Site const& site, Vector const& before,
-                                          Vector const& after) const {
-    using Value = typename Site::value_type;
-    if (turns[number(site)].is_none) return before;
-    if (!moves.data) return after;
-    return select<Value>(site.load(moves) == Value(0), before, after);
-  }
-
- private:
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION std::int32_t number(Site const& site) const {
-    std::int32_t const replica = replica_planes == 0 ? 0 : site.z() / replica_planes;
-    return replica * cell_sites + site.z() % cell_sites;
-  }
-};
-
-/// One turn for each site of a lattice.
-template <class Real>
-struct TurnOfSite {
-  Real u;
-  SiteArray<Real, 1> factors;  // factors of u; 0 where a spin does not move
-
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION auto at(Site const& site) const {
-    using Value = typename Site::value_type;
-    Value const own = Value(u) * site.load(factors);
-    return RandomTurnOfSites<Real, Value>(own - own * own * Value(Real(1.0 / 12)));
-  }
-  template <class Site, class Vector>
-  KOKKOS_FORCEINLINE_FUNCTION Vector kept(Site const& site, Vector const& before,
-                                          Vector const& after) const {
-    using Value = typename Site::value_type;
-    return select<Value>(site.load(factors) == Value(0), before, after);
-  }
-};
-
-template <class Real>
-struct LargestNumber {
-  SiteArray<Real, 1> numbers;
-
-  template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* largest) const {
-    largest[0] = site.load(numbers);
-  }
-};
-
-/// The turns of the sites of cells for the last requested length of step. A copy has separate
-/// turns.
-template <class Real, class MemorySpace>
-class CellTurns {
-  static constexpr bool on_host = is_host_execution<typename MemorySpace::execution_space>;
-
- public:
-  using Turn = TurnOrNone<Real, on_host>;
-
-  CellTurns() = default;
-  explicit CellTurns(std::size_t count) : turns_("cayspin::ThermalNoise::cell_sites", count) {}
-  CellTurns(CellTurns const& other) : CellTurns(other.turns_.size()) {}
-  CellTurns(CellTurns&&) noexcept = default;
-  CellTurns& operator=(CellTurns other) noexcept {
-    std::swap(turns_, other.turns_);
-    std::swap(made_for_, other.made_for_);
-    return *this;
-  }
-  ~CellTurns() = default;
-
-  /// Computes turn_of(number) for each of them, unless already made for `u`; then waits.
-  template <class Exec, class TurnOf>
-  Turn const* get(Exec const& exec, double u, TurnOf const& turn_of) {
-    if (u != made_for_) {
-      auto const turns = Kokkos::create_mirror_view(turns_);
-      for (std::size_t site = 0; site < turns.size(); ++site) turns(site) = turn_of(site);
-      exec.fence("cayspin::ThermalNoise: the turns before are done");
-      Kokkos::deep_copy(exec, turns_, turns);
-      exec.fence("cayspin::ThermalNoise: turns of a cell's sites");
-      made_for_ = u;
-    }
-    return turns_.data();
-  }
-
- private:
-  Kokkos::View<Turn*, MemorySpace> turns_;
-  double made_for_ = -1;
-};
-
-/// Functor that applies one or both halves of the noise between two steps.
-template <class Real, bool OnHost, class Turns = OneTurn<Real, OnHost>>
-struct TurnAtRandom {
-  SiteArray<Real, 3> spins;
-  OutputArray<Real, 3> output;
-  RandomBitsOfReplica<OnHost> random;
-  Turns turns;
-  bool after, before;  // which halves
-  std::int64_t first_y, first_z, ny,
-      nz;                // the part's place in the whole lattice, and the extents of that
-  std::uint64_t places;  // for random bits, in a row
-  std::int32_t replica_planes = 0;  // 0: there is one replica
-
-  static std::uint64_t places_of_row(std::int64_t nx) {
-    constexpr auto lanes = RandomBits<OnHost>::most_lanes;
-    return (static_cast<std::uint64_t>(nx) + lanes - 1) / lanes * lanes;
-  }
-
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
-    using Value = typename Site::value_type;
-    using Bits = typename RandomTurn<Real, OnHost>::Bits;
-    std::int32_t const replica = replica_planes == 0 ? 0 : site.z() / replica_planes;
-    std::int64_t const y = wrapped(first_y + site.y(), ny),
-                       z = wrapped(first_z + site.z() - replica * replica_planes, nz);
-    auto const row = static_cast<std::uint64_t>(z * ny + y) * places;
-    auto const bits = random.template get<Bits, lanes_of<Value>>(
-        replica, row + static_cast<std::uint64_t>(site.x()));
-    auto const& turn = turns.at(site);
-    Vec3<Value> const found = site.load(spins);
-    Vec3<Value> m = found;
-    if (after) {
-      // The turn's round-off repeats in each step: without this, lengths would drift.
-      m = turn.template turned<0>(bits, m);
-      m = multiply_add(Value(Real(-0.5)), dot(m, m), Value(Real(1.5))) * m;
-    }
-    if (before) m = turn.template turned<5>(bits, m);
-    site.store(turns.kept(site, found, m), output);
-  }
-
- private:
-  // Ghosts are less than a lattice away.
-  KOKKOS_FORCEINLINE_FUNCTION static std::int64_t wrapped(std::int64_t at, std::int64_t extent) {
-    return at < 0 ? at + extent : at < extent ? at : at - extent;
-  }
-};
-
-}  // namespace detail
-
 /// Options of ThermalNoise.
 struct ThermalNoiseOptions {
   double temperature = 0;  ///< in units of moment times field: kB T over the energy unit of a site
@@ -203,6 +31,9 @@ struct ThermalNoiseOptions {
   std::vector<double> cell_sites = {};
   /// Factor of damping times temperature for each replica of the lattice. Empty: all 1.
   std::vector<double> replicas = {};
+  /// Columns, the sites with equal x, are independent lattices whose first axis is y: column x gets
+  /// the numbers of such a lattice with seed + x, and `replicas` has a factor for each column.
+  bool columns_are_replicas = false;
 };
 
 /// Thermal noise for LandauLifshitz with damping and any one-step method: half of it is applied
@@ -234,7 +65,16 @@ class ThermalNoise {
     if (!(options.temperature >= 0) || !std::isfinite(options.temperature))
       throw std::invalid_argument("cayspin::ThermalNoise: the temperature must be finite and >= 0");
     check(options.cell_sites, like.lattice().cell_sites, "site of a cell");
-    check(options.replicas, like.lattice().replicas, "replica");
+    check(options.replicas,
+          options.columns_are_replicas ? lattice_.shape[0] : like.lattice().replicas, "replica");
+    if (options.columns_are_replicas && (lattice_.replicas > 1 || lattice_.part != nullptr))
+      throw std::invalid_argument(
+          "cayspin::ThermalNoise: columns of a part of a lattice, or of a lattice with replicas, "
+          "cannot be replicas");
+    if (options.columns_are_replicas && !options.cell_sites.empty())
+      throw std::invalid_argument(
+          "cayspin::ThermalNoise: columns of crystals cannot be replicas; accepted: no numbers of "
+          "a cell's sites");
     make_room_for_turns();
   }
   /// Multiplies damping times temperature at each site by a factor, which may contain the damping,
@@ -331,12 +171,19 @@ class ThermalNoise {
       run(exec, step, after, before, spins, detail::OneTurn<Real, on_host<Exec>>{turn_of<Exec>(u)});
       return;
     }
+    if (options_.columns_are_replicas) {
+      run(exec, step, after, before, spins, turns_of_columns(exec, u, dt));
+      return;
+    }
     auto const sites = std::max<std::size_t>(options_.cell_sites.size(), 1);
-    auto const* const found = cell_turns_.get(exec, u, [&](std::size_t number) {
-      double const of_replica = options_.replicas.empty() ? 1 : options_.replicas[number / sites];
-      double const of_site = options_.cell_sites.empty() ? 1 : options_.cell_sites[number % sites];
-      double const of_all = u * of_replica * of_site;
-      return detail::TurnOrNone<Real, on_host<Exec>>{turn_of<Exec>(of_all), of_all == 0};
+    auto const* const found = cell_turns_.get(exec, u, [&](auto const& turns) {
+      for (std::size_t number = 0; number < turns.size(); ++number) {
+        double const of_replica = options_.replicas.empty() ? 1 : options_.replicas[number / sites];
+        double const of_site =
+            options_.cell_sites.empty() ? 1 : options_.cell_sites[number % sites];
+        double const of_all = u * of_replica * of_site;
+        turns(number) = {turn_of<Exec>(of_all), of_all == 0};
+      }
     });
     detail::TurnOfCellSite<Real, on_host<Exec>> turns{
         found,
@@ -359,7 +206,25 @@ class ThermalNoise {
   void make_room_for_turns() {
     auto const replicas = options_.replicas.size(), sites = options_.cell_sites.size();
     if (replicas == 0 && sites == 0) return;
-    cell_turns_ = CellTurns(std::max<std::size_t>(replicas, 1) * std::max<std::size_t>(sites, 1));
+    if (options_.columns_are_replicas)
+      // Registers read past the last column.
+      column_numbers_ = ColumnNumbers(4 * (replicas + detail::RandomBits<true>::most_lanes));
+    else
+      cell_turns_ = CellTurns(std::max<std::size_t>(replicas, 1) * std::max<std::size_t>(sites, 1));
+  }
+
+  template <class Exec>
+  detail::TurnOfColumn<Real> turns_of_columns(Exec const& exec, double u, double dt) const {
+    std::size_t const stride = column_numbers_.size() / 4;
+    auto const* const found = column_numbers_.get(exec, u, [&](auto const& numbers) {
+      for (std::size_t column = 0; column < options_.replicas.size(); ++column) {
+        // Rounded as for a lattice of that temperature.
+        double const temperature = options_.replicas[column] * options_.temperature;
+        auto const turn = turn_of<Exec>(damping_ * temperature * std::abs(dt));
+        for (std::size_t i = 0; i < 4; ++i) numbers(i * stride + column) = turn.numbers()[i];
+      }
+    });
+    return {found, static_cast<std::int64_t>(stride)};
   }
 
   template <class Exec>
@@ -372,22 +237,33 @@ class ThermalNoise {
   template <class Exec, class TurnsOfSites>
   void run(Exec const& exec, std::int64_t step, bool after, bool before, Spins const& spins,
            TurnsOfSites const& turns) const {
+    if (options_.columns_are_replicas) {
+      auto const& shape = lattice_.shape;
+      run_with(
+          exec, after, before, spins, turns,
+          detail::NumbersOfColumns{{options_.seed, static_cast<std::uint64_t>(step)},
+                                   detail::NumbersOfSites<on_host<Exec>>::places_of_row(shape[1])});
+      return;
+    }
+    using Numbers = detail::NumbersOfSites<on_host<Exec>>;
     auto const& all = whole(lattice_);
     auto const begin = lattice_.part ? lattice_.part->begin() : std::array<std::int64_t, 3>{};
-    using Kernel = detail::TurnAtRandom<Real, on_host<Exec>, TurnsOfSites>;
-    Kernel const kernel{spins.array(),
-                        spins.output(false),
-                        {options_.seed, static_cast<std::uint64_t>(step)},
-                        turns,
-                        after,
-                        before,
-                        begin[1],
-                        begin[2],
-                        all.shape[1],
-                        all.shape[2],
-                        Kernel::places_of_row(all.shape[0]),
-                        spins.layout().has_replicas() ? spins.layout().replica_planes : 0};
-    detail::for_each_site<Real>(exec, "cayspin::ThermalNoise", spins.layout(), kernel);
+    run_with(exec, after, before, spins, turns,
+             Numbers{{options_.seed, static_cast<std::uint64_t>(step)},
+                     begin[1],
+                     begin[2],
+                     all.shape[1],
+                     all.shape[2],
+                     Numbers::places_of_row(all.shape[0]),
+                     spins.layout().has_replicas() ? spins.layout().replica_planes : 0});
+  }
+  template <class Exec, class Turns, class Numbers>
+  static void run_with(Exec const& exec, bool after, bool before, Spins const& spins,
+                       Turns const& turns, Numbers const& numbers) {
+    detail::for_each_site<Real>(
+        exec, "cayspin::ThermalNoise", spins.layout(),
+        detail::TurnAtRandom<Real, Turns, Numbers>{spins.array(), spins.output(false), numbers,
+                                                   turns, after, before});
   }
 
   /// Observer for the selected halves between steps.
@@ -405,7 +281,11 @@ class ThermalNoise {
     }
   };
 
-  using CellTurns = detail::CellTurns<Real, typename Spins::memory_space>;
+  using Memory = typename Spins::memory_space;
+  using CellTurns =
+      detail::TableOfTurns<detail::TurnOrNone<Real, on_host<typename Memory::execution_space>>,
+                           Memory>;
+  using ColumnNumbers = detail::TableOfTurns<Real, Memory>;
 
   Lattice lattice_;
   double damping_;
@@ -413,6 +293,7 @@ class ThermalNoise {
   ScalarField<Real, typename Spins::memory_space> factors_;
   std::optional<double> largest_factor_;  // if any factor is not 0 or 1
   mutable CellTurns cell_turns_;
+  mutable ColumnNumbers column_numbers_;
 };
 
 }  // namespace cayspin::inline v0_2

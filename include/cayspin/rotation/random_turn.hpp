@@ -5,6 +5,7 @@
 #include <cayspin/detail/table_of_sixteen.hpp>
 #include <cayspin/vec3.hpp>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -127,6 +128,11 @@ class RandomTurn {
       }
   }
 
+  /// Returns the numbers of RandomTurnOfNumbers.
+  std::array<Real, 4> numbers() const {
+    return {axial_, diagonal_, axial_factor_, diagonal_factor_};
+  }
+
   /// Turns m by the five bits from `First` on.
   template <int First, class Value, class Numbers>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> turned(Numbers const& numbers,
@@ -160,6 +166,22 @@ class RandomTurn {
 
   Real axial_ = 0, diagonal_ = 0, axial_factor_ = 0, diagonal_factor_ = 0;
   std::conditional_t<OnHost, Tables, Nothing> tables_;
+};
+
+/// RandomTurn with the numbers of another in each lane; the same bits.
+template <class Real, class Value>
+struct RandomTurnOfNumbers {
+  Value axial, diagonal, axial_factor, diagonal_factor;
+
+  template <int First, class Numbers>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> turned(Numbers const& numbers,
+                                                 Vec3<Value> const& m) const {
+    using Choice = ChoiceOfTurn<Real>;
+    return Choice::template of<Value>(
+        Numbers(numbers >> First), Choice::template bits<Numbers>(axial),
+        Choice::template bits<Numbers>(diagonal), Choice::template bits<Numbers>(axial_factor),
+        Choice::template bits<Numbers>(diagonal_factor))(m);
+  }
 };
 
 /// RandomTurn for sites with different variances, at most 1. Tangents are quotients of polynomials,
