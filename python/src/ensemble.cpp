@@ -79,7 +79,7 @@ NumbersOut array_of_bytes(std::vector<std::byte> const& bytes, std::array<std::s
 }
 
 NumbersOut spins(EnsembleRun& run) {
-  auto const& [nx, ny, nz] = run.replica(0).scene().lattice.shape;
+  auto const& [nx, ny, nz] = run.first().scene().lattice.shape;
   std::array const shape{run.replicas(), static_cast<std::size_t>(nz), static_cast<std::size_t>(ny),
                          static_cast<std::size_t>(nx), std::size_t{3}};
   std::vector<std::byte> bytes;
@@ -87,7 +87,7 @@ NumbersOut spins(EnsembleRun& run) {
     nb::gil_scoped_release const released;
     bytes = run.spins();
   }
-  return run.replica(0).precision() == Precision::double_precision
+  return run.first().precision() == Precision::double_precision
              ? array_of_bytes<double>(bytes, shape)
              : array_of_bytes<float>(bytes, shape);
 }
@@ -125,16 +125,9 @@ void define_ensemble(nb::module_& module) {
       .def("advance", advance, "count"_a, "until_torque"_a)
       .def("relax", relax, "torque"_a, "evaluations"_a, "keep_saddles"_a)
       .def("require_reachable",
-           [](EnsembleRun& run, std::int64_t count) { run.replica(0).require_reachable(count); })
-      .def("step_at", [](EnsembleRun& run, double t) { return run.replica(0).step_at(t); })
-      .def("warning",
-           [](EnsembleRun& run) {
-             std::optional<std::string> warning;
-             for (std::size_t number = 0; number < run.replicas() && !warning; ++number)
-               if (auto const of_replica = run.replica(number).warning())
-                 warning = "replica " + std::to_string(number) + ": " + *of_replica;
-             return warning;
-           })
+           [](EnsembleRun& run, std::int64_t count) { run.first().require_reachable(count); })
+      .def("step_at", [](EnsembleRun& run, double t) { return run.first().step_at(t); })
+      .def("warning", &EnsembleRun::warning)
       .def("spins", spins)
       .def("sample", sample)
       .def_prop_ro("replicas", &EnsembleRun::replicas)
@@ -143,10 +136,10 @@ void define_ensemble(nb::module_& module) {
       .def_prop_ro("time", &EnsembleRun::time)
       .def_prop_ro("evaluations", &EnsembleRun::evaluations)
       .def_prop_ro("step_seconds", &EnsembleRun::step_seconds)
-      .def_prop_ro("space", [](EnsembleRun& run) { return run.replica(0).space(); })
-      .def_prop_ro("threads", [](EnsembleRun& run) { return run.replica(0).threads(); })
+      .def_prop_ro("space", [](EnsembleRun& run) { return run.first().space(); })
+      .def_prop_ro("threads", [](EnsembleRun& run) { return run.first().threads(); })
       .def_prop_ro("precision", [](EnsembleRun& run) {
-        return std::string(to_string(run.replica(0).precision()));
+        return std::string(to_string(run.first().precision()));
       });
 }
 

@@ -24,6 +24,12 @@ struct Ensemble {
   bool there() const { return replicas > 0; }
 };
 
+/// A lattice whose columns, the sites with equal x, are replicas that do not interact
+/// (simulation/replica_columns.hpp). No file has such a scene.
+struct Columns {
+  std::vector<double> temperatures;  ///< multiply that of the scene; empty: all 1
+};
+
 /// The scene of one replica, which has no [ensemble]: its values of the varied keys, and the seeds
 /// of noise and random starts plus `replica`. Throws SceneError.
 Scene replica_of(Scene const& scene, std::int64_t replica);

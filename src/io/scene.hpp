@@ -60,6 +60,7 @@ struct Scene {
   std::optional<Thermal> thermal;
   Output output;
   Ensemble ensemble;
+  std::optional<Columns> columns;
   std::string text;            ///< the TOML text; re-serialised when an override changed it
   std::filesystem::path path;  ///< the scene file, or the name of a text without one
   Given given;

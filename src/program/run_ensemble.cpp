@@ -3,6 +3,7 @@
 
 #include "cayspin_git_commit.hpp"
 #include "describe.hpp"
+#include "files/file_beside.hpp"
 #include "info_file.hpp"
 #include "io/ensemble_file.hpp"
 #include "kokkos_of_command.hpp"
@@ -29,11 +30,11 @@ RunSettings settings_of(DeviceOptions const& options, std::string const& space) 
 }
 
 io::EnsembleFile open_file(io::Scene const& scene, DeviceOptions const& options, EnsembleRun& run) {
-  auto header = run_header(run.replica(0).scene(), options.precision, run.replica(0).space(),
-                           run.replica(0).threads(), CAYSPIN_GIT_COMMIT);
+  auto header = run_header(run.first().scene(), options.precision, run.first().space(),
+                           run.first().threads(), CAYSPIN_GIT_COMMIT);
   header.scene_text = scene.text;
   return {output_file(scene, options.output), header, scene.ensemble,
-          run_output_options(run.replica(0).scene(), options.overwrite)};
+          run_output_options(run.first().scene(), options.overwrite)};
 }
 
 std::string kept(io::EnsembleFile const& file, std::filesystem::path const& path) {
@@ -52,7 +53,8 @@ class RecordedEnsemble {
         looks_(run_.looks(true, interrupt_requested)),
         progress_(io::sites(scene) * scene.ensemble.replicas, listener),
         path_(output_file(scene, options.output)) {
-    warn_of_steps();
+    // A scene that refuses to be unstable refuses any of the replicas.
+    if (auto const warning = run_.warning()) fmt::print(stderr, "warning: {}\n", *warning);
     file_.emplace(open_file(scene, options, run_));
   }
 
@@ -90,16 +92,6 @@ class RecordedEnsemble {
   }
 
  private:
-  // Says it of the first replica only; a scene that refuses to be unstable refuses any of them.
-  void warn_of_steps() {
-    bool warned = false;
-    for (std::size_t number = 0; number < run_.replicas(); ++number) {
-      auto const warning = run_.replica(number).warning();
-      if (warning && !warned) fmt::print(stderr, "warning: replica {}: {}\n", number, *warning);
-      warned = warned || warning.has_value();
-    }
-  }
-
   void look(bool last) {
     auto const step = run_.steps();
     auto const due = [&](std::int64_t every) { return last || step % every == 0; };
@@ -128,6 +120,7 @@ int run_ensemble(io::Scene const& scene, DeviceOptions const& options, Listener 
   auto const space = chosen_space(options.space);
   KokkosOfCommand const kokkos(space, options.threads, options.device);
   warn_of_notes(scene);
+  io::require_free(output_file(scene, options.output), options.overwrite);
   catch_signals();
   return RecordedEnsemble(scene, options, space, listener).run();
 }
@@ -137,6 +130,7 @@ int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
   auto const space = chosen_space(options.space);
   KokkosOfCommand const kokkos(space, options.threads, options.device);
   warn_of_notes(scene);
+  io::require_free(output_file(scene, options.output), options.overwrite);
   catch_signals();
   Kokkos::Timer const clock;
   EnsembleRun run(scene, settings_of(options, space), true);

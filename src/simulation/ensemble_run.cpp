@@ -2,7 +2,6 @@
 #include "ensemble_run.hpp"
 
 #include "failure.hpp"
-#include "guard.hpp"
 #include "plan.hpp"
 #include "run_files.hpp"
 #include "scene_minimizer.hpp"
@@ -11,6 +10,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -26,33 +26,58 @@ void require_memory_of_all(io::Scene const& scene, io::Scene const& replica, Pre
 
 }  // namespace
 
-EnsembleRun::EnsembleRun(io::Scene const& scene, RunSettings const& settings, bool relaxes) {
-  for (std::int64_t number = 0; number < scene.ensemble.replicas; ++number) {
-    auto const replica =
-        relaxes ? io::replica_to_relax(scene, number) : io::replica_of(scene, number);
-    if (number == 0) require_memory_of_all(scene, replica, settings.precision, relaxes);
+EnsembleRun::EnsembleRun(io::Scene const& scene, RunSettings const& settings, bool relaxes)
+    : scene_(scene), settings_(settings) {
+  auto const replicas = static_cast<std::size_t>(scene.ensemble.replicas);
+  at_rest_.assign(replicas, false);
+  for (std::size_t number = 0; number < replicas; ++number) {
+    auto const at = static_cast<std::int64_t>(number);
+    auto const replica = relaxes ? io::replica_to_relax(scene, at) : io::replica_of(scene, at);
+    if (number == 1) require_memory_of_all(scene, replica, settings.precision, relaxes);
     try {
       runs_.push_back(SceneRun::open(replica, settings));
     } catch (io::SceneError const& error) {
       throw io::SceneError(fmt::format("replica {}: {}", number, error.what()));
     }
+    if (number > 0 || relaxes) continue;
+    columns_ = ReplicaColumns::open(scene, replica, settings);
+    if (columns_) break;
   }
-  at_rest_.assign(runs_.size(), false);
+  if (!columns_) return;
+  auto const epsilon = settings.precision == Precision::double_precision
+                           ? std::numeric_limits<double>::epsilon()
+                           : static_cast<double>(std::numeric_limits<float>::epsilon());
+  guards_.assign(replicas, Guard(first().scene(), epsilon));
+  auto of_replica = first().scene();
+  for (std::size_t number = 0; number < columns_->temperatures().size(); ++number) {
+    of_replica.thermal->temperature = columns_->temperatures()[number];
+    guards_[number] = Guard(of_replica, epsilon);
+  }
+}
+
+std::optional<std::string> EnsembleRun::warning() const {
+  for (std::size_t number = 0; number < runs_.size(); ++number)
+    if (auto const warning = runs_[number]->warning())
+      return fmt::format("replica {}: {}", number, *warning);
+  return std::nullopt;
 }
 
 double EnsembleRun::time() const {
+  if (columns_) return columns_->time();
   double latest = 0;
   for (auto const& run : runs_) latest = std::max(latest, run->time());
   return latest;
 }
 
 std::int64_t EnsembleRun::evaluations() const {
+  if (columns_) return columns_->evaluations();
   std::int64_t all = 0;
   for (auto const& run : runs_) all += run->evaluations();
   return all;
 }
 
 double EnsembleRun::step_seconds() const {
+  if (columns_) return columns_->step_seconds();
   double all = 0;
   for (auto const& run : runs_) all += run->step_seconds();
   return all;
@@ -63,7 +88,7 @@ bool EnsembleRun::is_at_rest() const {
 }
 
 Looks EnsembleRun::looks(bool until_torque, std::function<bool()> interrupted) const {
-  auto const& scene = runs_.front()->scene();
+  auto const& scene = first().scene();
   bool const may_end = until_torque && scene.integrator.until_torque;
   return {.period = may_end ? Guard::period_of(io::sites(scene)) : 100,
           .until_torque = until_torque,
@@ -72,6 +97,7 @@ Looks EnsembleRun::looks(bool until_torque, std::function<bool()> interrupted) c
 }
 
 Advanced EnsembleRun::advance(std::int64_t count, Looks const& looks) {
+  if (columns_) return advance_columns(count, looks);
   std::vector<SceneRun*> moving;
   std::vector<std::size_t> numbers;
   for (std::size_t number = 0; number < runs_.size(); ++number) {
@@ -96,7 +122,54 @@ Advanced EnsembleRun::advance(std::int64_t count, Looks const& looks) {
   return is_at_rest() ? Advanced::at_rest : Advanced::whole;
 }
 
+Advanced EnsembleRun::advance_columns(std::int64_t count, Looks const& looks) {
+  auto const target = steps_ + count;
+  samples_.clear();
+  auto const ended = columns_->advance(count, looks);
+  if (ended.error) {
+    // Only a run of its own can tell which replica fails.
+    leave_columns();
+    for (auto const number : ended.failed) {
+      auto& run = *runs_[static_cast<std::size_t>(number)];
+      try {
+        run.advance(target - run.steps(), looks);
+      } catch (NumbersFailed const& failure) {
+        throw NumbersFailed(fmt::format("replica {}: {}", number, failure.what()));
+      }
+    }
+    std::rethrow_exception(ended.error);
+  }
+  if (ended.interrupted) return Advanced::interrupted;
+  steps_ = target;
+  if (looks.at_end) check_columns();
+  return Advanced::whole;
+}
+
+void EnsembleRun::check_columns() {
+  auto const& units = first().scene().units;
+  samples_ = columns_->samples();
+  for (std::size_t number = 0; number < samples_.size(); ++number) {
+    auto const& [step, time, energy, defect, m, rate] = samples_[number];
+    auto const failure = guards_[number].judge(
+        {step, time / units.time, 0, false},
+        {energy.value / units.energy, energy.magnitude / units.energy}, defect);
+    if (failure)
+      throw NumbersFailed(
+          fmt::format("replica {}: {}: {}", number, scene_.path.string(), *failure));
+  }
+}
+
+void EnsembleRun::leave_columns() {
+  for (std::size_t number = 0; number < replicas(); ++number) {
+    auto const replica = static_cast<std::int64_t>(number);
+    if (number > 0) runs_.push_back(SceneRun::open(io::replica_of(scene_, replica), settings_));
+    columns_->continue_in(*runs_[number], replica);
+  }
+  columns_.reset();
+}
+
 std::vector<Minimum> EnsembleRun::relax(RelaxSettings const& settings) {
+  if (columns_) leave_columns();
   std::vector<SceneRun*> all;
   for (auto const& run : runs_) all.push_back(run.get());
   std::vector<Minimum> found;
@@ -113,6 +186,11 @@ std::vector<Minimum> EnsembleRun::relax(RelaxSettings const& settings) {
 
 std::vector<io::Scalars> EnsembleRun::scalars() {
   std::vector<io::Scalars> all;
+  if (columns_) {
+    if (samples_.empty()) samples_ = columns_->samples();
+    for (auto const& sample : samples_) all.push_back(as_scalars(sample, {}));  // in its units
+    return all;
+  }
   for (auto const& run : runs_) all.push_back(as_scalars(run->sample(), {}));  // in its units
   return all;
 }
@@ -123,12 +201,14 @@ std::vector<std::byte> EnsembleRun::spins() {
     auto const bytes = std::as_bytes(std::span(numbers));
     all.insert(all.end(), bytes.begin(), bytes.end());
   };
+  bool const in_double = first().precision() == Precision::double_precision;
+  if (columns_) {
+    in_double ? add(columns_->spins<double>()) : add(columns_->spins<float>());
+    return all;
+  }
   for (auto const& run : runs_) {
     auto const lent = run->spins();
-    if (run->precision() == Precision::double_precision)
-      add(packed<double>(lent.vectors));
-    else
-      add(packed<float>(lent.vectors));
+    in_double ? add(packed<double>(lent.vectors)) : add(packed<float>(lent.vectors));
   }
   return all;
 }

@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "guard.hpp"
 #include "io/ensemble_file.hpp"
+#include "replica_columns.hpp"
 #include "scene_run.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace cayspin::simulation {
 
-/// The replicas of a scene with [ensemble], each a run of its own, which go on together from one
-/// step to another; small ones side by side on the threads of the host. Replica r has the bits of a
-/// run of io::replica_of(scene, r).
+/// The replicas of a scene with [ensemble], which go on together from one step to another: as
+/// columns of a few lattices if they can, otherwise each as a run of its own, small ones side by
+/// side on the threads of the host. Replica r has the bits of a run of io::replica_of(scene, r).
 class EnsembleRun {
  public:
   /// For cayspin run, or where `relaxes` for cayspin relax. Throws what SceneRun::open throws, also
@@ -23,12 +27,15 @@ class EnsembleRun {
   EnsembleRun(EnsembleRun const&) = delete;
   EnsembleRun& operator=(EnsembleRun const&) = delete;
 
-  std::size_t replicas() const { return runs_.size(); }
-  SceneRun& replica(std::size_t number) { return *runs_[number]; }
+  std::size_t replicas() const { return at_rest_.size(); }
+  /// Returns the run of the first replica, whose spins may be those of another.
+  SceneRun const& first() const { return *runs_.front(); }
+  /// Returns the first replica's warning about its steps, with its number.
+  std::optional<std::string> warning() const;
 
   /// Those of the replicas that have gone furthest.
   std::int64_t steps() const { return steps_; }
-  std::int64_t last_step() const { return runs_.front()->last_step(); }
+  std::int64_t last_step() const { return first().last_step(); }
   double time() const;  // after them
   std::int64_t evaluations() const;
   double step_seconds() const;
@@ -53,7 +60,17 @@ class EnsembleRun {
   std::vector<std::byte> spins();
 
  private:
-  std::vector<std::unique_ptr<SceneRun>> runs_;
+  Advanced advance_columns(std::int64_t count, Looks const& looks);
+  void check_columns();
+  /// Gives each replica a run of its own, from where it is.
+  void leave_columns();
+
+  io::Scene scene_;
+  RunSettings settings_;
+  std::vector<std::unique_ptr<SceneRun>> runs_;  // only the first one beside columns
+  std::optional<ReplicaColumns> columns_;
+  std::vector<Guard> guards_;    // of columns
+  std::vector<Sample> samples_;  // of columns after these steps, or empty
   std::vector<bool> at_rest_;
   std::int64_t steps_ = 0;
 };

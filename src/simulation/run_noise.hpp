@@ -58,6 +58,11 @@ class RunNoise {
                                    Spins const& like) {
     ThermalNoiseOptions options{.seed = static_cast<std::uint64_t>(scene.thermal->seed)};
     double const damping = scene.system.dampings.there() ? 1 : scene.system.damping;
+    if (scene.columns) {
+      options.replicas = scene.columns->temperatures;
+      options.columns_are_replicas = true;
+      return {like, damping, options};
+    }
     auto const& pass = generator.landau_lifshitz().field().pass();
     if (io::has_noise_of_sites(scene)) {
       auto const& lattice = like.lattice();

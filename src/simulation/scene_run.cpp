@@ -8,7 +8,6 @@
 #include "restart.hpp"
 #include "run_files.hpp"
 #include "scene_run_in_space.hpp"
-#include "side_by_side.hpp"
 #include "single_terms.hpp"
 #include "turn.hpp"
 
@@ -18,10 +17,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdlib>
-#include <exception>
 #include <limits>
 
 namespace cayspin::simulation {
@@ -224,59 +221,6 @@ Advanced SceneRun::advance(std::int64_t count, Looks const& looks) {
   return advance_to(number_ + count, looks);
 }
 
-std::vector<SceneRun::Outcome> SceneRun::advance_all(std::span<SceneRun* const> runs,
-                                                     std::int64_t count, Looks const& looks) {
-  Turn const turn;
-  std::vector<Outcome> outcomes(runs.size());
-  std::atomic<bool> interrupted = false;
-  side_by_side(runs, [&](std::size_t number) {
-    auto& [advanced, error] = outcomes[number];
-    auto& run = *runs[number];
-    interrupted = interrupted || (looks.interrupted && looks.interrupted());
-    if (interrupted) {
-      advanced = Advanced::interrupted;
-      return;
-    }
-    try {
-      run.require_reachable(count);
-      advanced = run.advance_to(run.number_ + count, looks);
-    } catch (...) {
-      error = std::current_exception();
-    }
-    interrupted = interrupted || advanced == Advanced::interrupted;
-  });
-  return outcomes;
-}
-
-std::vector<SceneRun::Relaxed> SceneRun::relax_all(std::span<SceneRun* const> runs,
-                                                   RelaxSettings const& settings) {
-  Turn const turn;
-  std::vector<Relaxed> all(runs.size());
-  std::atomic<bool> interrupted = false;
-  side_by_side(runs, [&](std::size_t number) {
-    auto& [minimum, error] = all[number];
-    interrupted = interrupted || (settings.interrupted && settings.interrupted());
-    if (interrupted) {
-      minimum.end = MinimizeEnd::interrupted;
-      return;
-    }
-    try {
-      minimum = runs[number]->relaxed(settings);
-    } catch (...) {
-      error = std::current_exception();
-    }
-    interrupted = interrupted || minimum.end == MinimizeEnd::interrupted;
-  });
-  return all;
-}
-
-void SceneRun::side_by_side(std::span<SceneRun* const> runs,
-                            std::function<void(std::size_t)> const& work) {
-  std::int64_t sites = 0;
-  for (auto const* const run : runs) sites = std::max(sites, run->plan().lattice.sites());
-  if (!runs.empty()) for_each_small_run(runs.front()->space_, sites, runs.size(), work);
-}
-
 io::Scene SceneRun::typed_scene() const {
   auto scene = scene_;
   scene.field.own = typed_own_;
@@ -374,8 +318,23 @@ void SceneRun::set_spins(io::HostVectors const& from) {
   replace_spins(normalised<UsageError>(as_start, "spins"));
 }
 
+void SceneRun::set_unit_vectors(std::vector<double> const& from) {
+  Turn const turn;
+  replace_spins(from);
+}
+
+void SceneRun::continue_from_column(SceneRun const& columns, std::int64_t column) {
+  Turn const turn;
+  take_column(columns, column);
+  evaluations_ = columns.evaluations();
+}
+
 Sample SceneRun::sample() {
   Turn const turn;
+  return sampled();
+}
+
+Sample SceneRun::sampled() {
   Sample now = look();
   now.time *= scene_.units.time;
   now.energy.value *= scene_.units.energy;

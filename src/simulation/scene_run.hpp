@@ -131,6 +131,17 @@ class SceneRun {
   static std::vector<Relaxed> relax_all(std::span<SceneRun* const> runs,
                                         RelaxSettings const& settings);
 
+  /// Continues from the spins and the step of one column of a run of ReplicaColumns.
+  void continue_from_column(SceneRun const& columns, std::int64_t column);
+  /// A run of ReplicaColumns, and one of a single replica, whose spins are overwritten.
+  struct ColumnsToSample {
+    SceneRun const* columns;
+    SceneRun* one;
+    std::int64_t count;
+  };
+  /// Returns a sample of each column of these runs, side by side like advance_all.
+  static std::vector<std::vector<Sample>> sample_columns(std::span<ColumnsToSample const> all);
+
   /// Continues with changed keys, given as for `cayspin run --set`, from the current state. Steps
   /// and time continue, and the end of [integrator] counts from here. Multistep methods restart.
   /// Throws io::SceneError, also for keys that cannot change, and then changes nothing. A new
@@ -153,6 +164,10 @@ class SceneRun {
   /// Replaces the spins, normalised in double like any start. Multistep methods restart. Throws
   /// UsageError for a zero or non-finite spin, or another shape.
   void set_spins(io::HostVectors const& from);
+
+  /// Replaces the spins by unit vectors, sites x 3 with x fastest, as they are. Multistep methods
+  /// restart.
+  void set_unit_vectors(std::vector<double> const& from);
 
   /// Stores everything that another run needs to continue with the same bits, by
   /// RunSettings::restart. Replaces an existing file; throws std::runtime_error if the file cannot
@@ -182,6 +197,7 @@ class SceneRun {
   /// Rebuilds everything but the spins.
   virtual void rebuild(io::Scene const& scene, Plan const& plan) = 0;
   virtual void replace_spins(std::vector<double> const& start) = 0;
+  virtual void take_column(SceneRun const& columns, std::int64_t column) = 0;
   virtual void exchange(Checkpoint& checkpoint) = 0;
   virtual void go_on_from(std::int64_t shift) = 0;
   virtual Sample look() = 0;
@@ -203,6 +219,7 @@ class SceneRun {
   static void side_by_side(std::span<SceneRun* const> runs,
                            std::function<void(std::size_t)> const& work);
   Minimum relaxed(RelaxSettings const& settings);
+  Sample sampled();
 
   Precision precision_;
   std::string space_;

@@ -13,6 +13,22 @@
 
 namespace cayspin::simulation {
 
+/// Copies the sites of one column of a lattice to the lattice of that column.
+template <class Real>
+struct CopyColumn {
+  SiteArray<Real, 3> columns;
+  OutputArray<Real, 3> one;
+  RowLayout layout_of_columns, layout_of_one;
+  std::int64_t column;
+
+  KOKKOS_FUNCTION void operator()(std::int64_t site) const {
+    std::ptrdiff_t const from = layout_of_columns.offset(site * layout_of_columns.nx + column);
+    std::ptrdiff_t const to = layout_of_one.offset(site);
+    for (int c = 0; c < 3; ++c)
+      one.data[c * one.stride + to] = columns.data[c * columns.stride + from];
+  }
+};
+
 /// A SceneRun in one precision and execution space.
 template <class Real, class Space>
 class SceneRunInSpace final
@@ -134,6 +150,23 @@ class SceneRunInSpace final
   void replace_spins(std::vector<double> const& start) override {
     leave_lent_memory(false);
     copy_from_host(start, simulation_->spins);
+    begin_again();
+  }
+
+  void take_column(SceneRun const& columns, std::int64_t column) override {
+    leave_lent_memory(false);
+    auto const& from = static_cast<SceneRunInSpace const&>(columns).simulation_->spins;
+    auto const& to = simulation_->spins;
+    CopyColumn<Real> const copy{from.array(), to.output(false), from.layout(), to.layout(), column};
+    if constexpr (on_host) {
+      for (std::int64_t site = 0; site < to.sites(); ++site) copy(site);
+    } else {
+      Kokkos::parallel_for("cayspin::SceneRun: column",
+                           Kokkos::RangePolicy<Space, Kokkos::IndexType<std::int64_t>>(
+                               simulation_->exec, 0, to.sites()),
+                           copy);
+    }
+    number_ = columns.steps();
     begin_again();
   }
 

@@ -6,6 +6,9 @@
 
 #include <cmath>
 #include <filesystem>
+#include <random>
+#include <string>
+#include <vector>
 
 namespace cayspin::program::test {
 namespace {
@@ -91,6 +94,82 @@ TEST_F(Ensembles, ChooseTheirOwnSteps) {
         joined(adaptive, set(std::vector<std::string>{"field.exchange=0.1", "field.exchange=1",
                                                       "field.exchange=30"}[replica],
                              fmt::format("initial.random.seed={}", 3 + replica))));
+}
+
+// Small lattices without neighbours at a distance are the columns of one lattice.
+TEST_F(Ensembles, OfSmallLatticesHaveTheBitsOfTheirRuns) {
+  std::mt19937 random(20);
+  auto const one_of = [&](std::vector<std::string> const& choices) {
+    return choices[random() % choices.size()];
+  };
+  constexpr std::int64_t many = 37;
+  for (int composition = 0; composition < 24; ++composition) {
+    auto const shape =
+        one_of({"[1]", "[1]", "[8]", "[1, 7]", "[1, 1, 6]", "[4, 5]", "[3, 1, 4]", "[100]"});
+    auto const scene = fmt::format(
+        R"([system]
+kind = "llg"
+damping = {}
+[lattice]
+shape = {}
+boundary = {}
+[field]
+exchange = {}
+{}
+applied = [0.3, {}, 0.1]
+[initial]
+{}
+[integrator]
+method = "{}"
+{}
+dt = 0.02
+steps = 13
+[output]
+every = 6
+scalars_every = 5
+)",
+        one_of({"0", "0.1", "1.5"}), shape, one_of({"'open'", "'periodic'"}),
+        one_of({"0.0", "1.0", "-0.7"}),
+        one_of(
+            {"", "anisotropy = { constant = 0.5, axis = [0, 3, 4] }",
+             "anisotropy = [{ constant = 0.5, axis = [0, 0, 1] }, { constant = -0.2, axis = [0, 1, "
+             "1] }]",
+             "anisotropy = { cubic = 0.4, axes = [[1, 0, 0], [0, 1, 0]] }",
+             "slab_demag = { normal = [1, 0, 0] }",
+             "torque = { slonczewski = { damping_like = 0.2, field_like = 0.1, polarization = [0, "
+             "1, 0] } }"}),
+        one_of({"-0.2", "'sin(9 * t)'"}),
+        one_of({"random = { seed = 3 }", "uniform = [1, 2, 3]", "expression = ['1', 'i', '0.3']"}),
+        one_of({"rkmk4", "rkmk4", "heun", "euler", "ab2", "cf4", "series4", "rkmk5",
+                "projected_rk4", "classical_heun"}),
+        one_of({"", "", "compensated = true", "generator = 'tangent'",
+                "isotropy = { constant = 0.3 }"}));
+    std::string const noise = one_of({"", "[thermal]\ntemperature = 0.05\nseed = 7\n",
+                                      "[thermal]\ntemperature = '0.1 * t'\nseed = 5\n"});
+    bool const varies = noise.find("0.05") != noise.npos && random() % 2 == 0;
+    write("all.toml", scene + noise + "[ensemble]\nreplicas = 1\n");
+    if (start({"check", "all.toml"}).status != 0) continue;  // a method that refuses noise, say
+    Arguments const same{"--precision", one_of({"double", "single"}), "--threads",
+                         one_of({"1", "2"})};
+    run_ensemble(scene + noise +
+                     vary(varies ? "\"thermal.temperature\" = { from = 0, to = 0.3 }\n" : "", many),
+                 same);
+    for (int const replica : {0, 1, 16, 36}) {
+      Arguments own;
+      if (scene.find("random") != scene.npos)
+        own = set(fmt::format("initial.random.seed={}", 3 + replica));
+      if (!noise.empty())
+        own = joined(own, set(fmt::format("thermal.seed={}",
+                                          (noise.find("0.05") == noise.npos ? 5 : 7) + replica)));
+      if (varies) {
+        double const share = replica / 36.0;
+        own =
+            joined(own, set(fmt::format("thermal.temperature={}", (1 - share) * 0 + share * 0.3)));
+      }
+      SCOPED_TRACE(scene + noise);
+      expect_run(replica, scene + noise, joined(same, own));
+    }
+  }
 }
 
 // Replicas share the threads, with kernels, transforms and noise of each on one of them.
@@ -225,6 +304,9 @@ TEST_F(Ensembles, AreRefusedInOneLine) {
   refused(vary(""), "integrator.method: \"auto\" does not go with an ensemble",
           set("integrator={method='auto',error=1e-3,end=1.0}"));
   refused(vary(""), "output.terms: does not go with an ensemble", set("output.terms=true"));
+  refused(vary(""), "output.chunk: does not go with an ensemble", set("output.chunk=1"));
+  refused(vary(""), "output.checkpoint_every: does not go with an ensemble",
+          set("output.checkpoint_every=600"));
   refused(vary("") + "[[stage]]\nrelax = true\n", "stage: does not go with an ensemble");
   refused(vary(""), "--restart takes no ensemble", {"--restart", "none.h5"});
   write("all.toml", chain_scene() + vary(""));

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "replica_columns.hpp"
+
+#include "io/notes.hpp"
+#include "kokkos_settings.hpp"
+#include "space.hpp"
+
+#include <cayspin/detail/execution.hpp>
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <utility>
+#include <variant>
+
+namespace cayspin::simulation {
+namespace {
+
+constexpr std::int64_t most_sites = 128, least_replicas = 16;
+
+bool is_plain(io::Lattice const& lattice) {
+  auto const is_one = [](double number) { return number == 1; };
+  return std::min(lattice.shape[1], lattice.shape[2]) == 1 && lattice.basis.size() == 1 &&
+         std::ranges::all_of(lattice.moments, is_one) &&
+         std::ranges::all_of(lattice.gyromagnetic, is_one) && !lattice.moments_of_sites.there() &&
+         !lattice.gyromagnetic_of_sites.there() && !lattice.occupied.there() &&
+         !lattice.frozen.there() && !lattice.regions.there() && !lattice.follow;
+}
+
+bool is_local_but_for_exchange(io::Field const& field) {
+  auto const& [zhang_li, slonczewski] = field.torque;
+  return !field.has_dmi() && !field.exchange_factors.there() && field.exchange_between.empty() &&
+         field.interlayers.empty() && field.couplings.empty() && field.couplings_file.empty() &&
+         std::ranges::all_of(field.anisotropies, &io::Anisotropy::is_plain) &&
+         std::ranges::all_of(field.crystal_anisotropies, &io::CrystalAnisotropy::is_plain) &&
+         !zhang_li && !(slonczewski && !slonczewski->is_plain()) && field.sources.empty() &&
+         !(field.slab_demag && (field.slab_demag->on_host || field.slab_demag->multirate)) &&
+         !field.demag && !field.own.uniform && !field.own.nonlocal;
+}
+
+bool steps_each_site_alike(io::Integrator const& integrator) {
+  auto const& method = *integrator.method;
+  bool const is_constant =
+      integrator.isotropy == io::Isotropy::zero || integrator.isotropy == io::Isotropy::constant;
+  return method.has_equal_steps() && method.evaluations && !method.by_colour && is_constant &&
+         integrator.substeps == 1 && !integrator.energy_control && !integrator.until_torque;
+}
+
+bool can_be_columns(io::Scene const& scene, io::Scene const& one) {
+  return scene.ensemble.replicas >= least_replicas && io::sites(one) <= most_sites &&
+         one.system.kind == io::SystemKind::llg && !one.system.dampings.there() &&
+         is_plain(one.lattice) && is_local_but_for_exchange(one.field) &&
+         steps_each_site_alike(one.integrator) && !(one.thermal && one.thermal->of_sites.there()) &&
+         std::ranges::all_of(scene.ensemble.vary, [](io::VariedKey const& varied) {
+           return varied.key == "thermal.temperature";
+         });
+}
+
+// So many replicas to a lattice that rows are not short, and, if possible, that its kernels stay on
+// one thread and each thread has a lattice.
+std::int64_t columns_of_a_lattice(std::int64_t replicas, std::int64_t sites,
+                                  std::string const& space, int threads) {
+  if (!is_on_host(space)) return replicas;
+  constexpr std::int64_t lanes = 16;  // a register has no more
+  auto const parts_of = [](std::int64_t all, std::int64_t part) { return (all + part - 1) / part; };
+  std::int64_t const on_one_thread = cayspin::detail::calling_thread_sites / sites / lanes * lanes;
+  std::int64_t const each = parts_of(parts_of(replicas, threads), lanes) * lanes;
+  return std::min(std::max(2 * lanes, std::min(on_one_thread, each)), replicas);
+}
+
+io::Scene scene_of_columns(io::Scene const& one, std::int64_t first, std::int64_t count,
+                           std::vector<double> const& temperatures) {
+  constexpr double far_apart = 1e200;  // its square is infinite
+  auto columns = one;
+  auto const& lattice = one.lattice;
+  // Random numbers go by rows, which are along x in a replica and along y here.
+  std::array<std::size_t, 2> const axes{0, lattice.shape[1] > 1 ? 1U : 2U};
+  columns.lattice.shape[0] = count;
+  columns.lattice.spacing[0] = far_apart;
+  columns.lattice.boundary[0] = {};
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    columns.lattice.shape[axis + 1] = lattice.shape[axes[axis]];
+    columns.lattice.spacing[axis + 1] = lattice.spacing[axes[axis]];
+    columns.lattice.boundary[axis + 1] = lattice.boundary[axes[axis]];
+  }
+  columns.initial = io::UniformStart{{1, 0, 0}};
+  columns.columns.emplace();
+  if (!one.thermal) return columns;
+  columns.thermal->seed += first;
+  if (temperatures.empty()) return columns;
+  auto const begin = temperatures.begin() + first, end = begin + count;
+  columns.columns->temperatures.assign(begin, end);
+  columns.thermal->temperature = std::any_of(begin, end, [](double t) { return t > 0; }) ? 1 : 0;
+  return columns;
+}
+
+std::vector<double> temperatures_of(io::Scene const& scene) {
+  std::vector<double> temperatures;
+  if (scene.ensemble.vary.empty()) return temperatures;
+  for (std::int64_t replica = 0; replica < scene.ensemble.replicas; ++replica)
+    temperatures.push_back(io::replica_of(scene, replica).thermal->temperature);
+  return temperatures;
+}
+
+// Returns the starts of the replicas first .. first + count - 1 as columns.
+std::vector<double> starts_of(io::Scene& one, std::int64_t first, std::int64_t count) {
+  std::vector<double> columns(static_cast<std::size_t>(3 * count * io::sites(one)));
+  auto* const random = std::get_if<io::RandomStart>(&one.initial);
+  std::vector<double> start;
+  for (std::int64_t column = 0; column < count; ++column) {
+    if (random) random->seed += first + column;
+    if (random || start.empty()) start = io::initial_spins(one);
+    if (random) random->seed -= first + column;
+    for (std::int64_t site = 0; site < io::sites(one); ++site)
+      std::copy_n(start.begin() + 3 * site, 3, columns.begin() + 3 * (site * count + column));
+  }
+  return columns;
+}
+
+}  // namespace
+
+std::optional<ReplicaColumns> ReplicaColumns::open(io::Scene const& scene, io::Scene const& first,
+                                                   RunSettings const& settings) {
+  std::optional<ReplicaColumns> opened;
+  auto one = io::with_shape_of_start(first);
+  if (!can_be_columns(scene, one)) return opened;
+  opened.emplace();
+  auto const& temperatures = opened->temperatures_ = temperatures_of(scene);
+  auto const replicas = scene.ensemble.replicas, sites = io::sites(one);
+  auto sample = SceneRun::open(one, settings);
+  auto const columns = columns_of_a_lattice(replicas, sites, sample->space(), sample->threads());
+  for (std::int64_t begin = 0; begin < replicas; begin += columns) {
+    std::int64_t const count = std::min(columns, replicas - begin);
+    auto run = SceneRun::open(scene_of_columns(one, begin, count, temperatures), settings);
+    run->set_unit_vectors(starts_of(one, begin, count));
+    auto of_one = sample ? std::move(sample) : SceneRun::open(one, settings);
+    opened->lattices_.push_back({begin, count, std::move(run), std::move(of_one)});
+  }
+  return opened;
+}
+
+std::int64_t ReplicaColumns::evaluations() const {
+  std::int64_t all = 0;
+  for (auto const& some : lattices_) all += some.count * some.columns->evaluations();
+  return all;
+}
+
+double ReplicaColumns::step_seconds() const {
+  double all = 0;
+  for (auto const& some : lattices_) all += some.columns->step_seconds();
+  return all;
+}
+
+ReplicaColumns::Ended ReplicaColumns::advance(std::int64_t count, Looks const& looks) {
+  std::vector<SceneRun*> runs;
+  for (auto const& some : lattices_) runs.push_back(some.columns.get());
+  runs.front()->require_reachable(count);
+  auto const outcomes = SceneRun::advance_all(runs, count, looks);
+  Ended ended;
+  for (std::size_t number = 0; number < outcomes.size(); ++number) {
+    auto const& [advanced, error] = outcomes[number];
+    ended.interrupted = ended.interrupted || advanced == Advanced::interrupted;
+    if (!error) continue;
+    if (!ended.error) ended.error = error;
+    auto const& some = lattices_[number];
+    for (std::int64_t column = 0; column < some.count; ++column)
+      ended.failed.push_back(some.first + column);
+  }
+  return ended;
+}
+
+void ReplicaColumns::continue_in(SceneRun& run, std::int64_t replica) const {
+  auto const some = std::ranges::find_if(
+      lattices_, [&](Some const& one) { return replica < one.first + one.count; });
+  run.continue_from_column(*some->columns, replica - some->first);
+}
+
+std::vector<Sample> ReplicaColumns::samples() const {
+  std::vector<SceneRun::ColumnsToSample> all;
+  for (auto const& some : lattices_)
+    all.push_back({some.columns.get(), some.one.get(), some.count});
+  std::vector<Sample> samples;
+  for (auto const& of_lattice : SceneRun::sample_columns(all))
+    samples.insert(samples.end(), of_lattice.begin(), of_lattice.end());
+  return samples;
+}
+
+template <class Real>
+std::vector<Real> ReplicaColumns::spins() const {
+  std::vector<Real> all;
+  for (auto const& some : lattices_) {
+    auto const of_lattice = packed<Real>(some.columns->spins().vectors);
+    auto const sites = static_cast<std::int64_t>(of_lattice.size()) / 3 / some.count;
+    for (std::int64_t column = 0; column < some.count; ++column)
+      for (std::int64_t site = 0; site < sites; ++site) {
+        auto const from = of_lattice.begin() + 3 * (site * some.count + column);
+        all.insert(all.end(), from, from + 3);
+      }
+  }
+  return all;
+}
+template std::vector<double> ReplicaColumns::spins() const;
+template std::vector<float> ReplicaColumns::spins() const;
+
+}  // namespace cayspin::simulation

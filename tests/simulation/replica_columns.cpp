@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Which ensembles are columns of a lattice, and that these move, are sampled and fail as runs of
+// their own. tests/program/ensembles.cpp compares their bits in files.
+#include "scenes_of_text.hpp"
+#include "simulation/ensemble_run.hpp"
+#include "simulation/failure.hpp"
+
+#include <optional>
+
+namespace cayspin::simulation::test {
+namespace {
+
+std::string const chains = R"([lattice]
+shape = [6]
+[field]
+exchange = 1.0
+applied = [0.3, "0.1*t", 0]
+[initial]
+random = { seed = 7 }
+[thermal]
+temperature = 0.1
+seed = 3
+[ensemble]
+replicas = 40
+)";
+
+bool are_columns(io::Scene const& scene) {
+  return ReplicaColumns::open(scene, io::replica_of(scene, 0), {}).has_value();
+}
+
+TEST(ReplicaColumns, AreUsedForSmallLatticesOfLocalTermsAndExchange) {
+  auto const scene = llg_scene("0.1", "rkmk4", 40, chains);
+  EXPECT_TRUE(are_columns(scene));
+  std::vector<std::vector<std::string>> const can{
+      {"lattice.shape=[1]"},
+      {"lattice.shape=[3,1,5]", "lattice.boundary='periodic'"},
+      {"integrator.method='ab2'"},
+      {"ensemble.vary={'thermal.temperature'={from=0,to=1}}"},
+      {"field.anisotropy={cubic=0.4,axes=[[1,0,0],[0,1,0]]}"},
+      {"field.slab_demag={normal=[0,0,1]}"}};
+  for (auto const& changes : can)
+    EXPECT_TRUE(are_columns(scene_of(scene.text, changes))) << changes[0];
+  std::vector<std::vector<std::string>> const cannot{
+      {"lattice.shape=[2,2,2]"},
+      {"lattice.shape=[1,3,3]"},
+      {"lattice.shape=[300]"},
+      {"lattice.occupied='i>0'"},
+      {"lattice.crystal='bcc'"},
+      {"ensemble.replicas=4"},
+      {"ensemble.vary={'field.exchange'={from=0,to=1}}"},
+      {"field.dmi={bulk=0.3}"},
+      {"field.demag=true"},
+      {"field.exchange='1+i'"},
+      {"field.anisotropy={constant='1+i',axis=[0,0,1]}"},
+      {"thermal={}", "integrator={method='tsit5',tolerance=1e-6,dt=0.02,steps=40}"},
+      {"thermal={}", "integrator.method='implicit_midpoint'"},
+      {"thermal={}", "integrator.method='red_black2'", "field.applied=[0.1,0,0]"},
+      {"thermal={}", "integrator.until_torque=1e-3"}};
+  for (auto const& changes : cannot)
+    EXPECT_FALSE(are_columns(scene_of(scene.text, changes))) << changes[0];
+}
+
+TEST(ReplicaColumns, AreSampledAndRelaxedAsRunsOfTheirOwn) {
+  auto const scene = llg_scene("0.1", "heun", 40, chains);
+  for (auto const precision : precisions) {
+    EnsembleRun run(scene, {.precision = precision}, false);
+    auto const looks = run.looks(false, {});
+    run.advance(7, looks);
+    run.advance(4, looks);
+    auto const scalars = run.scalars();
+    std::vector<std::unique_ptr<SceneRun>> own;
+    for (std::int64_t const replica : {0, 17, 39}) {
+      own.push_back(SceneRun::open(io::replica_of(scene, replica), {.precision = precision}));
+      own.back()->advance(11);
+      auto const& sampled = scalars[static_cast<std::size_t>(replica)];
+      EXPECT_EQ(sampled.energy, own.back()->sample().energy.value);
+      EXPECT_EQ(sampled.norm_defect, own.back()->sample().norm_defect);
+      EXPECT_EQ(sampled.magnetization[1], own.back()->sample().magnetization.y);
+    }
+    EXPECT_EQ(run.steps(), 11);
+    EXPECT_DOUBLE_EQ(run.time(), 11 * 0.02);
+    EXPECT_EQ(run.evaluations(), 40 * own[0]->evaluations());
+  }
+  // From here each has a run of its own.
+  auto const cold = scene_of(scene.text, {"thermal={}", "field.applied=[0.3,0.1,0]"});
+  EnsembleRun run(cold, {}, false);
+  run.advance(11, run.looks(false, {}));
+  auto const found = run.relax({.torque = 1e-9});
+  auto const own = SceneRun::open(io::replica_of(cold, 17), {});
+  own->advance(11);
+  EXPECT_EQ(found[17].evaluations, own->relax({.torque = 1e-9}).evaluations);
+  EXPECT_EQ(run.scalars()[17].energy, own->sample().energy.value);
+  run.advance(5, run.looks(false, {}));
+  own->advance(5);
+  EXPECT_EQ(run.scalars()[17].energy, own->sample().energy.value);
+  EXPECT_EQ(run.steps(), 16);
+}
+
+// A start with a length that the method does not keep fails in one of the columns only.
+TEST(ReplicaColumns, FailAsRunsOfTheirOwn) {
+  auto const scene = scene_of(llg_scene("0.1", "classical_euler", 4000, chains).text,
+                              {"thermal={}", "field.applied=[0,0,30]"});
+  std::optional<std::string> said;
+  std::int64_t first = -1;
+  for (std::int64_t replica = 0; replica < 40 && !said; ++replica) {
+    auto const own = SceneRun::open(io::replica_of(scene, replica), {});
+    try {
+      own->advance(400, {.period = 100, .at_end = true});
+    } catch (NumbersFailed const& failure) {
+      said = fmt::format("replica {}: {}", replica, failure.what());
+      first = replica;
+    }
+  }
+  ASSERT_TRUE(said) << "the steps should be unstable";
+  EnsembleRun run(scene, {}, false);
+  try {
+    run.advance(400, run.looks(false, {}));
+    FAIL() << "replica " << first << " should fail";
+  } catch (NumbersFailed const& failure) {
+    EXPECT_EQ(failure.what(), *said);
+  }
+}
+
+}  // namespace
+}  // namespace cayspin::simulation::test
