@@ -73,11 +73,12 @@ void check_pairs(Scene const& scene);
 /// Refuses combinations that do not work at a temperature above 0.
 void check_thermal(Scene const& scene);
 Ensemble read_ensemble(Table const& root);
-/// Refuses what does not go with an ensemble, and values of its first and last replica.
+/// Refuses keys that an ensemble cannot have, and varied values that its first or last replica
+/// does.
 void check_ensemble(Scene const& scene, bool relaxes);
 /// `integrator`: as typed, in the units of the scene.
 Output read_output(Table const& root, Integrator const& integrator);
-/// A time >= 0 over dt. Refuses what is no whole number of steps.
+/// Returns a time as a number of steps dt. Refuses a negative time, and parts of a step.
 std::int64_t whole_steps(Item const& time, double dt);
 
 /// Applies "key.path=VALUE" to the table. Creates missing tables; an integer in the path is an

@@ -92,7 +92,7 @@ class ProgramTest : public testing::Test {
   /// Starts the program without waiting; discards its output.
   pid_t begin(Arguments const& arguments,
               std::filesystem::path const& program = CAYSPIN_PROGRAM) const;
-  /// Sends it a signal unless that is 0, and waits. Returns a status like Outcome::status.
+  /// Sends a signal, unless it is 0, and waits for the end. Returns a status like Outcome::status.
   static int end(pid_t process, int signal);
 
   /// Waits until something is true, at most a minute. Returns false if it never was.
