@@ -16,7 +16,7 @@
 namespace cayspin::simulation {
 namespace {
 
-constexpr std::int64_t most_sites = 128, least_replicas = 16;
+constexpr std::int64_t most_sites = 512, least_replicas = 16;
 
 bool is_plain(io::Lattice const& lattice) {
   auto const is_one = [](double number) { return number == 1; };
@@ -56,16 +56,18 @@ bool can_be_columns(io::Scene const& scene, io::Scene const& one) {
          });
 }
 
-// So many replicas to a lattice that rows are not short, and, if possible, that its kernels stay on
-// one thread and each thread has a lattice.
-std::int64_t columns_of_a_lattice(std::int64_t replicas, std::int64_t sites,
-                                  std::string const& space, int threads) {
-  if (!is_on_host(space)) return replicas;
-  constexpr std::int64_t lanes = 16;  // a register has no more
+constexpr std::int64_t lanes = 16;  // a register has no more
+
+// Returns how many columns a lattice has whose kernels stay on one thread.
+std::int64_t columns_on_a_thread(std::int64_t sites) {
+  return cayspin::detail::calling_thread_sites / sites / lanes * lanes;
+}
+
+// Returns so many that rows are not short, and that each thread has a lattice if it can.
+std::int64_t columns_of_a_lattice(std::int64_t replicas, std::int64_t sites, int threads) {
   auto const parts_of = [](std::int64_t all, std::int64_t part) { return (all + part - 1) / part; };
-  std::int64_t const on_one_thread = cayspin::detail::calling_thread_sites / sites / lanes * lanes;
   std::int64_t const each = parts_of(parts_of(replicas, threads), lanes) * lanes;
-  return std::min(std::max(2 * lanes, std::min(on_one_thread, each)), replicas);
+  return std::min(std::max(2 * lanes, std::min(columns_on_a_thread(sites), each)), replicas);
 }
 
 io::Scene scene_of_columns(io::Scene const& one, std::int64_t first, std::int64_t count,
@@ -124,11 +126,15 @@ std::optional<ReplicaColumns> ReplicaColumns::open(io::Scene const& scene, io::S
   std::optional<ReplicaColumns> opened;
   auto one = io::with_shape_of_start(first);
   if (!can_be_columns(scene, one)) return opened;
-  opened.emplace();
-  auto const& temperatures = opened->temperatures_ = temperatures_of(scene);
   auto const replicas = scene.ensemble.replicas, sites = io::sites(one);
   auto sample = SceneRun::open(one, settings);
-  auto const columns = columns_of_a_lattice(replicas, sites, sample->space(), sample->threads());
+  bool const on_host = is_on_host(sample->space());
+  // On several threads, these run faster one to a thread.
+  if (on_host && sample->threads() > 1 && columns_on_a_thread(sites) < 2 * lanes) return opened;
+  opened.emplace();
+  auto const& temperatures = opened->temperatures_ = temperatures_of(scene);
+  auto const columns =
+      on_host ? columns_of_a_lattice(replicas, sites, sample->threads()) : replicas;
   for (std::int64_t begin = 0; begin < replicas; begin += columns) {
     std::int64_t const count = std::min(columns, replicas - begin);
     auto run = SceneRun::open(scene_of_columns(one, begin, count, temperatures), settings);

@@ -43,7 +43,7 @@ TEST(ReplicaColumns, AreUsedForSmallLatticesOfLocalTermsAndExchange) {
   std::vector<std::vector<std::string>> const cannot{
       {"lattice.shape=[2,2,2]"},
       {"lattice.shape=[1,3,3]"},
-      {"lattice.shape=[300]"},
+      {"lattice.shape=[600]"},
       {"lattice.occupied='i>0'"},
       {"lattice.crystal='bcc'"},
       {"ensemble.replicas=4"},
