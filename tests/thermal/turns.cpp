@@ -151,36 +151,37 @@ TYPED_TEST(ThermalSites, TurnIndependently) {
     expect_independent(after, after, apart);
 }
 
-// Devices work on one site at a time: each draws the words that packs of sites share.
-TYPED_TEST(ThermalTurns, OfSitesOneByOneAreThoseOfPacks) {
-  using Spins = SpinField<TypeParam, Kokkos::HostSpace>;
-  using Kernel = detail::TurnAtRandom<TypeParam, true>;
+/// Expects the turns of sites one by one, as on devices, to be those of packs.
+template <class Real, class Turns, class Numbers>
+void expect_turns_of_packs(Turns const& turns, Numbers const& numbers) {
+  using Spins = SpinField<Real, Kokkos::HostSpace>;
+  using Kernel = detail::TurnAtRandom<Real, Turns, Numbers>;
   auto const lattice = Lattice::cubic(77, 5, 3);
   auto const start = random_directions(lattice.sites(), 3);
   auto const packs = spins_of<Spins>(lattice, start), sites = spins_of<Spins>(lattice, start);
   auto const on = [&](Spins const& spins) {
-    return Kernel{spins.array(),
-                  spins.output(false),
-                  {0x123456789abcdefULL, 1ULL << 40U},
-                  {detail::RandomTurn<TypeParam, true>(0.2)},
-                  true,
-                  true,
-                  0,
-                  0,
-                  5,
-                  3,
-                  Kernel::places_of_row(77)};
+    return Kernel{spins.array(), spins.output(false), numbers, turns, true, true};
   };
   Kokkos::DefaultHostExecutionSpace const exec;
-  detail::for_each_site<TypeParam>(exec, "packs", packs.layout(), on(packs));
+  detail::for_each_site<Real>(exec, "packs", packs.layout(), on(packs));
   using Index = std::int32_t;
   detail::DeviceTiles const tiles(77, sites.layout().all());
-  detail::TileLoop<Index, detail::OnDeviceSite<TypeParam, Kernel>> const loop{
+  detail::TileLoop<Index, detail::OnDeviceSite<Real, Kernel>> const loop{
       {on(sites)}, detail::DeviceLayout<Index>(sites.layout()), tiles};
   for (Index thread = 0; thread < tiles.thread_count(); ++thread) loop(thread);
   exec.fence();
   EXPECT_EQ(numbers_of(sites), numbers_of(packs));
   EXPECT_NE(numbers_of(sites), start);
+}
+
+TYPED_TEST(ThermalTurns, OfSitesOneByOneAreThoseOfPacks) {
+  using Turn = detail::OneTurn<TypeParam, true>;
+  using Numbers = detail::NumbersOfSites<true>;
+  Turn const turn{detail::RandomTurn<TypeParam, true>(0.2)};
+  constexpr std::uint64_t seed = 0x123456789abcdefULL, draw = 1ULL << 40U;
+  expect_turns_of_packs<TypeParam>(
+      turn, Numbers{{seed, draw}, 0, 0, 5, 3, Numbers::places_of_row(77), 0});
+  expect_turns_of_packs<TypeParam>(turn, detail::NumbersOfColumns{{seed, draw}, 16});
 }
 
 // Processors look the cases up if they can, and compute them otherwise.
