@@ -23,7 +23,8 @@ GROUPS = {
                                "MinimumEnergyPath", "EnsembleSimulation"],
     "Choosing a method": ["advise", "Advice", "trade", "Trade"],
     "Files and pictures": ["open", "Trajectory", "Ensemble", "texture.draw", "view", "View"],
-    "Numbers from spins": ["topological_charge", "dispersion", "Dispersion", "average", "Average"],
+    "Numbers from spins": ["topological_charge", "dispersion", "Dispersion", "structure_factor",
+                           "linear_structure_factor", "StructureFactor", "average", "Average"],
     "Input": ["occupied_of_mesh", "read_uppasd", "read_spirit_pairs"],
     "Errors and version": ["CayspinError", "SceneError", "NumbersFailed", "__version__"],
 }

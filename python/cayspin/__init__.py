@@ -20,6 +20,7 @@ from cayspin.observables import Average, Dispersion, average, dispersion, topolo
 from cayspin.path import MinimumEnergyPath, path
 from cayspin.scene import Scene
 from cayspin.simulation import Minimum, Modes, Simulation
+from cayspin.spectra import StructureFactor, linear_structure_factor, structure_factor
 from cayspin.spirit import read_spirit_pairs
 from cayspin.trade import Advice, Trade, advise, trade
 from cayspin.trajectory import Trajectory, open
@@ -28,6 +29,7 @@ from cayspin.view import View, view
 
 __all__ = ["Advice", "Average", "Averages", "CayspinError", "Dispersion", "Ensemble",
            "EnsembleSimulation", "Minimum", "MinimumEnergyPath", "Modes", "NumbersFailed", "Scene",
-           "SceneError", "Simulation", "Trade", "Trajectory", "View", "__version__", "advise",
-           "average", "dispersion", "occupied_of_mesh", "open", "path", "read_spirit_pairs",
-           "read_uppasd", "topological_charge", "trade", "view"]
+           "SceneError", "Simulation", "StructureFactor", "Trade", "Trajectory", "View",
+           "__version__", "advise", "average", "dispersion", "linear_structure_factor",
+           "occupied_of_mesh", "open", "path", "read_spirit_pairs", "read_uppasd",
+           "structure_factor", "topological_charge", "trade", "view"]

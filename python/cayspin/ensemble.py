@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 import os
-from typing import Any
+from typing import Any, Sequence
 
 from cayspin import arguments, texture
 from cayspin._cayspin import CayspinError
+from cayspin.frames import Frames, at_equal_steps, with_lattice
+from cayspin.spectra import StructureFactor, structure_factor
 from cayspin.texture.replica import Replica
 
 
@@ -60,6 +62,31 @@ class Ensemble:
     def complete(self) -> bool:
         """Whether the run ended as planned."""
         return bool(self.file.attrs["complete"])
+
+    def structure_factor(self, replicas: Sequence[int] | None = None,
+                         frames: slice = slice(None), **options: Any) -> StructureFactor:
+        """S(k, w) at all wave vectors of the lattice, averaged over `replicas`, of the `frames` of
+        a slice, as cayspin.structure_factor() says, whose other options it takes. `replicas` may be
+        left out where no key is varied: they are all. Boundaries, the cell and the positions in it
+        are those of the scene by default.
+
+        Raises CayspinError as there, for replicas that are not there, and for frames that are not
+        at equal steps of time.
+        """
+        if replicas is None:
+            if self.vary:
+                raise CayspinError(f"structure_factor: replicas differ in {', '.join(self.vary)}; "
+                                   "accepted: replicas=[0, ..], those to average over")
+            replicas = range(self.replicas)
+        chosen = [arguments.whole(one, "structure_factor: replicas") for one in arguments.entries(
+            replicas, "structure_factor: replicas", "a list of whole numbers")]
+        for one in chosen:
+            if not -self.replicas <= one < self.replicas:
+                raise CayspinError(f"structure_factor: replica {one}; accepted: {-self.replicas} "
+                                   f"to {self.replicas - 1}")
+        shown, dt = at_equal_steps(self.file, self.path, len(self), frames, "structure_factor")
+        runs = [Frames(self.file["spins"], shown, one % self.replicas) for one in chosen]
+        return structure_factor(runs, dt, **with_lattice(self.path, self.scene, options))
 
     def plot(self, replica: int = 0, frame: int = -1, axes: Any = None, **options: Any) -> Any:
         """Draws the spins of a replica into matplotlib axes, which it returns.

@@ -135,8 +135,42 @@ def _combination(component, about, mean):
     return first - 1j * np.cross(direction, first)
 
 
-def _hann(count):
+def hann(count: int) -> np.ndarray:
+    """Hann's window."""
     return np.sin(np.pi * (np.arange(count) + 0.5) / count)**2
+
+
+def window_in_space(shape: Any, periodic: Sequence[bool]) -> np.ndarray:
+    """Hann's window along axes that are not periodic, (nz, ny, nx), for a shape (nx, ny, nz)."""
+    window = np.ones(tuple(shape[::-1]))
+    for axis, closed in enumerate(periodic):
+        if not closed and shape[axis] > 1:
+            of_axis = hann(shape[axis])
+            window *= of_axis.reshape([-1 if place == 2 - axis else 1 for place in range(3)])
+    return window
+
+
+def checked_lattice(name: str, sites: int, cell: Any, positions: Any,
+                    periodic: Any) -> tuple[np.ndarray, np.ndarray, tuple[bool, ...]]:
+    """The cell, the positions in it and the periodic axes, for so many sites in a cell."""
+    cell = np.eye(3) if cell is None else arguments.numbers(cell, f"{name}: cell")
+    if cell.shape != (3, 3) or not abs(np.linalg.det(cell)) > 0:
+        raise CayspinError(f"{name}: cell: no volume; accepted: three vectors")
+    if positions is None:
+        if sites > 1:
+            raise CayspinError(f"{name}: {sites} sites in a cell, and no positions; accepted: "
+                               "positions (site, 3) in fractions of the cell")
+        positions = np.zeros((1, 3))
+    positions = arguments.numbers(positions, f"{name}: positions")
+    if positions.shape != (sites, 3):
+        raise CayspinError(f"{name}: positions of shape {positions.shape}; accepted: "
+                           f"{(sites, 3)}")
+    accepted = "True or False for each of x, y, z"
+    periodic = tuple(arguments.flag(one, f"{name}: periodic") for one in
+                     arguments.entries(periodic, f"{name}: periodic", accepted))
+    if len(periodic) != 3:
+        raise CayspinError(f"{name}: periodic {periodic!r}; accepted: {accepted}")
+    return cell, positions, periodic
 
 
 def dispersion(spins: Any, dt: float, path: Any, *, labels: Sequence[str] | None = None,
@@ -180,23 +214,7 @@ def dispersion(spins: Any, dt: float, path: Any, *, labels: Sequence[str] | None
     if not 0 < dt < np.inf:
         raise CayspinError(f"dispersion: dt {dt:g}; accepted: a number > 0")
     shape = np.array(spins.shape[-2:-5:-1])
-    cell = np.eye(3) if cell is None else arguments.numbers(cell, "dispersion: cell")
-    if cell.shape != (3, 3) or not abs(np.linalg.det(cell)) > 0:
-        raise CayspinError("dispersion: cell: no volume; accepted: three vectors")
-    if positions is None:
-        if sites > 1:
-            raise CayspinError(f"dispersion: {sites} sites in a cell, and no positions; accepted: "
-                               "positions (site, 3) in fractions of the cell")
-        positions = np.zeros((1, 3))
-    positions = arguments.numbers(positions, "dispersion: positions")
-    if positions.shape != (sites, 3):
-        raise CayspinError(f"dispersion: positions of shape {positions.shape}; accepted: "
-                           f"{(sites, 3)}")
-    accepted = "True or False for each of x, y, z"
-    periodic = tuple(arguments.flag(one, "dispersion: periodic") for one in
-                     arguments.entries(periodic, "dispersion: periodic", accepted))
-    if len(periodic) != 3:
-        raise CayspinError(f"dispersion: periodic {periodic!r}; accepted: {accepted}")
+    cell, positions, periodic = checked_lattice("dispersion", sites, cell, positions, periodic)
     reciprocal = 2 * np.pi * np.linalg.inv(cell).T
     numbers, distance, corners = _along(path, shape, reciprocal)
     if labels is not None:
@@ -208,11 +226,7 @@ def dispersion(spins: Any, dt: float, path: Any, *, labels: Sequence[str] | None
         raise CayspinError(f"dispersion: {len(labels)} labels; accepted: {len(corners)}, one for "
                            "each corner")
 
-    window = np.ones(tuple(shape[::-1]))
-    for axis, closed in enumerate(periodic):
-        if not closed and shape[axis] > 1:
-            of_axis = _hann(shape[axis])
-            window *= of_axis.reshape([-1 if place == 2 - axis else 1 for place in range(3)])
+    window = window_in_space(shape, periodic)
     window /= np.sqrt(sites * (window**2).sum())
     wave_vectors = numbers / shape
     phases = np.exp(-2j * np.pi * positions @ wave_vectors.T)  # (site, k)
@@ -225,7 +239,7 @@ def dispersion(spins: Any, dt: float, path: Any, *, labels: Sequence[str] | None
         waves[frame] = np.einsum("sk,skc->kc", phases, found)
 
     wave = waves @ _combination(component, about, mean / frames)
-    in_time = _hann(frames)
+    in_time = hann(frames)
     of_time = np.fft.ifft(wave * in_time[:, None], axis=0) * frames
     intensity = np.abs(np.fft.fftshift(of_time, axes=0))**2 / (frames * (in_time**2).sum())
     frequency = 2 * np.pi * np.fft.fftshift(np.fft.fftfreq(frames, dt))

@@ -12,18 +12,8 @@ import numpy as np
 from cayspin import arguments, observables, texture
 from cayspin._cayspin import CayspinError, complete_file
 from cayspin.ensemble import Ensemble
-from cayspin.scene import Scene
-
-
-class _Frames:
-    """Some of the frames of a dataset, read one by one."""
-
-    def __init__(self, dataset, frames):
-        self.dataset, self.frames = dataset, frames
-        self.shape = (len(frames), *dataset.shape[1:])
-
-    def __getitem__(self, frame):
-        return self.dataset[self.frames[frame]]
+from cayspin.frames import Frames, along_axes, at_equal_steps, with_lattice
+from cayspin.spectra import StructureFactor, structure_factor
 
 
 class Trajectory:
@@ -99,30 +89,6 @@ class Trajectory:
         """Whether the run ended as planned."""
         return bool(self.file.attrs["complete"])
 
-    def _tables(self, key: str, argument: str) -> dict:
-        """The tables of the scene, from which lattice.KEY is read."""
-        try:
-            import tomllib
-        except ImportError:  # before Python 3.11
-            raise CayspinError(f"{self.path}: to read lattice.{key} of its scene takes Python "
-                               f"3.11; accepted: the argument {argument}") from None
-        return tomllib.loads(self.scene)
-
-    def _crystal(self, argument: str) -> Scene:
-        """A scene with only these cells."""
-        lattice = self._tables("cell", argument).get("lattice", {})
-        cells = {key: lattice[key] for key in ("crystal", "cell", "basis") if key in lattice}
-        cells["shape"] = [*lattice["shape"], 1, 1][:3]
-        cells["spacing"] = self._lattice("spacing", 1.0, argument)
-        return Scene(system={"kind": "llg", "damping": 0.0}, lattice=cells,
-                     initial={"uniform": [0, 0, 1]})
-
-    def _lattice(self, key: str, otherwise: Any, argument: str) -> list:
-        """Returns the scene's lattice.KEY for x, y and z: one for all axes, or one for each."""
-        given = self._tables(key, argument).get("lattice", {}).get(key, otherwise)
-        given = given if isinstance(given, list) else [given] * 3
-        return given + [otherwise] * (3 - len(given))
-
     def topological_charge(self, boundary: Sequence[str] | None = None) -> np.ndarray:
         """The topological charge of each plane, (frame, nz), of a crystal (frame, site, nz), as
         cayspin.topological_charge() says. `boundary` is that of the scene by default.
@@ -130,7 +96,7 @@ class Trajectory:
         Raises CayspinError for another `boundary`, and without one before Python 3.11.
         """
         if boundary is None:
-            boundary = self._lattice("boundary", "open", "boundary")[:2]
+            boundary = along_axes(self.path, self.scene, "boundary", "open", "boundary")[:2]
         return np.stack([observables.topological_charge(self.file["spins"][frame], boundary)
                          for frame in range(len(self))])
 
@@ -142,30 +108,20 @@ class Trajectory:
 
         Raises CayspinError as there, and for frames that are not at equal steps of time.
         """
-        if not isinstance(frames, slice):
-            raise CayspinError(f"dispersion: frames {frames!r}; accepted: a slice")
-        try:
-            spins, chosen = self.file["spins"], range(len(self))[frames]
-        except (TypeError, ValueError):
-            raise CayspinError(f"dispersion: frames {frames!r}; accepted: a slice of whole numbers"
-                               ) from None
-        if chosen.step < 0:
-            raise CayspinError(f"dispersion: frames {frames!r} go back in time; accepted: a slice "
-                               "with a step above 0")
-        if len(chosen) < 4:
-            raise CayspinError(f"dispersion: {len(chosen)} frames; accepted: at least 4")
-        time = self.file["time"][:][chosen]
-        dt = (time[-1] - time[0]) / (len(time) - 1)
-        if not (np.abs(np.diff(time) - dt) < 1e-6 * dt).all():
-            raise CayspinError(f"{self.path}: frames at unequal steps of time; accepted: equal "
-                               "ones, as in frames=slice(0, -1)")
-        if "periodic" not in options:
-            words = self._lattice("boundary", "open", "periodic")
-            options["periodic"] = [word == "periodic" for word in words]
-        for key, attribute in (("cell", "cell"), ("positions", "basis")):
-            if key not in options:
-                options[key] = getattr(self._crystal(key), attribute)
-        return observables.dispersion(_Frames(spins, chosen), dt, path, **options)
+        chosen, dt = at_equal_steps(self.file, self.path, len(self), frames, "dispersion")
+        return observables.dispersion(Frames(self.file["spins"], chosen), dt, path,
+                                      **with_lattice(self.path, self.scene, options))
+
+    def structure_factor(self, frames: slice = slice(None), **options: Any) -> StructureFactor:
+        """S(k, w) at all wave vectors of the lattice, of the `frames` of a slice, as
+        cayspin.structure_factor() says, whose other options it takes. Boundaries, the cell and the
+        positions in it are those of the scene by default.
+
+        Raises CayspinError as there, and for frames that are not at equal steps of time.
+        """
+        chosen, dt = at_equal_steps(self.file, self.path, len(self), frames, "structure_factor")
+        return structure_factor(Frames(self.file["spins"], chosen), dt,
+                                **with_lattice(self.path, self.scene, options))
 
     def plot(self, frame: int = -1, axes: Any = None, *, difference_to: int | None = None,
              **options: Any) -> Any:
