@@ -220,19 +220,25 @@ class _FileOfModes:
         if "torque" in read:
             raise CayspinError(f"{path}: its scene has a torque, and no thermal equilibrium; "
                                "accepted: modes of a scene without [torque]")
-        keys = [f"{table}.{key}" for table, names in
-                (("lattice", ("moments", "gyromagnetic")), ("material", ("Ms", "mu_s", "gamma")))
-                for key in names if isinstance(read.get(table, {}).get(key), (list, dict, str))
-                and not _is_quantity(read[table][key])]
-        if keys and moments is None:
-            raise CayspinError(f"{path}: {keys[0]} differs from site to site; accepted: the "
-                               "argument moments")
+        differs = [f"{table}.{key}" for table, names in
+                   (("lattice", ("moments", "gyromagnetic")), ("material", ("Ms", "mu_s", "gamma")))
+                   for key in names if key in read.get(table, {})
+                   and not _is_number(read[table][key])]
+        if moments is not None:
+            self.moments = moments
+        elif differs:
+            raise CayspinError(f"{path}: {differs[0]} is no single number; accepted: the argument "
+                               "moments")
+        else:
+            lattice = read["lattice"]
+            self.moments = lattice.get("moments", 1.0) / lattice.get("gyromagnetic", 1.0)
 
 
-def _is_quantity(value):
-    """Whether it is one number with a unit, as { bohr_magnetons = 2.0 }."""
-    return isinstance(value, dict) and len(value) == 1 and isinstance(
-        next(iter(value.values())), (int, float))
+def _is_number(value):
+    """Whether it is one number, also with a unit, as { bohr_magnetons = 2.0 }."""
+    if isinstance(value, dict) and len(value) == 1:
+        value = next(iter(value.values()))
+    return isinstance(value, (int, float))
 
 
 def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, spins: Any = None,
@@ -260,9 +266,9 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
     The elastic line of the state itself and longitudinal fluctuations are not included.
 
     `moments`: mu / g of each site, from lattice.moments and lattice.gyromagnetic, an array that
-    broadcasts to the spins without their last axis (default: 1). `components`, `cell`, `positions`,
-    `periodic` and `zones` are those of structure_factor(). By default the lattice is the scene's if
-    `modes` is a file.
+    broadcasts to the spins without their last axis. Without it, mu / g is 1, or the number of the
+    scene if `modes` is a file. `components`, `cell`, `positions`, `periodic` and `zones` are those
+    of structure_factor(); if `modes` is a file, the lattice is the scene's by default.
 
     Raises CayspinError for a mode that does not oscillate or lowers the energy, a file of bands or
     with [torque], Modes without spins, and arrays, words and numbers that do not fit.
@@ -285,7 +291,7 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
             raise CayspinError(f"{name}: spins beside a file that has them; accepted: Modes with "
                                "spins, or a file")
         modes = _FileOfModes(name, modes, moments)
-        spins, time_unit = modes.spins, modes.time_unit
+        spins, time_unit, moments = modes.spins, modes.time_unit, modes.moments
         if modes.energy_unit:
             temperature *= _BOLTZMANN / modes.energy_unit
         given = {key: value for key, value in lattice.items() if value is not None}

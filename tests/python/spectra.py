@@ -226,12 +226,15 @@ class Thermal(PackageTest):
 class OfModes(PackageTest):
     FREQUENCY = np.linspace(-12, 12, 4801)
 
-    def test_inverse_of_the_hessian(self):
-        # An ellipse: along x a spin is stiffer by 0.5.
-        modes, spins = modes_of(chain(
-            system={"kind": "llg", "damping": 0.0},
+    def ellipses(self, damping):
+        """Modes that are stiffer by 0.5 along x."""
+        return modes_of(chain(
+            system={"kind": "llg", "damping": damping},
             field={"exchange": 1.0, "anisotropy": [{"constant": 1.0, "axis": [0, 0, 1]},
                                                    {"constant": -0.5, "axis": [1, 0, 0]}]}))
+
+    def test_inverse_of_the_hessian(self):
+        modes, spins = self.ellipses(0.0)
         found = cayspin.linear_structure_factor(modes, 0.3, self.FREQUENCY, spins=spins, width=0.1,
                                                 components=("xx", "yy", "zz", "total"))
         stiffness = magnons(found)
@@ -244,6 +247,13 @@ class OfModes(PackageTest):
         u = self.FREQUENCY
         lines = [0.1 / np.pi / ((u - sign * w[:, None])**2 + 0.01) / 2 for sign in (1, -1)]
         np.testing.assert_allclose(found.intensity["yy"][0, 0], y[:, None] * sum(lines), rtol=1e-6)
+
+    def test_damped_ellipses(self):
+        modes, spins = self.ellipses(0.1)
+        found = cayspin.linear_structure_factor(modes, 0.3, self.FREQUENCY, spins=spins)
+        exact = 0.3 / magnons(found)
+        off = np.abs(found.integrated["yy"][0, 0] / exact - 1).max()
+        self.assertAlmostEqual(off, 4.2e-4, delta=0.2e-4)
 
     def test_directions_of_waves(self):
         # Right-handed waves exp(i (k.r - w t)) turn against D where k > 0.
@@ -298,7 +308,7 @@ class OfModes(PackageTest):
             np.testing.assert_allclose(found.integrated["xx"][0, 0],
                                        0.3 / (2 * (1 - np.cos(k)) + 1), rtol=1e-8)
             file = self.run_program(made, "--count", "12", command="modes").filename
-            self.assert_refused(cayspin.CayspinError, "lattice.moments differs",
+            self.assert_refused(cayspin.CayspinError, "lattice.moments is no single number",
                                 cayspin.linear_structure_factor, file, 0.3, self.FREQUENCY)
             read = cayspin.linear_structure_factor(
                 file, 0.3, self.FREQUENCY, width=0.1, moments=weights, zones=(2, 1, 1))
@@ -391,6 +401,14 @@ class Files(PackageTest):
         found = cayspin.linear_structure_factor(file, 0.3, w)
         expected = cayspin.linear_structure_factor(modes, 0.3, w, spins=spins)
         np.testing.assert_allclose(found.intensity["xx"], expected.intensity["xx"], rtol=1e-7)
+
+        heavy = chain(lattice={"shape": [SITES], "boundary": "periodic", "moments": 0.5,
+                               "gyromagnetic": 1.7},
+                      field={"anisotropy": {"constant": ANISOTROPY, "axis": [0, 0, 1]},
+                             "couplings": {"shells": [EXCHANGE]}})
+        file = self.run_program(heavy, "--count", str(SITES), command="modes").filename
+        found = cayspin.linear_structure_factor(file, 0.3, w)
+        np.testing.assert_allclose(found.integrated["xx"][0, 0], 0.3 / magnons(found), rtol=1e-8)
 
         joule, kelvin = 1e-21, 5.0
         si = cayspin.Scene(
