@@ -288,6 +288,26 @@ class OfModes(PackageTest):
         peaks = run.frequency[right.argmax(1)]
         self.assertLess(np.abs(peaks - expected).max(), run.frequency[1] - run.frequency[0])
 
+    def test_antiferromagnet(self):
+        made = chain(
+            lattice={"shape": [6], "boundary": "periodic", "basis": [[0, 0, 0], [0.5, 0, 0]]},
+            system={"kind": "llg", "damping": 0.0},
+            field={"anisotropy": {"constant": 0.5, "axis": [0, 0, 1]},
+                   "couplings": [{"between": [0, 1], "offset": [0, 0, 0], "J": -1.0},
+                                 {"between": [1, 0], "offset": [1, 0, 0], "J": -1.0}]},
+            initial={"expression": ["0", "0", "1 - 2*s"]})
+        modes, spins = modes_of(made)
+        found = cayspin.linear_structure_factor(
+            modes, 0.3, self.FREQUENCY, spins=spins, width=0.02, positions=made.basis,
+            zones=(2, 1, 1))
+        k = np.pi * found.wave_vectors[0, 0, :, 0]
+        for word in ("xx", "yy"):
+            np.testing.assert_allclose(found.integrated[word][0, 0],
+                                       0.3 / (2 * (1 + np.cos(k)) + 0.5), rtol=1e-8)
+        peaks = np.abs(self.FREQUENCY[found.intensity["xx"][0, 0].argmax(1)])
+        expected = np.sqrt(2.5**2 - 4 * np.cos(k)**2)
+        self.assertLess(np.abs(peaks - expected).max(), 0.006)
+
     def test_moments_of_a_crystal(self):
         # The energy, and so what modes add up to, does not depend on the moments; rates do.
         for moments, ratios in (([1.0, 0.4], [1.0, 1.0]), ([1.0, 0.4], [1.0, 1.7])):
