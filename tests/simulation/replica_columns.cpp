@@ -17,12 +17,10 @@ exchange = 1.0
 applied = [0.3, "0.1*t", 0]
 [initial]
 random = { seed = 7 }
-[thermal]
-temperature = 0.1
-seed = 3
 [ensemble]
 replicas = 40
 )";
+std::string const noise = "[thermal]\ntemperature = 0.1\nseed = 3\n";
 
 bool are_columns(io::Scene const& scene) {
   return ReplicaColumns::open(scene, io::replica_of(scene, 0), {}).has_value();
@@ -31,11 +29,12 @@ bool are_columns(io::Scene const& scene) {
 TEST(ReplicaColumns, AreUsedForSmallLatticesOfLocalTermsAndExchange) {
   auto const scene = llg_scene("0.1", "rkmk4", 40, chains);
   EXPECT_TRUE(are_columns(scene));
+  EXPECT_TRUE(are_columns(llg_scene("0.1", "rkmk4", 40, chains + noise)));
   std::vector<std::vector<std::string>> const can{
       {"lattice.shape=[1]"},
       {"lattice.shape=[3,1,5]", "lattice.boundary='periodic'"},
       {"integrator.method='ab2'"},
-      {"ensemble.vary={'thermal.temperature'={from=0,to=1}}"},
+      {"thermal={temperature=0.1}", "ensemble.vary={'thermal.temperature'={from=0,to=1}}"},
       {"field.anisotropy={cubic=0.4,axes=[[1,0,0],[0,1,0]]}"},
       {"field.slab_demag={normal=[0,0,1]}"}};
   for (auto const& changes : can)
@@ -45,23 +44,23 @@ TEST(ReplicaColumns, AreUsedForSmallLatticesOfLocalTermsAndExchange) {
       {"lattice.shape=[1,3,3]"},
       {"lattice.shape=[600]"},
       {"lattice.occupied='i>0'"},
-      {"lattice.crystal='bcc'"},
+      {"lattice.crystal='bcc'", "field={couplings={shells=[1.0]}}"},
       {"ensemble.replicas=4"},
       {"ensemble.vary={'field.exchange'={from=0,to=1}}"},
       {"field.dmi={bulk=0.3}"},
       {"field.demag=true"},
       {"field.exchange='1+i'"},
       {"field.anisotropy={constant='1+i',axis=[0,0,1]}"},
-      {"thermal={}", "integrator={method='tsit5',tolerance=1e-6,dt=0.02,steps=40}"},
-      {"thermal={}", "integrator.method='implicit_midpoint'"},
-      {"thermal={}", "integrator.method='red_black2'", "field.applied=[0.1,0,0]"},
-      {"thermal={}", "integrator.until_torque=1e-3"}};
+      {"integrator={method='tsit5',tolerance=1e-6,dt=0.02,steps=40}"},
+      {"integrator.method='implicit_midpoint'"},
+      {"integrator.method='red_black2'", "field.applied=[0.1,0,0]"},
+      {"integrator.until_torque=1e-3"}};
   for (auto const& changes : cannot)
     EXPECT_FALSE(are_columns(scene_of(scene.text, changes))) << changes[0];
 }
 
 TEST(ReplicaColumns, AreSampledAndRelaxedAsRunsOfTheirOwn) {
-  auto const scene = llg_scene("0.1", "heun", 40, chains);
+  auto const scene = llg_scene("0.1", "heun", 40, chains + noise);
   for (auto const precision : precisions) {
     EnsembleRun run(scene, {.precision = precision}, false);
     auto const looks = run.looks(false, {});
@@ -82,7 +81,8 @@ TEST(ReplicaColumns, AreSampledAndRelaxedAsRunsOfTheirOwn) {
     EXPECT_EQ(run.evaluations(), 40 * own[0]->evaluations());
   }
   // From here each has a run of its own.
-  auto const cold = scene_of(scene.text, {"thermal={}", "field.applied=[0.3,0.1,0]"});
+  auto const cold =
+      scene_of(llg_scene("0.1", "heun", 40, chains).text, {"field.applied=[0.3,0.1,0]"});
   EnsembleRun run(cold, {}, false);
   run.advance(11, run.looks(false, {}));
   auto const found = run.relax({.torque = 1e-9});
@@ -96,10 +96,10 @@ TEST(ReplicaColumns, AreSampledAndRelaxedAsRunsOfTheirOwn) {
   EXPECT_EQ(run.steps(), 16);
 }
 
-// A start with a length that the method does not keep fails in one of the columns only.
+// The field makes the steps unstable.
 TEST(ReplicaColumns, FailAsRunsOfTheirOwn) {
-  auto const scene = scene_of(llg_scene("0.1", "classical_euler", 4000, chains).text,
-                              {"thermal={}", "field.applied=[0,0,30]"});
+  auto const scene =
+      scene_of(llg_scene("0.1", "classical_euler", 4000, chains).text, {"field.applied=[0,0,30]"});
   std::optional<std::string> said;
   std::int64_t first = -1;
   for (std::int64_t replica = 0; replica < 40 && !said; ++replica) {
