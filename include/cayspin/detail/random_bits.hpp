@@ -120,13 +120,16 @@ class RandomBitsOfColumns {
     if constexpr (Lanes == 1) {
       return static_cast<Number>(bits<1>(column, place));
     } else {
-      using Bits = typename LanesOf<std::uint64_t, lanes>::type;
       using Part = typename LanesOf<Number, lanes>::type;
       static_assert(Lanes % lanes == 0);
       typename LanesOf<Number, Lanes>::type found;
       for (int lane = 0; lane < Lanes; lane += lanes) {
-        Bits const some = bits<lanes>(column + static_cast<std::uint64_t>(lane), place);
-        Part const part = __builtin_convertvector(some, Part);
+        auto const some = bits<lanes>(column + static_cast<std::uint64_t>(lane), place);
+        Part part;
+        if constexpr (lanes == 1)
+          part = static_cast<Number>(some);
+        else
+          part = __builtin_convertvector(some, Part);
         std::memcpy(reinterpret_cast<Number*>(&found) + lane, &part, sizeof part);
       }
       return found;
