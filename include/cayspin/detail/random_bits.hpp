@@ -23,7 +23,8 @@ class RandomBits {
   static constexpr std::uint64_t most_lanes = 16;
 
   RandomBits() = default;
-  RandomBits(std::uint64_t seed, std::uint64_t draw) : keys_(seed), draw_(draw) {}
+  KOKKOS_FORCEINLINE_FUNCTION RandomBits(std::uint64_t seed, std::uint64_t draw)
+      : keys_(seed), draw_(draw) {}
 
   /// Returns numbers whose lower 16 bits belong to `place` and the places after it. The upper bits
   /// are unspecified.
@@ -53,13 +54,15 @@ class RandomBits {
     return place / places * counters + place % 16 / 2;
   }
   template <int Lanes>
-  KOKKOS_FORCEINLINE_FUNCTION static auto bits_of(std::uint64_t place,
-                                                  Philox<Lanes> const& random) {
+  KOKKOS_FORCEINLINE_FUNCTION static typename Philox<Lanes>::Words bits_of(
+      std::uint64_t place, Philox<Lanes> const& random) {
+    using Words = typename Philox<Lanes>::Words;
     // Constant indices: an array on the stack of a device is slow.
     auto const& word = random.word;
-    auto const even = place % 32 < 16 ? word[0] : word[2];
-    auto const odd = place % 32 < 16 ? word[1] : word[3];
-    return (place % 2 == 0 ? even : odd) >> place % places / 32 * 16;
+    Words const even = place % 32 < 16 ? word[0] : word[2];
+    Words const odd = place % 32 < 16 ? word[1] : word[3];
+    Words const found = place % 2 == 0 ? even : odd;
+    return found >> place % places / 32 * 16;
   }
 
   KOKKOS_FORCEINLINE_FUNCTION void draw(std::uint64_t block) const {
@@ -117,34 +120,30 @@ class RandomBitsOfColumns {
   template <class Number, int Lanes>
   KOKKOS_FORCEINLINE_FUNCTION typename LanesOf<Number, Lanes>::type get(std::uint64_t column,
                                                                         std::uint64_t place) const {
-    if constexpr (Lanes == 1) {
-      return static_cast<Number>(bits<1>(column, place));
-    } else {
-      using Part = typename LanesOf<Number, lanes>::type;
-      static_assert(Lanes % lanes == 0);
-      typename LanesOf<Number, Lanes>::type found;
-      for (int lane = 0; lane < Lanes; lane += lanes) {
-        auto const some = bits<lanes>(column + static_cast<std::uint64_t>(lane), place);
-        Part part;
-        if constexpr (lanes == 1)
-          part = static_cast<Number>(some);
-        else
-          part = __builtin_convertvector(some, Part);
-        std::memcpy(reinterpret_cast<Number*>(&found) + lane, &part, sizeof part);
-      }
-      return found;
+    constexpr int together = Lanes == 1 ? 1 : lanes;
+    static_assert(Lanes % together == 0);
+    typename LanesOf<Number, Lanes>::type found;
+    for (int lane = 0; lane < Lanes; lane += together) {
+      auto const some = numbers<Number, together>(column + static_cast<std::uint64_t>(lane), place);
+      std::memcpy(reinterpret_cast<Number*>(&found) + lane, &some, sizeof some);
     }
+    return found;
   }
 
  private:
   static constexpr int lanes = host_lanes<double>;
 
-  template <int Lanes>
-  KOKKOS_FORCEINLINE_FUNCTION auto bits(std::uint64_t column, std::uint64_t place) const {
+  template <class Number, int Lanes>
+  KOKKOS_FORCEINLINE_FUNCTION typename LanesOf<Number, Lanes>::type numbers(
+      std::uint64_t column, std::uint64_t place) const {
     using Bits = RandomBits<false>;
     auto random = Philox<Lanes>::with_equal_counters(Bits::counter_of(place), draw_);
     encrypt_with_keys(seed_ + column, random);
-    return Bits::bits_of(place, random);
+    typename Philox<Lanes>::Words const bits = Bits::bits_of(place, random);
+    if constexpr (Lanes == 1)
+      return static_cast<Number>(bits);
+    else
+      return __builtin_convertvector(bits, typename LanesOf<Number, Lanes>::type);
   }
 
   std::uint64_t seed_ = 0, draw_ = 0;
