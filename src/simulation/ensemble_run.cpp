@@ -128,11 +128,11 @@ Advanced EnsembleRun::advance_columns(std::int64_t count, Looks const& looks) {
   auto const ended = columns_->advance(count, looks);
   if (ended.error) {
     // Only a run of its own can tell which replica fails.
-    leave_columns();
     for (auto const number : ended.failed) {
-      auto& run = *runs_[static_cast<std::size_t>(number)];
+      auto const run = SceneRun::open(io::replica_of(scene_, number), settings_);
+      columns_->continue_in(*run, number);
       try {
-        run.advance(target - run.steps(), looks);
+        run->advance(target - run->steps(), looks);
       } catch (NumbersFailed const& failure) {
         throw NumbersFailed(fmt::format("replica {}: {}", number, failure.what()));
       }
@@ -160,6 +160,7 @@ void EnsembleRun::check_columns() {
 }
 
 void EnsembleRun::leave_columns() {
+  require_memory_of_all(scene_, first().scene(), settings_.precision, false);
   for (std::size_t number = 0; number < replicas(); ++number) {
     auto const replica = static_cast<std::int64_t>(number);
     if (number > 0) runs_.push_back(SceneRun::open(io::replica_of(scene_, replica), settings_));

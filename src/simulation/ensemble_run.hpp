@@ -30,7 +30,7 @@ class EnsembleRun {
   std::size_t replicas() const { return at_rest_.size(); }
   /// Returns the run of the first replica, whose spins may be those of another.
   SceneRun const& first() const { return *runs_.front(); }
-  /// Returns the first replica's warning about its steps, with its number.
+  /// Returns the warning of the first replica that has one about its steps, with its number.
   std::optional<std::string> warning() const;
 
   /// Those of the replicas that have gone furthest.

@@ -140,26 +140,26 @@ std::optional<ReplicaColumns> ReplicaColumns::open(io::Scene const& scene, io::S
     auto run = SceneRun::open(scene_of_columns(one, begin, count, temperatures), settings);
     run->set_unit_vectors(starts_of(one, begin, count));
     auto of_one = sample ? std::move(sample) : SceneRun::open(one, settings);
-    opened->lattices_.push_back({begin, count, std::move(run), std::move(of_one)});
+    opened->groups_.push_back({begin, count, std::move(run), std::move(of_one)});
   }
   return opened;
 }
 
 std::int64_t ReplicaColumns::evaluations() const {
   std::int64_t all = 0;
-  for (auto const& some : lattices_) all += some.count * some.columns->evaluations();
+  for (auto const& group : groups_) all += group.count * group.columns->evaluations();
   return all;
 }
 
 double ReplicaColumns::step_seconds() const {
   double all = 0;
-  for (auto const& some : lattices_) all += some.columns->step_seconds();
+  for (auto const& group : groups_) all += group.columns->step_seconds();
   return all;
 }
 
 ReplicaColumns::Ended ReplicaColumns::advance(std::int64_t count, Looks const& looks) {
   std::vector<SceneRun*> runs;
-  for (auto const& some : lattices_) runs.push_back(some.columns.get());
+  for (auto const& group : groups_) runs.push_back(group.columns.get());
   runs.front()->require_reachable(count);
   auto const outcomes = SceneRun::advance_all(runs, count, looks);
   Ended ended;
@@ -168,23 +168,23 @@ ReplicaColumns::Ended ReplicaColumns::advance(std::int64_t count, Looks const& l
     ended.interrupted = ended.interrupted || advanced == Advanced::interrupted;
     if (!error) continue;
     if (!ended.error) ended.error = error;
-    auto const& some = lattices_[number];
-    for (std::int64_t column = 0; column < some.count; ++column)
-      ended.failed.push_back(some.first + column);
+    auto const& group = groups_[number];
+    for (std::int64_t column = 0; column < group.count; ++column)
+      ended.failed.push_back(group.first + column);
   }
   return ended;
 }
 
 void ReplicaColumns::continue_in(SceneRun& run, std::int64_t replica) const {
-  auto const some = std::ranges::find_if(
-      lattices_, [&](Some const& one) { return replica < one.first + one.count; });
-  run.continue_from_column(*some->columns, replica - some->first);
+  auto const group = std::ranges::find_if(
+      groups_, [&](Group const& group) { return replica < group.first + group.count; });
+  run.continue_from_column(*group->columns, replica - group->first);
 }
 
 std::vector<Sample> ReplicaColumns::samples() const {
   std::vector<SceneRun::ColumnsToSample> all;
-  for (auto const& some : lattices_)
-    all.push_back({some.columns.get(), some.one.get(), some.count});
+  for (auto const& group : groups_)
+    all.push_back({group.columns.get(), group.one.get(), group.count});
   std::vector<Sample> samples;
   for (auto const& of_lattice : SceneRun::sample_columns(all))
     samples.insert(samples.end(), of_lattice.begin(), of_lattice.end());
@@ -194,12 +194,12 @@ std::vector<Sample> ReplicaColumns::samples() const {
 template <class Real>
 std::vector<Real> ReplicaColumns::spins() const {
   std::vector<Real> all;
-  for (auto const& some : lattices_) {
-    auto const of_lattice = packed<Real>(some.columns->spins().vectors);
-    auto const sites = static_cast<std::int64_t>(of_lattice.size()) / 3 / some.count;
-    for (std::int64_t column = 0; column < some.count; ++column)
+  for (auto const& group : groups_) {
+    auto const of_lattice = packed<Real>(group.columns->spins().vectors);
+    auto const sites = static_cast<std::int64_t>(of_lattice.size()) / 3 / group.count;
+    for (std::int64_t column = 0; column < group.count; ++column)
       for (std::int64_t site = 0; site < sites; ++site) {
-        auto const from = of_lattice.begin() + 3 * (site * some.count + column);
+        auto const from = of_lattice.begin() + 3 * (site * group.count + column);
         all.insert(all.end(), from, from + 3);
       }
   }

@@ -27,12 +27,12 @@ class ReplicaColumns {
   /// Those of the replicas, reduced; empty if all have that of the scene.
   std::vector<double> const& temperatures() const { return temperatures_; }
 
-  std::int64_t steps() const { return lattices_.front().columns->steps(); }
-  double time() const { return lattices_.front().columns->time(); }
+  std::int64_t steps() const { return groups_.front().columns->steps(); }
+  double time() const { return groups_.front().columns->time(); }
   std::int64_t evaluations() const;
   double step_seconds() const;
 
-  /// What ended steps early.
+  /// Tells whether steps ended early, and why.
   struct Ended {
     bool interrupted = false;
     std::vector<std::int64_t> failed;  // replicas of the lattices that failed
@@ -52,11 +52,11 @@ class ReplicaColumns {
   std::vector<Real> spins() const;
 
  private:
-  struct Some {
+  struct Group {
     std::int64_t first, count;
     std::unique_ptr<SceneRun> columns, one;
   };
-  std::vector<Some> lattices_;
+  std::vector<Group> groups_;
   std::vector<double> temperatures_;
 };
 

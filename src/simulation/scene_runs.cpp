@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What several runs do together.
+// Several runs together: their steps, searches for equilibria and samples.
 #include "scene_run.hpp"
 #include "side_by_side.hpp"
 #include "turn.hpp"
