@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
+import os
 import warnings
 
 import numpy as np
@@ -23,16 +24,19 @@ class EnsembleSimulation:
 
     `precision` is "double" or "single", `space` an execution space that was compiled in (default:
     that of Kokkos), `threads` the number of its threads: the first simulation of a process decides
-    that. Ctrl-C stops it between two steps with KeyboardInterrupt; some replicas may then be
-    further than others. Lengths, times, fields and energies are in the units of the scene: reduced
-    ones, or with units = "SI" m, s, T and J.
+    that. `restart` names the file of an ensemble: the simulation continues from its last frame,
+    unless the method remembers more than the spins.
 
-    Raises SceneError for a scene that cannot run here, CayspinError for other arguments and for a
-    scene without [ensemble].
+    Ctrl-C stops it between two steps with KeyboardInterrupt; some replicas may then be further than
+    others. Lengths, times, fields and energies are in the units of the scene: reduced ones, or with
+    units = "SI" m, s, T and J.
+
+    Raises SceneError for a scene that cannot run here, CayspinError for other arguments, for a
+    scene without [ensemble] and for a `restart` that does not fit.
     """
 
     def __init__(self, scene: Scene, precision: str = "double", space: str | None = None,
-                 threads: int | None = None):
+                 threads: int | None = None, restart: str | os.PathLike | None = None):
         if not isinstance(scene, Scene):
             raise _cayspin.CayspinError(
                 f"EnsembleSimulation: a {type(scene).__name__}; accepted: a Scene")
@@ -40,6 +44,10 @@ class EnsembleSimulation:
             scene._scene, arguments.word(precision, "precision"),
             None if space is None else arguments.word(space, "space"),
             None if threads is None else arguments.whole(threads, "threads", 32))
+        if restart is not None:
+            warning = self._run.continue_from(arguments.file_name(restart, "restart"))
+            if warning:
+                warnings.warn(warning, stacklevel=2)
         self._scene = scene
         self._dt_is_checked = False
 

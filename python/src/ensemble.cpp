@@ -7,6 +7,7 @@
 #include "simulation/ensemble_run.hpp"
 #include "simulation/failure.hpp"
 
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/unique_ptr.h>
@@ -122,6 +123,8 @@ void define_ensemble(nb::module_& module) {
              return std::make_unique<EnsembleRun>(scene, settings, !io::has_integrator(scene));
            }),
            "scene"_a, "precision"_a, "space"_a.none(), "threads"_a.none())
+      .def("continue_from", &EnsembleRun::continue_from, "file"_a,
+           nb::call_guard<nb::gil_scoped_release>())
       .def("advance", advance, "count"_a, "until_torque"_a)
       .def("relax", relax, "torque"_a, "evaluations"_a, "keep_saddles"_a)
       .def("require_reachable",

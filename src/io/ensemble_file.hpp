@@ -70,5 +70,10 @@ struct EnsembleInfo {
 bool is_ensemble(std::filesystem::path const& path);
 /// Throws std::runtime_error with one line.
 EnsembleInfo read_ensemble_info(std::filesystem::path const& path);
+/// Reads the spins of all replicas in the last frame, one replica after the other, each packed as
+/// (nz, ny, nx, 3) in the order of TrajectoryHeader::shape. Bits are kept. Throws
+/// std::runtime_error with one line.
+std::vector<double> read_ensemble_spins(std::filesystem::path const& path,
+                                        EnsembleInfo const& info);
 
 }  // namespace cayspin::inline v0_2::io

@@ -47,13 +47,7 @@ Restart restart_of(EarlierRun left, io::Stage const& stage, Plan const& plan,
   auto const output = output_file(scene, options.output);
   return as_restart([&] {
     Restart restart(std::move(left), scene, plan, options.precision, end);
-    std::error_code ignored;
-    for (auto const& file : restart.files())
-      for (auto const& written : {output, io::checkpoint_beside(output)})
-        if (std::filesystem::equivalent(file, written, ignored))
-          throw UsageError(
-              fmt::format("{}: the run would write into it; accepted: another file for --output",
-                          file.string()));
+    for (auto const& file : restart.files()) require_not_written(file, output);
     return restart;
   });
 }
@@ -140,9 +134,8 @@ int run(RunOptions const& options, Ranks& ranks) {
   if (typed.ensemble.there()) {
     ranks.together([&] {
       if (ranks.many()) io::require_no_ensemble(typed, "a run on several ranks");
-      if (options.restart) io::require_no_ensemble(typed, "--restart");
     });
-    return run_ensemble(typed, options, options.listener);
+    return run_ensemble(typed, options);
   }
   auto const space = ranks.together([&] { return chosen_space(options.space); });
   KokkosOfCommand const kokkos(space, threads_of_rank(options, ranks), options.device);

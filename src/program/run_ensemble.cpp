@@ -46,13 +46,13 @@ std::string kept(io::EnsembleFile const& file, std::filesystem::path const& path
 /// A run and its file, from frame to frame.
 class RecordedEnsemble {
  public:
-  RecordedEnsemble(io::Scene const& scene, DeviceOptions const& options, std::string const& space,
-                   Listener listener)
+  RecordedEnsemble(io::Scene const& scene, RunOptions const& options, std::string const& space)
       : scene_(scene),
         run_(scene, settings_of(options, space), false),
         looks_(run_.looks(true, interrupt_requested)),
-        progress_(io::sites(scene) * scene.ensemble.replicas, listener),
+        progress_(io::sites(scene) * scene.ensemble.replicas, options.listener),
         path_(output_file(scene, options.output)) {
+    if (options.restart) continue_from(*options.restart);
     // A scene that refuses to be unstable refuses any of the replicas.
     if (auto const warning = run_.warning()) fmt::print(stderr, "warning: {}\n", *warning);
     file_.emplace(open_file(scene, options, run_));
@@ -61,7 +61,7 @@ class RecordedEnsemble {
   int run() {
     auto const end = run_.last_step();
     auto const equal_steps = scene_.integrator.method->has_equal_steps();
-    progress_.begin_stage(0, end, equal_steps, {});
+    progress_.begin_stage(first_, end, equal_steps, {});
     auto ending = Advanced::whole;
     look(false);
     try {
@@ -82,7 +82,7 @@ class RecordedEnsemble {
     bool const interrupted = ending == Advanced::interrupted;
     interrupted ? file_->close(cost()) : file_->finish(cost());
     Summary total;
-    total.steps = run_.steps();
+    total.steps = run_.steps() - first_;
     total.step_seconds = run_.step_seconds();
     progress_.close(total, file_->frames(), path_.string());
     if (!interrupted) return Status::done;
@@ -92,9 +92,20 @@ class RecordedEnsemble {
   }
 
  private:
+  void continue_from(std::filesystem::path const& file) {
+    auto const warning = as_restart([&] {
+      require_not_written(file, path_);
+      return run_.continue_from(file);
+    });
+    if (warning) fmt::print(stderr, "warning: --restart {}\n", *warning);
+    first_ = run_.steps();
+  }
+
   void look(bool last) {
     auto const step = run_.steps();
-    auto const due = [&](std::int64_t every) { return last || step % every == 0; };
+    auto const due = [&](std::int64_t every) {
+      return last || step == first_ || step % every == 0;
+    };
     Step const now{step, 0, 0, last};
     if (progress_.due(now)) progress_.show(now);
     if (!due(scene_.output.every) && !due(scene_.output.scalars_every)) return;
@@ -107,6 +118,7 @@ class RecordedEnsemble {
 
   io::Scene const& scene_;
   EnsembleRun run_;
+  std::int64_t first_ = 0;
   simulation::Looks looks_;
   Progress progress_;
   std::filesystem::path path_;
@@ -116,13 +128,13 @@ class RecordedEnsemble {
 
 }  // namespace
 
-int run_ensemble(io::Scene const& scene, DeviceOptions const& options, Listener listener) {
+int run_ensemble(io::Scene const& scene, RunOptions const& options) {
   auto const space = chosen_space(options.space);
   KokkosOfCommand const kokkos(space, options.threads, options.device);
   warn_of_notes(scene);
   io::require_free(output_file(scene, options.output), options.overwrite);
   catch_signals();
-  return RecordedEnsemble(scene, options, space, listener).run();
+  return RecordedEnsemble(scene, options, space).run();
 }
 
 int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,

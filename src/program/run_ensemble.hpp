@@ -2,12 +2,12 @@
 #pragma once
 
 #include "command.hpp"
-#include "progress.hpp"
+#include "run_stages.hpp"
 
 namespace cayspin::program {
 
 /// `cayspin run` of a scene with [ensemble], on one rank. Returns the exit status.
-int run_ensemble(io::Scene const& scene, DeviceOptions const& options, Listener listener);
+int run_ensemble(io::Scene const& scene, RunOptions const& options);
 
 /// How `cayspin relax` looks for the equilibrium of each replica.
 struct RelaxEnsembleOptions {

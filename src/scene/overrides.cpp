@@ -15,10 +15,16 @@
 namespace cayspin::inline v0_2::io::detail {
 namespace {
 
+// Between quotes a dot belongs to the key.
 std::vector<std::string> split_path(std::string_view path) {
   std::vector<std::string> keys(1);
+  char quote = 0;
   for (char const c : path) {
-    if (c == '.') {
+    if (c == quote) {
+      quote = 0;
+    } else if (quote == 0 && (c == '"' || c == '\'')) {
+      quote = c;
+    } else if (quote == 0 && c == '.') {
       keys.emplace_back();
     } else if (c != ' ') {
       keys.back() += c;

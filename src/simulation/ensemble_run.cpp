@@ -3,6 +3,7 @@
 
 #include "failure.hpp"
 #include "plan.hpp"
+#include "restart.hpp"
 #include "run_files.hpp"
 #include "scene_minimizer.hpp"
 
@@ -53,6 +54,31 @@ EnsembleRun::EnsembleRun(io::Scene const& scene, RunSettings const& settings, bo
     of_replica.thermal->temperature = columns_->temperatures()[number];
     guards_[number] = Guard(of_replica, epsilon);
   }
+}
+
+std::optional<std::string> EnsembleRun::continue_from(std::filesystem::path const& file) {
+  if (!io::is_ensemble(file))
+    throw UsageError(
+        fmt::format("{}: it is of a scene without [ensemble]; accepted: the file of "
+                    "an ensemble",
+                    file.string()));
+  auto const info = io::read_ensemble_info(file);
+  if (info.ensemble.replicas != scene_.ensemble.replicas)
+    throw UsageError(fmt::format("{}: it has {} replicas, the scene {}; accepted: as many",
+                                 file.string(), info.ensemble.replicas, scene_.ensemble.replicas));
+  auto const plan = make_plan(first().scene(), settings_.precision);
+  auto const end =
+      scene_.integrator.steps > 0 ? plan.times.steps : std::numeric_limits<std::int64_t>::max();
+  Restart const restart({file, info}, scene_, plan, settings_.precision, end);
+  steps_ = restart.step();
+  auto const spins = io::read_ensemble_spins(file, info);
+  if (columns_) columns_->continue_from(steps_, spins);
+  auto const size = static_cast<std::ptrdiff_t>(3 * io::sites(first().scene()));
+  for (std::size_t number = 0; number < runs_.size(); ++number) {
+    auto const begin = spins.begin() + size * static_cast<std::ptrdiff_t>(number);
+    runs_[number]->continue_from(steps_, {begin, begin + size});
+  }
+  return restart.warning();
 }
 
 std::optional<std::string> EnsembleRun::warning() const {

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -21,8 +22,8 @@ namespace cayspin::simulation {
 /// side on the threads of the host. Replica r has the bits of a run of io::replica_of(scene, r).
 class EnsembleRun {
  public:
-  /// For cayspin run, or where `relaxes` for cayspin relax. Throws what SceneRun::open throws, also
-  /// for too little memory.
+  /// For cayspin run, or where `relaxes` for cayspin relax; without settings.restart. Throws what
+  /// SceneRun::open throws, also for too little memory.
   EnsembleRun(io::Scene const& scene, RunSettings const& settings, bool relaxes);
   EnsembleRun(EnsembleRun const&) = delete;
   EnsembleRun& operator=(EnsembleRun const&) = delete;
@@ -30,6 +31,11 @@ class EnsembleRun {
   std::size_t replicas() const { return at_rest_.size(); }
   /// Returns the run of the first replica, whose spins may be those of another.
   SceneRun const& first() const { return *runs_.front(); }
+  /// Continues from the last frame of an ensemble's file. Returns one line that names unexpected
+  /// differences from the scene of the file. Throws UsageError for a file that does not fit, and
+  /// for a method that remembers more than the spins.
+  std::optional<std::string> continue_from(std::filesystem::path const& file);
+
   /// Returns the warning of the first replica that has one about its steps, with its number.
   std::optional<std::string> warning() const;
 

@@ -104,6 +104,13 @@ std::vector<double> temperatures_of(io::Scene const& scene) {
   return temperatures;
 }
 
+// Puts the spins of a replica into a column of `columns`, which has `count` of them.
+void put_column(double const* spins, std::int64_t sites, std::int64_t column, std::int64_t count,
+                std::vector<double>& columns) {
+  for (std::int64_t site = 0; site < sites; ++site)
+    std::copy_n(spins + 3 * site, 3, columns.begin() + 3 * (site * count + column));
+}
+
 // Returns the starts of the replicas first .. first + count - 1 as columns.
 std::vector<double> starts_of(io::Scene& one, std::int64_t first, std::int64_t count) {
   std::vector<double> columns(static_cast<std::size_t>(3 * count * io::sites(one)));
@@ -113,8 +120,7 @@ std::vector<double> starts_of(io::Scene& one, std::int64_t first, std::int64_t c
     if (random) random->seed += first + column;
     if (random || start.empty()) start = io::initial_spins(one);
     if (random) random->seed -= first + column;
-    for (std::int64_t site = 0; site < io::sites(one); ++site)
-      std::copy_n(start.begin() + 3 * site, 3, columns.begin() + 3 * (site * count + column));
+    put_column(start.data(), io::sites(one), column, count, columns);
   }
   return columns;
 }
@@ -138,7 +144,7 @@ std::optional<ReplicaColumns> ReplicaColumns::open(io::Scene const& scene, io::S
   for (std::int64_t begin = 0; begin < replicas; begin += columns) {
     std::int64_t const count = std::min(columns, replicas - begin);
     auto run = SceneRun::open(scene_of_columns(one, begin, count, temperatures), settings);
-    run->set_unit_vectors(starts_of(one, begin, count));
+    run->continue_from(0, starts_of(one, begin, count));
     auto of_one = sample ? std::move(sample) : SceneRun::open(one, settings);
     opened->groups_.push_back({begin, count, std::move(run), std::move(of_one)});
   }
@@ -179,6 +185,17 @@ void ReplicaColumns::continue_in(SceneRun& run, std::int64_t replica) const {
   auto const group = std::ranges::find_if(
       groups_, [&](Group const& group) { return replica < group.first + group.count; });
   run.continue_from_column(*group->columns, replica - group->first);
+}
+
+void ReplicaColumns::continue_from(std::int64_t step, std::vector<double> const& spins) {
+  for (auto const& group : groups_) {
+    auto const sites = io::sites(group.one->scene());
+    std::vector<double> columns(static_cast<std::size_t>(3 * group.count * sites));
+    for (std::int64_t column = 0; column < group.count; ++column)
+      put_column(spins.data() + 3 * sites * (group.first + column), sites, column, group.count,
+                 columns);
+    group.columns->continue_from(step, columns);
+  }
 }
 
 std::vector<Sample> ReplicaColumns::samples() const {

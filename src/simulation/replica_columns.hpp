@@ -42,6 +42,9 @@ class ReplicaColumns {
   /// failed.
   Ended advance(std::int64_t count, Looks const& looks);
 
+  /// Continues after this step from the spins of all replicas, one after the other.
+  void continue_from(std::int64_t step, std::vector<double> const& spins);
+
   /// Moves a run of one replica to the step and the spins of that replica.
   void continue_in(SceneRun& run, std::int64_t replica) const;
 

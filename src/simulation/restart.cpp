@@ -87,6 +87,11 @@ EarlierRun::EarlierRun(std::filesystem::path of_run) : path(std::move(of_run)) {
     checkpoint = std::make_unique<io::CheckpointReader>(path);
     return;
   }
+  if (io::is_ensemble(path))
+    throw UsageError(
+        fmt::format("{}: it is of an ensemble; accepted: a scene with [ensemble], or "
+                    "a trajectory or checkpoint",
+                    path.string()));
   trajectory = io::read_info(path);
   auto const beside = io::checkpoint_beside(path);
   std::error_code ignored;
@@ -96,6 +101,16 @@ EarlierRun::EarlierRun(std::filesystem::path of_run) : path(std::move(of_run)) {
     throw UsageError(
         fmt::format("{}: {} is of another scene; accepted: the checkpoint of the same run, or none",
                     path.string(), beside.string()));
+}
+
+EarlierRun::EarlierRun(std::filesystem::path of_run, io::EnsembleInfo const& info)
+    : path(std::move(of_run)), is_ensemble(true) {
+  auto& last = trajectory.emplace();
+  last.header = info.header;
+  if (info.frames == 0) return;
+  last.frames = 1;
+  last.frame_steps = {info.step};
+  last.frame_times = {info.time};
 }
 
 std::string const& EarlierRun::scene_text() const {
@@ -241,6 +256,11 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
   if (step_ >= end && !from_.at_begin)
     refuse(fmt::format("it ends at step {}, the scene at step {}", step_, end),
            "a scene that goes on");
+  if (needs_memory && from_.is_ensemble)
+    refuse(
+        "its method, or a key such as until_torque, needs more than frames to go on with the "
+        "same bits",
+        "an ensemble that steps only from its spins, or one that starts anew");
   if (needs_memory && !uses_checkpoint_)
     refuse("the run needs more than its frames to go on with the same bits, and " +
                io::checkpoint_beside(from_.path).string() + " is not there",

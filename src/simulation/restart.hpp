@@ -2,6 +2,7 @@
 #pragma once
 
 #include "io/checkpoint.hpp"
+#include "io/ensemble_file.hpp"
 #include "io/stages.hpp"
 #include "io/trajectory.hpp"
 #include "plan.hpp"
@@ -20,6 +21,8 @@ bool remembers(io::Scene const& scene, Plan const& plan);
 /// Files of an earlier run: a trajectory, the checkpoint next to it, or only a checkpoint.
 struct EarlierRun {
   explicit EarlierRun(std::filesystem::path path);
+  /// The last frame of an ensemble's file, which has no checkpoint.
+  EarlierRun(std::filesystem::path path, io::EnsembleInfo const& info);
 
   /// Returns the scene as it ran, with the chosen method if its own is "auto".
   std::string const& scene_as_run() const;
@@ -35,6 +38,7 @@ struct EarlierRun {
   std::optional<io::TrajectoryInfo> trajectory;
   std::unique_ptr<io::CheckpointReader> checkpoint;
   bool at_begin = false;  // of a stage: there is no memory of steps
+  bool is_ensemble = false;
 
  private:
   struct State {
@@ -56,7 +60,7 @@ class Restart {
 
   std::int64_t step() const { return step_; }
   /// Returns the spins of a box, or all, in the order of io::read_spins: bits are kept. Throws
-  /// UsageError if the vacant sites differ from those of the scene.
+  /// UsageError if the vacant sites differ from those of the scene. Not for ensembles.
   std::vector<double> spins(io::Scene const& scene, io::SiteBox const& box) const;
   std::vector<double> spins(io::Scene const& scene) const;
   /// Returns the checkpoint with the run's memory of steps, if needed.

@@ -318,9 +318,10 @@ void SceneRun::set_spins(io::HostVectors const& from) {
   replace_spins(normalised<UsageError>(as_start, "spins"));
 }
 
-void SceneRun::set_unit_vectors(std::vector<double> const& from) {
+void SceneRun::continue_from(std::int64_t step, std::vector<double> const& spins) {
   Turn const turn;
-  replace_spins(from);
+  number_ = step;
+  replace_spins(spins);
 }
 
 void SceneRun::continue_from_column(SceneRun const& columns, std::int64_t column) {

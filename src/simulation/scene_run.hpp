@@ -165,9 +165,9 @@ class SceneRun {
   /// UsageError for a zero or non-finite spin, or another shape.
   void set_spins(io::HostVectors const& from);
 
-  /// Replaces the spins by unit vectors, sites x 3 with x fastest, as they are. Multistep methods
-  /// restart.
-  void set_unit_vectors(std::vector<double> const& from);
+  /// Continues after this step from unit vectors, sites x 3 with x fastest, as they are. Multistep
+  /// methods restart.
+  void continue_from(std::int64_t step, std::vector<double> const& spins);
 
   /// Stores everything that another run needs to continue with the same bits, by
   /// RunSettings::restart. Replaces an existing file; throws std::runtime_error if the file cannot

@@ -93,6 +93,36 @@ EnsembleInfo read_whole_info(std::filesystem::path const& path) {
   return info;
 }
 
+// The opposite of by_sites.
+std::vector<double> by_planes(std::vector<double> const& spins, TrajectoryHeader const& header) {
+  if (header.cell_sites == 1) return spins;
+  auto const plane = static_cast<std::size_t>(3 * header.shape[0] * header.shape[1]);
+  auto const planes = static_cast<std::size_t>(header.shape[2]);
+  auto const sites = static_cast<std::size_t>(header.cell_sites);
+  std::vector<double> sorted(spins.size());
+  auto from = spins.begin();
+  for (std::size_t state = 0; state < spins.size(); state += plane * planes)
+    for (std::size_t site = 0; site < sites; ++site)
+      for (std::size_t k = site; k < planes; k += sites) {
+        auto const next = from + static_cast<std::ptrdiff_t>(plane);
+        std::copy(from, next, sorted.begin() + static_cast<std::ptrdiff_t>(state + k * plane));
+        from = next;
+      }
+  return sorted;
+}
+
+std::vector<double> read_last_spins(std::filesystem::path const& path, EnsembleInfo const& info) {
+  auto const file = open_file(path);
+  auto const dataset = open_dataset(file.get(), "spins", path);
+  auto extents = dataset_extents(dataset.get(), path);
+  Extents begin(extents.size(), 0);
+  begin[0] = static_cast<hsize_t>(info.frames) - 1;
+  extents[0] = 1;
+  std::vector<double> spins(elements(extents));
+  read_block(dataset.get(), H5T_NATIVE_DOUBLE, begin, extents, spins.data(), path);
+  return by_planes(spins, info.header);
+}
+
 }  // namespace
 
 bool is_ensemble(std::filesystem::path const& path) {
@@ -105,6 +135,12 @@ bool is_ensemble(std::filesystem::path const& path) {
 
 EnsembleInfo read_ensemble_info(std::filesystem::path const& path) {
   return read_guarded(path, [&] { return read_whole_info(path); });
+}
+
+std::vector<double> read_ensemble_spins(std::filesystem::path const& path,
+                                        EnsembleInfo const& info) {
+  if (info.frames == 0) throw_failure(path, "cannot read dataset spins", "there is no frame");
+  return read_guarded(path, [&] { return read_last_spins(path, info); });
 }
 
 }  // namespace cayspin::inline v0_2::io

@@ -315,7 +315,6 @@ TEST_F(Ensembles, AreRefusedInOneLine) {
   refused(vary(""), "output.checkpoint_every: does not go with an ensemble",
           set("output.checkpoint_every=600"));
   refused(vary("") + "[[stage]]\nrelax = true\n", "stage: does not go with an ensemble");
-  refused(vary(""), "--restart takes no ensemble", {"--restart", "none.h5"});
   write("all.toml", chain_scene() + vary(""));
   for (Arguments const& command :
        {Arguments{"trade", "all.toml"}, Arguments{"modes", "all.toml"},

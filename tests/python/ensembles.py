@@ -125,6 +125,23 @@ class EnsembleSimulations(unittest.TestCase):
         self.assertEqual((sim.steps, sim.precision, sim.spins.dtype), (10, "single", np.float32))
         self.assertLess(sim.norm_defect().max(), 1e-6)
 
+    def test_restarts_with_the_bits_of_one_run(self):
+        whole = self.together()
+        whole.run()
+        made = scene(ensemble={"replicas": 3, "vary": {"field.applied.0": FIELDS}})
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "part.h5")
+            text = pathlib.Path(folder, "scene.toml")
+            text.write_text(made.text, encoding="utf-8")
+            subprocess.run([PROGRAM, "run", text, "--quiet", "--output", file, "--set",
+                            "integrator.steps=11"], check=True)
+            sim = cayspin.EnsembleSimulation(made, restart=file)
+            self.assertEqual((sim.steps, sim.time), (11, 11 * 0.02))
+            sim.run()
+            np.testing.assert_array_equal(sim.spins, whole.spins)
+            with self.assertRaisesRegex(cayspin.CayspinError, "3 replicas, the scene 2"):
+                cayspin.EnsembleSimulation(scene(ensemble={"replicas": 2}), restart=file)
+
     def test_each_relaxes_by_itself(self):
         sim = self.together()
         found = sim.relax(torque=1e-8)

@@ -48,6 +48,16 @@ TEST(Override, NoneKeepsTheTextAsTyped) {
   EXPECT_EQ(scene_of(text).text, text);
 }
 
+TEST(Override, TakesQuotedKeysWithDots) {
+  for (std::string const quote : {"'", "\""}) {
+    auto const key = "ensemble.vary." + quote + "field.applied.2" + quote;
+    auto const scene = scene_of(llg_scene, {"ensemble.replicas=2", key + "=[0.25, 0.5]"});
+    ASSERT_EQ(scene.ensemble.vary.size(), 1U);
+    EXPECT_EQ(scene.ensemble.vary[0].key, "field.applied.2");
+    EXPECT_EQ(scene.ensemble.vary[0].values, (std::vector<double>{0.25, 0.5}));
+  }
+}
+
 TEST(Override, WordsNeedNoQuotes) {
   auto const scene = scene_of(llg_scene, {"integrator.method=heun", "lattice.boundary = periodic"});
   EXPECT_EQ(scene.integrator.method->word, "heun");
