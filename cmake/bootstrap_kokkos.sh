@@ -5,6 +5,8 @@
 # built here. Presets other than release, mpi and host-device build Kokkos inside their own tree
 # from the source.
 
+release=4.7.00
+release_sha256=126b774a24dde8c1085c4aede7564c0b7492d6a07d85380f2b387a712cea1ff5
 carrier=pygenten
 carrier_version=0.1.5
 carrier_sha256=e620f05c742905e2db705d875f1cac92ef0ed453f9e6734e9beda26cc0f9cce7
@@ -62,7 +64,7 @@ provide_kokkos_source() {
   if [ ! -f "$kokkos_source/CMakeLists.txt" ]; then
     [ -z "${CAYSPIN_KOKKOS_SOURCE:-}" ] || fail "CAYSPIN_KOKKOS_SOURCE: no Kokkos in $kokkos_source"
     rm -rf "$kokkos_source.part"
-    source_from_package_index || source_from_upstream ||
+    source_from_release || source_from_package_index ||
       fail "no Kokkos source in reach; set CAYSPIN_KOKKOS_SOURCE to one, or CMAKE_PREFIX_PATH to an" \
            "installed Kokkos 4.5 to 5 (what was tried: $logs/kokkos-*.log)"
     mv "$kokkos_source.part" "$kokkos_source"
@@ -72,30 +74,37 @@ provide_kokkos_source() {
   fi
 }
 
+# Where the network drops packets, the connection is given up after 20 s.
+source_from_release() {
+  local file=$deps/kokkos-$release.tar.gz
+  local url=https://github.com/kokkos/kokkos/releases/download/$release/kokkos-$release.tar.gz
+  say "fetch Kokkos $kokkos_version"
+  mkdir -p "$deps" "$logs" "$kokkos_source.part"
+  timeout 300 python3 - "$url" "$file" >"$logs/kokkos-release.log" 2>&1 <<'PYTHON' || return 1
+import shutil, sys, urllib.request
+with urllib.request.urlopen(sys.argv[1], timeout=20) as answer, open(sys.argv[2], "wb") as file:
+    shutil.copyfileobj(answer, file)
+PYTHON
+  unpack_checked "$file" "$release_sha256" "kokkos-$release" 1
+}
+
+# unpack_checked FILE SHA256 FOLDER DEPTH: its FOLDER, which is DEPTH folders deep.
+unpack_checked() {
+  printf '%s  %s\n' "$2" "$1" | sha256sum --check --quiet ||
+    fail "$1 is not the file it should be; delete it and try again"
+  tar -xzf "$1" -C "$kokkos_source.part" --strip-components="$4" "$3"
+  rm "$1"
+}
+
 # The Python package index carries Kokkos inside a source distribution.
 source_from_package_index() {
   local file=$deps/$carrier-$carrier_version.tar.gz
-  say "fetch Kokkos $kokkos_version (in $carrier $carrier_version of the Python package index)"
+  say "its release is out of reach: fetch it in $carrier $carrier_version from the Python package index"
   mkdir -p "$deps" "$logs"
   python3 -m pip download --no-deps --no-binary "$carrier" --dest "$deps" \
     "$carrier==$carrier_version" >"$logs/kokkos-package-index.log" 2>&1 || return 1
-  printf '%s  %s\n' "$carrier_sha256" "$file" | sha256sum --check --quiet ||
-    fail "$file is not the file it should be; delete it and try again"
   mkdir -p "$kokkos_source.part"
-  tar -xzf "$file" -C "$kokkos_source.part" --strip-components=3 \
-    "$carrier-$carrier_version/tpls/kokkos"
-  rm "$file"
-}
-
-# Asks for the tag first: where the network drops packets a clone would hang for minutes.
-source_from_upstream() {
-  local url=https://github.com/kokkos/kokkos.git tag=4.7.00
-  say "fetch Kokkos $tag from upstream (tag not verified by a checksum)"
-  {
-    timeout 20 git ls-remote --exit-code "$url" "refs/tags/$tag" &&
-      timeout 600 git -c advice.detachedHead=false clone --depth 1 --branch "$tag" \
-        "$url" "$kokkos_source.part"
-  } >"$logs/kokkos-upstream.log" 2>&1
+  unpack_checked "$file" "$carrier_sha256" "$carrier-$carrier_version/tpls/kokkos" 3
 }
 
 # Kokkos' nvcc_wrapper takes nvcc from PATH, where the toolkit does not put it.
