@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 
 class Averages:
-    """Running means of a simulation, from Simulation.averages(): over all samples, or the latest.
+    """Running means from Simulation.averages(), over all samples or over the latest ones.
 
-    Each is an Average with a standard error, as from average(), and NaN before the first sample.
+    Each is an Average with a standard error, as from average(). It is NaN before the first sample.
     Numbers are in the units of the scene."""
 
     def __init__(self, window: int | None):

@@ -65,13 +65,13 @@ class Ensemble:
 
     def structure_factor(self, replicas: Sequence[int] | None = None,
                          frames: slice = slice(None), **options: Any) -> StructureFactor:
-        """S(k, w) at all wave vectors of the lattice, averaged over `replicas`, of the `frames` of
-        a slice, as cayspin.structure_factor() says, whose other options it takes. `replicas` may be
-        left out where no key is varied: they are all. Boundaries, the cell and the positions in it
-        are those of the scene by default.
+        """S(k, w) of the `frames` of a slice, at all wave vectors of the lattice, averaged over
+        `replicas`; see cayspin.structure_factor(), which also has the other options. If no key is
+        varied, `replicas` may be omitted, which means all. By default the boundaries, the cell and
+        the positions of its sites are those of the scene.
 
-        Raises CayspinError as there, for replicas that are not there, and for frames that are not
-        at equal steps of time.
+        Raises CayspinError as that function does, for replicas that do not exist, and for frames
+        that are not equally spaced in time.
         """
         if replicas is None:
             if self.vary:
@@ -91,10 +91,10 @@ class Ensemble:
     def plot(self, replica: int = 0, frame: int = -1, axes: Any = None, **options: Any) -> Any:
         """Draws the spins of a replica into matplotlib axes, which it returns.
 
-        `replica` counts from 0, `frame` too, or from the end below 0. `axes` and the other options,
-        as plane="z=0", are those of texture.draw().
+        `replica` and `frame` count from 0, or from the end if they are negative. `axes` and the
+        other options, such as plane="z=0", are those of texture.draw().
 
-        Raises CayspinError for a replica, frame, plane or word that is not there.
+        Raises CayspinError for a replica, frame, plane or option that does not exist.
         """
         replica = arguments.whole(replica, "plot: replica")
         frame = arguments.whole(frame, "plot: frame")
@@ -105,7 +105,7 @@ class Ensemble:
             raise CayspinError(f"{self.path}: {error}") from None
 
     def __len__(self) -> int:
-        """The number of whole frames; a killed run may have written part of another."""
+        """The number of complete frames; a killed run may have written part of another one."""
         return min(len(self.file[name]) for name in self._names)
 
     def __enter__(self) -> Ensemble:

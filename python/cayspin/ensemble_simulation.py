@@ -15,8 +15,9 @@ from cayspin.simulation import Minimum
 
 
 class EnsembleSimulation:
-    """The replicas of a `scene` with [ensemble], which run together: replica r has the bits of the
-    scene's own run with its values and seeds. Small ones share the threads.
+    """The replicas of a `scene` with [ensemble], which run together. Replica r is bit-identical to
+    a run of the scene with its values and seeds. Small replicas run at the same time, one on each
+    thread.
 
         sim = cayspin.EnsembleSimulation(scene)
         sim.run()
@@ -56,14 +57,14 @@ class EnsembleSimulation:
         for one of them.
 
         Raises NumbersFailed when spins of a replica are not finite, leave the sphere or gain energy
-        that nothing gives, SceneError for a dt that integrator.refuse_unstable refuses, CayspinError
+        without a source, SceneError for a dt that integrator.refuse_unstable refuses, CayspinError
         without an integrator or beyond the last possible step.
         """
         self._advance(arguments.whole(n, "step"), False)
 
     def run(self, until: float | None = None) -> None:
-        """Steps to time `until`, in s in SI, or to the scene's end. A replica ends early where the
-        scene's until_torque says so.
+        """Steps to time `until`, in s in SI, or to the scene's end. A replica ends early when it
+        meets the scene's until_torque.
 
         Raises NumbersFailed and SceneError as step() does. Raises CayspinError for a time that has
         passed or is no whole number of steps, and for a scene without end.
@@ -80,10 +81,9 @@ class EnsembleSimulation:
 
     def relax(self, torque: float = 1e-6, evaluations: int = 100000,
               keep_saddles: bool = False) -> list[Minimum]:
-        """Moves each replica to a state of least energy, as Simulation.relax() does, and returns
-        what each search found. It ends where max |m x H| is below `torque`, in the unit of H, T in
-        SI, or after `evaluations` of the field. With `keep_saddles` a state without torque is
-        enough, a saddle too.
+        """Moves each replica to a minimum of the energy, as Simulation.relax() does, and returns
+        the result of each search. A search ends where max |m x H| is below `torque`, in the unit of
+        H, T in SI, or after `evaluations` of the field. With `keep_saddles` it may end at a saddle.
 
         Raises NumbersFailed for a field that is not finite, SceneError for rigid bodies and
         temperatures, CayspinError for other arguments.

@@ -34,8 +34,8 @@ def _triangles(mesh):
 
 def occupied_of_mesh(mesh: Any, shape: tuple[int, ...], spacing: float | tuple[float, ...] = 1.0, *,
                      scale: float = 1.0, center: bool = True) -> np.ndarray:
-    """Finds the cells of a lattice whose middle is inside a closed surface: True in an array
-    (nz, ny, nx) for lattice.occupied.
+    """Finds the cells of a lattice whose centre is inside a closed surface. Returns an array
+    (nz, ny, nx) for lattice.occupied, which is True for these cells.
 
     `mesh` is a file of triangles (STL, OBJ, PLY, ..; read by trimesh), an object with an attribute
     `triangles`, or an array (count, 3, 3) of corners. `shape` (nx, ny, nz) and `spacing` are those

@@ -186,7 +186,8 @@ def dispersion(spins: Any, dt: float, path: Any, *, labels: Sequence[str] | None
     (1 / nx, 1 / ny, 1 / nz), without interpolation between them. `labels` names the corners.
     `cell`: the three vectors of the cell, along x, y and z of the array (default: unit cubes).
     `positions`: of the sites of a cell, (site, 3), in fractions of its vectors.
-    `periodic`: where an axis is not, the spins are windowed along it (Hann).
+    `periodic`: for each axis; if it is not periodic, a Hann window is applied to the spins along
+    it.
 
     `component` "transverse": S = |sum of (m_1 - i m_2) exp(-i (k.r - w t))|^2, with m_1 and m_2
     normal to the mean direction of all spins, or to `about`, and right-handed with it. Right-handed

@@ -55,8 +55,8 @@ def path(scene: Scene, start: np.ndarray | str | os.PathLike, end: np.ndarray | 
          images: int = 16, torque: float = 1e-6, evaluations: int = 1000000, rates: bool = False,
          precision: str = "double", space: str | None = None,
          threads: int | None = None) -> MinimumEnergyPath:
-    """Finds the minimum-energy path between two states, and the saddle that sets its barrier, as
-    `cayspin path` does.
+    """Finds the minimum-energy path between two states, and the saddle that determines its barrier,
+    as `cayspin path` does.
 
         found = cayspin.path(scene, skyrmion, uniform)
         found.barrier_forward, found.saddle
@@ -67,10 +67,10 @@ def path(scene: Scene, start: np.ndarray | str | os.PathLike, end: np.ndarray | 
     `evaluations` limits the evaluations of the field of all sites. `rates` adds prefactors of
     rates, up to 4096 sites. `precision`, `space` and `threads` are those of Simulation.
 
-    If the search ends early, `converged` is False, and the result has what was found. Raises
-    NumbersFailed if there is no path: an end cannot be relaxed, or both relax to one state. Raises
-    SceneError for rigid bodies, temperatures, torques of currents and fields that depend on t,
-    CayspinError for wrong options and ends. Ctrl-C raises KeyboardInterrupt.
+    If the search ends early, `converged` is False, and the result has what was found so far. Raises
+    NumbersFailed if there is no path: an end cannot be relaxed, or both ends relax to the same
+    state. Raises SceneError for rigid bodies, temperatures, torques of currents and fields that
+    depend on t, CayspinError for wrong options and ends. Ctrl-C raises KeyboardInterrupt.
     """
     if not isinstance(scene, Scene):
         raise _cayspin.CayspinError(f"path: a {type(scene).__name__}; accepted: a Scene")

@@ -84,8 +84,8 @@ class Scene:
               integrator={"method": "rkmk4", "dt": 0.05, "end": 60})
 
     `system`, `lattice`, `field`, `integrator` and `output` are dicts of the keys of these tables,
-    `tables` further ones: material, torque, thermal, ensemble, and units="SI". Without `end` and
-    `steps` in `integrator` the scene has no end. Without `integrator` it is only for
+    `tables` are further ones: material, torque, thermal, ensemble, and units="SI". Without `end`
+    and `steps` in `integrator` the scene has no end. Without `integrator` it can be used only for
     Simulation.relax() and other calls that need no steps.
 
     `initial` is a dict, or an array (nz, ny, nx, 3) of vectors, which are copied and normalised.

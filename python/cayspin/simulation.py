@@ -48,19 +48,19 @@ class Modes:
 
 
 class Simulation:
-    """A `scene` that runs: its spins, and the time that they have reached.
+    """A simulation of a `scene`: its spins, which step forward in time.
 
     `precision` is "double" or "single", `space` an execution space that was compiled in (default:
     that of Kokkos), `threads` the number of its threads: the first simulation of a process decides
     that.
 
     `restart` names a file of save(), or the trajectory of a run: the simulation continues from
-    there, with the bits of a run without a break. The lattice in the file has to be the scene's; a
+    there, bit-identical to an uninterrupted run. The lattice in the file has to be the scene's; a
     warning names other differences.
 
     While it steps, other Python threads run. Ctrl-C stops it between two steps with
-    KeyboardInterrupt, and it can continue from there. N calls of step() give the bits of one
-    step(N), and those of `cayspin run`.
+    KeyboardInterrupt, and it can continue from there. N calls of step() give the same bits as one
+    step(N), and as `cayspin run`.
 
     Lengths, times, fields and energies are in the units of the scene: reduced ones, or with
     units = "SI" m, s, T and J.
@@ -86,8 +86,8 @@ class Simulation:
             warnings.warn(warning, stacklevel=2)
 
     def step(self, n: int = 1) -> None:
-        """Takes `n` steps of dt, or fewer when an observer returns True. The first step warns of a
-        dt that is too large, as `cayspin run` does.
+        """Takes `n` steps of dt, or fewer if an observer returns True. The first step warns if dt
+        is too large, as `cayspin run` does.
 
         Raises NumbersFailed when spins are not finite, leave the sphere or gain energy without a
         source, SceneError for a dt that integrator.refuse_unstable refuses, CayspinError without an
@@ -153,14 +153,14 @@ class Simulation:
     def relax(self, torque: float = 1e-6, evaluations: int = 100000,
               applied: Sequence[float] | None = None,
               keep_saddles: bool = False) -> Minimum:
-        """Moves the spins to a state of least energy, without steps in time, as `cayspin relax`
+        """Moves the spins to a minimum of the energy, without steps in time, as `cayspin relax`
         does. The search ends where max |m x H| is below `torque`, in the unit of H, T in SI. It
         takes at most `evaluations` of the field of all sites.
 
-        `applied`, three numbers in the unit of H, takes the place of the scene's field.applied. A
-        hysteresis loop is [sim.relax(applied=h) and sim.magnetization() for h in fields]: each
-        search starts from the state before. Without `applied`, H is that of the current time. Time
-        and steps do not change. With `keep_saddles` the search may end at a saddle.
+        `applied`, three numbers in the unit of H, replaces the scene's field.applied. A hysteresis
+        loop is [sim.relax(applied=h) and sim.magnetization() for h in fields]: each search starts
+        from the state before. Without `applied`, H is that of the current time. Time and steps do
+        not change. With `keep_saddles` the search may end at a saddle.
 
         The scene needs no integrator. After Ctrl-C the spins hold the last state of the search.
 
@@ -184,8 +184,8 @@ class Simulation:
         be in equilibrium: call relax() before. In a mode they move by the real part of
         shape e^((i w - decay) t), with w the angular frequency, 2 pi frequency in SI.
 
-        With [torque], for at most 1024 sites, run() until the spins rest under the current. A
-        negative decay is that of a mode that grows.
+        With [torque], for at most 1024 sites, first call run() until the spins are at rest under
+        the current. A mode with a negative decay grows.
 
         `tolerance` is the relative error of the shapes; frequencies are more accurate. The search
         takes at most `evaluations` of the field of all sites.
@@ -318,7 +318,7 @@ class Simulation:
         are those of texture.draw(): plane="z=0", quantity="charge", colors="safe",
         before=other_spins.
 
-        Raises CayspinError for a plane or a word that is not there.
+        Raises CayspinError for a plane or an option that does not exist.
         """
         try:
             return texture.draw(self._texture(), axes, **options)

@@ -140,7 +140,8 @@ def structure_factor(spins: Any, dt: float, *, components: str | Sequence[str] =
     m(k, t), and so the elastic line at w = 0. The sum rule then lacks the squares of the means.
     `cell`: the three vectors of the cell, along x, y and z of the array (default: unit cubes).
     `positions`: of the sites of a cell, (site, 3), in fractions of its vectors.
-    `periodic`: where an axis is not, the spins are windowed along it (Hann).
+    `periodic`: for each axis; if it is not periodic, a Hann window is applied to the spins along
+    it.
     `zones`: the number of Brillouin zones along each reciprocal vector. The waves of several sites
     in a cell interfere differently in each zone, and the sum rule holds for the mean over enough of
     them: positions times zones have to be whole numbers, as with (2, 2, 2) for bcc.
@@ -250,9 +251,9 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
     normalisation of structure_factor().
 
     `modes`: the file of `cayspin modes`, or the Modes of Simulation.modes() with `spins`, the state
-    (nz, ny, nx, 3) that they belong to. Only these modes contribute: ask for all where S is
-    compared with a run. `temperature` is that of thermal.temperature, in K for files in SI.
-    `frequency`: where S is wanted, (w,), angular and rising, as that of structure_factor().
+    (nz, ny, nx, 3) that they belong to. Only these modes contribute: compute all of them if S is to
+    be compared with a run. `temperature` is that of thermal.temperature, in K for files in SI.
+    `frequency`: the frequencies of S, (w,), angular and rising, as those of structure_factor().
 
     Each mode has the mean energy k T, which for a deviation Re(c v exp(i w_n t)) is
     |c|^2 w_n Q / 4 with Q = sum of mu / g i m.(v* x v). It adds, with v(k) = sum v exp(-i k.r) /

@@ -32,7 +32,7 @@ def _spirit_table(file):
 
 
 def read_spirit_pairs(path: str | os.PathLike, *, unit: float | None = None) -> dict[str, Any]:
-    """Reads the pairs of Spirit, from a file of their own or from an input file with
+    """Reads the pairs of Spirit, from a separate file or from an input file with
     n_interaction_pairs, as the value of field.couplings in a scene.
 
         field = {"couplings": cayspin.read_spirit_pairs("pairs.txt")}

@@ -134,7 +134,8 @@ def trade(scene: Scene, seconds: float = 10, precision: str | None = None,
     does: it takes minutes. `precision`, `space` and `threads` are those of Simulation; by default
     both precisions and the program's space and threads.
 
-    Raises CayspinError for a scene that the program cannot run, as one with functions or arrays.
+    Raises CayspinError for a scene that the program cannot run, such as one with functions or
+    arrays.
     """
     return Trade(_ask("trade", scene, "--seconds", repr(arguments.real(seconds, "seconds")),
                       *_options(precision, space, threads)))
@@ -142,12 +143,12 @@ def trade(scene: Scene, seconds: float = 10, precision: str | None = None,
 
 def advise(scene: Scene, error: float, precision: str | None = None, space: str | None = None,
            threads: int | None = None) -> Advice:
-    """Finds the cheapest method that runs the `scene` with a largest distance `error` of any spin,
-    1e-13 to 1, at a dozen times from the first step on, as `cayspin advise` does. `precision`,
-    `space` and `threads` are as of trade().
+    """Finds the cheapest method that runs the `scene` to within `error`, as `cayspin advise` does.
+    `error`, 1e-13 to 1, is the largest distance of any spin from the solution, at a dozen times
+    from the first step on. `precision`, `space` and `threads` are those of trade().
 
     Raises NumbersFailed if no method reaches the error, CayspinError for a scene that the program
-    cannot run, as one with functions or arrays.
+    cannot run, such as one with functions or arrays.
     """
     answer = _ask("advise", scene, "--error", repr(arguments.real(error, "error")),
                   *_options(precision, space, threads))

@@ -102,22 +102,24 @@ class Trajectory:
 
     def dispersion(self, path: Any, frames: slice = slice(None),
                    **options: Any) -> observables.Dispersion:
-        """S(k, w) along a `path` of wave vectors, of the `frames` of a slice, as
-        cayspin.dispersion() says, whose other options it takes. Boundaries, the cell and the
-        positions in it are those of the scene by default.
+        """S(k, w) of the `frames` of a slice, along a `path` of wave vectors; see
+        cayspin.dispersion(), which also has the other options. By default the boundaries, the cell
+        and the positions of its sites are those of the scene.
 
-        Raises CayspinError as there, and for frames that are not at equal steps of time.
+        Raises CayspinError as that function does, and for frames that are not equally spaced in
+        time.
         """
         chosen, dt = at_equal_steps(self.file, self.path, len(self), frames, "dispersion")
         return observables.dispersion(Frames(self.file["spins"], chosen), dt, path,
                                       **with_lattice(self.path, self.scene, options))
 
     def structure_factor(self, frames: slice = slice(None), **options: Any) -> StructureFactor:
-        """S(k, w) at all wave vectors of the lattice, of the `frames` of a slice, as
-        cayspin.structure_factor() says, whose other options it takes. Boundaries, the cell and the
-        positions in it are those of the scene by default.
+        """S(k, w) of the `frames` of a slice, at all wave vectors of the lattice; see
+        cayspin.structure_factor(), which also has the other options. By default the boundaries, the
+        cell and the positions of its sites are those of the scene.
 
-        Raises CayspinError as there, and for frames that are not at equal steps of time.
+        Raises CayspinError as that function does, and for frames that are not equally spaced in
+        time.
         """
         chosen, dt = at_equal_steps(self.file, self.path, len(self), frames, "structure_factor")
         return structure_factor(Frames(self.file["spins"], chosen), dt,
@@ -128,10 +130,10 @@ class Trajectory:
         """Draws the spins of a `frame` into matplotlib `axes` (default: new ones), which it
         returns: films and planes as colours with arrows, crystals by their sites, chains as lines.
         `difference_to`: another frame, and |difference| is drawn. Frames count from 0, or from the
-        end below 0. Lengths are in the units of the scene.
+        end if negative. Lengths are in the units of the scene.
 
         Options are those of texture.draw(): plane="z=0", quantity="charge", colors="safe", limit,
-        key. Raises CayspinError for a frame, plane or word that is not there.
+        key. Raises CayspinError for a frame, plane or option that does not exist.
         """
         frame = arguments.whole(frame, "plot: frame")
         if difference_to is not None:
@@ -191,7 +193,7 @@ class Trajectory:
         self.close()
 
     def __len__(self) -> int:
-        """The number of whole frames; a killed run may have written part of another."""
+        """The number of complete frames; a killed run may have written part of another one."""
         names = (*self._names, "sublattice_magnetization", "shift", "stage")
         return builtins.min(len(self.file[name]) for name in names if name in self.file)
 
