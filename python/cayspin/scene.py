@@ -22,7 +22,7 @@ def _without_arrays(thing, key, arrays):
         thing = [thing[..., component] for component in range(3)]
     if isinstance(thing, np.ndarray) and thing.ndim in (3, 4):
         arrays[key] = arguments.numbers(thing, key)
-        return {"given": True}
+        return toml_text.ARRAY
     if isinstance(thing, dict):
         return {name: _without_arrays(one, f"{key}.{name}", arrays) for name, one in thing.items()}
     if isinstance(thing, (list, tuple)):
@@ -41,10 +41,11 @@ def _split(tables):
         if spins.ndim not in (4, 5) or spins.shape[-1] != 3:
             raise _cayspin.SceneError(f"initial: an array of shape {spins.shape}; accepted: "
                                       "(nz, ny, nx, 3), of a crystal (site, nz, ny, nx, 3)")
-        tables["initial"] = {"given": True}
+        tables["initial"] = toml_text.ARRAY
     if isinstance(tables.get("field"), dict):
         own = {key: f for key, f in tables["field"].items() if key in _OWN and callable(f)}
         tables["field"] = {key: f for key, f in tables["field"].items() if key not in own}
+    own |= {key: tables.pop(f"field.{key}") for key in _OWN if callable(tables.get(f"field.{key}"))}
     arrays = {}
     tables = {name: _without_arrays(table, name, arrays) for name, table in tables.items()}
     return tables, spins, own, arrays
@@ -124,11 +125,9 @@ class Scene:
         typed, spins, own, arrays = _split(overrides)
         self = cls.__new__(cls)
         changed = toml_text.overrides(typed)
-        try:
+        with toml_text.errors_of_overrides():
             scene = _cayspin.Scene.read(arguments.file_name(path, "from_file"), changed,
                                         _as_planes(spins), _flat(arrays))
-        except _cayspin.SceneError as error:
-            raise _cayspin.SceneError(str(error).removeprefix("--set ")) from None
         self._finish(scene, own, changed, spins, arrays)
         return self
 

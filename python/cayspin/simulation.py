@@ -213,10 +213,12 @@ class Simulation:
 
         Units are the scene's, and values per site may be arrays (nz, ny, nx).
 
-        Keys are changed as by a table [[stage]] of a scene, with the same rules. integrator.method
-        starts a new [integrator], and its end or steps are counted from now. If the keys do not
-        include an integrator, run() takes the scene's duration again. Methods that remember earlier
-        steps start afresh.
+        Keys are changed as by a table [[stage]] of a scene, with the same rules. A value or a dict
+        takes the place of the old one as a whole: {"field.dmi": {"bulk": 0.1}} leaves no other key
+        of the old DMI, while "field.dmi.bulk" changes only that key. integrator.method starts a new
+        [integrator], and its end or steps are counted from now. If the keys do not include an
+        integrator, run() takes the scene's duration again. Methods that remember earlier steps
+        start afresh.
 
         Raises SceneError for keys that cannot change, such as those of lattice, and for wrong
         values, CayspinError for other arguments; nothing is changed then.
@@ -226,10 +228,8 @@ class Simulation:
             raise _cayspin.CayspinError(f"set: a {type(changes).__name__}; accepted: a key and its "
                                         "value, or a dict of them")
         changes, arrays = self._scene._changes(changes)
-        try:
+        with toml_text.errors_of_overrides():
             self._run.change(toml_text.overrides(changes), arrays)
-        except _cayspin.SceneError as error:
-            raise _cayspin.SceneError(str(error).removeprefix("--set ")) from None
         self._scene = self._scene._changed(self._run.scene, arrays)
         self._dt_is_checked = False
 

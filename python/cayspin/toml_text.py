@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Tables of a scene as TOML text."""
 
+import contextlib
 import json
 import os
 import re
@@ -9,6 +10,8 @@ import numpy as np
 
 from cayspin import arguments
 from cayspin._cayspin import SceneError
+
+ARRAY = {"given": True}  # stands in the text for an array
 
 
 def _key(name):
@@ -55,12 +58,24 @@ def document(tables):
 
 
 def overrides(tables):
-    """Tables and dotted keys as key.path=VALUE. A table [initial] replaces the scene's."""
+    """Tables and dotted keys as key.path=VALUE. The keys of a table are changed one by one, except
+    those of [initial]; a dict under a dotted key replaces that table."""
     assignments = []
     for name, entry in tables.items():
-        if isinstance(entry, dict) and name != "initial":
+        if isinstance(entry, dict) and name != "initial" and "." not in str(name):
             assignments += [f"{name}.{_key(key)}={value(one, f'{name}.{key}')}"
                             for key, one in entry.items()]
         else:
             assignments.append(f"{name}={value(entry, name)}")
     return assignments
+
+
+@contextlib.contextmanager
+def errors_of_overrides():
+    """Errors in overrides name them as the caller knows them, who wrote neither --set nor the place
+    of an array."""
+    try:
+        yield
+    except SceneError as error:
+        message = str(error).removeprefix("--set ").replace(value(ARRAY, ""), "an array")
+        raise SceneError(message) from None

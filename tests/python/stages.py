@@ -96,6 +96,51 @@ class Stages(PackageTest):
         other.step(4)
         np.testing.assert_allclose(sim.spins, other.spins, rtol=0, atol=1e-14)
 
+    def assert_replaced(self, table, old, key, new, **tables):
+        """Setting `key` of the scene's `table` from `old` to `new` leaves nothing of what it was."""
+        first, _, inner = key.partition(".")
+        expected = {**old, first: {**old[first], inner: new} if inner else new}
+        with self.subTest(key=key, new=new):
+            sim = cayspin.Simulation(scene(**tables, **{table: old}))
+            sim.set(f"{table}.{key}", new)
+            other = cayspin.Simulation(scene(**tables, **{table: expected}))
+            np.testing.assert_array_equal(sim.field(), other.field())
+            for one in (sim, other):
+                one.step(3)
+            np.testing.assert_array_equal(sim.spins, other.spins)
+
+    def test_a_dict_replaces_the_table_of_a_dotted_key(self):
+        axis = {"axis": [0, 0, 1]}
+        lattice = {"shape": [12, 3], "regions": "x < 5 ? 0 : 1"}
+        by_region, array = {"regions": [0.1, 0.5]}, np.arange(36.0).reshape(1, 3, 12)
+        for old, new in (
+                ({"anisotropy": {**axis, "constant": 1.0, "constant2": 0.3}},
+                 {**axis, "constant": 2.0}),
+                ({"anisotropy": {**axis, "constant": 1.0}},
+                 {"cubic": 1.0, "axes": [[1, 0, 0], [0, 1, 0]]}),
+                ({"anisotropy": {**axis, "constant": 1.0}}, {**axis, "constant": array}),
+                ({"demag": {"strength": 0.5}}, {"periodic_images": [0, 0, 0]}),
+                ({"dmi": {"bulk": 1.0}}, {"d2d": 1.0})):
+            self.assert_replaced("field", old, *old, new)
+        self.assert_replaced("torque", {"slonczewski": {"polarization": [0, 1, 0],
+                                                        "damping_like": 0.4}},
+                             "slonczewski", {"polarization": [0, 1, 0], "field_like": 0.2})
+        for first, then in ((by_region, array), (array, by_region)):
+            self.assert_replaced("field", {"anisotropy": {**axis, "constant": first}},
+                                 "anisotropy.constant", then, lattice=lattice)
+
+    def test_a_scene_of_a_file_takes_dotted_keys(self):
+        old = {"exchange": 1.0, "dmi": {"bulk": 1.0, "free_boundary": True}}
+        file = self.written(scene(field=old))
+        for name, table in (("dmi", {"d2d": 1.0}), ("applied", lambda t: [0.5, 0, 1]),
+                            ("nonlocal", lambda spins, t: 2 * spins)):
+            dotted = cayspin.Scene.from_file(file, **{f"field.{name}": table})
+            nested = cayspin.Scene.from_file(file, field={name: table})
+            self.assertEqual(dotted.text, nested.text)
+            field = cayspin.Simulation(dotted).field()
+            np.testing.assert_array_equal(field, cayspin.Simulation(nested).field())
+            self.assertFalse((field == cayspin.Simulation(scene(field=old)).field()).all())
+
     def test_in_an_observer(self):
         sim = cayspin.Simulation(scene())
         sim.observe(10, lambda s: s.set("field.applied", [0, 0, 0.1 * s.steps]))
@@ -124,6 +169,8 @@ class Stages(PackageTest):
                 ("field.Exchange", 1, "did you mean"),
                 ("integrator.dt", -1, "integrator.dt: "),
                 ("integrator.method", "heun", "integrator.dt: is missing"),
+                ("system.damping", -np.ones((1, 3, 12)), "^system.damping=an array: system.damping: "),
+                ("field", {"dmi": {"Bulk": np.ones((1, 3, 12))}}, "^field.dmi={ Bulk = an array }: "),
                 (3, None, "set: a int; accepted"),
                 ({"field.applied": lambda t: [0, 0, 1]}, None, "field.applied: a function")):
             with self.assertRaisesRegex(cayspin.CayspinError, words):
