@@ -185,10 +185,13 @@ class Scene:
                                           f"{self.shape}")
         return tables, _flat(arrays)
 
-    def _changed(self, scene, arrays):
+    def _changed(self, scene, overrides, arrays):
         changed = Scene.__new__(Scene)
         changed._scene, changed._overrides = scene, None
-        changed._only_here = self._only_here + [f"an array as {key}" for key in arrays]
+        replaced = [f"an array as {one.partition('=')[0]}" for one in overrides]
+        kept = [one for one in self._only_here if not any(
+            one == other or one.startswith((f"{other}.", f"{other}[")) for other in replaced)]
+        changed._only_here = kept + [f"an array as {key}" for key in arrays]
         return changed
 
     @property

@@ -228,9 +228,10 @@ class Simulation:
             raise _cayspin.CayspinError(f"set: a {type(changes).__name__}; accepted: a key and its "
                                         "value, or a dict of them")
         changes, arrays = self._scene._changes(changes)
+        overrides = toml_text.overrides(changes)
         with toml_text.errors_of_overrides():
-            self._run.change(toml_text.overrides(changes), arrays)
-        self._scene = self._scene._changed(self._run.scene, arrays)
+            self._run.change(overrides, arrays)
+        self._scene = self._scene._changed(self._run.scene, overrides, arrays)
         self._dt_is_checked = False
 
     def save(self, checkpoint: str | os.PathLike) -> None:

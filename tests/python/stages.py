@@ -141,6 +141,18 @@ class Stages(PackageTest):
             np.testing.assert_array_equal(field, cayspin.Simulation(nested).field())
             self.assertFalse((field == cayspin.Simulation(scene(field=old)).field()).all())
 
+    def test_an_array_that_was_replaced(self):
+        sim = cayspin.Simulation(scene(system={"kind": "llg", "damping": np.full((1, 3, 12), 0.2)}))
+        sim.set({"field.anisotropy": {"axis": [0, 0, 1], "constant": np.ones((1, 3, 12))}})
+        refusal = "the scene has an array as "
+        with self.assertRaisesRegex(cayspin.CayspinError, refusal + "system.damping"):
+            cayspin.advise(sim.scene, 1e-3)
+        sim.set("system.damping", 0.2)
+        with self.assertRaisesRegex(cayspin.CayspinError, refusal + "field.anisotropy.constant"):
+            cayspin.advise(sim.scene, 1e-3)
+        sim.set("field.anisotropy", {"axis": [0, 0, 1], "constant": 0.5})
+        self.assertLess(cayspin.advise(sim.scene, 1e-3).error, 1e-3)
+
     def test_in_an_observer(self):
         sim = cayspin.Simulation(scene())
         sim.observe(10, lambda s: s.set("field.applied", [0, 0, 0.1 * s.steps]))
