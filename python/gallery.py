@@ -3,7 +3,6 @@
 """Runs the commands of docs/gallery.md and docs/guide/what_a_scene_can_hold.md and draws their
 pictures; prints the seconds of each scene."""
 
-import argparse
 import contextlib
 import os
 import pathlib
@@ -12,6 +11,8 @@ import subprocess
 import sys
 import tempfile
 import time
+
+from cayspin_plots import command_line
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 PAGES = ROOT / "docs/gallery.md", ROOT / "docs/guide/what_a_scene_can_hold.md"
@@ -86,7 +87,7 @@ def draw(name, scene, commands, program, images):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line.Parser(description=__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME",
                         help="of pictures, without gallery_ (default: all)")
     parser.add_argument("--program", type=pathlib.Path, default=ROOT / "build/release/bin/cayspin",

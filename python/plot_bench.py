@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Prints the tables of a run of the benchmarks beside their goals, and draws it."""
 
-import argparse
 import pathlib
 
-from cayspin_plots import bench_figures, bench_goals, bench_options
+from cayspin_plots import bench_figures, bench_goals, bench_options, command_line
 from cayspin_plots.bench import Results
 
 STREAM = ("stream copy", "stream copy, non-temporal")
@@ -47,7 +46,7 @@ def print_options(results):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line.Parser(description=__doc__)
     parser.add_argument("folder", type=pathlib.Path, metavar="DIR",
                         help="where bench/run.sh left its results")
     folder = parser.parse_args().folder

@@ -2,20 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """One picture of what geometric integration is for: two runs of one scene, side by side."""
 
-import argparse
 import pathlib
 
-from cayspin_plots import hodograph, scalars, style
+from cayspin_plots import command_line, hodograph, scalars, style
 from cayspin_plots.read import read_trajectory
 
 
 def parse_arguments():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line.Parser(description=__doc__)
     parser.add_argument("geometric", type=pathlib.Path, metavar="GEOMETRIC.h5")
     parser.add_argument("classical", type=pathlib.Path, metavar="CLASSICAL.h5")
     parser.add_argument("-r", "--reference", type=pathlib.Path, metavar="REFERENCE.h5",
                         help="a more accurate run, drawn thin beneath both")
-    parser.add_argument("-s", "--site", type=int, default=37,
+    parser.add_argument("-s", "--site", type=command_line.whole, default=37,
                         help="the spin to follow (default: 37)")
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True, metavar="PNG")
     return parser.parse_args()

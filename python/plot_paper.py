@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Draws the figures of Lewis and Nigam 2002 from what `cayspin reproduce figures` wrote."""
 
-import argparse
 import pathlib
 
 import numpy as np
-from cayspin_plots import hodograph, style
+from cayspin_plots import command_line, hodograph, style
 from cayspin_plots.table import groups, read_table
 
 SLABS = {
@@ -131,7 +130,7 @@ def draw_norm(folder):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line.Parser(description=__doc__)
     parser.add_argument("folder", type=pathlib.Path, metavar="DIR",
                         help="the --output of `cayspin reproduce figures`")
     folder = parser.parse_args().folder

@@ -3,15 +3,14 @@
 """Draws the file of `cayspin sweep`: the final values of its runs over one key, or as a map over
 two."""
 
-import argparse
 import pathlib
 
-from cayspin_plots import style, sweep_figure
+from cayspin_plots import command_line, style, sweep_figure
 from cayspin_plots.sweep import read_sweep
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line.Parser(description=__doc__)
     parser.add_argument("file", type=pathlib.Path, metavar="FILE.h5")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="PNG",
                         help="the picture; its ending chooses the kind (default: FILE.png)")

@@ -5,39 +5,42 @@ sites, chains as lines; as a picture of one frame or a movie of all. For a path,
 and some of its images; for modes, their spectrum and shapes; for waves, their bands; for an
 ensemble, one replica."""
 
-import argparse
 import pathlib
 import sys
+
+from cayspin_plots import command_line
 
 MOVIES = {".mp4": ("ffmpeg",), ".gif": ("pillow", "ffmpeg")}
 
 
 def parse_arguments():
-    parser = argparse.ArgumentParser(prog="cayspin plot", description=__doc__)
+    parser = command_line.Parser(prog="cayspin plot", description=__doc__)
     parser.add_argument("file", type=pathlib.Path, metavar="FILE.h5")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="PICTURE",
                         help="its ending chooses the kind, .png, .svg or .pdf "
                              "(default: FILE_texture.png, FILE_path.png or FILE_modes.png)")
-    parser.add_argument("--frame", type=int,
-                        help="counted from 0, or from the end: -1 (default: the last); an image of "
-                             "a path; the mode that moves (default: 0)")
-    parser.add_argument("--replica", type=int, metavar="N",
+    parser.add_argument("--frame", type=command_line.frame,
+                        help="last (default) or a number, counted from 0; from the end: -1; an "
+                             "image of a path; the mode that moves (default: 0)")
+    parser.add_argument("--replica", type=command_line.whole, metavar="N",
                         help="of an ensemble, counted from 0, or from the end: -1 (default: 0)")
     parser.add_argument("--plane", metavar="z=0",
                         help="an axis and the number of a plane (default: the middle one across "
                              "the axis of fewest cells)")
-    parser.add_argument("--colors", choices=("hue", "safe"), default="hue",
+    parser.add_argument("--colors", type=command_line.one_of("hue", "safe"), default="hue",
+                        metavar="hue|safe",
                         help="hue: the angle in the plane; safe: the component along its normal, "
                              "from blue to red (default: hue)")
     what = parser.add_mutually_exclusive_group()
-    what.add_argument("--difference", type=int, metavar="FRAME",
+    what.add_argument("--difference", type=command_line.frame, metavar="FRAME",
                       help="draw |difference| to this frame")
     what.add_argument("--charge", action="store_true",
                       help="draw the topological charge of each cell of a film")
     parser.add_argument("--movie", type=pathlib.Path, metavar="MOVIE",
                         help="all frames, images of a path, or a mode that moves, .mp4 (by ffmpeg) "
                              "or .gif, in place of a picture")
-    parser.add_argument("--fps", type=float, default=20, help="frames in a second (default: 20)")
+    parser.add_argument("--fps", type=command_line.real, default=20,
+                        help="frames in a second (default: 20)")
     return parser.parse_args()
 
 
@@ -62,7 +65,7 @@ def movie_writer(path, fps):
         raise SystemExit(f"{path}: matplotlib finds no {MOVIES[path.suffix][0]}; accepted: one on "
                          "the PATH" + (", or a movie that ends in .gif" * (path.suffix == ".mp4")))
     if not 0 < fps < 1000:
-        raise SystemExit(f"--fps {fps:g}; accepted: a number > 0")
+        raise SystemExit(f"cayspin: --fps {fps:g}: accepted: a number > 0 and < 1000")
     return animation.writers[found[0]](fps=fps)
 
 
@@ -135,8 +138,7 @@ def of_replica(file, replica):
 
 
 def run(arguments):
-    if not arguments.file.is_file():
-        raise ValueError("there is no such file; accepted: a file that cayspin wrote")
+    command_line.require_file(arguments.file)
     try:
         file = h5py.File(arguments.file, "r")
     except OSError as error:
@@ -158,7 +160,7 @@ def main():
         import_libraries()
         run(arguments)
     except ImportError as error:
-        message = (f"cayspin plot: {sys.executable} has no {error.name}; accepted: a Python with "
+        message = (f"cayspin: {sys.executable} has no {error.name}; accepted: a Python with "
                    "h5py and matplotlib in CAYSPIN_PYTHON")
     except (OSError, KeyError, TypeError, ValueError) as error:
         message = f"{arguments.file}: {error.args[-1]}"

@@ -3,12 +3,11 @@
 """Draws what `cayspin trade SCENE --json` measured: error over cost for one scene, the methods to
 take for several."""
 
-import argparse
 import json
 import pathlib
 import sys
 
-from cayspin_plots import trade_costs, trade_figure, trade_overview
+from cayspin_plots import command_line, trade_costs, trade_figure, trade_overview
 
 
 def read(path):
@@ -21,7 +20,7 @@ def read(path):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line.Parser(description=__doc__)
     parser.add_argument("files", type=pathlib.Path, nargs="+", metavar="FILE.json")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="PICTURE.png",
                         help="default: the first file's name with .png")

@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Draws a trajectory file: components along x, energy, norm defect, a spin's path."""
 
-import argparse
 import pathlib
 
-from cayspin_plots import components, hodograph, scalars, style
+from cayspin_plots import command_line, components, hodograph, scalars, style
 from cayspin_plots.read import read_trajectory
 
 PANELS = ("components", "magnetization", "energy", "norm", "hodograph")
@@ -14,13 +13,14 @@ OVER_TIME = {"energy": scalars.draw_energy, "norm": scalars.draw_norm_defect,
 
 
 def parse_arguments():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line.Parser(description=__doc__)
     parser.add_argument("file", type=pathlib.Path, metavar="FILE.h5")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="PNG",
                         help="the picture; its ending chooses the kind (default: FILE.png)")
-    parser.add_argument("-p", "--panels", nargs="+", choices=PANELS, metavar="PANEL",
+    parser.add_argument("-p", "--panels", nargs="+", metavar="PANEL",
+                        type=command_line.one_of(*PANELS),
                         help="what to draw, of: " + ", ".join(PANELS) + " (default: all)")
-    parser.add_argument("-s", "--site", type=int,
+    parser.add_argument("-s", "--site", type=command_line.whole,
                         help="the spin of the hodograph, counted from 0 (default: in the middle)")
     return parser.parse_args()
 

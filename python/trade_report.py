@@ -4,7 +4,6 @@
 tables of times and ratios of that page and of its appendix, and the pictures. Takes a quarter of an
 hour, and for each further repetition, which has no large scene, five minutes."""
 
-import argparse
 import json
 import math
 import os
@@ -13,7 +12,7 @@ import re
 import statistics
 import subprocess
 
-from cayspin_plots import trade_costs, trade_figure, trade_overview
+from cayspin_plots import command_line, trade_costs, trade_figure, trade_overview
 from cayspin_plots.trade_costs import ERRORS, cheapest, cost
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -140,11 +139,11 @@ def with_tables(page, trades, rows):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line.Parser(description=__doc__)
     parser.add_argument("--program", default=ROOT / "build/release/bin/cayspin", type=pathlib.Path)
     parser.add_argument("--folder", default=ROOT / "build/trade", type=pathlib.Path,
                         help="for the output of trade; existing results are not measured again")
-    parser.add_argument("--repetitions", default=1, type=int,
+    parser.add_argument("--repetitions", default=1, type=command_line.whole,
                         help="ratios are medians; the spread is that of the median ratio")
     arguments = parser.parse_args()
     arguments.folder.mkdir(parents=True, exist_ok=True)

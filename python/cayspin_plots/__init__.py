@@ -4,5 +4,7 @@
 import pathlib
 import sys
 
-# For `texture`, a part of the package that needs nothing compiled.
+# For `texture` and `command_line`, parts of the package that need nothing compiled.
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "cayspin"))
+
+import command_line  # noqa: E402, F401

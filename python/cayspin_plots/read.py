@@ -2,11 +2,11 @@
 """Reads a trajectory file into numpy arrays."""
 
 import contextlib
-import os
 from dataclasses import dataclass
 
 import h5py
 import numpy as np
+from command_line import require_file
 from texture import checksum
 
 
@@ -42,8 +42,10 @@ class Trajectory:
 @contextlib.contextmanager
 def opened(path, what):
     """An HDF5 file; an error ends the program with one line."""
-    if not os.path.isfile(path):
-        raise SystemExit(f"{path}: there is no such file")
+    try:
+        require_file(path)
+    except ValueError as error:
+        raise SystemExit(f"{path}: {error}") from None
     try:
         with h5py.File(path, "r") as file:
             yield file

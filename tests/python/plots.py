@@ -10,7 +10,7 @@ import unittest
 import h5py
 import matplotlib.image
 import numpy as np
-from script_test import BLUE, PIXELS_PER_INCH, RED, ScriptTest, dimensions, write
+from script_test import BLUE, PIXELS_PER_INCH, RED, SCRIPTS, ScriptTest, dimensions, write
 
 from cayspin_plots.read import read_trajectory
 from cayspin_plots.table import read_table
@@ -96,6 +96,8 @@ class PlotTexture(ScriptTest):
                 self.assert_drawn(png, size, (), self.plot(*arguments, "--output", png))
         self.plot("--frame", 0, "--output", png)
         self.assert_has_color(png, (128, 255, 0))
+        self.plot("--frame", "last", "--output", png)
+        self.assert_has_color(png, self.CYAN)
 
     def test_chain_and_vector_graphics(self):
         chain, svg = write(self.folder / "chain.h5"), self.folder / "chain.svg"
@@ -115,9 +117,32 @@ class PlotTexture(ScriptTest):
             self.assertEqual(struct.unpack("<HH", content[6:10]), (810, 550))
         self.assertFalse((self.folder / "film_texture.png").exists())
         self.assert_no_picture("a movie that ends in .mp4 or .gif", "--movie", "film.avi")
-        self.assert_no_picture("--fps 0", "--movie", movie, "--fps", 0)
+        self.assert_no_picture("cayspin: --fps 0: accepted: a number > 0 and < 1000", "--movie", movie, "--fps", 0)
         if not shutil.which("ffmpeg"):
             self.assert_no_picture("finds no ffmpeg", "--movie", self.folder / "film.mp4")
+
+    def test_wrong_options(self):
+        number = "accepted: last or a whole number; from the end: -1"
+        for part, *arguments in (
+                (f"--frame abc: {number}", "--frame", "abc"),
+                (f"--difference 1.5: {number}", "--difference", 1.5),
+                ("--replica x: accepted: a whole number", "--replica", "x"),
+                ("--fps x: accepted: a number", "--fps", "x"),
+                ("--colors x: accepted: hue, safe", "--colors", "x"),
+                ("--charge not allowed with argument --difference (see cayspin plot --help)",
+                 "--difference", 0, "--charge"),
+                ("-o/--output expected one argument (see cayspin plot --help)", "--output"),
+                ("unrecognized arguments: --a b (see cayspin plot --help)", "--a\nb")):
+            result = self.plot(*arguments)
+            self.assertEqual((result.returncode, result.stdout, result.stderr),
+                             (2, "", f"cayspin: {part}\n"))
+
+    def test_wrong_options_of_other_scripts(self):
+        for script in SCRIPTS.glob("*.py"):
+            self.assertNotIn("ArgumentParser(", script.read_text(), script)
+        result = self.run_script("plot_sweep.py", self.file, "--none")
+        self.assertEqual((result.returncode, result.stderr), (
+            2, "plot_sweep.py: unrecognized arguments: --none (see plot_sweep.py --help)\n"))
 
     def test_refusals(self):
         self.assert_no_picture("frame 20; accepted: -20 to 19", "--frame", 20)
@@ -126,6 +151,7 @@ class PlotTexture(ScriptTest):
         self.assert_no_picture("plane 'top'", "--plane", "top")
         self.assert_no_picture("cannot write", "--output", self.folder / "none" / "film.png")
         self.assert_no_picture("there is no such file", file=self.folder / "none.h5")
+        self.assert_no_picture("it is a folder; accepted: a file", file=self.folder)
         self.assert_no_picture("cannot be opened", file=self.text_file())
         other = self.folder / "other.h5"
         h5py.File(other, "w").close()

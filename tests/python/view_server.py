@@ -101,12 +101,13 @@ class Start(ScriptTest):
 
     def test_wrong_files(self):
         self.assert_no_page("none.h5: there is no such file", "none.h5")
+        self.assert_no_page(f"{self.folder}: it is a folder; accepted: a file", self.folder)
         self.assert_no_page("text.h5: cannot be read", self.text_file())
         h5py.File(self.folder / "other.h5", "w").close()
         self.assert_no_page("no trajectory, it has no spins", "other.h5")
         chain = write(self.folder / "chain.h5")
         port = Page(self, chain).port
-        self.assert_no_page(f"--port {port}: Address already in use", "--port", port, chain)
+        self.assert_no_page(f"cayspin: --port {port}: Address already in use", "--port", port, chain)
         os.truncate(chain, chain.stat().st_size // 2)
         self.assert_no_page("chain.h5: cannot be read", chain)
 
@@ -121,6 +122,12 @@ class Start(ScriptTest):
         (self.folder / "long.h5").write_text("mine\n")
         self.assert_no_page("it exists", scene)
         self.assertEqual((self.folder / "long.h5").read_text(), "mine\n")
+
+    def test_wrong_options(self):
+        self.assert_no_page("cayspin: --port x: no port; accepted: 0 (a free one) to 65535\n",
+                            "--port", "x", "a.h5")
+        self.assert_no_page("cayspin: unrecognized arguments: --none (see cayspin view --help)\n",
+                            "--none", "a.h5")
 
     def test_a_chosen_port_through_a_link(self):
         link = self.folder / "cayspin-view"

@@ -12,6 +12,8 @@ import shutil
 import sys
 import webbrowser
 
+from ..command_line import Parser
+
 
 def _port(text):
     if not text.isdecimal() or int(text) > 65535:
@@ -20,7 +22,7 @@ def _port(text):
 
 
 def parse_arguments():
-    parser = argparse.ArgumentParser(prog="cayspin view", description=__doc__)
+    parser = Parser(prog="cayspin view", description=__doc__)
     parser.add_argument("file", type=pathlib.Path, metavar="FILE.h5|SCENE.toml")
     parser.add_argument("--port", type=_port, default=0, help="default: a free one")
     parser.add_argument("--no-browser", action="store_true", help="only print the address")
@@ -64,12 +66,12 @@ def main():
     try:
         show(arguments)
     except ModuleNotFoundError as error:
-        message = (f"cayspin view: there is no Python package {error.name}; accepted: a Python "
+        message = (f"cayspin: there is no Python package {error.name}; accepted: a Python "
                    "with numpy, h5py and tornado")
     except ValueError as error:
         message = error
     except OSError as error:
-        message = f"cayspin view: {error.strerror or error}"
+        message = f"cayspin: {error.strerror or error}"
     except KeyboardInterrupt:
         return
     else:

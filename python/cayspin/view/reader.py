@@ -11,6 +11,7 @@ from typing import Any, Callable
 import h5py
 import numpy as np
 
+from ..command_line import require_file
 from ..texture import checksum, lattice_of, plane_of, require_trajectory
 
 OF_FRAMES = ("spins", "time", "step", "energy", "norm_defect", "magnetization")
@@ -50,8 +51,10 @@ class Reader:
         self.path = pathlib.Path(path)
         self.frames = self.samples = 0  # that are trusted
         self._seen, self._identity, self._kept = (0, 0), None, (None, None)
-        if not self.path.is_file():
-            raise ValueError(f"{path}: there is no such file; accepted: a file that cayspin wrote")
+        try:
+            require_file(path)
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}") from None
         self._read(self._look)
 
     def _read(self, read: Callable) -> Any:

@@ -111,7 +111,7 @@ async def serve(reader: Reader, run: Run | None, port: int, announce: Callable[[
     try:
         sockets = tornado.netutil.bind_sockets(port, "127.0.0.1")
     except OSError as error:
-        raise ValueError(f"--port {port}: {error.strerror}; accepted: a free port") from None
+        raise ValueError(f"cayspin: --port {port}: {error.strerror}; accepted: a free port") from None
     port, token = sockets[0].getsockname()[1], secrets.token_urlsafe(24)
     application = tornado.web.Application(
         [("/(news|frame|positions|path)", _Data), ("/steer", _Steering)],
