@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Pictures of cayspin's trajectory files (docs/reference/file_format.md)."""
 
+import logging
 import pathlib
 import sys
 
@@ -8,3 +9,6 @@ import sys
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "cayspin"))
 
 import command_line  # noqa: E402, F401
+
+# Matplotlib says where it caches fonts if the home folder cannot be written, and when it lists them.
+logging.getLogger("matplotlib").setLevel(logging.ERROR)

@@ -4,6 +4,7 @@
 import os
 import shutil
 import struct
+import subprocess
 import sys
 import unittest
 
@@ -120,6 +121,16 @@ class PlotTexture(ScriptTest):
         self.assert_no_picture("cayspin: --fps 0: accepted: a number > 0 and < 1000", "--movie", movie, "--fps", 0)
         if not shutil.which("ffmpeg"):
             self.assert_no_picture("finds no ffmpeg", "--movie", self.folder / "film.mp4")
+
+    def test_a_home_that_cannot_be_written(self):
+        home = self.text_file()
+        kept = {name: value for name, value in os.environ.items()
+                if name not in ("MPLCONFIGDIR", "XDG_CACHE_HOME", "XDG_CONFIG_HOME")}
+        result = subprocess.run(
+            [sys.executable, "-B", SCRIPTS / "plot_texture.py", self.folder / "none.h5"],
+            env=kept | {"HOME": str(home)}, capture_output=True, text=True)
+        self.assertEqual(result.stderr, f"{self.folder}/none.h5: there is no such file; accepted: "
+                                        "a file that cayspin wrote\n")
 
     def test_wrong_options(self):
         number = "accepted: last or a whole number; from the end: -1"
