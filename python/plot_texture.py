@@ -5,6 +5,7 @@ sites, chains as lines; as a picture of one frame or a movie of all. For a path,
 and some of its images; for modes, their spectrum and shapes; for waves, their bands; for an
 ensemble, one replica."""
 
+import contextlib
 import pathlib
 import sys
 
@@ -106,12 +107,13 @@ def draw_movie(file, arguments):
     shown, options = read(file, arguments, 0)
     axes = texture.draw(shown, colors=arguments.colors, limit=limit, **options)
     figure, place = axes.figure, axes.get_position(original=True)
-    with writer.saving(figure, str(name), dpi=100):
+    with style.replacing(name, "movie") as written, writer.saving(figure, str(written), dpi=100):
         for frame in frames:
-            shown, options = read(file, arguments, frame)
-            figure.clear()
-            texture.draw(shown, figure.add_axes(place, anchor="NW"), colors=arguments.colors,
-                         limit=limit, key=True, **options)
+            with errors_of(arguments.file):
+                shown, options = read(file, arguments, frame)
+                figure.clear()
+                texture.draw(shown, figure.add_axes(place, anchor="NW"), colors=arguments.colors,
+                             limit=limit, key=True, **options)
             writer.grab_frame()
     print(name)
 
@@ -154,16 +156,23 @@ def run(arguments):
                arguments.file.with_name(f"{arguments.file.stem}_{ending}.png"))
 
 
+@contextlib.contextmanager
+def errors_of(file):
+    try:
+        yield
+    except (OSError, KeyError, TypeError, ValueError) as error:
+        raise SystemExit(f"{file}: {error.args[-1]}") from None
+
+
 def main():
     arguments = parse_arguments()
     try:
-        import_libraries()
-        run(arguments)
+        with errors_of(arguments.file):
+            import_libraries()
+            run(arguments)
     except ImportError as error:
         message = (f"cayspin: {sys.executable} has no {error.name}; accepted: a Python with "
                    "h5py and matplotlib in CAYSPIN_PYTHON")
-    except (OSError, KeyError, TypeError, ValueError) as error:
-        message = f"{arguments.file}: {error.args[-1]}"
     except SystemExit as error:
         message = error.code
     else:

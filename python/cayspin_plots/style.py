@@ -1,6 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """One look for every picture; nothing is shown on a display."""
 
+import contextlib
+import os
+import pathlib
+import shutil
+import subprocess
+
 import matplotlib
 
 matplotlib.use("Agg")
@@ -38,9 +44,37 @@ plt.rcParams.update(
 )
 
 
-def save(figure, path):
+def _reason(error):
+    if isinstance(error, subprocess.CalledProcessError):  # of ffmpeg
+        lines = str(error.stderr or "").strip().splitlines()
+        return lines[0] if lines else f"{error.cmd[0]} ended with status {error.returncode}"
+    return getattr(error, "strerror", None) or " ".join(str(error).split())
+
+
+@contextlib.contextmanager
+def replacing(path, what):
+    """The name of a new file, which takes the place of `path` once it is complete."""
+    target = pathlib.Path(os.path.realpath(path))
+    is_device = target.exists() and not target.is_file()
+    written = target if is_device else target.with_name(f".cayspin{os.getpid()}{target.suffix}")
     try:
-        figure.savefig(path)
-    except (OSError, ValueError) as error:
-        raise SystemExit(f"{path}: cannot write the picture: {error}") from None
+        yield written
+        if not is_device:
+            if target.exists():
+                shutil.copymode(target, written)
+            written.replace(target)
+    except (OSError, ValueError, subprocess.CalledProcessError) as error:
+        raise SystemExit(f"{path}: cannot write the {what}: {_reason(error)}") from None
+    finally:
+        if not is_device:
+            with contextlib.suppress(OSError):
+                written.unlink()
+
+
+def save(figure, path):
+    path = pathlib.Path(path)
+    if not path.suffix:
+        path = path.with_name(f"{path.name.rstrip('.')}.png")
+    with replacing(path, "picture") as written:
+        figure.savefig(written)
     print(path)

@@ -2,6 +2,7 @@
 """Runs the scripts that draw, as a user does."""
 
 import os
+import resource
 import shutil
 import struct
 import subprocess
@@ -131,6 +132,52 @@ class PlotTexture(ScriptTest):
             env=kept | {"HOME": str(home)}, capture_output=True, text=True)
         self.assertEqual(result.stderr, f"{self.folder}/none.h5: there is no such file; accepted: "
                                         "a file that cayspin wrote\n")
+
+    def test_a_full_disk(self):
+        """As a limit on the size of files makes one."""
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192))
+
+        for option, name, what in (
+                ("--output", "old.png", "picture"), ("--output", "new.svg", "picture"),
+                ("--movie", "old.gif", "movie"), ("--movie", "new.gif", "movie")):
+            file = self.folder / name
+            if file.stem == "old":
+                file.write_text("before\n")
+            before = set(self.folder.iterdir())
+            result = self.run_script("plot_texture.py", self.file, option, file, preexec_fn=limit)
+            self.assertEqual((result.returncode, result.stdout, result.stderr), (
+                2, "", f"{file}: cannot write the {what}: File too large\n"))
+            self.assertEqual(set(self.folder.iterdir()), before)
+            if file.stem == "old":
+                self.assertEqual(file.read_text(), "before\n")
+
+    def test_an_encoder_that_fails(self):
+        movie, ffmpeg = self.folder / "film.mp4", self.folder / "bin" / "ffmpeg"
+        ffmpeg.parent.mkdir()
+        for end, reason in (("echo 'disk: full' >&2; echo more >&2; exit 5", "disk: full"),
+                            ("exit 5", "ffmpeg ended with status 5")):
+            ffmpeg.write_text(f"#!/bin/sh\nfor last; do :; done; echo >\"$last\"; {end}\n")
+            ffmpeg.chmod(0o755)
+            before = set(self.folder.iterdir())
+            result = self.run_script("plot_texture.py", self.file, "--movie", movie,
+                                     path=f"{ffmpeg.parent}:{os.environ['PATH']}")
+            self.assertEqual((result.returncode, result.stdout, result.stderr), (
+                2, "", f"{movie}: cannot write the movie: {reason}\n"))
+            self.assertEqual(set(self.folder.iterdir()), before)
+
+    def test_a_picture_that_is_replaced(self):
+        """A link stays one, and the picture keeps its permissions."""
+        picture, link = self.folder / "film.png", self.folder / "link.png"
+        picture.write_text("before\n")
+        picture.chmod(0o640)
+        link.symlink_to(picture)
+        self.assert_drawn(link, (8.1, 0.8 * 5.5 + 1.1), (self.RED,), self.plot("-o", link))
+        self.assertTrue(link.is_symlink())
+        self.assertEqual(picture.stat().st_mode & 0o777, 0o640)
+        result = self.plot("-o", self.folder / "no_ending")
+        self.assertEqual(result.stdout, f"{self.folder}/no_ending.png\n", result.stderr)
+        self.assertEqual(dimensions(self.folder / "no_ending.png"), dimensions(picture))
 
     def test_wrong_options(self):
         number = "accepted: last or a whole number; from the end: -1"

@@ -63,10 +63,10 @@ class ScriptTest(unittest.TestCase):
         file.write_text("not a trajectory\n")
         return file
 
-    def run_script(self, name, *arguments):
+    def run_script(self, name, *arguments, path=os.environ["PATH"], **options):
         return subprocess.run([sys.executable, "-B", SCRIPTS / name, *map(str, arguments)],
-                              env=os.environ | {"MPLCONFIGDIR": self.fonts.name},
-                              capture_output=True, text=True)
+                              env=os.environ | {"MPLCONFIGDIR": self.fonts.name, "PATH": path},
+                              capture_output=True, text=True, **options)
 
     def assert_drawn(self, png, inches, colors, result):
         self.assertEqual((result.returncode, result.stderr), (0, ""))
