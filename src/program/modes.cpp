@@ -200,7 +200,15 @@ class ModesOfScene {
       minimize.torque = std::numeric_limits<double>::max();
       minimize.keep_saddles = true;
     }
-    return minimizer.minimize(exec_, scene_, field, spins_, minimize);
+    auto const found = minimizer.relax(exec_, scene_, field, spins_, minimize);
+    if (double const torque = found.torque * scene_.units.field;
+        options_.at_rest && !io::has_torque(scene_.field) && torque > options_.torque)
+      fmt::print(
+          stderr,
+          "warning: {}: max |m x H| is {:.3g}{}, above --torque {:.3g}: these are modes of a "
+          "state that moves\n",
+          scene_.path.string(), torque, scene_.units.si ? " T" : "", options_.torque);
+    return found;
   }
 
   // Starts at an equilibrium of the energy.

@@ -119,7 +119,8 @@ int find_path(PathCommandOptions const& options) {
       find_scene_path(scene, from, to, space, options.precision, search, CAYSPIN_GIT_COMMIT);
   path.from = options.from.string();
   path.to = options.to.string();
-  if (end == PathEnd::interrupted) {
+  // Rates take long after the path is found.
+  if (end == PathEnd::interrupted || interrupt_requested()) {
     fmt::print(stderr, "{}: interrupted; nothing is written\n", scene.path.string());
     return Status::interrupted;
   }

@@ -90,13 +90,13 @@ class Relaxation {
   Minimum relax_in(io::Scene const& in_field, SceneField<Spins> const& field) {
     Kokkos::Timer const clock;
     auto const found =
-        minimizer_.minimize(exec_, scene_, field, spins_,
-                            {.torque = options_.torque / scene_.units.field,
-                             .evaluations = options_.evaluations,
-                             .keep_saddles = options_.keep_saddles,
-                             .observer = [](Minimum const&) {
-                               return interrupt_requested() ? Next::stop : Next::proceed;
-                             }});
+        minimizer_.relax(exec_, scene_, field, spins_,
+                         {.torque = options_.torque / scene_.units.field,
+                          .evaluations = options_.evaluations,
+                          .keep_saddles = options_.keep_saddles,
+                          .observer = [](Minimum const&) {
+                            return interrupt_requested() ? Next::stop : Next::proceed;
+                          }});
     cost_.step_seconds += clock.seconds();
     Step const step{states_, static_cast<double>(states_), 1, true};
     last_ = sample_scene(exec_, field, step, spins_);

@@ -161,7 +161,7 @@ class RunOfStages {
     auto const& [torque, evaluations, keep_saddles] = *stage().relax;
     auto const& units = scene().units;
     Kokkos::Timer const clock;
-    auto const found = SceneMinimizer<Real, Space>(spins).minimize(
+    auto const found = SceneMinimizer<Real, Space>(spins).relax(
         exec, scene(), field_of<Spins>(scene(), plan().lattice, false).made_for(FieldFor::energy),
         spins,
         {.torque = torque / units.field,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "io/scene.hpp"
 #include "sections.hpp"
+#include "values_of_sites.hpp"
 
 #include <fmt/format.h>
 
@@ -98,22 +99,7 @@ void require_alike_where_followed(Scene const& scene) {
     if (vectors.there())
       require(key, [&](SiteBox const& box) { return vectors_of_sites(scene, vectors, key, box); });
   };
-  auto const& field = scene.field;
-  check(lattice.regions, "lattice.regions");
-  check(lattice.moments_of_sites, "lattice.moments");
-  check(lattice.occupied, "lattice.occupied");
-  check(lattice.frozen, "lattice.frozen");
-  check(scene.system.dampings, "system.damping");
-  check(field.exchange_factors, "field.exchange");
-  check(field.exchange_at_faces, "field.exchange");
-  check(field.dmi_factors, "field.dmi");
-  for (auto const& term : field.anisotropies) {
-    check(term.factors, "field.anisotropy");
-    check(term.factors2, "field.anisotropy");
-    check_vectors(term.axes, "field.anisotropy");
-  }
-  for (auto const& source : field.sources) check_vectors(source.profile, "field.sources");
-  if (scene.thermal) check(scene.thermal->of_sites, "thermal.temperature");
+  detail::for_each_value_of_sites(scene, check, check_vectors);
 }
 
 }  // namespace cayspin::inline v0_2::io

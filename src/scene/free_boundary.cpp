@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "free_boundary.hpp"
 
+#include "io/free_sides.hpp"
 #include "sections.hpp"
 
 #include <fmt/format.h>
@@ -8,11 +9,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 
 namespace cayspin::inline v0_2::io::detail {
 namespace {
 
-std::string text_of(std::size_t axis) { return fmt::format("free sides along {}", "xyz"[axis]); }
+constexpr std::string_view of_free_sides = "free sides along ";
+
+std::string text_of(std::size_t axis) { return fmt::format("{}{}", of_free_sides, "xyz"[axis]); }
 
 /// Returns the vector of the bonds along an axis, divided by D.
 Triple bond_vector(Field const& field, std::size_t axis) {
@@ -134,3 +138,11 @@ std::optional<std::vector<double>> numbers_at_free_sides(Scene const& scene,
 }
 
 }  // namespace cayspin::inline v0_2::io::detail
+
+namespace cayspin::inline v0_2::io {
+
+bool is_of_free_sides(SiteNumbers const& numbers) {
+  return numbers.expression.starts_with(detail::of_free_sides);
+}
+
+}  // namespace cayspin::inline v0_2::io

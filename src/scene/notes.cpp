@@ -87,7 +87,7 @@ class Notes {
         add(si ? "material.D" : "field.dmi",
             any_axis(any) ? "acts nowhere: cells have neighbours only along the normal" : alone);
     }
-    if (sites(scene_) <= most_sites_counted) of_interlayers();
+    if (sites(scene_) <= most_sites_counted) of_bonds_between_regions();
     if (auto const& current = field.torque.zhang_li) {
       auto const flows = [&](std::size_t axis) {
         auto const* const number = std::get_if<double>(&current->velocity[axis]);
@@ -99,23 +99,28 @@ class Notes {
     }
   }
 
-  // Notes interlayers that couple across sites without a spin.
-  void of_interlayers() {
-    auto const& shape = scene_.lattice.shape;
-    for (auto const& bond : scene_.field.interlayers) {
-      if (bond.range == 0) continue;
-      auto const acts = [&](std::size_t axis) {
-        auto const pairs = regions_across(scene_, {{0, 0, 0}, shape}, axis, bond.range + 1);
-        return std::ranges::any_of(pairs, [&](auto const& pair) {
-          return std::ranges::is_permutation(pair, bond.regions);
-        });
-      };
-      if (!any_axis(acts))
-        add("field.interlayer",
-            fmt::format("acts nowhere: spins of regions {} and {} are nowhere {} cells without a "
-                        "spin apart",
-                        bond.regions[0], bond.regions[1], bond.range));
-    }
+  /// Returns true if spins of these regions have `range` cells without a spin between them.
+  bool meet(std::array<std::int64_t, 2> const& regions, std::int64_t range) const {
+    return any_axis([&](std::size_t axis) {
+      auto const pairs = regions_across(scene_, {{0, 0, 0}, scene_.lattice.shape}, axis, range + 1);
+      return std::ranges::any_of(
+          pairs, [&](auto const& pair) { return std::ranges::is_permutation(pair, regions); });
+    });
+  }
+
+  void of_bonds_between_regions() {
+    auto const note = [&](std::string_view key, std::array<std::int64_t, 2> const& regions,
+                          std::int64_t range) {
+      if (meet(regions, range)) return;
+      auto const which = fmt::format("acts nowhere: spins of regions {} and {} are nowhere ",
+                                     regions[0], regions[1]);
+      add(key, which + (range == 0 ? "neighbours"
+                                   : fmt::format("{} cells without a spin apart", range)));
+    };
+    for (auto const& bond : scene_.field.interlayers)
+      note("field.interlayer", bond.regions, bond.range);
+    for (auto const& bond : scene_.field.exchange_between)
+      note("field.exchange_between", bond.regions, 0);
   }
 
   void of_images() {

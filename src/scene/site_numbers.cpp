@@ -9,6 +9,7 @@
 #include "sections.hpp"
 #include "site_expression.hpp"
 #include "start_file.hpp"
+#include "values_of_sites.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -189,34 +190,9 @@ void check_site_numbers(Scene const& scene) {
       try_reading(numbers.file, [&] { open_values(numbers.file, scene.lattice); });
     });
   };
-  auto const& field = scene.field;
-  check(scene.lattice.regions, "lattice.regions");
-  check(scene.lattice.moments_of_sites, "lattice.moments");
-  check(scene.lattice.gyromagnetic_of_sites, "lattice.gyromagnetic");
-  check(scene.lattice.occupied, "lattice.occupied");
-  check(scene.lattice.frozen, "lattice.frozen");
-  check(scene.system.dampings, "system.damping");
-  check(field.exchange_factors, "field.exchange");
-  check(field.dmi_factors, "field.dmi");
-  for (auto const& term : field.anisotropies) {
-    check(term.factors, "field.anisotropy");
-    check(term.factors2, "field.anisotropy");
-    check_site_vectors(scene, term.axes, "field.anisotropy");
-  }
-  check_site_vectors(scene, field.dmi_normals, "field.dmi");
-  for (auto const& term : field.crystal_anisotropies) {
-    check(term.factors, "field.anisotropy");
-    check(term.factors2, "field.anisotropy");
-    for (auto const& axes : term.axes_of_sites) check_site_vectors(scene, axes, "field.anisotropy");
-  }
-  for (auto const& source : field.sources)
-    check_site_vectors(scene, source.profile, "field.sources");
-  if (auto const& of = field.torque.slonczewski) {
-    check(of->damping_like_of_sites, "torque.slonczewski.damping_like");
-    check(of->field_like_of_sites, "torque.slonczewski.field_like");
-    check_site_vectors(scene, of->polarizations, "torque.slonczewski.polarization");
-  }
-  if (scene.thermal) check(scene.thermal->of_sites, "thermal.temperature");
+  for_each_value_of_sites(scene, check, [&](SiteVectors const& vectors, std::string_view key) {
+    check_site_vectors(scene, vectors, key);
+  });
 }
 
 }  // namespace detail

@@ -144,6 +144,10 @@ Torque read_torque(Table const& root, SystemKind kind) {
   auto const zhang_li = table->find("zhang_li"), slonczewski = table->find("slonczewski");
   if (!zhang_li && !slonczewski) table->item().fail("is empty", "zhang_li, slonczewski");
   if (zhang_li) torque.zhang_li = read_zhang_li(*zhang_li, root.scene());
+  auto const& material = root.scene().material;
+  if (zhang_li && slonczewski && material && material->gamma_factors.there())
+    slonczewski->fail("does not go with zhang_li where gamma differs from site to site",
+                      "one of the two, or one gamma");
   if (slonczewski) torque.slonczewski = read_slonczewski(*slonczewski, root.scene());
   return torque;
 }

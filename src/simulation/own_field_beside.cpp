@@ -72,7 +72,7 @@ io::Field with_joined_own_field(io::Scene const& scene, io::Field field, Lattice
       field.slab_demag && (field.slab_demag->on_host || field.slab_demag->multirate);
   if (!field.own.nonlocal || (!field.demag && !on_host)) return field;
   field.own.nonlocal = Sum<Real>(std::move(field.own.nonlocal), beside_own<Real>(field, lattice),
-                                 io::all_moments(scene, own_sites(lattice)), lattice);
+                                 io::moments_of_sites(scene, own_sites(lattice)), lattice);
   if (field.demag)
     field.demag.reset();
   else

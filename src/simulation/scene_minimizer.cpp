@@ -3,13 +3,45 @@
 
 #include "failure.hpp"
 #include "io/relax.hpp"
+#include "ranks.hpp"
 #include "run_files.hpp"
 #include "space.hpp"
 #include "thermal.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
 namespace cayspin::simulation {
+
+namespace {
+
+// Returns max |m x H|, of a field that is -dE/dm.
+template <class Exec, class Spins>
+double largest_torque(Exec const& exec, SceneField<Spins> const& field, Spins const& spins,
+                      double time, std::vector<double> const& moments) {
+  using Real = typename Spins::value_type;
+  SiteField<Real, 3, typename Spins::memory_space> const found("SceneMinimizer::field",
+                                                               spins.lattice());
+  evaluate_field(exec, field, spins, time, found);
+  exec.fence("cayspin::SceneMinimizer: field evaluated");
+  auto const of_spins = copy_to_host(spins), of_field = copy_to_host(found);
+  double largest = 0;
+  for (std::size_t site = 0; site < moments.size(); ++site) {
+    if (!(moments[site] > 0)) continue;
+    auto const at = [&](auto const& numbers) {
+      return Vec3<double>{numbers[3 * site], numbers[3 * site + 1], numbers[3 * site + 2]};
+    };
+    auto const torque = cross(at(of_spins), at(of_field));
+    largest = std::max(largest, std::sqrt(dot(torque, torque)) / moments[site]);
+  }
+  return largest;
+}
+
+}  // namespace
 
 void require_rest(io::Scene const& scene) {
   if (scene.system.kind != io::SystemKind::llg)
@@ -55,6 +87,34 @@ Minimum SceneMinimizer<Real, Space>::minimize(Space const& exec, io::Scene const
     throw NumbersFailed(fmt::format("{}: the field of the start, or its energy, is not finite",
                                     scene.path.string()));
   }
+}
+
+template <class Real, class Space>
+Minimum SceneMinimizer<Real, Space>::relax(Space const& exec, io::Scene const& scene,
+                                           SceneField<Spins> const& field, Spins& spins,
+                                           MinimizeOptions const& options) {
+  auto const moments = io::all_moments(scene, own_sites(spins.lattice()));
+  auto const largest = moments.empty() ? 1 : std::ranges::max(moments);
+  if (moments.empty() || !(largest > 0)) return minimize(exec, scene, field, spins, options);
+  auto closer = options;
+  closer.torque *= largest;
+  Minimum all;
+  all.iterations = all.evaluations = all.saddles = 0;
+  constexpr int tries = 20;
+  for (int i = 0; i < tries; ++i) {
+    closer.evaluations = options.evaluations - all.evaluations;
+    auto found = minimize(exec, scene, field, spins, closer);
+    double const of_gradient = found.torque;
+    found.torque = largest_torque(exec, field, spins, options.time, moments);
+    found.iterations += all.iterations;
+    found.evaluations += all.evaluations + 1;
+    found.saddles += all.saddles;
+    all = found;
+    if (found.end != MinimizeEnd::converged || found.torque <= options.torque) return all;
+    closer.torque = 0.5 * of_gradient * options.torque / found.torque;
+  }
+  all.end = MinimizeEnd::stagnated;
+  return all;
 }
 
 #define CAYSPIN_INSTANTIATE(Space, Real) template class SceneMinimizer<Real, Space>;

@@ -23,10 +23,15 @@ class SceneMinimizer {
 
   explicit SceneMinimizer(Spins const& like) : minimizer_(like) {}
 
-  /// Calls cayspin::minimize, in reduced units. Throws NumbersFailed for a field that is not
-  /// finite.
+  /// Calls cayspin::minimize, in reduced units, where the field is -dE/dm: H times the moment.
+  /// Throws NumbersFailed for a field that is not finite.
   Minimum minimize(Space const& exec, io::Scene const& scene, SceneField<Spins> const& field,
                    Spins& spins, MinimizeOptions const& options);
+
+  /// The same, with the torque of H itself. Where moments differ, it repeats the search with other
+  /// bounds until that torque is below options.torque.
+  Minimum relax(Space const& exec, io::Scene const& scene, SceneField<Spins> const& field,
+                Spins& spins, MinimizeOptions const& options);
 
  private:
   Minimizer<Spins> minimizer_;

@@ -181,7 +181,7 @@ class SceneRunInSpace final
     auto const sought = field_of<Spins>(in_field, plan().lattice, false).made_for(FieldFor::energy);
     // All checks have passed: up to here an exception leaves the run unchanged.
     begin_again();
-    return minimizer_->minimize(simulation_->exec, scene_, sought, simulation_->spins, options);
+    return minimizer_->relax(simulation_->exec, scene_, sought, simulation_->spins, options);
   }
 
   FoundModes modes_of_field(ModesOptions const& options) override {

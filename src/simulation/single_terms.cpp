@@ -1,10 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "single_terms.hpp"
 
+#include "io/free_sides.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <memory>
+#include <utility>
+#include <vector>
+
 namespace cayspin::simulation {
+
+namespace {
+
+// Keeps the numbers of anisotropies that follow from other terms, which are left out beside them.
+void keep_numbers_of_free_sides(io::Scene const& scene, std::vector<io::Anisotropy>& terms) {
+  for (auto& term : terms) {
+    if (!io::is_of_free_sides(term.factors)) continue;
+    auto numbers = io::numbers_of_sites(scene, term.factors, "field.anisotropy",
+                                        {{0, 0, 0}, scene.lattice.shape});
+    io::SiteNumbers kept;
+    kept.key = term.factors.key;
+    kept.given = std::make_shared<std::vector<double> const>(std::move(numbers));
+    term.factors = kept;
+  }
+}
+
+}  // namespace
 
 std::vector<std::pair<std::string, io::Scene>> single_terms(io::Scene const& scene) {
   auto const& field = scene.field;
@@ -45,6 +68,7 @@ std::vector<std::pair<std::string, io::Scene>> single_terms(io::Scene const& sce
   if (!field.anisotropies.empty() || !field.crystal_anisotropies.empty()) {
     auto& alone = add("anisotropy");
     alone.anisotropies = field.anisotropies;
+    keep_numbers_of_free_sides(scene, alone.anisotropies);
     alone.crystal_anisotropies = field.crystal_anisotropies;
   }
   if (field.applied) add("applied").applied = field.applied;

@@ -132,6 +132,10 @@ FoundModes find_modes_with_torques(TorqueMotion const& motion, Vectors const& sp
                                    std::size_t count, std::int64_t evaluations) {
   FoundModes modes;
   TangentBasis const basis(spins, motion.frozen);
+  if (basis.size() == 0) {  // no spin moves
+    modes.end = ModesEnd::converged;
+    return modes;
+  }
   auto const cost = evaluations_to_linearise(basis);
   if (cost > evaluations) return modes;
   modes.evaluations = cost;
@@ -143,8 +147,8 @@ FoundModes find_modes_with_torques(TorqueMotion const& motion, Vectors const& sp
   double const fastest = linear.matrix.cwiseAbs().rowwise().sum().maxCoeff();
   if (!std::isfinite(fastest)) throw NumbersFailed("modes: the motion is not finite");
   Eigen::EigenSolver<Matrix> const solver(linear.matrix);
-  if (solver.info() != Eigen::Success) {
-    modes.end = ModesEnd::stagnated;
+  if (motion.is_interrupted() || solver.info() != Eigen::Success) {
+    modes.end = motion.is_interrupted() ? ModesEnd::interrupted : ModesEnd::stagnated;
     return modes;
   }
   std::vector<std::pair<double, Eigen::Index>> slowest;

@@ -227,13 +227,15 @@ class State {
 Numbers mobilities(io::Scene const& scene, StateHessian const& state) {
   auto const& lattice = scene.lattice;
   io::SiteBox const box{{0, 0, 0}, lattice.shape};
-  auto const moments = io::moments_of_sites(scene, box);
+  auto const moments = io::moments_of_sites(scene, box),
+             ratios = io::gyromagnetic_of_sites(scene, box);
   auto const cell_sites = lattice.basis.size();
   auto const plane = static_cast<std::size_t>(lattice.shape[0] * lattice.shape[1]);
   Numbers found;
   for (auto const site : state.sites) {
     auto const of_cell = site / plane % cell_sites;
-    double const ratio = io::of_cell_site(lattice.gyromagnetic, of_cell);
+    double const ratio =
+        ratios.empty() ? io::of_cell_site(lattice.gyromagnetic, of_cell) : ratios[site];
     found.push_back(moments.empty() ? io::over_moment(lattice, of_cell, ratio)
                                     : ratio / moments[site]);
   }

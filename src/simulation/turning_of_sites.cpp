@@ -10,6 +10,7 @@ TurningOfSites turning_of_sites(io::Scene const& scene) {
   auto const moments = io::moments_of_sites(scene, box);
   auto const& system = scene.system;
   auto const& lattice = scene.lattice;
+  auto const ratios = io::gyromagnetic_of_sites(scene, box);
   std::vector<double> dampings;
   if (system.dampings.there())
     dampings = io::numbers_of_sites(scene, system.dampings, "system.damping", box);
@@ -23,7 +24,9 @@ TurningOfSites turning_of_sites(io::Scene const& scene) {
                                                   : 0;
     double const lambda = dampings.empty() ? system.damping : dampings[site];
     double const gilbert = system.gilbert_of_sites ? 1 + lambda * lambda : 1;
-    double const rate = io::of_cell_site(lattice.gyromagnetic, of_cell) * per_moment / gilbert;
+    double const ratio =
+        ratios.empty() ? io::of_cell_site(lattice.gyromagnetic, of_cell) : ratios[site];
+    double const rate = ratio * per_moment / gilbert;
     turning.precession[site] = system.precession ? rate : 0;
     turning.damping[site] = rate * lambda;
   }

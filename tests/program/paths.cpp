@@ -107,8 +107,15 @@ TEST_F(PathCommand, GivesTheRateBesideAFrozenSpin) {
            "{ constant = -0.7, axis = [0, 1, 0] }]\n" +
            field + "\n[initial]\nuniform = [0, 0, 1]\n";
   };
-  auto const in_field =
-      ends(of("shape = [1]", "applied = [0.4, 0, 0]"), "{uniform=[0,0,1]}", "{uniform=[0,0,-1]}");
+  auto const one = [&](std::string const& lattice) {
+    return ends(of("shape = [1]" + lattice, "applied = [0.4, 0, 0]"), "{uniform=[0,0,1]}",
+                "{uniform=[0,0,-1]}");
+  };
+  auto const in_field = one("");
+  for (std::string const ratio : {"3.0", "\"3 + 0*x\""}) {
+    auto const thrice = one("\ngyromagnetic = " + ratio);
+    for (std::size_t i : {1, 2}) EXPECT_NEAR(thrice[i] / in_field[i], 3, 1e-6) << ratio;
+  }
   auto const beside = ends(of("shape = [2]\nfrozen = \"i < 1\"", "exchange = 0.4"),
                            "{expression=[\"i<1\",\"0\",\"i<1 ? 0 : 1\"]}",
                            "{expression=[\"i<1\",\"0\",\"i<1 ? 0 : -1\"]}");

@@ -157,6 +157,19 @@ TEST_F(Trading, ARungIsARunOfTheScene) {
   }
 }
 
+TEST_F(Trading, AdvisesOnVacancies) {
+  for (std::string const vacancy : {"occupied = 'i - 1'", "moments = 'i'"}) {
+    auto text = scene();
+    std::string const shape = "shape = [6]\n";
+    text.insert(text.find(shape) + shape.size(), vacancy + "\n");
+    write("scene.toml", text);
+    auto const arguments = advised_arguments(advise("1e-3"));
+    ASSERT_FALSE(arguments.empty()) << vacancy;
+    auto const reference = end_of(text, set("integrator.dt=0.0005"));
+    EXPECT_LT(distance(end_of(text, arguments), reference), 2e-3) << vacancy;
+  }
+}
+
 TEST_F(Trading, AnAdvisedRunHasTheErrorAskedFor) {
   auto const reference = exact();
   for (bool const fine : {false, true}) {

@@ -16,6 +16,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 // Eigenvectors of B v = rate G^-1 v, with the Hessian B, from a subspace extended by preconditioned
@@ -73,7 +74,7 @@ class ModeSearch {
       if (first_ > converged || error < 0.5 * least) least = error, since = 0;
       if (since > 60) return End::stagnated;
       before_ = columns_of(modes_, kept_, rows());
-      if (!extend(added)) return End::stagnated;
+      if (!extend(added)) return is_as_good_as_products() ? End::converged : End::stagnated;
     }
   }
 
@@ -92,6 +93,12 @@ class ModeSearch {
   }
 
  private:
+  // The residuals lie in the subspace, so they are errors of the Hessian's products.
+  bool is_as_good_as_products() const {
+    constexpr double bound = std::is_same_v<Real, double> ? 1.5e-7 : 3.5e-3;  // 10 sqrt(epsilon)
+    return std::ranges::all_of(errors_, [](double error) { return error < bound; });
+  }
+
   std::size_t columns_of_mode() const { return options_.is_symmetric ? 1 : 2; }
   std::size_t size() const { return static_cast<std::size_t>(pencil_.size()); }
   Eigen::Index rows() const { return pencil_.size(); }

@@ -70,8 +70,17 @@ class Search {
       try_each(factor * least);
       refine();
     }
-    std::erase_if(prospects_, [](Prospect const& one) { return !runs(one); });
     time_again();
+  }
+
+  /// Tries candidates until one meets the error, whatever the time. Returns false if none does.
+  bool find_any() {
+    for (auto& prospect : prospects_)
+      while (!prospect.is_dropped()) {
+        attempt(prospect);
+        if (prospect.passing(error_)) return true;
+      }
+    return false;
   }
 
   /// Returns all advice, cheapest first. A candidate that was not fully tried does not come first
@@ -80,6 +89,7 @@ class Search {
     std::vector<Advice> all;
     double const least = least_seconds();
     for (auto const& prospect : prospects_) {
+      if (!runs(prospect)) continue;
       auto const* const passing = prospect.passing(error_);
       auto const steps = passing ? passing->steps : prospect.needed(goal_);
       double const seconds = passing ? passing->seconds : prospect.seconds_of(steps);
@@ -88,6 +98,7 @@ class Search {
         continue;
       all.push_back(
           to_the_end(prospect.candidate(), steps, passing ? passing->error : goal_, seconds));
+      all.back().measured = passing != nullptr;
     }
     std::ranges::sort(all, {}, &Advice::seconds);
     return all;
@@ -104,6 +115,13 @@ class Search {
     // Adaptive steps may meet features that this part of the run does not have.
     if (!candidate.method->adaptive && !is_representative_) return;
     auto coarsest = coarsest_steps(pilot_, candidate, horizon_.time, horizon_.own_steps);
+    if (pilot_.scene().integrator.refuse_unstable && !candidate.method->adaptive) {
+      // It takes long to compute, and is the usual reason for a refusal.
+      double const stable = pilot_.plan(candidate, horizon_.time, coarsest).stable_dt;
+      if (!(stable > 0)) return;
+      coarsest.count =
+          std::max(coarsest.count, static_cast<std::int64_t>(std::ceil(horizon_.time / stable)));
+    }
     for (int i = 0; is_refused(candidate, coarsest); ++i) {
       if (i == all_finer) return;
       coarsest = finer(candidate, coarsest);
@@ -278,19 +296,30 @@ Known fine_solution(Pilot const& pilot, Horizon& horizon, double error, double s
   throw NumbersFailed("there is no solution to compare with: " + horizon.why_shorter);
 }
 
-// Checks the steps of the actual run. If a field depends on t, the error depends on where the steps
-// are, and a scene's frames may shorten them. The steps are shortened until they meet the error.
+// Checks the steps of the actual run where no trial has: an error that was extrapolated may be far
+// off, and if a field depends on t, the error depends on where the steps are, and a scene's frames
+// may shorten them. The steps are shortened until they meet the error.
 bool holds(Pilot const& pilot, Horizon const& horizon, Known const& fine, double error,
            Advice& advice) {
-  if (advice.candidate.method->adaptive || !io::depends_on_time(pilot.scene().field)) return true;
-  constexpr double shorter = 1.5;
+  bool const adaptive = advice.candidate.method->adaptive;
+  if (advice.measured && (adaptive || !io::depends_on_time(pilot.scene().field))) return true;
+  constexpr double shorter = 1.5, closer = 4;
   for (int i = 0; i < refinements; ++i) {
-    auto const steps = static_cast<double>(resolve(pilot.scene(), advice).steps);
-    auto const tried = fine.solution.measure(
-        advice.candidate, {std::llround(steps * horizon.time / pilot.end()), 0}, true, {});
+    auto steps = advice.steps;
+    if (!adaptive)
+      steps.count = std::llround(static_cast<double>(resolve(pilot.scene(), advice).steps) *
+                                 horizon.time / pilot.end());
+    auto const tried = fine.solution.measure(advice.candidate, steps, true, {});
     advice.error = tried.error;
+    advice.measured = true;
     if (tried.error + fine.error <= error) return true;
-    advice.dt /= shorter;
+    if (adaptive) {
+      advice.steps.tolerance /= closer;
+      if (advice.steps.tolerance < advice.candidate.least_tolerance()) return false;
+    } else {
+      advice.dt /= shorter;
+      advice.steps.count = std::llround(pilot.end() / advice.dt);
+    }
     advice.seconds *= shorter;
   }
   return false;
@@ -307,10 +336,19 @@ Advised advise(Pilot const& pilot, AdviceRequest const& request) {
   Search search(pilot, horizon, fine, request, clock, limit);
   search.run();
   Advised advised;
-  advised.others = search.all_advice();
-  while (!advised.others.empty() &&
-         !holds(pilot, horizon, fine, request.error, advised.others.front()))
-    advised.others.erase(advised.others.begin());
+  // A trial of steps that were extrapolated could take any time.
+  double const part = horizon.time / pilot.end();
+  auto const is_too_long = [&](Advice const& one) {
+    return !one.measured && one.seconds * part > limit;
+  };
+  for (bool again : {false, true}) {
+    if (again && !(advised.others.empty() && search.find_any())) break;
+    advised.others = search.all_advice();
+    while (!advised.others.empty() &&
+           (is_too_long(advised.others.front()) ||
+            !holds(pilot, horizon, fine, request.error, advised.others.front())))
+      advised.others.erase(advised.others.begin());
+  }
   if (!pilot.is_representative(horizon.time))
     horizon.why_shorter += "; the field changes later, so only adaptive methods are tried";
   advised.horizon = horizon.time;

@@ -16,6 +16,7 @@ struct Advice {
   double error = 0;  // at the horizon of the trials
   double seconds = 0;
   std::int64_t memory = 0;  // of the choice, in bytes
+  bool measured = true;     // otherwise the error is an extrapolation from other steps
 };
 
 struct AdviceRequest {

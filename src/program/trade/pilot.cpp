@@ -35,7 +35,7 @@ class KeepStates : public RunObserver<Space, SpinField<Real, typename Space::mem
     if (is_look(step) && !keep(spins)) {
       outcome_.failure = "the spins are not finite";
     } else if (guard_) {
-      auto const now = cayspin::sample(exec, generator_, step, spins);
+      auto const now = sample_scene(exec, generator_, step, spins);
       outcome_.failure = guard_->judge(step, now.energy, now.norm_defect);
     }
     return outcome_.failure ? Next::stop : Next::proceed;
