@@ -63,6 +63,7 @@ struct Scene {
   std::optional<Columns> columns;
   std::string text;            ///< the TOML text; re-serialised when an override changed it
   std::filesystem::path path;  ///< the scene file, or the name of a text without one
+  std::vector<std::filesystem::path> files;  ///< those that its own tables name to be read
   Given given;
   std::map<std::string, std::string, std::less<>>
       places;                 ///< key -> "FILE:LINE" or "--set key=value"

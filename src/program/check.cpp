@@ -152,9 +152,19 @@ void draw(io::Scene const& scene, std::vector<double> const& start) {
     fmt::print("{}", terminal_picture(scene.lattice, start));
 }
 
+// Returns why a run would not write the scene's output file now.
+std::optional<std::string> refusal_of_output(io::Scene const& scene) {
+  try {
+    if (scene.output.file) output_file(scene, {});
+  } catch (UsageError const& error) {
+    return error.what();
+  }
+  return output_refusal(scene.output);
+}
+
 void print_output(io::Scene const& scene, Plan const& plan) {
   print("output", output_text(scene, plan));
-  if (auto const refusal = output_refusal(scene.output)) print("", "as it stands: " + *refusal);
+  if (auto const refusal = refusal_of_output(scene)) print("", "as it stands: " + *refusal);
 }
 
 void print_memory(Plan const& plan, Precision precision, char const* work) {

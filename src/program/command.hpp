@@ -15,6 +15,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace cayspin::program {
@@ -105,8 +106,18 @@ void add_device_options(CLI::App& command, DeviceOptions& options);
 /// Adds --ranks, "Y,Z".
 void add_ranks_option(CLI::App& command, std::optional<std::string>& ranks, char const* what);
 
+/// Throws UsageError for the empty name of an output file.
+void require_name(std::filesystem::path const& output);
+
+inline constexpr std::string_view another_output = "another file for --output";
+
+/// Throws UsageError if a command that writes `output`, with a checkpoint beside it, would replace
+/// `file`, which it reads.
+void require_not_written(std::filesystem::path const& file, std::filesystem::path const& output,
+                         std::string_view accepted = another_output);
+
 /// Returns the file that a scene writes: `output`, or the scene's own. Throws io::SceneError for
-/// neither.
+/// neither, and UsageError for an empty name and for a file that the scene reads.
 std::filesystem::path output_file(io::Scene const& scene,
                                   std::optional<std::filesystem::path> const& output);
 

@@ -98,12 +98,15 @@ fs::path name_of(ExportOptions const& options, std::int64_t frame) {
   return options.folder / fmt::format("{}_{:06}.ovf", options.file.stem().string(), frame);
 }
 
-void require_none_exists(ExportOptions const& options, std::vector<std::int64_t> const& frames) {
+void require_free_names(ExportOptions const& options, std::vector<std::int64_t> const& frames) {
   std::error_code ignored;
-  for (auto const frame : frames)
-    if (auto const path = name_of(options, frame); !options.overwrite && fs::exists(path, ignored))
+  for (auto const frame : frames) {
+    auto const path = name_of(options, frame);
+    require_not_written(options.file, path, "another folder for --ovf");
+    if (!options.overwrite && fs::exists(path, ignored))
       throw std::runtime_error(fmt::format(
           "{}: it exists (choose another folder, or overwrite with --overwrite)", path.string()));
+  }
 }
 
 void create_folder(fs::path const& folder) {
@@ -124,7 +127,7 @@ int export_ovf(ExportOptions const& options) {
   auto const bits =
       info.header.precision == "single" ? io::OvfFormat::binary4 : io::OvfFormat::binary8;
   auto const format = options.format.value_or(bits);
-  require_none_exists(options, frames);
+  require_free_names(options, frames);
   create_folder(options.folder);
   for (auto const frame : frames)
     io::write_ovf(name_of(options, frame), ovf_field_of(info, mesh, frame), format,

@@ -304,7 +304,7 @@ int find_modes_of_scene(ModesCommand const& options) {
     throw io::scene_error(scene, "torque",
                           fmt::format("does not go with {0}; accepted: no such table, or no {0}",
                                       options.hessian ? "--hessian" : "--wave-vector"));
-  auto const path = options.output.value_or("modes.h5");
+  auto const path = output_file(scene, options.output.value_or("modes.h5"));
   io::require_free(path, options.overwrite);
   check_files(scene, options.scene);
   constexpr double least = Minimizer<SpinField<double>>::least_bound;

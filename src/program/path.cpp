@@ -102,6 +102,7 @@ int find_path(PathCommandOptions const& options) {
     throw UsageError(std::string("--") + error.what());
   }
   auto const output = output_file(scene, options.output);
+  output_file(other, options.output);  // the file of --to must not be replaced either
   if (scene.lattice.shape != other.lattice.shape)
     throw UsageError(fmt::format("--to {}: has another shape than --from {}", options.to.string(),
                                  options.from.string()));

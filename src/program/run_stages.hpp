@@ -48,16 +48,6 @@ inline bool is_start(io::Stage const& stage) {
   return !stage.relax && !io::has_integrator(stage.scene);
 }
 
-/// Throws UsageError if a run with this output file would write into `file`.
-inline void require_not_written(std::filesystem::path const& file,
-                                std::filesystem::path const& output) {
-  std::error_code ignored;
-  for (auto const& written : {output, io::checkpoint_beside(output)})
-    if (std::filesystem::equivalent(file, written, ignored))
-      throw UsageError(fmt::format(
-          "{}: the run would write into it; accepted: another file for --output", file.string()));
-}
-
 /// Adds the option that names the file to errors.
 template <class Work>
 auto as_restart(Work const& work) {

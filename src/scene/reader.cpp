@@ -226,7 +226,8 @@ std::filesystem::path input_file(Table const& table, std::string_view name,
   auto const item = table.required(name, accepted);
   auto const file = string(item, accepted);
   if (file.empty()) item.fail("the file name is empty", accepted);
-  return table.scene().path.parent_path() / file;
+  auto& scene = table.scene();
+  return scene.files.emplace_back(scene.path.parent_path() / file);
 }
 
 }  // namespace cayspin::inline v0_2::io::detail

@@ -116,7 +116,7 @@ inline std::optional<Triple> normalise(Triple const& v) {
 /// Reads three numbers and normalises them; refuses the zero vector.
 Triple direction(Item const& item);
 
-/// Returns a file name relative to the scene file's folder.
+/// Returns a file name relative to the scene file's folder, and adds it to the scene's files.
 std::filesystem::path input_file(Table const& table, std::string_view name,
                                  std::string_view accepted = "the name of an HDF5 file");
 

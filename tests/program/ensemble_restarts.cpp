@@ -112,7 +112,7 @@ TEST_F(EnsembleRestarts, AreRefusedInOneLine) {
   refused(joined(from_part, {"--set", "integrator.steps=5"}), "it ends at step 5, the scene at");
   refused(joined(from_part, {"--set", "integrator.dt=0.3"}), "not at that many steps of dt");
   expect_refused({"run", "all.toml", "--overwrite", "--output", "part.h5", "--restart", "part.h5"},
-                 "the run would write into it");
+                 "part.h5: the command reads it, and would replace it");
   expect_refused({"run", "one.toml", "--output", "rest.h5", "--restart", "part.h5"},
                  "part.h5: it is of an ensemble; accepted: a scene with [ensemble]");
   for (auto const& method :

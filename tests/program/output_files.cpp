@@ -60,6 +60,11 @@ TEST_F(OutputFiles, AreNamedByCheck) {
                        "file, samples also in a text table, each frame safe from power cuts"));
 }
 
+TEST_F(OutputFiles, ThatAreReadAreNamedByCheck) {
+  EXPECT_TRUE(contains(output_of({"check", "chain.toml", "--set", "output.file=chain.toml"}),
+                       "as it stands: chain.toml: the command reads it, and would replace it; "));
+}
+
 TEST_F(OutputFiles, SyncChangesNoBitAndLeavesNoJournal) {
   run(chain_scene());
   auto const plain = last_spins("out.h5");

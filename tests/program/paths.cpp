@@ -184,6 +184,13 @@ TEST_F(PathCommand, Refuses) {
   expect_refused(arguments({"--set", "field.applied=[[0, 0, 0], [0, 0, 1]]"}), "field.applied: ");
   expect_refused(arguments({"--set", "thermal={ temperature = 1.0, seed = 1 }"}),
                  "thermal.temperature: ");
+  for (std::string const end : {"a.h5", "b.h5"}) {
+    auto const before = text_of(end);
+    expect_refused({"path", in_folder("scene.toml"), "--from", "a.h5", "--to", "b.h5", "--output",
+                    end, "--overwrite"},
+                   end + ": the command reads it, and would replace it");
+    EXPECT_EQ(text_of(end), before);
+  }
   EXPECT_FALSE(exists("path.h5"));
   expect_status(0, arguments({"--quiet"}));
   auto const before = text_of("path.h5");

@@ -113,6 +113,62 @@ TEST_F(MissingSibling, IsOneLineAndStatusTwo) {
                  {.program = folder / "cayspin"});
 }
 
+/// Files that a command reads, which its output must not replace.
+struct ReadFiles : ProgramTest {
+  void expect_kept(std::string const& file, Arguments const& arguments) const {
+    auto const before = text_of(file);
+    expect_refused(joined(arguments, {"--overwrite"}),
+                   file + ": the command reads it, and would replace it; accepted: another file");
+    EXPECT_EQ(text_of(file), before) << file;
+  }
+};
+
+TEST_F(ReadFiles, AreNotReplacedByTheOutputOfAnyCommand) {
+  for (std::string const command : {"run", "relax", "modes"})
+    for (std::string const output : {"chain.toml", "./chain.toml"})
+      expect_kept("chain.toml", {command, "chain.toml", "--output", output});
+  expect_kept("chain.toml", joined({"run", "chain.toml"}, set("output.file='chain.toml'")));
+  expect_kept("chain.toml", {"sweep", "chain.toml", "--output", "chain.toml", "--over",
+                             "system.damping=0.1,0.2"});
+  fs::create_symlink("chain.toml", in_folder("link.toml"));
+  expect_kept("chain.toml", {"run", "chain.toml", "--output", "link.toml"});
+  EXPECT_TRUE(fs::is_symlink(in_folder("link.toml")));
+
+  run(chain_scene());
+  expect_kept("out.h5", {"modes", "out.h5", "--output", "out.h5"});
+  Arguments const from_file = set("initial={file='out.h5'}");
+  for (std::string const command : {"run", "relax", "modes"})
+    expect_kept("out.h5", joined({command, "chain.toml", "--output", "out.h5"}, from_file));
+  expect_kept("out.h5", joined({"sweep", "chain.toml", "--output", "out.h5", "--over",
+                                "system.damping=0.1,0.2"},
+                               from_file));
+  expect_kept("out.h5", joined({"run", "chain.toml", "--output", "out.h5"},
+                               set("lattice.occupied={file='out.h5'}")));
+  expect_kept("out.h5",
+              {"run",
+               write("stages.toml", chain_scene() + "[[stage]]\n[stage.field]\nexchange = "
+                                                    "{ file = 'out.h5' }\n[stage."
+                                                    "integrator]\nsteps = 5\n"),
+               "--output", "out.h5"});
+}
+
+// The table, and a file that is begun under another name.
+TEST_F(ReadFiles, AreNotReplacedByFilesBesideTheOutput) {
+  write("chain.txt", chain_scene());
+  expect_kept("chain.txt", joined({"run", "chain.txt"}, set("output.table=true")));
+  expect_status(0, joined({"run", "chain.txt", "--quiet"}, set("output.table=false")));
+  write("chain.h5.partial", chain_scene());
+  expect_kept("chain.h5.partial", {"run", "chain.h5.partial", "--output", "chain.h5"});
+}
+
+TEST_F(ReadFiles, MayHaveTheOutputBeside) {
+  run(chain_scene());
+  expect_status(0, joined({"run", "chain.toml", "--quiet", "--output", "new.h5"},
+                          set("initial={file='out.h5'}")));
+  expect_status(0, joined({"run", "chain.toml", "--quiet", "--overwrite", "--output", "new.h5"},
+                          set("initial={file='out.h5'}")));
+}
+
 using ExistingOutput = ProgramTest;
 
 TEST_F(ExistingOutput, IsKeptUnlessOverwritten) {

@@ -93,6 +93,7 @@ Grid make_grid(SweepOptions const& options) {
       auto scene = io::read_scene(options.scene, overrides);
       if (checked + io::sites(scene) <= most_checked)
         scene = io::with_shape_of_start(std::move(scene));
+      output_file(scene, options.output);
       io::check_files(scene);
       if (scene.output.sync)
         throw io::scene_error(scene, "output.sync",
