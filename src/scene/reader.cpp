@@ -47,6 +47,24 @@ std::string type_name(toml::node const& node) {
   }
 }
 
+constexpr std::size_t longest_word = 64;  // of those that are compared
+
+std::string hint_for_case(std::string_view word, std::span<std::string_view const> known) {
+  auto const plain = without_case(word);
+  auto const found =
+      std::ranges::find_if(known, [&](auto const other) { return without_case(other) == plain; });
+  return found == known.end() ? std::string() : fmt::format(", did you mean \"{}\"?", *found);
+}
+
+// An exact word, here or elsewhere, wins over a near spelling.
+std::string hint_for_key(std::string_view key, std::span<std::string_view const> known) {
+  if (key.size() > longest_word) return {};
+  if (auto hint = hint_for_case(key, known); !hint.empty()) return hint;
+  for (auto* const hint_for : {hint_for_other_table, hint_for_word_of_others, hint_for_other_case})
+    if (auto hint = hint_for(key); !hint.empty()) return hint;
+  return did_you_mean(key, known);
+}
+
 std::string typed_text(toml::node const& node) {
   std::ostringstream stream;
   node.visit([&](auto const& value) { stream << value; });
@@ -71,8 +89,8 @@ void fail(std::string_view place, std::string_view key, std::string_view what,
 }
 
 std::string did_you_mean(std::string_view word, std::span<std::string_view const> known) {
-  if (word.size() > 64) return {};
-  if (auto hint = hint_for_word_of_others(word); !hint.empty()) return hint;
+  if (word.size() > longest_word) return {};
+  if (auto hint = hint_for_case(word, known); !hint.empty()) return hint;
   std::string_view best;
   std::size_t best_distance = 3;
   for (auto const candidate : known) {
@@ -111,9 +129,8 @@ void Table::accept_only(std::vector<std::string_view> const& known) const {
     auto const place = place_of(node.source(), item_.place);
     auto const full =
         item_.key.empty() ? std::string(key.str()) : fmt::format("{}.{}", item_.key, key.str());
-    auto hint = did_you_mean(key.str(), known);
-    if (hint.empty()) hint = hint_for_other_table(key.str());
-    detail::fail(place, full, "unknown key" + hint, fmt::format("{}", fmt::join(known, ", ")));
+    detail::fail(place, full, "unknown key" + hint_for_key(key.str(), known),
+                 fmt::format("{}", fmt::join(known, ", ")));
   }
 }
 
@@ -218,7 +235,9 @@ Triple direction(Item const& item) {
 
 void unknown_word(Item const& item, std::string_view name,
                   std::vector<std::string_view> const& known, std::string_view accepted) {
-  item.fail(fmt::format("\"{}\" is not known{}", name, did_you_mean(name, known)), accepted);
+  auto hint = hint_for_value_of_others(name);
+  if (hint.empty()) hint = did_you_mean(name, known);
+  item.fail(fmt::format("\"{}\" is not known{}", name, hint), accepted);
 }
 
 std::filesystem::path input_file(Table const& table, std::string_view name,

@@ -26,7 +26,8 @@ std::string one_line(std::string text);
 [[noreturn]] void fail(std::string_view place, std::string_view key, std::string_view what,
                        std::string_view accepted = {});
 
-/// Returns `, did you mean "..."?` if one of the known words is within two edits, otherwise "".
+/// Returns `, did you mean "..."?` if one of the known words is equal but for its case, or within
+/// two edits, otherwise "".
 std::string did_you_mean(std::string_view word, std::span<std::string_view const> known);
 
 /// A value of the scene with its full key and the place where it was typed.

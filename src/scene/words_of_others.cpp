@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <initializer_list>
+#include <vector>
 
 namespace cayspin::inline v0_2::io {
 namespace {
@@ -84,53 +86,156 @@ constexpr std::array foreign_words{
     ForeignWord{"unit-cell-file", "field.couplings = { file = \"NAME.ucf\" }"},
     ForeignWord{"autosave", "output.every"},
     ForeignWord{"tableautosave", "output.scalars_every"},
+    ForeignWord{"rkky", "field.interlayer = [{ between = [a, b], J = sigma }]"},
+    ForeignWord{"ext_interexchange", "field.exchange_between = [{ between = [a, b], factor = f }]"},
+    ForeignWord{"ext_scaleexchange", "field.exchange_between = [{ between = [a, b], factor = f }]"},
+    ForeignWord{"epsilonprime", "torque.slonczewski.epsilon_prime"},
+    ForeignWord{"geom", "lattice.occupied"},
+    ForeignWord{"edgesmooth", "lattice.occupied, where a cell is in or out"},
+    ForeignWord{"bmagnoisescale", "thermal.temperature"},
+    ForeignWord{"setgridsize", "lattice.shape"},
+    ForeignWord{"setcellsize", "lattice.spacing"},
+    ForeignWord{"h_ext", "field.applied, in SI mu0 H in T"},
+    ForeignWord{"hext", "field.applied, in SI mu0 H in T"},
+    ForeignWord{"happ", "field.applied, in SI mu0 H in T"},
+    ForeignWord{"bc", "lattice.boundary"},
+    ForeignWord{"pbc_x", "lattice.boundary"},
+    ForeignWord{"pbc_y", "lattice.boundary"},
+    ForeignWord{"pbc_z", "lattice.boundary"},
+    ForeignWord{"dx", "lattice.spacing"},
+    ForeignWord{"dy", "lattice.spacing"},
+    ForeignWord{"dz", "lattice.spacing"},
+    ForeignWord{"nx", "lattice.shape"},
+    ForeignWord{"ny", "lattice.shape"},
+    ForeignWord{"nz", "lattice.shape"},
+    ForeignWord{"unit-cell-size", "lattice.spacing"},
+    ForeignWord{"alat", "lattice.spacing"},
+    ForeignWord{"bravais_vectors", "lattice.cell"},
+    ForeignWord{"anisotropy_magnitude", "material.K, in reduced units field.anisotropy"},
+    ForeignWord{"interaction_pairs", "field.couplings"},
+    ForeignWord{"dij", "field.couplings, each bond with its D"},
+    ForeignWord{"tmax", "integrator.end"},
+    ForeignWord{"t_end", "integrator.end"},
+    ForeignWord{"tstep", "integrator.dt"},
+    ForeignWord{"mxstep", "integrator.steps"},
+    ForeignWord{"total-time-steps", "integrator.steps"},
+    ForeignWord{"random_seed", "thermal.seed, or initial.random = { seed = N }"},
+    ForeignWord{"iseed", "thermal.seed, or initial.random = { seed = N }"},
+    ForeignWord{"mode", "cayspin run, with [thermal] at a temperature"},
+    ForeignWord{"relax", "cayspin relax, or relax = true in a [[stage]]"},
     ForeignWord{"dear", "multirate"},
-    ForeignWord{"rk45", "dp5"},
-    ForeignWord{"rkf54", "dp5"},
-    ForeignWord{"rk23", "bs3"},
-    ForeignWord{"rk4", "rkmk4 or projected_rk4"},
-    ForeignWord{"rk56", "projected_rk64"},
-    ForeignWord{"depondt", "heun or rkmk4"},
-    ForeignWord{"sib", "implicit_midpoint"},
-    ForeignWord{"llg-heun", "projected_heun"},
-    ForeignWord{"llg-midpoint", "implicit_midpoint"},
-    ForeignWord{"minimize", "cayspin relax"},
-    ForeignWord{"minimise", "cayspin relax"},
     ForeignWord{"regrid", "initial.file, of a lattice of the same shape"}};
 
+constexpr std::array foreign_methods{ForeignWord{"rk45", "dp5"},
+                                     ForeignWord{"rkf54", "dp5"},
+                                     ForeignWord{"rk23", "bs3"},
+                                     ForeignWord{"rk4", "rkmk4 or projected_rk4"},
+                                     ForeignWord{"rk56", "projected_rk64"},
+                                     ForeignWord{"depondt", "heun or rkmk4"},
+                                     ForeignWord{"sib", "implicit_midpoint"},
+                                     ForeignWord{"llg-heun", "projected_heun"},
+                                     ForeignWord{"llg-midpoint", "implicit_midpoint"}};
+
+constexpr std::array foreign_commands{
+    ForeignWord{"minimize", "cayspin relax"}, ForeignWord{"minimise", "cayspin relax"},
+    ForeignWord{"gneb", "cayspin path"},      ForeignWord{"neb", "cayspin path"},
+    ForeignWord{"mep", "cayspin path"},       ForeignWord{"eigenmodes", "cayspin modes"},
+    ForeignWord{"spectrum", "cayspin modes"}, ForeignWord{"version", "cayspin --version"}};
+
+constexpr std::array names_of_simple_cubic{"sc", "cubic", "simple_cubic", "simple-cubic"};
+
+/// A table of scenes and a key of it. Earlier ones win where two tables have a key of this name.
+struct OwnKey {
+  std::string_view table, name;
+};
+
 template <class Section>
-bool has_key(std::string_view word) {
-  return std::ranges::any_of(Section::keys(), [&](auto const& key) { return key.name == word; });
+void add_keys_of(std::string_view table, std::vector<OwnKey>& all) {
+  for (auto const& key : Section::keys()) all.push_back({table, key.name});
 }
 
-// Returns the table that has a key of this name.
-std::string_view table_of(std::string_view word) {
-  constexpr std::array of_lattice{"shape", "spacing", "boundary", "occupied", "regions"};
-  constexpr std::array of_field{"exchange", "anisotropy", "dmi", "applied", "demag", "couplings"};
-  if (has_key<Integrator>(word)) return "integrator";
-  if (has_key<Output>(word)) return "output";
-  if (has_key<Thermal>(word)) return "thermal";
-  if (std::ranges::find(of_lattice, word) != of_lattice.end()) return "lattice";
-  if (std::ranges::find(of_field, word) != of_field.end()) return "field";
-  if (word == "damping" || word == "precession") return "system";
-  return {};
+// Keys whose meaning their table gives, as `file` and `axis`, are left out.
+std::vector<OwnKey> own_keys() {
+  std::vector<OwnKey> all;
+  add_keys_of<Integrator>("integrator", all);
+  auto const add = [&](std::string_view table, std::initializer_list<std::string_view> names) {
+    for (auto const name : names) all.push_back({table, name});
+  };
+  add("lattice", {"shape", "spacing", "boundary", "crystal", "cell", "basis", "moments",
+                  "gyromagnetic", "occupied", "frozen", "regions", "follow"});
+  add("field", {"exchange", "exchange_between", "interlayer", "couplings", "anisotropy", "dmi",
+                "in_time", "applied", "sources", "slab_demag", "demag", "dipoles", "mu0"});
+  add("system", {"damping", "precession", "inertia"});
+  add("material", {"Ms", "A", "Ku", "Ku2", "mu_s", "J", "K", "K2", "D", "D_bulk", "D2d",
+                   "damping_form", "gamma", "free_boundary"});
+  add("torque", {"zhang_li", "slonczewski"});
+  add("initial", {"uniform", "expression", "random", "state"});
+  add("ensemble", {"replicas", "vary"});
+  add_keys_of<Thermal>("thermal", all);
+  add_keys_of<Output>("output", all);
+  return all;
+}
+
+std::string lower_case(std::string_view word) {
+  std::string lower(word);
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  return lower;
+}
+
+// Returns the meaning here, or "".
+std::string_view meaning_of(auto const& words, std::string_view lower) {
+  auto const found = std::ranges::find(words, lower, &ForeignWord::of_others);
+  return found == words.end() ? std::string_view() : found->here;
+}
+
+std::string here_it_is(std::string_view here) {
+  return here.empty() ? std::string() : fmt::format(", here it is {}", here);
+}
+
+std::string did_you_mean_key(auto const& is_meant) {
+  auto const all = own_keys();
+  auto const found = std::ranges::find_if(all, is_meant);
+  return found == all.end() ? std::string()
+                            : fmt::format(", did you mean \"{}.{}\"?", found->table, found->name);
 }
 
 }  // namespace
 
+std::string without_case(std::string_view word) {
+  auto plain = lower_case(word);
+  std::erase_if(plain, [](char c) { return c == '_' || c == '-'; });
+  return plain;
+}
+
 std::string hint_for_other_table(std::string_view key) {
-  auto const table = table_of(key);
-  return table.empty() ? std::string() : fmt::format(", did you mean \"{}.{}\"?", table, key);
+  return did_you_mean_key([&](OwnKey const& own) { return own.name == key; });
+}
+
+std::string hint_for_other_case(std::string_view key) {
+  return did_you_mean_key(
+      [plain = without_case(key)](OwnKey const& own) { return without_case(own.name) == plain; });
 }
 
 std::string hint_for_word_of_others(std::string_view word) {
   // Vampire writes material[1]:exchange-matrix[2].
   if (auto const colon = word.find(':'); colon != word.npos) word.remove_prefix(colon + 1);
-  word = word.substr(0, word.find('['));
-  std::string lower(word);
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
-  auto const* const found = std::ranges::find(foreign_words, lower, &ForeignWord::of_others);
-  return found == foreign_words.end() ? std::string() : fmt::format(", here it is {}", found->here);
+  auto const lower = lower_case(word.substr(0, word.find('[')));
+  if (auto const here = meaning_of(foreign_words, lower); !here.empty()) return here_it_is(here);
+  if (std::string method(meaning_of(foreign_methods, lower)); !method.empty()) {
+    constexpr std::string_view either = " or ";
+    if (auto const at = method.find(either); at != method.npos)
+      method.replace(at, either.size(), "\" or \"");
+    return here_it_is(fmt::format("integrator.method = \"{}\"", method));
+  }
+  return here_it_is(meaning_of(foreign_commands, lower));
+}
+
+std::string hint_for_value_of_others(std::string_view value) {
+  auto const lower = lower_case(value);
+  if (std::ranges::find(names_of_simple_cubic, lower) != names_of_simple_cubic.end())
+    return ", leave the key out: a simple cubic lattice is the default";
+  auto const method = meaning_of(foreign_methods, lower);
+  return here_it_is(method.empty() ? meaning_of(foreign_commands, lower) : method);
 }
 
 }  // namespace cayspin::inline v0_2::io

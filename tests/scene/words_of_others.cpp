@@ -27,7 +27,44 @@ TEST(WordsOfOthers, SayWhatTheyAreHere) {
             {"xi", "torque.zhang_li.nonadiabaticity"},
             {"lambda", "system.damping"},
             {"alpha", "material.alpha"},
-            {"rk45", "dp5"},
+            {"rk45", "integrator.method = \"dp5\""},
+            {"rk4", "integrator.method = \"rkmk4\" or \"projected_rk4\""},
+            {"RKKY", "field.interlayer"},
+            {"ext_InterExchange", "field.exchange_between"},
+            {"EpsilonPrime", "torque.slonczewski.epsilon_prime"},
+            {"geom", "lattice.occupied"},
+            {"edgesmooth", "lattice.occupied"},
+            {"BmagnoiseScale", "thermal.temperature"},
+            {"SetGridSize", "lattice.shape"},
+            {"SetCellSize", "lattice.spacing"},
+            {"H_ext", "field.applied, in SI mu0 H in T"},
+            {"Happ", "field.applied"},
+            {"Hext", "field.applied"},
+            {"BC", "lattice.boundary"},
+            {"pbc_x", "lattice.boundary"},
+            {"dx", "lattice.spacing"},
+            {"Nx", "lattice.shape"},
+            {"tmax", "integrator.end"},
+            {"t_end", "integrator.end"},
+            {"tstep", "integrator.dt"},
+            {"mxstep", "integrator.steps"},
+            {"random_seed", "thermal.seed"},
+            {"iseed", "thermal.seed"},
+            {"dimensions:unit-cell-size", "lattice.spacing"},
+            {"sim:total-time-steps", "integrator.steps"},
+            {"alat", "lattice.spacing"},
+            {"Mode", "cayspin run"},
+            {"relax", "cayspin relax, or relax = true in a [[stage]]"},
+            {"bravais_vectors", "lattice.cell"},
+            {"anisotropy_magnitude", "material.K"},
+            {"interaction_pairs", "field.couplings"},
+            {"dij", "field.couplings, each bond with its D"},
+            {"gneb", "cayspin path"},
+            {"neb", "cayspin path"},
+            {"mep", "cayspin path"},
+            {"eigenmodes", "cayspin modes"},
+            {"spectrum", "cayspin modes"},
+            {"version", "cayspin --version"},
             {"minimize", "cayspin relax"},
             {"regrid", "initial.file"},
             {"temp", "thermal.temperature"},
@@ -50,11 +87,55 @@ TEST(WordsOfOthers, AreNoKeysOfScenes) {
     EXPECT_EQ(hint_for_word_of_others(key), "") << key;
 }
 
+TEST(WordsOfOthers, AsValuesAreMethodsOrTheSimpleCubicLattice) {
+  EXPECT_EQ(hint_for_value_of_others("RK45"), ", here it is dp5");
+  EXPECT_EQ(hint_for_value_of_others("sc"),
+            ", leave the key out: a simple cubic lattice is the default");
+  EXPECT_EQ(hint_for_value_of_others("minimize"), ", here it is cayspin relax");
+  EXPECT_EQ(hint_for_value_of_others("Msat"), "");
+}
+
+TEST(OwnWords, AreFoundInTheirTable) {
+  for (auto const& [override, meant] :
+       std::to_array<std::array<std::string, 2>>({{"shape=[3]", "lattice.shape"},
+                                                  {"field.dt=0.1", "integrator.dt"},
+                                                  {"mu0=1.0", "field.mu0"},
+                                                  {"gamma=1.0", "material.gamma"},
+                                                  {"lattice.Ms=8e5", "material.Ms"},
+                                                  {"A=1e-11", "material.A"},
+                                                  {"field.Ku=1e4", "material.Ku"},
+                                                  {"D=1e-3", "material.D"},
+                                                  {"J=1e-21", "material.J"},
+                                                  {"K=1e-23", "material.K"},
+                                                  {"lattice.mu_s=1e-23", "material.mu_s"},
+                                                  {"cell=[1]", "lattice.cell"},
+                                                  {"regions='i'", "lattice.regions"},
+                                                  {"MinDt=1e-3", "integrator.min_dt"},
+                                                  {"thermal.MaxDt=1e-3", "integrator.max_dt"},
+                                                  {"Seed=1", "thermal.seed"},
+                                                  {"Dmi=1.0", "field.dmi"},
+                                                  {"integrator.MinDt=1e-3", "min_dt"},
+                                                  {"integrator.maxDT=1e-3", "max_dt"},
+                                                  {"field.Dmi=1.0", "dmi"},
+                                                  {"lattice.occupid='i'", "occupied"}})) {
+    auto const key = override.substr(0, override.find('='));
+    auto const message = refusal_of(llg_scene, {override});
+    auto const expected = key + ": unknown key, did you mean \"" + meant + "\"?";
+    EXPECT_NE(message.find(expected), std::string::npos) << message;
+  }
+  EXPECT_EQ(hint_for_other_table("wibble"), "");
+  EXPECT_EQ(hint_for_other_case("wibble"), "");
+}
+
 TEST(WordsOfOthers, AreInMessagesOfScenes) {
   for (auto const& [override, said] : std::to_array<std::array<std::string, 2>>(
            {{"field.B_ext=[0,0,1]", "field.B_ext: unknown key, here it is field.applied"},
             {"dt=0.5", "dt: unknown key, did you mean \"integrator.dt\"?"},
             {"system.lambda=0.1", "system.lambda: unknown key, here it is system.damping"},
+            {"rk45=true", "rk45: unknown key, here it is integrator.method = \"dp5\""},
+            {"relax=true", "relax: unknown key, here it is cayspin relax, or relax = true in"},
+            {"lattice.crystal=sc",
+             "lattice.crystal: \"sc\" is not known, leave the key out: a simple cubic lattice"},
             {"integrator.method='rk45'", "\"rk45\" is not known, here it is dp5"}})) {
     try {
       scene_of(llg_scene, {override});
