@@ -191,6 +191,10 @@ struct TrajectoryInfo {
 /// those below, which do so themselves. Leaves any other file unchanged.
 void complete_file(std::filesystem::path const& path);
 
+/// Returns what another file of cayspin is, as in "the file of a sweep"; empty for a trajectory
+/// file and for files of other programs.
+std::string kind_of_other_file(std::filesystem::path const& path);
+
 /// Reads all but the spins of a trajectory file.
 TrajectoryInfo read_info(std::filesystem::path const& path);
 

@@ -57,11 +57,11 @@ EnsembleRun::EnsembleRun(io::Scene const& scene, RunSettings const& settings, bo
 }
 
 std::optional<std::string> EnsembleRun::continue_from(std::filesystem::path const& file) {
-  if (!io::is_ensemble(file))
-    throw UsageError(
-        fmt::format("{}: it is of a scene without [ensemble]; accepted: the file of "
-                    "an ensemble",
-                    file.string()));
+  if (!io::is_ensemble(file)) {
+    auto const kind = io::kind_of_other_file(file);
+    throw UsageError(fmt::format("{}: it is {}; accepted: the file of an ensemble", file.string(),
+                                 kind.empty() ? "of a scene without [ensemble]" : kind));
+  }
   auto const info = io::read_ensemble_info(file);
   if (info.ensemble.replicas != scene_.ensemble.replicas)
     throw UsageError(fmt::format("{}: it has {} replicas, the scene {}; accepted: as many",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "checksum.hpp"
+#include "ensemble_format.hpp"
 #include "files/journal.hpp"
 #include "format.hpp"
 #include "hdf5/attribute.hpp"
@@ -9,6 +10,7 @@
 #include "hdf5/handle.hpp"
 #include "io/trajectory.hpp"
 #include "scalar_series.hpp"
+#include "sweep_format.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -19,6 +21,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -65,11 +68,28 @@ void read_extents(hid_t file, TrajectoryInfo& info, std::filesystem::path const&
   header.shape[2] *= header.cell_sites;
 }
 
+std::string_view kind_of_other(RootAttributes const& attributes) {
+  struct Kind {
+    char const* format;  // the attribute that only these files have
+    std::string_view name;
+  };
+  for (auto const& [format, name] :
+       {Kind{ensemble_format, "the file of an ensemble"}, Kind{sweep_format, "the file of a sweep"},
+        Kind{"path_format", "the file of a path"},
+        Kind{"cayspin_modes_format", "the file of modes"},
+        Kind{"checkpoint_format", "a checkpoint"}})
+    if (attributes.has(format)) return name;
+  return {};
+}
+
 // Does not read the scalars; `frames` counts those that have spins.
 TrajectoryInfo read_header(hid_t file, std::filesystem::path const& path) {
   RootAttributes const attributes(file, path);
   TrajectoryInfo info;
   info.path = path;
+  if (auto const other = kind_of_other(attributes); !other.empty())
+    throw std::runtime_error(path.string() + ": it is " + std::string(other) +
+                             "; accepted: the trajectory file of a run or of relax");
   attributes.require_version("format", format_version, "cannot read the trajectory");
   info.format = format_version;
   info.header.scene_text = attributes.read_text("scene");
@@ -135,6 +155,14 @@ TrajectoryInfo read_whole_info(std::filesystem::path const& path, Locking lockin
 }  // namespace
 
 void complete_file(std::filesystem::path const& path) { complete_from_journal(path); }
+
+std::string kind_of_other_file(std::filesystem::path const& path) {
+  QuietErrors const quiet;
+  return read_guarded(path, [&] {
+    auto const file = open_file(path);
+    return std::string(kind_of_other(RootAttributes(file.get(), path)));
+  });
+}
 
 TrajectoryInfo read_info(std::filesystem::path const& path) {
   QuietErrors const quiet;

@@ -4,6 +4,7 @@
 #include "program_test.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace cayspin::program::test {
 namespace {
@@ -91,6 +92,33 @@ TEST_F(Exporting, WrongUsesAreOneLine) {
   expect_refused(to_ovf, "ovf: cannot create the folder");
   expect_refused({"export", "out.h5"}, "--ovf");
   expect_refused({"export", "none.h5", "--ovf", "ovf"}, "none.h5: cannot open");
+}
+
+TEST_F(Exporting, FilesOfOtherKindsAreNamed) {
+  auto const refused = [&](std::string const& file, std::string const& kind) {
+    auto const message = file + ": it is " + kind + "; accepted: the trajectory file of a run";
+    expect_refused({"export", file, "--ovf", "ovf"}, message);
+    expect_refused({"modes", file, "--output", "new.h5"}, message);
+    EXPECT_FALSE(exists("new.h5"));
+  };
+  auto const not_to_continue = [&](std::string const& file, std::string const& kind) {
+    expect_refused({"run", "chain.toml", "--output", "new.h5", "--restart", file},
+                   file + ": it is " + kind);
+    expect_refused(joined({"run", "chain.toml", "--output", "new.h5", "--restart", file},
+                          set("ensemble.replicas=2")),
+                   file + ": it is " + kind + "; accepted: the file of an ensemble");
+  };
+  output_of({"sweep", "chain.toml", "--quiet", "--output", "sweep.h5", "--over",
+             "system.damping=0.1,0.2"});
+  expect_status(0, joined({"run", "chain.toml", "--quiet", "--output", "ensemble.h5"},
+                          set("ensemble.replicas=2")));
+  expect_status(0, {"modes", "spin.toml", "--quiet", "--count", "1"});
+  for (auto const& [file, kind] :
+       {std::pair{"sweep.h5", "the file of a sweep"}, {"modes.h5", "the file of modes"}}) {
+    refused(file, kind);
+    not_to_continue(file, kind);
+  }
+  refused("ensemble.h5", "the file of an ensemble");
 }
 
 TEST_F(Exporting, FullDiskLeavesNoFile) {

@@ -167,6 +167,7 @@ TEST_F(PathCommand, InfoHasItsBarriersAndImages) {
   expect_status(3, arguments({"--evaluations", "70", "--overwrite"}));
   EXPECT_TRUE(
       contains_all(output_of({"info", "path.h5"}), {"converged    no: evaluation limit\n"}));
+  expect_refused({"export", "path.h5", "--ovf", "ovf"}, "path.h5: it is the file of a path; ");
 }
 
 TEST_F(PathCommand, Refuses) {
