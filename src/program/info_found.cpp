@@ -38,13 +38,14 @@ void print_saddles(io::Path const& path) {
   fmt::print("{:<12} {} forward, {} backward\n", "barriers", text(path.barrier_forward()),
              text(path.barrier_backward()));
   for (auto const& saddle : path.saddles)
-    fmt::print("{:<12} image {}: energy {}, curvature {:.9g}\n", "saddle", saddle.image,
-               text(saddle.energy), saddle.curvature);
+    fmt::print("{:<12} image {}: energy {}, curvature {:.9g}{}\n", "saddle", saddle.image,
+               text(saddle.energy), saddle.curvature, units.si ? " J" : "");
   if (!path.rates) return;
   auto const& rates = *path.rates;
-  fmt::print("{:<12} {:.8g} forward, {:.8g} backward; with damping {:.8g}, {:.8g}\n", "prefactors",
-             rates.prefactor_forward, rates.prefactor_backward, rates.langer_forward,
-             rates.langer_backward);
+  auto const forward = unit_of_prefactor(path, true), backward = unit_of_prefactor(path, false);
+  fmt::print("{:<12} {:.8g}{} forward, {:.8g}{} backward; with damping {:.8g}{}, {:.8g}{}\n",
+             "prefactors", rates.prefactor_forward, forward, rates.prefactor_backward, backward,
+             rates.langer_forward, forward, rates.langer_backward, backward);
   fmt::print("{:<12} {}, {}, {}\n", "zero modes", rates.zero_modes[0], rates.zero_modes[1],
              rates.zero_modes[2]);
 }
@@ -81,6 +82,13 @@ void print_bands(io::BandsContents const& found) {
 }
 
 }  // namespace
+
+std::string unit_of_prefactor(io::Path const& path, bool forward) {
+  if (!path.header.units.si) return {};
+  auto const& [start, saddle, end] = path.rates->zero_modes;
+  auto const more = (forward ? start : end) - saddle;
+  return more == 0 ? " 1/s" : fmt::format(" 1/s K^{:g}", -0.5 * static_cast<double>(more));
+}
 
 void print_path(std::filesystem::path const& file, io::Path const& path) {
   auto const& header = path.header;

@@ -5,8 +5,14 @@
 #include "io/path.hpp"
 
 #include <filesystem>
+#include <string>
 
 namespace cayspin::program {
+
+/// Returns the unit of a prefactor in one direction of a path with rates, after a blank; empty in
+/// reduced units. A rate is the prefactor times T^(half the zero modes that its start has more than
+/// the saddle).
+std::string unit_of_prefactor(io::Path const& path, bool forward);
 
 /// Summarise the file of a path, or of modes or waves.
 void print_path(std::filesystem::path const& file, io::Path const& path);

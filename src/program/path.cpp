@@ -5,6 +5,7 @@
 #include "command.hpp"
 #include "describe.hpp"
 #include "info_file.hpp"
+#include "info_found.hpp"
 #include "io/notes.hpp"
 #include "io/relax.hpp"
 #include "progress.hpp"
@@ -79,16 +80,20 @@ std::string barrier_text(io::Scene const& scene, io::Path const& path) {
   auto const text = [&](double energy) {
     return energy_text(scene.units, energy / scene.units.energy);
   };
-  auto line = fmt::format("barriers {} forward, {} backward; saddle energy {}, curvature {:.8g}",
+  auto line = fmt::format("barriers {} forward, {} backward; saddle energy {}, curvature {:.8g}{}",
                           text(path.barrier_forward()), text(path.barrier_backward()),
-                          text(path.saddles.front().energy), path.saddles.front().curvature);
+                          text(path.saddles.front().energy), path.saddles.front().curvature,
+                          scene.units.si ? " J" : "");
   if (path.saddles.size() > 1) line += fmt::format("; {} saddles", path.saddles.size());
-  if (auto const& rates = path.rates)
+  if (auto const& rates = path.rates) {
+    auto const forward = unit_of_prefactor(path, true), backward = unit_of_prefactor(path, false);
     line += fmt::format(
-        "\nprefactors {:.8g} forward, {:.8g} backward; zero modes {}, {}, {}"
-        "\nwith damping {:.8g} forward, {:.8g} backward",
-        rates->prefactor_forward, rates->prefactor_backward, rates->zero_modes[0],
-        rates->zero_modes[1], rates->zero_modes[2], rates->langer_forward, rates->langer_backward);
+        "\nprefactors {:.8g}{} forward, {:.8g}{} backward; zero modes {}, {}, {}"
+        "\nwith damping {:.8g}{} forward, {:.8g}{} backward",
+        rates->prefactor_forward, forward, rates->prefactor_backward, backward,
+        rates->zero_modes[0], rates->zero_modes[1], rates->zero_modes[2], rates->langer_forward,
+        forward, rates->langer_backward, backward);
+  }
   return line;
 }
 
@@ -126,15 +131,25 @@ int find_path(PathCommandOptions const& options) {
     return Status::interrupted;
   }
   bool const has_path = !path.energy.empty() && end != PathEnd::same_ends;
+  bool const has_saddles = end == PathEnd::unsettled && !path.saddles.empty();
   if (has_path) io::write_path(output, path, options.overwrite);
   if (options.json && has_path)
     print_json(as_json(read_info_file(output)));
-  else if (!options.quiet && !options.json && end == PathEnd::converged)
+  else if (!options.quiet && !options.json && (end == PathEnd::converged || has_saddles))
     fmt::print("{} after {} evaluations, {} images\n{}\n", path.end, path.evaluations,
                path.energy.size(), barrier_text(scene, path));
   if (end == PathEnd::converged) return Status::done;
-  fmt::print(stderr, "{}: no path: {}, after {} evaluations\n", scene.path.string(), path.end,
-             path.evaluations);
+  if (has_saddles)
+    fmt::print(
+        stderr,
+        "{}: the saddles are found, but {}, after {} evaluations; {} has both; accepted: more "
+        "--images\n",
+        scene.path.string(), path.end, path.evaluations, output.string());
+  else
+    fmt::print(
+        stderr, "{}: no {}path: {}, after {} evaluations{}\n", scene.path.string(),
+        has_path ? "converged " : "", path.end, path.evaluations,
+        has_path ? fmt::format("; {} has the images as they are", output.string()) : std::string());
   return Status::numbers_failed;
 }
 

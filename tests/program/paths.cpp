@@ -145,6 +145,12 @@ uniform = [0, 0, 1]
   write_ends(text);
   auto const outcome = start(arguments({"--rates", "--torque", "1e-8"}));
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_TRUE(contains_all(outcome.output,
+                           {" J, curvature -", " J\nprefactors ", " 1/s forward, ",
+                            " 1/s backward; zero modes 0, 0, 0\nwith damping ", " 1/s backward\n"}))
+      << outcome.output;
+  EXPECT_TRUE(contains_all(output_of({"info", "path.h5"}),
+                           {" J, curvature -", " J\nprefactors   ", " 1/s forward, "}));
   double const volume = 125e-27;
   EXPECT_NEAR(attribute("barrier_forward") / (5e4 * volume), 1, 1e-11);
   double const easy = 2 * 5e4 / 8e5, hard = 2 * 2e4 / 8e5;  // T
@@ -210,7 +216,36 @@ TEST_F(PathCommand, SaysWhyThereIsNoPath) {
   EXPECT_FALSE(exists("path.h5"));
   auto const limited = start(arguments({"--evaluations", "70"}));
   EXPECT_EQ(limited.status, 3);
-  EXPECT_TRUE(contains(limited.errors, "evaluation limit"));
+  EXPECT_TRUE(contains(limited.errors, ": no converged path: evaluation limit, after "))
+      << limited.errors;
+  EXPECT_TRUE(limited.errors.ends_with("; path.h5 has the images as they are\n")) << limited.errors;
+}
+
+// Five images are too few for the saddles of a chain of twenty spins. Sixteen find a higher one.
+TEST_F(PathCommand, PrintsTheSaddlesOfAPathThatDoesNotSettle) {
+  write_ends(R"toml([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [20]
+[field]
+exchange = 0.5
+anisotropy = [{ constant = 1.0, axis = [0, 0, 1] }, { constant = -0.7, axis = [0, 1, 0] }]
+applied = [0.1, 0, 0]
+[initial]
+uniform = [0, 0, 1]
+)toml");
+  auto const outcome = start(arguments({"--images", "5"}));
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_TRUE(is_one_line(outcome.errors));
+  EXPECT_TRUE(contains_all(
+      outcome.errors, {": the saddles are found, but the path between the saddles does not settle, "
+                       "after ",
+                       " evaluations; path.h5 has both; accepted: more --images\n"}));
+  EXPECT_TRUE(contains(outcome.output, "\nbarriers 2.08801"));
+  EXPECT_NEAR(attribute("barrier_forward"), 2.08801527, 1e-6);
+  EXPECT_EQ(start(arguments({"--images", "16", "--overwrite"})).status, 0);
+  EXPECT_NEAR(attribute("barrier_forward"), 2.09028197, 1e-6);
 }
 
 TEST_F(PathCommand, HasTheSameBitsForAnyNumberOfThreads) {
