@@ -112,6 +112,9 @@ std::vector<char*> with_help_as_option(std::span<char* const> arguments) {
   static char help[] = "--help";
   std::vector<char*> plain(arguments.begin(), arguments.end());
   if (plain.size() < 2 || std::string_view(plain[1]) != "help") return plain;
+  if (plain.size() > 3)
+    throw UsageError(fmt::format("help {} {}: accepted: help, help COMMAND", plain[2], plain[3]));
+  if (std::string_view(plain.back()) == "help") plain.resize(2);
   plain.erase(plain.begin() + 1);
   plain.push_back(help);
   return plain;

@@ -36,6 +36,7 @@ int write_new(NewOptions const& options) {
   if (scene == new_scenes.end())
     throw UsageError(fmt::format("new {}: accepted: {}", options.kind, names_of_new_scenes()));
   auto const path = options.output.value_or(options.kind + ".toml");
+  require_name(path);
   io::FileBeside file(path, options.overwrite);
   // The names of the shipped scene and of its results are replaced by the new ones.
   auto const results = [](std::filesystem::path name) {

@@ -12,17 +12,19 @@ namespace {
 // Limit of cayspin::Lattice::validate.
 constexpr std::int64_t most_extent = std::numeric_limits<std::int32_t>::max() / 4;
 
-// Reads one entry per axis of the shape, or one value for every axis.
+// Reads one entry per axis of the shape, or one value for every axis. read(item, accepted) returns
+// a value.
 template <class Value, class Read>
 void read_per_axis(Item const& item, std::size_t axes, std::array<Value, 3>& values, Read read,
                    std::string_view one) {
+  auto const accepted =
+      fmt::format("{}, or a list with one per axis of lattice.shape ({})", one, axes);
   if (!item.node->is_array()) {
-    values.fill(read(item));
+    values.fill(read(item, accepted));
     return;
   }
-  auto const accepted = fmt::format("{}, or one per axis of lattice.shape ({})", one, axes);
   auto const items = entries(item, axes, axes, accepted);
-  for (std::size_t axis = 0; axis < axes; ++axis) values[axis] = read(items[axis]);
+  for (std::size_t axis = 0; axis < axes; ++axis) values[axis] = read(items[axis], one);
 }
 
 constexpr std::string_view keys_of_spins[] = {"spacing", "boundary", "crystal",      "cell",
@@ -66,10 +68,17 @@ Lattice read_lattice(Table const& root, SystemKind kind) {
     else
       lattice.spacing.fill(positive_number(item));
   } else if (auto const item = table.find("spacing")) {
-    read_per_axis(*item, extents.size(), lattice.spacing, positive_number, "a number > 0");
+    auto const read = [](Item const& entry, std::string_view accepted_here) {
+      auto limits = positive;
+      limits.accepted = accepted_here;
+      return number(entry, limits);
+    };
+    read_per_axis(*item, extents.size(), lattice.spacing, read, positive.accepted);
   }
   if (auto const item = table.find("boundary")) {
-    auto const read = [](Item const& entry) { return word<BoundaryKind>(entry); };
+    auto const read = [](Item const& entry, std::string_view accepted_here) {
+      return word<BoundaryKind>(entry, accepted_here);
+    };
     read_per_axis(*item, extents.size(), lattice.boundary, read, all_words<BoundaryKind>());
   }
   if (bodies) return lattice;

@@ -43,14 +43,18 @@ void require_occupied(Scene const& scene) {
   auto const& shape = scene.lattice.shape;
   if (!has_vacancies(scene)) return;
   auto const at_once = planes_to_read(shape, sizeof(double));
-  for (std::int64_t plane = 0; plane < shape[2]; plane += at_once) {
-    auto const planes = std::min(at_once, shape[2] - plane);
-    auto const there = occupied(scene, {{0, 0, plane}, {shape[0], shape[1], planes}});
-    if (std::ranges::find(there, 1) != there.end()) return;
-  }
   auto const& [occupied_sites, moments] =
       std::tie(scene.lattice.occupied, scene.lattice.moments_of_sites);
-  refuse(scene, occupied_sites.there() ? "lattice.occupied" : moments.key_or("lattice.moments"),
+  bool has_occupied = !occupied_sites.there();
+  for (std::int64_t plane = 0; plane < shape[2]; plane += at_once) {
+    auto const planes = std::min(at_once, shape[2] - plane);
+    SiteBox const box{{0, 0, plane}, {shape[0], shape[1], planes}};
+    auto const there = occupied(scene, box);
+    if (std::ranges::find(there, 1) != there.end()) return;
+    auto const where = sites_where(scene, occupied_sites, "lattice.occupied", box);
+    has_occupied = has_occupied || std::ranges::find(where, 1) != where.end();
+  }
+  refuse(scene, has_occupied ? moments.key_or("lattice.moments") : "lattice.occupied",
          "leaves no spin", "numbers that are not 0 somewhere");
 }
 

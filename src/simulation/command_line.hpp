@@ -14,6 +14,7 @@
 #include <new>
 #include <optional>
 #include <stdexcept>
+#include <string>
 
 // Shared code of the programs' mains.
 namespace cayspin::simulation {
@@ -24,7 +25,10 @@ inline std::optional<int> parse(CLI::App& app, int argc, char** argv) {
     app.parse(argc, argv);
   } catch (CLI::ParseError const& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    throw UsageError(fmt::format("{} (see cayspin --help)", error.what()));
+    std::string help = "--help";
+    for (auto const* command : app.get_subcommands({}))
+      if (argc > 1 && command->get_name() == argv[1]) help = "help " + command->get_name();
+    throw UsageError(fmt::format("{} (see cayspin {})", error.what(), help));
   }
   return std::nullopt;
 }

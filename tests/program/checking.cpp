@@ -204,6 +204,7 @@ TEST_F(Checking, HelpAndVersion) {
     EXPECT_NE(output_of(arguments), "");
   EXPECT_EQ(output_of({"help"}), output_of({"--help"}));
   EXPECT_EQ(output_of({"help", "run"}), output_of({"run", "--help"}));
+  EXPECT_EQ(output_of({"help", "help"}), output_of({"--help"}));
   expect_refused({"help", "simulate"}, "unknown command simulate");
 }
 

@@ -35,11 +35,14 @@ std::vector<WrongUse> wrong_scenes() {
       {"ThreadsNotANumber", {"--threads", "two"}, "--threads"},
       {"TwoThreads", {"--threads", "1", "--threads", "2"}, "--threads: given as 1 and as 2"},
       {"TwoSpaces", {"--space", default_space.c_str(), "--space", "abacus"}, "--space: given as "},
-      {"UnknownOption", {"--fast"}, "--fast"},
+      {"UnknownOption", {"--fast"}, "--fast (see cayspin help run)\n"},
       {"TwoScenes", {"other.toml"}, "other.toml"},
       {"RestartFromNoTrajectory", {"--restart", "small.h5"}, "small.h5"},
       {"MissingFolder", {"--output", "none/out.h5"}, "none"},
       {"OutputIsAFolder", {"--output", "."}, "."},
+      {"OutputWithoutName",
+       {"--output", ""},
+       "cayspin: --output: the file name is empty; accepted: the name of a file\n"},
   };
 }
 
@@ -58,6 +61,10 @@ std::vector<WrongUse> wrong_commands() {
   return {
       {"NoCommand", {}, "run"},
       {"UnknownCommand", {"simulate", "chain.toml"}, "run"},
+      {"CommandOfOthers", {"gneb", "chain.toml"}, "unknown command gneb, here it is cayspin path"},
+      {"HelpForTwo", {"help", "run", "extra"}, "help run extra: accepted: help, help COMMAND"},
+      {"NewWithoutName", {"new", "film", "--output", ""}, "--output: the file name is empty"},
+      {"ModesWithoutName", {"modes", "chain.toml", "--output", ""}, "--output: the file name is"},
       {"NoScene", {"run"}, "SCENE"},
       {"SceneMissing", {"run", "none.toml"}, "none.toml"},
       {"SceneIsAFolder", {"run", "."}, "."},

@@ -233,6 +233,12 @@ TEST(Crystals, ExpressionsThatFailAreNamed) {
   expect_holds(later({"lattice.frozen='1/(s-1)'"}),
                ": lattice.frozen: expression \"1/(s-1)\" is not finite at x = ");
   expect_holds(later({"lattice.occupied='x>2'"}), ": lattice.occupied: leaves no spin; accepted: ");
+  expect_holds(later({"lattice.occupied='1'", "lattice.moments='0'"}),
+               ": lattice.moments: leaves no spin; accepted: ");
+  expect_holds(later({"lattice.occupied='i==0'", "lattice.moments='i'"}),
+               ": lattice.moments: leaves no spin; accepted: ");
+  expect_holds(later({"lattice.occupied='0'", "lattice.moments='1'"}),
+               ": lattice.occupied: leaves no spin; accepted: ");
   expect_holds(later({R"(initial={expression=["0","0","k-1+s"]})"}),
                "the spin of site 1 of cell (0, 0, 0) is (0, 0, 0)");
   // The spin may be zero where there is none.

@@ -66,7 +66,9 @@ lattice.spacing = -1 | : -1 is not positive | a number > 0
 lattice.spacing = [1, 1, 1] | : has 3 entries | one per axis of lattice.shape (2)
 lattice.boundary = ['open', 'periodc'] | [1]
   | did you mean "periodic"?; accepted: "open", "periodic"
-lattice.boundary = true | : true | "open"
+lattice.boundary = true | : true | "periodic", or a list with one per axis of lattice.shape (2)
+lattice.boundary = ['open', true] | [1]: true | ; accepted: "open", "periodic"
+lattice.spacing = true | : true is a boolean | or a list with one per axis of lattice.shape (2)
 )");
 }
 

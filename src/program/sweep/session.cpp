@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 namespace cayspin::program::sweep {
 namespace {
@@ -55,7 +56,16 @@ Session::Session(fs::path file, Grid const& grid, bool overwrite)
   if (exists && !overwrite) require_same_sweep();
   if (exists && overwrite) require_replaceable();
   lock_folder();
-  if (exists && !overwrite) {
+  try {
+    open(!exists || overwrite);
+  } catch (...) {
+    release();
+    throw;
+  }
+}
+
+void Session::open(bool is_new) {
+  if (!is_new) {
     // Checked again: it may have completed meanwhile.
     auto const before = io::read_sweep(file_);
     info_.runs = before.runs;
@@ -63,7 +73,7 @@ Session::Session(fs::path file, Grid const& grid, bool overwrite)
     info_.one_file = before.one_file;
     if (info_.one_file) return;
   }
-  if (!exists || overwrite)
+  if (is_new)
     for (auto const& entry : fs::directory_iterator(folder_))
       if (entry.path().extension() == ".h5") fs::remove(entry.path());
   for (std::int64_t number = 0; number < info_.header.runs(); ++number) {
@@ -103,8 +113,14 @@ void Session::require_replaceable() const {
     throw UsageError(fmt::format("--output {}: another program is writing it", file_.string()));
 }
 
-Session::~Session() {
-  if (lock_ >= 0) ::close(lock_);
+Session::~Session() { release(); }
+
+// Removes the folder if it is empty.
+void Session::release() {
+  if (lock_ < 0) return;
+  std::error_code ignored;
+  fs::remove(folder_, ignored);
+  ::close(std::exchange(lock_, -1));
 }
 
 fs::path Session::run_file(std::int64_t number) const { return io::swept_run_file(file_, number); }
@@ -198,7 +214,7 @@ void Session::remove_folder() {
   std::error_code ignored;
   for (std::int64_t number = 0; number < info_.header.runs(); ++number)
     fs::remove(run_file(number), ignored);
-  fs::remove(folder_, ignored);
+  release();
 }
 
 }  // namespace cayspin::program::sweep

@@ -41,6 +41,8 @@ class Session {
 
  private:
   static std::size_t index(std::int64_t number) { return static_cast<std::size_t>(number); }
+  void open(bool is_new);
+  void release();
   bool read_run(std::int64_t number, io::SweptRun& run) const;
   bool is_finished() const;
   void require_same_sweep() const;
