@@ -18,12 +18,12 @@ namespace cayspin::inline v0_2::io {
 /// A key of a scene and its values.
 struct SweptKey {
   std::string key;                  ///< "system.damping"
-  std::vector<std::string> values;  ///< TOML, as typed
+  std::vector<std::string> values;  ///< TOML, as typed, with quotes around words
   std::vector<double> numbers;      ///< the values as numbers; empty unless all are numbers
 };
 
-/// Reads "key=a,b,c". A comma inside brackets, braces or quotes does not separate. Throws
-/// SceneError.
+/// Reads "key=a,b,c". A comma inside brackets, braces or quotes does not separate. Words need no
+/// quotes. Throws SceneError.
 SweptKey read_swept_key(std::string const& assignment);
 
 /// Identity of a sweep.

@@ -40,12 +40,34 @@ std::optional<std::size_t> as_index(std::string_view text) {
   return index;
 }
 
-// Returns true for a word, or a file name.
+// Returns true for a value that begins as only a path does: /a, ~/a, ./a, ../a.
+bool begins_a_path(std::string_view value) {
+  return value.starts_with('/') || value.starts_with('~') || value.starts_with("./") ||
+         value.starts_with("../");
+}
+
+bool is_toml(std::string_view value) {
+  try {
+    static_cast<void>(toml::parse(fmt::format("value = {}\n", value)));
+    return true;
+  } catch (toml::parse_error const&) {
+    return false;
+  }
+}
+
+// Returns true for a word, or a file name, which may begin with a dot or a digit.
 bool is_bare_word(std::string_view value) {
+  constexpr std::array not_strings{"true", "false", "inf", "nan"};
+  if (value.empty() || std::ranges::find(not_strings, value) != not_strings.end()) return false;
+  if (begins_a_path(value))
+    return std::ranges::none_of(value, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
   auto const is_letter = [](unsigned char c) { return std::isalpha(c) != 0 || c == '_'; };
-  return !value.empty() && is_letter(value[0]) && std::ranges::all_of(value, [&](unsigned char c) {
+  bool const has_its_characters = std::ranges::all_of(value, [&](unsigned char c) {
     return is_letter(c) || std::isdigit(c) != 0 || c == '-' || c == '.' || c == '/';
   });
+  if (!has_its_characters) return false;
+  if (is_letter(static_cast<unsigned char>(value[0]))) return true;
+  return value[0] != '-' && std::ranges::any_of(value, is_letter) && !is_toml(value);
 }
 
 // Parses one value with the override as its source, which messages will name. A shell removes the
@@ -53,11 +75,8 @@ bool is_bare_word(std::string_view value) {
 toml::table parse_value(std::string const& place, std::string_view value) {
   toml::table parsed;
   value.remove_prefix(std::min(value.find_first_not_of(' '), value.size()));
-  constexpr std::array not_strings{"true", "false", "inf", "nan"};
-  bool const is_string =
-      is_bare_word(value) && std::ranges::find(not_strings, value) == not_strings.end();
   try {
-    parsed = toml::parse(fmt::format("value = {0}{1}{0}\n", is_string ? "\"" : "", value), place);
+    parsed = toml::parse(fmt::format("value = {}\n", as_toml_value(value)), place);
   } catch (toml::parse_error const& error) {
     fail(place, "", fmt::format("the value is not TOML ({})", error.description()),
          "key.path=VALUE with a TOML value; a string that is more than a word needs its "
@@ -87,6 +106,16 @@ void put(toml::node& parent, std::string const& key, toml::node&& value, std::st
 }
 
 }  // namespace
+
+std::string as_toml_value(std::string_view value) {
+  if (!is_bare_word(value)) return std::string(value);
+  std::string text = "\"";
+  for (char const c : value) {
+    if (c == '"' || c == '\\') text += '\\';
+    text += c;
+  }
+  return text + '"';
+}
 
 void apply_override(toml::table& root, std::string const& assignment) {
   auto const place = one_line("--set " + assignment);

@@ -22,6 +22,9 @@ namespace cayspin::inline v0_2::io::detail {
 /// Replaces control characters by '?', so that a name typed in a scene cannot break the line.
 std::string one_line(std::string text);
 
+/// Returns a value of the command line as TOML: there a word or a file name needs no quotes.
+std::string as_toml_value(std::string_view value);
+
 /// Throws `place: key: what; accepted: accepted`, without empty parts.
 [[noreturn]] void fail(std::string_view place, std::string_view key, std::string_view what,
                        std::string_view accepted = {});

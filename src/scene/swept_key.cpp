@@ -28,6 +28,42 @@ std::string_view trimmed(std::string_view text) {
   return begin == text.npos ? std::string_view() : text.substr(begin, end - begin + 1);
 }
 
+// Returns the values with quotes around bare words. Commas inside brackets, braces and quotes do
+// not separate values.
+std::string with_quoted_words(std::string_view values) {
+  std::string text;
+  char quote = 0;
+  int depth = 0;
+  std::size_t begin = 0;
+  auto const add = [&](std::size_t end) {
+    auto const value = values.substr(begin, end - begin);
+    auto const word = trimmed(value);
+    auto const blanks = static_cast<std::size_t>(word.empty() ? 0 : word.data() - value.data());
+    text += value.substr(0, blanks);
+    text += detail::as_toml_value(word);
+    text += value.substr(blanks + word.size());
+  };
+  for (std::size_t at = 0; at < values.size(); ++at) {
+    char const c = values[at];
+    if (quote != 0) {
+      if (c == '\\' && quote == '"') ++at;
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '[' || c == '{') {
+      ++depth;
+    } else if (c == ']' || c == '}') {
+      --depth;
+    } else if (c == ',' && depth == 0) {
+      add(at);
+      text += ',';
+      begin = at + 1;
+    }
+  }
+  add(values.size());
+  return text;
+}
+
 }  // namespace
 
 SweptKey read_swept_key(std::string const& assignment) {
@@ -40,13 +76,15 @@ SweptKey read_swept_key(std::string const& assignment) {
                        [](char c) { return c != ' '; });
 
   // Parsed as an array of TOML, which gives the start of each value.
-  auto const line = "value = [" + assignment.substr(equals + 1);
+  auto const line =
+      "value = [" + with_quoted_words(std::string_view(assignment).substr(equals + 1));
   toml::table parsed;
   try {
     parsed = toml::parse(line + "\n]\n", place);
   } catch (toml::parse_error const& error) {
     detail::fail(place, "", fmt::format("the values are not TOML ({})", error.description()),
-                 "values with commas between them; a string needs its quotes");
+                 "values with commas between them; a string that is more than a word needs its "
+                 "quotes");
   }
   auto const* const array = parsed["value"].as_array();
   if (!array || parsed.size() != 1 || array->empty())

@@ -197,6 +197,21 @@ TEST_F(Sweeping, AnInterruptKeepsWhatIsDone) {
   EXPECT_TRUE(contains(output_of({"info", "stopped.h5"}), "open"));
 }
 
+TEST_F(Sweeping, TakesWordsWithoutQuotes) {
+  output_of(sweep_into("words.h5", {"--quiet", "--over", "integrator.method=heun,rkmk4"}));
+  EXPECT_EQ(sweep_in("words.h5").header.overrides(0),
+            std::vector<std::string>{"integrator.method=\"heun\""});
+  EXPECT_NE(spins("words.h5", 0), spins("words.h5", 1));
+  // The same sweep, however it is typed.
+  output_of(sweep_into("words.h5", {"--quiet", "--over", "integrator.method=\"heun\",\"rkmk4\""}));
+}
+
+TEST_F(Sweeping, FullDiskLeavesNoFolder) {
+  expect_refused(arguments("full.h5"), "full.h5", {.file_limit = 1000});
+  EXPECT_FALSE(exists("full.h5"));
+  EXPECT_FALSE(exists("full.h5.runs"));
+}
+
 TEST_F(Sweeping, AnotherSweepInTheFileIsRefused) {
   output_of(arguments("all.h5", {"--quiet"}));
   expect_refused(arguments("all.h5", {"--over", "output.every=1,2"}), "it has a sweep over");
@@ -232,6 +247,10 @@ TEST_F(Sweeping, WrongUsesAreOneLine) {
            {{"--over", "field.applied=[0,0,1],[0,0"}, "not TOML"},
            {{"--over", "system.damping=0.1,0.1"}, "stands twice"},
            {{"--over", "system.dampng=0.1,0.2"}, "did you mean"},
+           {{"--over", "system.dampng=0.1"},
+            "--over system.dampng=0.1: system.dampng: unknown key"},
+           {{"--over", "foo=1,2"}, "with foo=1: --over foo=1: foo: unknown key"},
+           {{"--over", "system.damping=0.1", "--set", "foo=1"}, "--set foo=1: foo: unknown key"},
            {{"--over", "system.damping=0.1,-0.2", "--over", "integrator.dt=0.02,0.01"},
             "with system.damping=-0.2 integrator.dt=0.02: "},
            {{"--over", "system.damping=0.1", "--over", "system.damping=0.2"}, "twice"},

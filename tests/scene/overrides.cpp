@@ -66,6 +66,24 @@ TEST(Override, WordsNeedNoQuotes) {
   EXPECT_FALSE(scene_of(llg_scene, {"system.precession=false"}).system.precession);
 }
 
+TEST(Override, FileNamesNeedNoQuotes) {
+  for (std::string const name : {"/tmp/x.h5", "../x.h5", "./a b,c.h5", "~/x.h5", "d/x.h5", "1x",
+                                 "100nm.h5", ".x.h5", "/a\"\\b"})
+    EXPECT_EQ(scene_of(llg_scene, {"output.file=" + name}).output.file, name) << name;
+  for (std::string const number : {"0x1F", "1e2", "0.5", "1_0"}) {
+    auto const scene = scene_of(llg_scene, {"system.damping=" + number});
+    EXPECT_GT(scene.system.damping, 0) << number;
+  }
+  for (std::string const value : {"1979-05-27", "07:32:00", "1.5", "inf", "true"})
+    EXPECT_NE(refusal_of(llg_scene, {"output.file=" + value}).find("output.file: "),
+              std::string::npos)
+        << value;
+  for (std::string const value : {"-x", "1.2.3", ".5", "/a\tb", "1x y"})
+    EXPECT_NE(refusal_of(llg_scene, {"output.file=" + value}).find("the value is not TOML"),
+              std::string::npos)
+        << value;
+}
+
 TEST(Override, ThatIsWrongIsRefusedInOneLine) {
   for (std::array<std::string, 2> const& wrong :
        {std::array<std::string, 2>{"system.damping", "not an assignment; accepted: key.path=VALUE"},

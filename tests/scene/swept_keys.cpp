@@ -20,6 +20,17 @@ TEST(SweptKey, CommasInsideBracketsAndQuotesDoNotSeparate) {
   EXPECT_EQ(read_swept_key(" a . b = 1").key, "a.b");
 }
 
+TEST(SweptKey, WordsNeedNoQuotes) {
+  EXPECT_EQ(read_swept_key("a=heun, rkmk4 ,'dp5'").values,
+            (Values{"\"heun\"", "\"rkmk4\"", "'dp5'"}));
+  EXPECT_EQ(read_swept_key("a=/tmp/x.h5,../y.h5,2nd.h5,2").values,
+            (Values{"\"/tmp/x.h5\"", "\"../y.h5\"", "\"2nd.h5\"", "2"}));
+  EXPECT_EQ(read_swept_key("a=true,inf,['x',\"y\"],{b=\"c\"}").values,
+            (Values{"true", "inf", "['x',\"y\"]", "{b=\"c\"}"}));
+  EXPECT_TRUE(read_swept_key("a=heun,1").numbers.empty());
+  EXPECT_THROW(read_swept_key("a=heun,heun"), SceneError);
+}
+
 TEST(SweptKey, NumbersAreKnownAsNumbers) {
   EXPECT_EQ(read_swept_key("a=0.1,1e-3,-4").numbers, (std::vector<double>{0.1, 1e-3, -4}));
   EXPECT_EQ(read_swept_key("a=9007199254740995,3").numbers,
@@ -29,7 +40,7 @@ TEST(SweptKey, NumbersAreKnownAsNumbers) {
 }
 
 TEST(SweptKey, WhatIsNoListOfValuesIsRefused) {
-  for (char const* text : {"a", "=1", "a=", "a=1,,2", "a=[1", "a=1]", "a=1\nb=2", "a=1,1", "a=x",
+  for (char const* text : {"a", "=1", "a=", "a=1,,2", "a=[1", "a=1]", "a=1\nb=2", "a=1,1", "a=x y",
                            "a=1] # [", "a=1]\nvalue=[2"})
     EXPECT_THROW(read_swept_key(text), SceneError) << text;
 }

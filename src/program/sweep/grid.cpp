@@ -71,6 +71,15 @@ Plan plan_of(io::Stage const& stage, Precision precision) {
   return plan;
 }
 
+// The values of a run reach its scene as overrides, and messages of the scene call them --set.
+std::string naming_over(std::string message, std::vector<std::string> const& overrides) {
+  constexpr std::string_view set = "--set ";
+  for (auto const& override : overrides)
+    if (message.starts_with(fmt::format("{}{}: ", set, override)))
+      return message.replace(0, set.size(), "--over ");
+  return message;
+}
+
 }  // namespace
 
 std::string values_text(io::SweepHeader const& header, std::int64_t run) {
@@ -111,8 +120,9 @@ Grid make_grid(SweepOptions const& options) {
       grid.texts.push_back(scene.text);
       grid.costs.push_back(static_cast<double>(steps) * static_cast<double>(io::sites(scene)));
     } catch (io::SceneError const& error) {
-      if (header.runs() == 1) throw;
-      throw io::SceneError(fmt::format("with {}: {}", values_text(header, run), error.what()));
+      auto const message = naming_over(error.what(), header.overrides(run));
+      if (header.runs() == 1) throw io::SceneError(message);
+      throw io::SceneError(fmt::format("with {}: {}", values_text(header, run), message));
     }
   }
   header.scene_text = grid.texts.front();
