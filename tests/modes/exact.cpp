@@ -96,5 +96,29 @@ TYPED_TEST(MacrospinModes, RefuseWhatCannotBe) {
                std::invalid_argument);
 }
 
+// An isotropic open chain has w = 2 A sin(pi p / n) twice for p and n - p, and zero modes that
+// drift: its total spin turns freely, and a turn of its axis grows in proportion to time.
+TYPED_TEST(MacrospinModes, AreWavesInAnIsotropicAntiferromagnet) {
+  for (std::int64_t const n : {6, 8, 16}) {
+    auto const lattice = Lattice::chain(n);
+    std::vector<double> numbers;
+    for (std::int64_t i = 0; i < n; ++i)
+      for (double const c : {0.6, 0.0, 0.8}) numbers.push_back(i % 2 == 0 ? c : -c);
+    auto const m = spins_of<typename TestFixture::Spins>(lattice, numbers);
+    EffectiveField const field(Exchange(lattice, -1.0));
+    auto const found = normal_modes(this->exec, LandauLifshitz(field, 0.0), m, {.count = 8});
+    EXPECT_EQ(found.end, ModesEnd::converged) << n;
+    for (auto const& mode : found.modes) {
+      if (mode.frequency < 0.1) continue;
+      double nearest = 1;
+      for (std::int64_t p = 1; p <= n / 2; ++p)
+        nearest = std::min(nearest, std::abs(mode.frequency - 2 * std::sin(std::numbers::pi *
+                                                                           double(p) / double(n))));
+      EXPECT_LT(nearest, this->accurate) << n << ": " << mode.frequency;
+      EXPECT_LT(std::abs(mode.decay), this->accurate) << n;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace cayspin::test

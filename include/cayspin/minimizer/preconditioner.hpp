@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 
 // First approximation of the inverse Hessian: (K + c)^-1 with the measured exchange K of a field.
@@ -23,7 +24,10 @@ class Preconditioner {
     couplings_ = with_exchange ? found.couplings : std::array<double, 3>{};
     exchange_.emplace("Minimizer::exchange", lattice, couplings_);
     double const strongest = found.strongest();
-    first_shift_ = found.rest > 0 ? found.rest : strongest > 0 ? 1e-3 * strongest : 1;
+    // Below this it is what round-off leaves of the exchange.
+    double const least =
+        100 * static_cast<double>(std::numeric_limits<Real>::epsilon()) * strongest;
+    first_shift_ = found.rest > least ? found.rest : strongest > 0 ? 1e-3 * strongest : 1;
     shift_ = first_shift_;
   }
 

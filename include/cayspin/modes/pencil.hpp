@@ -63,11 +63,16 @@ inline std::vector<RitzMode> undamped_modes(Pencil const& pencil) {
   return modes;
 }
 
-/// Returns the modes of any pencil, slowest first. A small positive `shift` keeps the inverted
-/// matrix regular where the Hessian is not.
-inline std::vector<RitzMode> slowest_modes(Pencil const& pencil, bool is_undamped, double shift) {
+/// Returns the modes of any pencil, slowest first. A positive shift keeps the inverted matrix
+/// regular where the Hessian is not: at least `least_shift`. Zero modes that drift, as an
+/// antiferromagnet has, enter the inverse by the square of 1 / shift, so the shift is no small part
+/// of the rates.
+inline std::vector<RitzMode> slowest_modes(Pencil const& pencil, bool is_undamped,
+                                           double least_shift) {
   if (is_undamped)
     if (auto modes = undamped_modes(pencil); !modes.empty()) return modes;
+  double const rates = pencil.hessian.norm() / pencil.turning.norm();
+  double const shift = std::max(least_shift, 1e-2 * rates);
   Eigen::MatrixXd const shifted = pencil.hessian - shift * pencil.turning;
   Eigen::EigenSolver<Eigen::MatrixXd> const found(shifted.partialPivLu().solve(pencil.turning));
   std::vector<RitzMode> modes;
