@@ -244,7 +244,7 @@ class IntegrationOf final : public Integration {
   std::tuple<Observers&...> observers_;
 };
 
-/// integrate() that may leave the spins in memory of the stepper.
+/// Like integrate(), but the spins may end in the memory of the stepper.
 template <class Exec, class Stepper, class Generator, class Spins, class... Observers>
 Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator const& generator,
                                 Spins& spins, Times const& times, Observers&&... observers) {

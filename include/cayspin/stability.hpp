@@ -19,8 +19,8 @@
 #include <stdexcept>
 
 // The largest stable time step of a method for the Landau-Lifshitz equation, computed before a run.
-// The method's own stages act on one transverse mode of a nearly uniform state, u' = s (-damping +
-// i) u, with a parallel part sigma in the generator.
+// The stages of the method act on one transverse mode of a nearly uniform state, u' = s (-damping +
+// i) u. sigma is the part of the generator along the spins.
 namespace cayspin::inline v0_2 {
 
 namespace detail {
@@ -210,8 +210,8 @@ inline void check_bound(double field_bound, double damping) {
 
 }  // namespace detail
 
-/// Returns the largest eigenvalue of -constant Lap on the lattice: the exchange's part of a field
-/// bound. Throws std::invalid_argument when the constant is not finite.
+/// Returns the largest eigenvalue of -constant Lap on the lattice, a bound on the exchange field.
+/// Throws std::invalid_argument when the constant is not finite.
 inline double exchange_bound(Lattice const& of_spins, double constant) {
   detail::finite(constant, "cayspin::exchange_bound: the constant");
   Lattice const& lattice = whole(of_spins);

@@ -179,7 +179,7 @@ class OvfValues {
     }
   }
 
-  /// Requires that only the end of the segment and comments follow the values.
+  /// Throws unless only comments and the end of the segment follow the values.
   void require_one_segment() {
     for (std::string text; std::getline(stream_, text);) {
       auto const line = split_line(text);

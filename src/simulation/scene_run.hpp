@@ -133,7 +133,8 @@ class SceneRun {
 
   /// Continues from the spins and the step of one column of a run of ReplicaColumns.
   void continue_from_column(SceneRun const& columns, std::int64_t column);
-  /// A run of ReplicaColumns, and one of a single replica, whose spins are overwritten.
+  /// The run of the columns, and a run of a single replica. Sampling overwrites the spins of the
+  /// latter.
   struct ColumnsToSample {
     SceneRun const* columns;
     SceneRun* one;

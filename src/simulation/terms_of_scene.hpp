@@ -85,8 +85,8 @@ class FieldInPass<Spins>::Terms {
     });
   }
 
-  /// Returns the terms that are compiled into stages, from `usual`; empty if stages load the whole
-  /// H.
+  /// Returns the terms of `usual` that are evaluated inside the stages; empty if the stages load a
+  /// field computed before.
   std::optional<SceneFieldNow<Real>> in_stages(SceneFieldNow<Real> const& usual, double t) const;
 
  private:

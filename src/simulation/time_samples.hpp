@@ -41,8 +41,8 @@ class TimeSamples {
 
   std::string const& key_of(std::size_t component) const { return vectors_[component / 3].key; }
   std::string const& key_of_fastest() const;
-  /// Returns true if a component goes through its range more than once in four samples: then the
-  /// values between them are unknown.
+  /// Returns true if a component varies so fast that the samples do not resolve it: it crosses its
+  /// range more than once within four samples.
   bool are_too_coarse() const;
   /// Returns the largest length of each vector, over all values.
   std::vector<double> const& largest() const { return largest_; }

@@ -102,8 +102,8 @@ TYPED_TEST(DemagnetizingFields, OfAUniformCubeHaveItsMean) {
               64 * std::numeric_limits<Real>::epsilon());
 }
 
-// Periodic along both axes, a film uniform along its normal has H = -m, minus the part beyond the
-// images.
+// A periodic film with m along its normal has H = -m, apart from the field of the images that are
+// not summed.
 TEST(DemagnetizingField, OfAPeriodicFilmIsThatOfASheet) {
   Film const film{{4, 4, 1}, {30, 30, 0}, {1, 1, 1}};
   auto const lattice = film.lattice();

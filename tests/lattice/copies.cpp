@@ -37,7 +37,7 @@ TYPED_TEST(Copies, FromHostAndBack) {
   }
 }
 
-// Another instance waits for none.
+// Another execution space instance reads the field without a fence.
 TYPED_TEST(Copies, FromHostIsOverWhenItReturns) {
   using Real = typename TypeParam::Real;
   auto const numbers = random_directions(33, 8);

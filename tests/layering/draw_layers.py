@@ -68,7 +68,7 @@ def room_name(file):
 
 
 def includes_of_layers(tree):
-    """Each layer and the others that its files include."""
+    """Returns, for each layer, the other layers that its files include."""
     found = {layer: set() for layer, _ in LIBRARY + PROGRAMS}
     for file, included in tree.includes.items():
         here = room_name(file)

@@ -99,7 +99,7 @@ TEST_F(MultirateFields, AreTraded) {
   }
 }
 
-// Whichever is faster here: one evaluation a step, or one in each stage.
+// "auto" chooses the faster of one evaluation per step and one per stage.
 TEST_F(MultirateFields, AreChosenForAnError) {
   run("exact.h5",
       set("field.slab_demag.multirate=false", "integrator={method='rkmk8',dt=0.01,steps=200}"));

@@ -240,7 +240,7 @@ end = 20.0
 [output]
 every = 20
 )toml");
-  // Errors of adaptive steps near equilibrium rise and fall between the samples.
+  // Near equilibrium the errors of adaptive steps vary between samples, so the bound has a margin.
   for (char const* error : {"1e-3", "1e-6"}) EXPECT_LT(this->error(scene, error), 4) << error;
 }
 

@@ -91,7 +91,7 @@ class Runs(PackageTest):
                     across = across - np.outer(k, k) / (k @ k)
                 for word, expected in zip(words, (tensor[0, 1], tensor[2, 2], np.trace(tensor),
                                                   (across * tensor).sum())):
-                    # The phase of a start in time drops out.
+                    # The intensity does not depend on the time at which a run starts.
                     self.assertAlmostEqual(found.intensity[word][index][at], expected,
                                            delta=1e-12)
         for word in words:

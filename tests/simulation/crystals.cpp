@@ -168,7 +168,8 @@ random = { seed = 2 }
   for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(after[c], before[c], 1e-9);
 }
 
-// Paramagnets of two moments in one bath: each has Langevin's magnetization for its own mu h / T.
+// Two sublattices of different moments at one temperature: each follows the Langevin function of
+// its own mu h / T.
 TEST(CrystalScenes, EachMomentHasTheTemperature) {
   auto const scene = llg_scene("1", "heun", 1000, R"toml(
 [lattice]

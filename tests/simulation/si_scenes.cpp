@@ -231,8 +231,8 @@ TEST(SiScenes, IronHasTheExchangeFieldOfItsEightNeighbours) {
     }
 }
 
-// A spiral of 24 cells in a current. If xi is Gilbert's damping it moves with the electrons
-// unchanged: by 28.9755 m/s sin(q a) / (q a) against 1e12 A/m^2, which turns its spins.
+// A current moves a spiral of 24 cells. If xi equals Gilbert's damping it keeps its shape and moves
+// with the electrons, at 28.9755 m/s sin(q a) / (q a) for 1e12 A/m^2.
 TEST(SiScenes, ASpiralOfPermalloyMovesWithTheElectrons) {
   auto const text = [](double alpha) {
     return fmt::format(R"toml(units = "SI"

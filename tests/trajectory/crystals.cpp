@@ -43,7 +43,7 @@ void write_crystal(std::filesystem::path const& path, TrajectoryHeader const& he
   output.finish({});
 }
 
-// Returns the numbers of site s of the cell from an array in the order of the run.
+// Returns the spins of sublattice s from an array in the memory order of a run.
 template <class Real>
 std::vector<double> numbers_of(std::vector<Real> const& spins, TrajectoryHeader const& header,
                                std::int64_t site) {

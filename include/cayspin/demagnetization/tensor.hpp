@@ -180,8 +180,8 @@ inline DemagnetizingTensor cheapest_demagnetizing_tensor(Lengths const& position
   if (distance >= 4 * edge) return far_demagnetizing_tensor<22>(position, cell, distance);
   if (edge > 1000 * std::min({cell[0], cell[1], cell[2]}))
     return slender_demagnetizing_tensor(position, cell);
-  // Second differences lose digits in proportion to the square of this ratio. The other condition
-  // bounds the number of pieces.
+  // Second differences lose digits in proportion to the square of this number. Very close cells
+  // would be divided into too many pieces.
   double const reach = distance + edge;
   double const loss = (distance / cell[0]) * (reach / cell[1]) * (reach / cell[2]);
   if (loss > 6000 && 100 * distance > edge) return divided_demagnetizing_tensor(position, cell);

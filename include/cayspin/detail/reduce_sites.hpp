@@ -117,7 +117,7 @@ struct DoubledSum {
   }
 };
 
-/// The result that several threads, and then several parts of a lattice, add to.
+/// Totals to which the threads, and then the parts of a lattice, add their sums and maxima.
 template <int Sums, int Maxima>
 struct Totals {
   std::array<ExactSum, std::size_t{Sums}> sums;
