@@ -46,7 +46,8 @@ class Follower {
   io::Follow follow_;
   std::int64_t extent_, period_, shift_ = 0;
   Spins moved_;
-  ScalarField<Real, typename Spins::memory_space> places_;  // along the axis, in cells from the middle
+  ScalarField<Real, typename Spins::memory_space>
+      places_;  // along the axis, in cells from the middle
 };
 
 }  // namespace cayspin::simulation
