@@ -28,8 +28,8 @@ class SceneMinimizer {
   Minimum minimize(Space const& exec, io::Scene const& scene, SceneField<Spins> const& field,
                    Spins& spins, MinimizeOptions const& options);
 
-  /// The same, with the torque of H itself. Where moments differ, it repeats the search with other
-  /// bounds until that torque is below options.torque.
+  /// Like minimize, but options.torque and Minimum::torque are max |m x H|. Where a moment is not
+  /// 1, it repeats the search with other bounds until that is below options.torque.
   Minimum relax(Space const& exec, io::Scene const& scene, SceneField<Spins> const& field,
                 Spins& spins, MinimizeOptions const& options);
 

@@ -6,6 +6,7 @@
 #include "hdf5/error.hpp"
 #include "hdf5/guarded_reading.hpp"
 #include "io/ensemble_file.hpp"
+#include "site_order.hpp"
 
 #include <algorithm>
 
@@ -91,24 +92,6 @@ EnsembleInfo read_whole_info(std::filesystem::path const& path) {
   for (std::size_t r = 0; r < replicas; ++r)
     info.last.push_back({energy[r], defect[r], {mean[3 * r], mean[3 * r + 1], mean[3 * r + 2]}});
   return info;
-}
-
-// The opposite of by_sites.
-std::vector<double> by_planes(std::vector<double> const& spins, TrajectoryHeader const& header) {
-  if (header.cell_sites == 1) return spins;
-  auto const plane = static_cast<std::size_t>(3 * header.shape[0] * header.shape[1]);
-  auto const planes = static_cast<std::size_t>(header.shape[2]);
-  auto const sites = static_cast<std::size_t>(header.cell_sites);
-  std::vector<double> sorted(spins.size());
-  auto from = spins.begin();
-  for (std::size_t state = 0; state < spins.size(); state += plane * planes)
-    for (std::size_t site = 0; site < sites; ++site)
-      for (std::size_t k = site; k < planes; k += sites) {
-        auto const next = from + static_cast<std::ptrdiff_t>(plane);
-        std::copy(from, next, sorted.begin() + static_cast<std::ptrdiff_t>(state + k * plane));
-        from = next;
-      }
-  return sorted;
 }
 
 std::vector<double> read_last_spins(std::filesystem::path const& path, EnsembleInfo const& info) {

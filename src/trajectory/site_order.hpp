@@ -3,6 +3,7 @@
 
 #include "io/trajectory.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -23,6 +24,25 @@ std::vector<Real> by_sites(std::vector<Real> const& spins, TrajectoryHeader cons
       for (std::size_t k = site; k < planes; k += sites) {
         auto const from = spins.begin() + static_cast<std::ptrdiff_t>(state + k * plane);
         sorted.insert(sorted.end(), from, from + static_cast<std::ptrdiff_t>(plane));
+      }
+  return sorted;
+}
+
+/// The inverse of by_sites.
+template <class Real>
+std::vector<Real> by_planes(std::vector<Real> const& spins, TrajectoryHeader const& header) {
+  if (header.cell_sites == 1) return spins;
+  auto const plane = static_cast<std::size_t>(3 * header.shape[0] * header.shape[1]);
+  auto const planes = static_cast<std::size_t>(header.shape[2]);
+  auto const sites = static_cast<std::size_t>(header.cell_sites);
+  std::vector<Real> sorted(spins.size());
+  auto from = spins.begin();
+  for (std::size_t state = 0; state < spins.size(); state += plane * planes)
+    for (std::size_t site = 0; site < sites; ++site)
+      for (std::size_t k = site; k < planes; k += sites) {
+        auto const next = from + static_cast<std::ptrdiff_t>(plane);
+        std::copy(from, next, sorted.begin() + static_cast<std::ptrdiff_t>(state + k * plane));
+        from = next;
       }
   return sorted;
 }

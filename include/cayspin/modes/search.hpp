@@ -93,7 +93,8 @@ class ModeSearch {
   }
 
  private:
-  // The residuals lie in the subspace, so they are errors of the Hessian's products.
+  // Called when no residual adds to the subspace: what is left are errors of the Hessian's
+  // products, which no search can reduce.
   bool is_as_good_as_products() const {
     constexpr double bound = std::is_same_v<Real, double> ? 1.5e-7 : 3.5e-3;  // 10 sqrt(epsilon)
     return std::ranges::all_of(errors_, [](double error) { return error < bound; });

@@ -37,7 +37,7 @@ struct Advised {
 
 /// Tries every candidate with coarse steps, compares them with one fine solution, and continues
 /// with those predicted to be the cheapest. Takes at most a tenth of the duration of the run, or 2
-/// s, plus one trial.
+/// s, plus the trials that measure the advice; longer only if nothing has met the error by then.
 Advised advise(Pilot const& pilot, AdviceRequest const& request);
 
 }  // namespace cayspin::program::trade
