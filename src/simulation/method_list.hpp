@@ -173,7 +173,6 @@ struct Row : io::Method {
 
 /// A method on the Lie group. By default it uses Cayley coordinates, and has the generators and
 /// isotropies that its steppers have.
-/// the generators and isotropies that its steppers have.
 template <class Family>
 constexpr Row<Family> row(io::Method method) {
   using namespace sets;
