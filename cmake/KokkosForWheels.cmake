@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Without an installed Kokkos under pip: its source, built inside the wheel's build.
-option(CAYSPIN_X86_64_V3 "Wheels for any x86-64 with AVX2, not for this processor alone" OFF)
+# Kokkos under pip where none is installed, or for the processor that is asked for: its source,
+# built inside the wheel's build.
 if(NOT CAYSPIN_KOKKOS_SOURCE)
-  message(STATUS "No Kokkos is installed: fetch its source")
+  message(STATUS "fetch Kokkos' source")
   execute_process(COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/bootstrap.sh kokkos-source
                   RESULT_VARIABLE status)
   if(status)
@@ -13,10 +13,13 @@ if(NOT CAYSPIN_KOKKOS_SOURCE)
 endif()
 set(Kokkos_ENABLE_OPENMP ON)
 set(Kokkos_ENABLE_SERIAL ON)
-if(CAYSPIN_X86_64_V3)
-  set(Kokkos_ARCH_HSW ON) # -march=haswell: x86-64-v3 and nothing that a compiler uses by itself
-else()
-  set(Kokkos_ARCH_NATIVE ON)
+# -march of haswell and skylake-avx512: the level, and nothing beyond it that compilers use by
+# themselves.
+set(architecture_of_native NATIVE)
+set(architecture_of_x86-64-v3 HSW)
+set(architecture_of_x86-64-v4 SKX)
+if(architecture_of_${CAYSPIN_PROCESSOR})
+  set(Kokkos_ARCH_${architecture_of_${CAYSPIN_PROCESSOR}} ON)
 endif()
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 set(CAYSPIN_KOKKOS_AS_UNITY ON) # a quarter of the processor time

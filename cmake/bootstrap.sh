@@ -5,7 +5,8 @@ set -euo pipefail
 
 usage() {
   cat <<'TXT'
-Usage: bash cmake/bootstrap.sh deps|build|compile|test|test-all|python|docs|demo|bench|gpu [--preset NAME]
+Usage: bash cmake/bootstrap.sh deps|build|compile|test|test-all|python|wheels|docs|demo|bench|gpu
+         [--preset NAME] [--python PYTHON]...
   deps     install everything that any of the others needs, and print the option for CMake
   build    build the program into build/NAME/bin
   compile  build everything and run nothing: for a GPU that is elsewhere
@@ -13,6 +14,8 @@ Usage: bash cmake/bootstrap.sh deps|build|compile|test|test-all|python|docs|demo
   test-all the same, with the tests that take long, and those that compile the library once more:
            each header alone, with sanitizers, for nvcc, by clang, on a device that host threads play
   python   build the Python package and install it into build/venv
+  wheels   build, into build/wheels/out, Python wheels that contain their libraries, for any x86-64
+           with glibc 2.35 or newer; one for each interpreter PYTHON, the default being python3
   docs     build the documentation as a site, build/docs/site/index.html
   demo     build one small program, run a switching slab three ways and draw it: a first look
   bench    build and run the benchmarks; print and draw them beside their goals
@@ -42,6 +45,7 @@ logged() {
 
 . "$root/cmake/bootstrap_packages.sh"
 . "$root/cmake/bootstrap_kokkos.sh"
+. "$root/cmake/bootstrap_wheels.sh"
 
 # The parts that the verb needs are switched on. The others are off in a new build folder, and stay
 # as they are in an old one.
@@ -157,17 +161,27 @@ verb=$1
 shift
 preset=release
 [ "$verb" != gpu ] || preset=cuda
+pythons=()
 while [ $# -gt 0 ]; do
   case $1 in
     --preset) [ $# -ge 2 ] || fail "--preset needs a name"; preset=$2; shift 2 ;;
+    --python) [ $# -ge 2 ] || fail "--python needs an interpreter"; pythons+=("$2"); shift 2 ;;
     *) usage >&2; exit 2 ;;
   esac
 done
+[ "$verb" = wheels ] || [ ${#pythons[@]} -eq 0 ] || fail "--python is for wheels"
 build_dir=$root/build/$preset
 
 if [ "$verb" = docs ]; then
   install_packages docs "${docs[@]}"
   build_site
+  exit 0
+fi
+
+if [ "$verb" = wheels ]; then
+  install_packages install "${core[@]}" "${io[@]}" "${program[@]}" "${python[@]}" zlib1g-dev
+  [ ${#pythons[@]} -gt 0 ] || pythons=(python3)
+  build_wheels
   exit 0
 fi
 
