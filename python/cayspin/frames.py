@@ -10,6 +10,7 @@ import numpy as np
 from cayspin import arguments
 from cayspin._cayspin import CayspinError
 from cayspin.scene import Scene
+from cayspin.texture import toml
 
 
 class Frames:
@@ -52,11 +53,10 @@ def at_equal_steps(file: Any, path: Any, count: int, frames: Any,
 def tables(path: Any, text: str, key: str, otherwise: str) -> dict:
     """The tables of a scene, from which a key is read; `otherwise` is accepted in its place."""
     try:
-        import tomllib
-    except ImportError:  # before Python 3.11
-        raise CayspinError(f"{path}: to read {key} of its scene takes Python 3.11; accepted: "
+        return toml.loads(text)
+    except ImportError as error:
+        raise CayspinError(f"{path}: to read {key} of its scene takes {error}; accepted: "
                            f"{otherwise}") from None
-    return tomllib.loads(text)
 
 
 def along_axes(path: Any, text: str, key: str, default: Any, argument: str) -> list:

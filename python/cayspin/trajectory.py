@@ -93,7 +93,8 @@ class Trajectory:
         """The topological charge of each plane, (frame, nz), of a crystal (frame, site, nz), as
         cayspin.topological_charge() says. `boundary` is that of the scene by default.
 
-        Raises CayspinError for another `boundary`, and without one before Python 3.11.
+        Raises CayspinError for another `boundary`, and without one before Python 3.11
+        where tomli is missing.
         """
         if boundary is None:
             boundary = along_axes(self.path, self.scene, "boundary", "open", "boundary")[:2]

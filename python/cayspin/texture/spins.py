@@ -9,6 +9,8 @@ from typing import Any, Sequence
 
 import numpy as np
 
+from . import toml
+
 AXES = "xyz"
 
 
@@ -88,10 +90,9 @@ def lattice_of(scene: str) -> tuple[list[float], list[str], bool]:
     if not scene:
         return [1.0] * 3, ["open"] * 3, False
     try:
-        import tomllib
-    except ImportError:
-        raise ValueError("to read the text of a scene takes Python 3.11") from None
-    tables = tomllib.loads(scene)
+        tables = toml.loads(scene)
+    except ImportError as error:
+        raise ValueError(f"to read the text of a scene takes {error}") from None
     found = []
     for key, otherwise in (("spacing", 1.0), ("boundary", "open")):
         given = tables.get("lattice", {}).get(key, otherwise)

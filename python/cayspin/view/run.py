@@ -9,13 +9,13 @@ import subprocess
 import tempfile
 import time
 
+from ..texture import toml
+
 
 def _output_of(scene):
     """`output.file`; None for a scene that `cayspin run` refuses with its own message."""
-    import tomllib
-
     try:
-        output = tomllib.loads(scene.read_text(encoding="utf-8")).get("output")
+        output = toml.loads(scene.read_text(encoding="utf-8")).get("output")
     except (OSError, ValueError):
         return None
     name = output.get("file") if isinstance(output, dict) else None
