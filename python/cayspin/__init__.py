@@ -15,11 +15,12 @@ from cayspin._cayspin import version as __version__
 from cayspin.averages import Averages
 from cayspin.ensemble import Ensemble
 from cayspin.ensemble_simulation import EnsembleSimulation
+from cayspin.equilibrium import Minimum, Modes
 from cayspin.mesh import occupied_of_mesh
 from cayspin.observables import Average, Dispersion, average, dispersion, topological_charge
 from cayspin.path import MinimumEnergyPath, path
 from cayspin.scene import Scene
-from cayspin.simulation import Minimum, Modes, Simulation
+from cayspin.simulation import Simulation
 from cayspin.spectra import StructureFactor, linear_structure_factor, structure_factor
 from cayspin.spirit import read_spirit_pairs
 from cayspin.trade import Advice, Trade, advise, trade

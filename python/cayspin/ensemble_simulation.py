@@ -10,8 +10,8 @@ import warnings
 import numpy as np
 
 from cayspin import _cayspin, arguments, sites
+from cayspin.equilibrium import Minimum
 from cayspin.scene import Scene
-from cayspin.simulation import Minimum
 
 
 class EnsembleSimulation:

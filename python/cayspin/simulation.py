@@ -12,39 +12,10 @@ import numpy as np
 
 from cayspin import _cayspin, arguments, sites, texture, toml_text
 from cayspin.averages import Averages
+from cayspin.equilibrium import Minimum, Modes
 from cayspin.scene import Scene
 
 _GUARD_PERIOD = 100  # steps between two checks of energy and lengths in step()
-
-
-@dataclasses.dataclass(frozen=True)
-class Minimum:
-    """Result of Simulation.relax(), in the units of the scene."""
-
-    end: str  #: "converged", "stagnated" (by round-off) or "evaluation limit"
-    torque: float  #: max |m x H|, in the unit of H, T in SI
-    energy: float  #: summed over sites, in the scene's unit, J in SI
-    iterations: int  #: steps of the search
-    evaluations: int  #: of the field of all sites
-    saddles: int  #: that were left during the search
-    curvature: float  #: upper bound of the lowest one, in energy / rad^2, if converged
-
-    @property
-    def converged(self) -> bool:
-        """Whether the torque is below its bound, and the energy falls in no direction."""
-        return self.end == "converged"
-
-
-@dataclasses.dataclass(frozen=True)
-class Modes:
-    """Result of Simulation.modes(), the slowest first."""
-
-    frequency: np.ndarray  #: (mode,), angular in reduced units; in Hz in SI
-    decay: np.ndarray  #: (mode,), in 1/s in SI; negative where the motion grows
-    residual: np.ndarray  #: (mode,), relative errors of the shapes
-    shape: np.ndarray  #: complex dm, (mode, nz, ny, nx, 3) or with sites first; the longest is 1
-    converged: bool  #: whether all residuals are below `tolerance`
-    evaluations: int  #: of the field of all sites
 
 
 class Simulation:
