@@ -26,7 +26,9 @@ TurnOfHdf5::~TurnOfHdf5() {
   if (--depth_of_turns == 0) one_at_a_time().unlock();
 }
 
-FileHandle open_file(std::filesystem::path const& path, Locking locking) {
+namespace {
+
+FileHandle open_with(PropertyHandle const& access, std::filesystem::path const& path) {
   std::string const action = "cannot open the file";
   // Otherwise HDF5 would wait for the other end of a pipe.
   std::error_code ignored;
@@ -34,16 +36,29 @@ FileHandle open_file(std::filesystem::path const& path, Locking locking) {
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
     throw_failure(path, action, "it is not a regular file");
   complete_from_journal(path);
-  PropertyHandle const access(H5Pcreate(H5P_FILE_ACCESS));
-#if H5_VERSION_GE(1, 10, 7)
-  if (locking == Locking::off) H5Pset_file_locking(access.get(), false, true);
-#endif
   FileHandle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
   if (file.get() >= 0) return file;
   auto reason = failure_reason();
   if (reason == "file signature not found") reason = "it is not an HDF5 file";
   if (reason == "Resource temporarily unavailable") reason = "another program is writing it";
   throw_failure(path, action, reason);
+}
+
+}  // namespace
+
+FileHandle open_file(std::filesystem::path const& path, Locking locking) {
+  PropertyHandle const access(H5Pcreate(H5P_FILE_ACCESS));
+#if H5_VERSION_GE(1, 10, 7)
+  if (locking == Locking::off) H5Pset_file_locking(access.get(), false, true);
+#endif
+  return open_with(access, path);
+}
+
+FileHandle open_file_in_memory(std::filesystem::path const& path) {
+  PropertyHandle const access(H5Pcreate(H5P_FILE_ACCESS));
+  constexpr std::size_t growth = 1 << 20;
+  H5Pset_fapl_core(access.get(), growth, false);
+  return open_with(access, path);
 }
 
 GroupHandle create_group(hid_t parent, char const* name, std::filesystem::path const& path) {

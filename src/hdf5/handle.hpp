@@ -59,6 +59,8 @@ enum class Locking { on, off };
 
 /// Opens an existing file for reading, completed from its journal.
 FileHandle open_file(std::filesystem::path const& path, Locking locking = Locking::on);
+/// The same for a small file that nobody writes: reads it into memory in one piece.
+FileHandle open_file_in_memory(std::filesystem::path const& path);
 
 // Creates a group of the file `path`.
 GroupHandle create_group(hid_t parent, char const* name, std::filesystem::path const& path);

@@ -98,14 +98,18 @@ std::uint64_t room_for(fs::path const& path, SweepInfo const& sweep) {
   return room;
 }
 
+constexpr std::uintmax_t most_bytes_in_memory = 4 << 20;
+
 void copy_run(fs::path const& file, hid_t group, std::string const& name) {
-  auto const from = open_file(file);
+  auto const from =
+      fs::file_size(file) <= most_bytes_in_memory ? open_file_in_memory(file) : open_file(file);
   check(H5Ocopy(from.get(), "/", group, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), file,
         "cannot copy the run into the sweep");
 }
 
 // Reads every frame and tries the copy, because the runs' own files are removed afterwards, and
-// HDF5 may crash on a damaged one.
+// HDF5 may crash on a damaged one. (If it crashes on a new one, all files are still there, and the
+// next sweep tries them.)
 void try_copies(std::vector<fs::path> const& files) {
   auto const trial = files.front().string() + ".trial";
   auto const read_and_copy = [&] {
@@ -143,7 +147,6 @@ void require_whole(std::vector<fs::path> const& files) {
 template <class Take>
 bool for_each_group(fs::path const& path, std::vector<SweptRun> const& runs, Take const& take) {
   constexpr std::size_t most_files = 64;
-  constexpr std::uintmax_t most_bytes = 4 << 20;
   std::vector<std::int64_t> group;
   std::uintmax_t bytes = 0;
   for (std::size_t run = 0; run < runs.size(); ++run) {
@@ -151,7 +154,8 @@ bool for_each_group(fs::path const& path, std::vector<SweptRun> const& runs, Tak
     auto const number = static_cast<std::int64_t>(run);
     std::error_code unknown;
     auto const size = fs::file_size(swept_run_file(path, number), unknown);
-    bool const is_full = group.size() == most_files || unknown || bytes + size > most_bytes;
+    bool const is_full =
+        group.size() == most_files || unknown || bytes + size > most_bytes_in_memory;
     if (!group.empty() && is_full) {
       if (!take(group)) return false;
       group.clear();
@@ -164,10 +168,15 @@ bool for_each_group(fs::path const& path, std::vector<SweptRun> const& runs, Tak
 }
 
 // Links are relative, so that the folder and the file can be moved together.
-void take_in(hid_t runs, fs::path const& path, std::vector<std::int64_t> const& group, bool copy) {
-  std::vector<fs::path> files;
-  for (auto const run : group) files.push_back(swept_run_file(path, run));
-  if (copy) require_whole(files);
+void take_in(hid_t runs, fs::path const& path, SweepInfo const& sweep,
+             std::vector<std::int64_t> const& group) {
+  bool const copy = sweep.one_file;
+  std::vector<fs::path> files, old;
+  for (auto const run : group) {
+    files.push_back(swept_run_file(path, run));
+    if (!sweep.runs[static_cast<std::size_t>(run)].is_new) old.push_back(files.back());
+  }
+  if (copy) require_whole(old);
   for (std::size_t i = 0; i < group.size(); ++i) {
     auto const name = swept_run_name(group[i]);
     auto const& file = files[i];
@@ -206,7 +215,7 @@ bool write_sweep(fs::path const& path, SweepInfo const& sweep, std::function<boo
   auto runs = create_group(file.get(), "runs", path);
   if (!for_each_group(path, sweep.runs, [&](std::vector<std::int64_t> const& group) {
         if (go_on && !go_on()) return false;
-        take_in(runs.get(), path, group, sweep.one_file);
+        take_in(runs.get(), path, sweep, group);
         return true;
       }))
     return false;

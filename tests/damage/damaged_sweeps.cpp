@@ -48,8 +48,11 @@ class DamagedSweeps : public TrajectoryTest {
 
 TEST_F(DamagedSweeps, TakeInAWholeRunOrRefuseIt) {
   auto const bytes = read_bytes(run_);
-  ASSERT_TRUE(write_sweep(path_, sweep_));
-  EXPECT_EQ(spins_in_sweep(), spins_);
+  for (bool const is_new : {true, false}) {
+    sweep_.runs[0].is_new = is_new;
+    ASSERT_TRUE(write_sweep(path_, sweep_));
+    EXPECT_EQ(spins_in_sweep(), spins_);
+  }
   Chance chance(static_cast<std::uint64_t>(number_from("CAYSPIN_SEED", 1)));
   int taken = 0, refused = 0;
   for (long count = number_from("CAYSPIN_DAMAGED_SWEEPS", 40); count > 0; --count) {

@@ -112,8 +112,9 @@ Grid make_grid(SweepOptions const& options) {
         steps += stage.relax ? 0 : stage.scene.integrator.steps;
         if (scene.integrator.method->automatic) continue;
         auto const plan = plan_of(stage, options.precision);
+        if (plan.memory.total() <= grid.largest) continue;
         require_memory(stage.scene, plan);
-        grid.largest = std::max(grid.largest, plan.memory.total());
+        grid.largest = plan.memory.total();
       }
       checked += io::sites(scene);
       if (checked <= most_checked) io::initial_spins(scene);

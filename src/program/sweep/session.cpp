@@ -173,11 +173,12 @@ void Session::take(std::int64_t number, std::int64_t status, std::string const& 
   io::SweptRun taken;
   bool const whole = [&] {
     if (status != Status::done) return read_run(number, taken);
-    // A worker has just written it, and it is tried before it becomes a part of the sweep's file.
+    // A worker has just written it.
     io::WithoutTrial const scope;
     return read_run(number, taken);
   }();
   taken.status = status;
+  taken.is_new = whole;
   // The file of this name becomes a group.
   auto const name = run_file(number).string();
   taken.message = message;
