@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "bond_key.hpp"
 #include "quantity.hpp"
 #include "sections.hpp"
 #include "unit_cell_file.hpp"
@@ -107,15 +108,9 @@ Coupling read_coupling(Item const& item, Scene& scene) {
   return made;
 }
 
-using Key = std::pair<std::array<int, 2>, std::array<int, 3>>;
+BondKey key_of(Coupling const& bond) { return {bond.between, bond.offset}; }
 
-Key key_of(Coupling const& bond) { return {bond.between, bond.offset}; }
-Key reversed(Key const& key) {
-  auto const& [between, offset] = key;
-  return {{between[1], between[0]}, {-offset[0], -offset[1], -offset[2]}};
-}
-
-Coupling reversed(Coupling const& bond) {
+Coupling reversed_bond(Coupling const& bond) {
   Coupling back = bond;
   std::tie(back.between, back.offset) = reversed(key_of(bond));
   for (std::size_t i = 0; i < 3; ++i)
@@ -124,7 +119,7 @@ Coupling reversed(Coupling const& bond) {
 }
 
 void refuse_twice(std::vector<Item> const& items, std::vector<Coupling> const& couplings) {
-  std::map<Key, std::size_t> seen;
+  std::map<BondKey, std::size_t> seen;
   for (std::size_t i = 0; i < couplings.size(); ++i) {
     auto const refuse = [&](auto const& other, std::string_view how) {
       if (other != seen.end())
@@ -152,7 +147,7 @@ bool are_close(Coupling const& a, Coupling const& b) {
 std::vector<Coupling> one_direction(std::vector<Item> const& items,
                                     std::vector<Coupling> const& couplings) {
   constexpr std::string_view accepted = "each bond from both ends, with J, and with -D there";
-  std::map<Key, std::size_t> seen;
+  std::map<BondKey, std::size_t> seen;
   for (std::size_t i = 0; i < couplings.size(); ++i)
     if (auto const [at, is_new] = seen.emplace(key_of(couplings[i]), i); !is_new)
       items[i].fail(fmt::format("is the bond of {}", items[at->second].key), accepted);
@@ -160,7 +155,7 @@ std::vector<Coupling> one_direction(std::vector<Item> const& items,
   for (std::size_t i = 0; i < couplings.size(); ++i) {
     auto const back = seen.find(reversed(key_of(couplings[i])));
     if (back == seen.end()) items[i].fail("is not written from its other end", accepted);
-    if (!are_close(reversed(couplings[i]), couplings[back->second]))
+    if (!are_close(reversed_bond(couplings[i]), couplings[back->second]))
       items[i].fail(fmt::format("differs from {}, its other end", items[back->second].key),
                     accepted);
     if (i < back->second) once.push_back(couplings[i]);
@@ -179,7 +174,7 @@ std::vector<Coupling> read_pairs(Item const& item, Scene& scene, bool both_direc
 
 // A bond in both lists becomes one bond, with the sum of their values.
 void add_bonds(std::vector<Coupling> const& more, std::vector<Coupling>& bonds) {
-  std::map<Key, std::size_t> seen;
+  std::map<BondKey, std::size_t> seen;
   for (std::size_t i = 0; i < bonds.size(); ++i) seen.emplace(key_of(bonds[i]), i);
   for (auto const& one : more) {
     auto at = seen.find(key_of(one));
@@ -188,7 +183,7 @@ void add_bonds(std::vector<Coupling> const& more, std::vector<Coupling>& bonds) 
       bonds.push_back(one);
       continue;
     }
-    auto const added = at == seen.end() ? reversed(one) : one;
+    auto const added = at == seen.end() ? reversed_bond(one) : one;
     auto& bond = bonds[back->second];
     for (std::size_t i = 0; i < 9; ++i) bond.tensor[i] += added.tensor[i];
     bond.biquadratic += added.biquadratic;

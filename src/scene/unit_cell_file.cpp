@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "unit_cell_file.hpp"
 
+#include "bond_key.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -129,16 +131,10 @@ std::size_t numbers_of(Lines const& lines, std::string_view word) {
       "\"{:.40}\" is no kind of exchange; accepted: isotropic, vectorial, tensorial", word));
 }
 
-using Key = std::tuple<std::array<int, 2>, std::array<int, 3>>;
 using Tensor = std::array<double, 9>;
-using Tensors = std::map<Key, Tensor>;
+using Tensors = std::map<BondKey, Tensor>;
 
-Key reversed(Key const& key) {
-  auto const& [between, offset] = key;
-  return {{between[1], between[0]}, {-offset[0], -offset[1], -offset[2]}};
-}
-
-std::string name_of(Key const& key) {
+std::string name_of(BondKey const& key) {
   auto const& [between, offset] = key;
   return fmt::format("the bond from atom {} to atom {} of the cell ({}, {}, {}) away", between[0],
                      between[1], offset[0], offset[1], offset[2]);
@@ -164,7 +160,7 @@ Tensors read_interactions(Lines& lines, Words const& head, std::int64_t atoms) {
     auto const words = lines.required(6 + numbers, accepted);
     if (words.size() > 6 + numbers)
       lines.fail(fmt::format("has {} words; accepted: {}", words.size(), accepted));
-    Key key;
+    BondKey key;
     auto& [between, offset] = key;
     for (std::size_t end = 0; end < 2; ++end)
       between[end] = static_cast<int>(lines.integer(words[1 + end], 0, atoms - 1));
@@ -215,8 +211,8 @@ std::vector<Coupling> read_unit_cell_couplings(std::filesystem::path const& path
   auto const atoms = static_cast<std::int64_t>(crystal.basis.size());
   auto const head = lines.required(1, "the number of interactions");
   auto const tensors = one_way(lines, read_interactions(lines, head, atoms));
-  std::map<Key, Coupling> couplings;
-  auto const coupling = [&](Key const& key) -> Coupling& {
+  std::map<BondKey, Coupling> couplings;
+  auto const coupling = [&](BondKey const& key) -> Coupling& {
     auto& found = couplings[key];
     std::tie(found.between, found.offset) = key;
     return found;

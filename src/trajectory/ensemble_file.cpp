@@ -8,6 +8,7 @@
 #include "hdf5/error.hpp"
 #include "new_file.hpp"
 #include "open_file_space.hpp"
+#include "positions.hpp"
 #include "require.hpp"
 #include "site_order.hpp"
 
@@ -113,15 +114,6 @@ Extents extents_of_frame(TrajectoryHeader const& header, hsize_t replicas) {
   extents.insert(extents.end(),
                  {static_cast<hsize_t>(header.shape[1]), static_cast<hsize_t>(header.shape[0]), 3});
   return extents;
-}
-
-// Written once: all replicas have the same positions.
-void write_positions(hid_t file, TrajectoryHeader const& header,
-                     std::vector<double> const& positions, std::filesystem::path const& path) {
-  auto extents = extents_of_frame(header, 1);
-  extents.erase(extents.begin());
-  write_dataset(file, "positions", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, extents, positions.data(),
-                path);
 }
 
 DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header, hsize_t replicas,

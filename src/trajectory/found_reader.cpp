@@ -7,6 +7,7 @@
 #include "hdf5/guarded_reading.hpp"
 #include "io/modes.hpp"
 #include "io/path.hpp"
+#include "units_of_file.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -45,14 +46,6 @@ std::vector<double> read_reals(hid_t group, char const* name, fs::path const& pa
 }
 
 bool has_dataset(hid_t file, char const* name) { return H5Lexists(file, name, H5P_DEFAULT) > 0; }
-
-Units read_units(RootAttributes const& attributes) {
-  Units units;
-  units.si = attributes.read_text("units") == si_units;
-  if (units.si)
-    for (auto const& [name, member] : unit_attributes) units.*member = attributes.read_real(name);
-  return units;
-}
 
 /// The lattice of a dataset with `before` extents before those of a state, and its sites of a cell.
 void read_lattice(hid_t file, std::size_t before, std::array<std::int64_t, 3>& shape,

@@ -9,6 +9,7 @@
 #include "io/trajectory.hpp"
 #include "new_file.hpp"
 #include "open_file_space.hpp"
+#include "positions.hpp"
 #include "require.hpp"
 #include "scalar_series.hpp"
 
@@ -83,26 +84,6 @@ void require_valid(TrajectoryHeader const& header, TrajectoryStorage const& stor
   auto const [nx, ny, nz] = header.shape;
   if (!positions.empty() && std::ssize(positions) != 3 * nx * ny * nz)
     throw std::invalid_argument("the positions are not three numbers of each site");
-}
-
-// HDF5 adds its own checksums to this dataset, which the frames' checksums do not cover.
-void write_positions(hid_t file, TrajectoryHeader const& header,
-                     std::vector<double> const& positions, std::filesystem::path const& path) {
-  auto block = header.shape;
-  block[2] /= header.cell_sites;
-  auto const of_chunk = frame_chunk(block, sizeof(double));
-  Extents chunk(of_chunk.begin() + 1, of_chunk.end()), extents{3};
-  for (auto const extent : block) extents.insert(extents.begin(), static_cast<hsize_t>(extent));
-  if (header.cell_sites > 1) {
-    chunk.insert(chunk.begin(), 1);
-    extents.insert(extents.begin(), static_cast<hsize_t>(header.cell_sites));
-  }
-  std::string const action = "cannot write dataset positions";
-  PropertyHandle const properties(H5Pcreate(H5P_DATASET_CREATE));
-  check(H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), path, action);
-  check(H5Pset_fletcher32(properties.get()), path, action);
-  write_dataset(file, "positions", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, extents, positions.data(),
-                path, properties.get());
 }
 
 }  // namespace

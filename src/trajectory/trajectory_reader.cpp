@@ -11,6 +11,7 @@
 #include "io/trajectory.hpp"
 #include "scalar_series.hpp"
 #include "sweep_format.hpp"
+#include "units_of_file.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -29,14 +30,6 @@ namespace cayspin::inline v0_2::io {
 namespace {
 
 // Files of versions without units are in reduced ones.
-Units read_units(RootAttributes const& attributes) {
-  Units units;
-  units.si = attributes.has("units") && attributes.read_text("units") == si_units;
-  if (units.si)
-    for (auto const& [name, member] : unit_attributes) units.*member = attributes.read_real(name);
-  return units;
-}
-
 // Texts are stored where HDF5 has no checksums.
 void require_whole_texts(RootAttributes const& attributes, TrajectoryHeader const& header,
                          std::filesystem::path const& path) {

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "io/trajectory.hpp"
+
+#include <hdf5.h>
+
+#include <filesystem>
+#include <vector>
+
+namespace cayspin::inline v0_2::io {
+
+/// Writes the dataset /positions: three numbers of each site, with HDF5's own checksums, because
+/// those of frames do not cover it.
+void write_positions(hid_t file, TrajectoryHeader const& header,
+                     std::vector<double> const& positions, std::filesystem::path const& path);
+
+}  // namespace cayspin::inline v0_2::io
