@@ -55,8 +55,8 @@ class Trajectory:
         missing = [name for name in names if name not in self.file]
         if missing:
             self.file.close()
-            raise CayspinError(f"{self.path}: no trajectory, it has no {missing[0]}; accepted: a "
-                               "file that cayspin wrote")
+            raise CayspinError(f"{self.path}: no trajectory, it has no {missing[0]}; "
+                               "accepted: the file of a run")
         #: the same names at the samples, and where the scene asks for them region_magnetization,
         #: (sample, region, 3), region_energy, (sample, region), and term_energy, (sample, term)
         self.scalars: dict[str, Any] = {name: self.file["scalars"][name]

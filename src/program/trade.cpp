@@ -322,7 +322,8 @@ Command add_trade(CLI::App& program) {
   auto* const command = program.add_subcommand(
       "trade", "Measure error against time and evaluations for every method on a scene");
   add_try_options(*command, *options);
-  command->add_option("--seconds", options->seconds, "Longest run (default: 10)");
+  command->add_option("--seconds", options->seconds,
+                      "Seconds that the longest run may take (default: 10)");
   auto* const json = add_json_option(*command, options->json);
   command->add_flag("--advice", options->advice, "Also judge what `advise` says of the scene")
       ->excludes(json);

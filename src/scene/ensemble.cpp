@@ -147,8 +147,9 @@ Scene replica_to_relax(Scene const& scene, std::int64_t replica) {
 
 void require_no_ensemble(Scene const& scene, std::string_view who) {
   if (scene.ensemble.there())
-    detail::refuse(scene, "ensemble", fmt::format("{} takes no ensemble", who),
-                   "a scene without [ensemble], or cayspin run and cayspin relax");
+    detail::refuse(
+        scene, "ensemble", fmt::format("{} takes no ensemble", who),
+        "a scene without [ensemble], or cayspin run, cayspin relax or Python's EnsembleSimulation");
 }
 
 }  // namespace cayspin::inline v0_2::io

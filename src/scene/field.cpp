@@ -46,7 +46,7 @@ void read_dmi(Item const& item, Scene& scene, Field& field) {
   auto const bulk = table.find("bulk"), d2d = table.find("d2d");
   table.accept_only({"interfacial", "normal", "bulk", "d2d", "free_boundary"});
   bool const is_of_interface = table.contains("interfacial") || table.contains("normal");
-  if (bulk && is_of_interface) item.fail("is of an interface and of the bulk", accepted);
+  if (bulk && is_of_interface) item.fail("has keys of an interface and of the bulk", accepted);
   if (d2d && (bulk || is_of_interface)) item.fail("is of D2d and of another symmetry", accepted);
   if (bulk) {
     field.bulk_dmi = {number_of_sites(*bulk, scene, field.dmi_factors)};

@@ -171,7 +171,8 @@ bool read_is_si(Table const& root) {
   auto const item = root.find("units");
   if (item && word_among<bool>(systems, *item)) return true;
   if (auto const material = root.find("material"))
-    material->fail("belongs to units = \"SI\"", "that word above all tables, or no such table");
+    material->fail("belongs to units = \"SI\"",
+                   "units = \"SI\" above all tables, or no such table");
   return false;
 }
 

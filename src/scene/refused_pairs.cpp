@@ -119,7 +119,7 @@ constexpr RefusedPair pairs[] = {
      control_key, "no such key", has_moments, by_control},
     {"a field that depends on t", "energy_control", "needs a field without t", control_key,
      "no such key", depends_on_time, by_control},
-    {"torques", "until_torque", "a current moves spins for ever", "integrator.until_torque",
+    {"torques", "until_torque", "a current can keep spins in motion", "integrator.until_torque",
      "no such key", has_torque, until_torque},
 };
 

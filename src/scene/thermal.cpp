@@ -60,7 +60,7 @@ void check_thermal(Scene const& scene) {
   auto const& method = *integrator.method;
   if (!system.dampings.there() && !(system.damping > 0))
     refuse(scene, "thermal.temperature",
-           "a temperature needs damping: it is what spins take heat by",
+           "a temperature needs damping, by which spins exchange heat",
            "a damping > 0, or temperature = 0");
   if (!method.has_equal_steps() || !method.keeps_length)
     refuse(scene, "integrator.method",

@@ -37,7 +37,7 @@ std::array<int, 2> read_parts(std::string const& text, cayspin::Lattice const& l
   int end = 0;
   if (std::sscanf(text.c_str(), "%d,%d%n", &parts[0], &parts[1], &end) != 2 ||
       static_cast<std::size_t>(end) != text.size() || parts[0] < 1 || parts[1] < 1)
-    throw UsageError(fmt::format("--ranks {}: accepted: two numbers, as 1,4", text));
+    throw UsageError(fmt::format("--ranks {}: accepted: two numbers, such as 1,4", text));
   if (!mpi::can_divide(lattice, depth, {.y = parts[0], .z = parts[1]}))
     throw UsageError(
         fmt::format("--ranks {}: accepted: numbers of parts along y and z, of at least {} each",

@@ -160,7 +160,7 @@ field.dmi = 1 | : 1 is an integer | { interfacial = D, normal = [x, y, z] }, { b
 field.dmi = { interfacial = 1 } | .normal: is missing | three numbers
 field.dmi = { interfacial = 1, normal = [0, 0, 0] } | .normal: is a zero vector | three numbers
 field.dmi = { bulkk = 1 } | .bulkk: unknown key | interfacial, normal, bulk
-field.dmi = { bulk = 1, interfacial = 1, normal = [0, 0, 1] } | : is of an interface and of the bulk
+field.dmi = { bulk = 1, interfacial = 1, normal = [0, 0, 1] } | : has keys of an interface and of the bulk
   | { bulk = D }
 field.dmi = { bulk = inf } | .bulk: inf is not finite
 field.exchange = 1 | : needs one site in a cell | field.couplings with J

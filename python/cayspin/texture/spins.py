@@ -124,7 +124,7 @@ def require_trajectory(file: Any) -> None:
     missing = [name for name in ("spins", "time") if name not in file]
     if missing or file["spins"].ndim not in (5, 6) or file["spins"].shape[-1] != 3:
         raise ValueError(f"no trajectory, it has no {missing[0] if missing else 'frames of spins'};"
-                         " accepted: a file that cayspin wrote")
+                         " accepted: the file of a run")
 
 
 def of_file(file: Any, frame: int = -1,
