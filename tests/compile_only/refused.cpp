@@ -152,7 +152,7 @@ inline void refused() {
   LieHeun(spins, isotropy::Analytic()).step(exec, body, spins, 0, 0.1);
 #endif
 #if MISTAKE(17)  // energy_correction_of_spins
-  // isotropy::Energy knows rigid bodies alone
+  // isotropy::Energy is for rigid bodies only
   LieHeun(spins, isotropy::Energy()).step(exec, spin_chain, spins, 0, 0.1);
 #endif
 #if MISTAKE(18)  // series_of_changing_field

@@ -79,7 +79,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> corrected(Generator const& generator, Si
                                                   Value const& dt) {
   static_assert(
       requires { generator.template inverse_inertia<Value>(site); },
-      "isotropy::Energy knows rigid bodies alone; for other generators there is EnergyControl.");
+      "isotropy::Energy is for rigid bodies only; for other generators there is EnergyControl.");
   Value scale = dt;
   for (int i = 1; i < Correction::power; ++i) scale = scale * dt;
   bool orthogonal = false;

@@ -218,7 +218,7 @@ class Series4 : public detail::StepperBase<Spins> {
           Kernel{prepared, spins.array(), next_.output(false), static_cast<Real>(dt)});
     } else {
       static_assert(std::is_same_v<Isotropy, isotropy::Zero>,
-                    "isotropy::Energy knows rigid bodies alone; for other generators there is "
+                    "isotropy::Energy is for rigid bodies only; for other generators there is "
                     "EnergyControl.");
       if (!detail::has_affine_field(generator, exec, spins))
         throw std::invalid_argument(this->label(
