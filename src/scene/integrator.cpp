@@ -143,8 +143,8 @@ std::int64_t whole_steps(Item const& item, double dt) {
 }
 
 Integrator read_integrator(Table const& root, SystemKind kind) {
-  auto const table =
-      root.table("integrator", "a table [integrator]; only cayspin relax goes without");
+  auto const table = root.table(
+      "integrator", "a table [integrator]; only cayspin relax, modes and path go without");
   table.accept_only(names_of_keys<Integrator>());
   Integrator integrator;
   integrator.method = read_method(table);

@@ -255,7 +255,7 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
   }
   if (step_ >= end && !from_.at_begin)
     refuse(fmt::format("it ends at step {}, the scene at step {}", step_, end),
-           "a scene that goes on");
+           "a scene that ends later");
   if (needs_memory && from_.is_ensemble)
     refuse(
         "its method, or a key such as until_torque, needs more than frames to go on with the "

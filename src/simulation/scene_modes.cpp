@@ -203,7 +203,7 @@ void require_bands(io::Scene const& scene) {
                                           lattice.shape[2] / sites};
   if (std::ranges::count(lattice.boundary, io::BoundaryKind::periodic) == 0)
     throw io::scene_error(scene, "lattice.boundary",
-                          "waves of a wave vector need an axis that closes on itself; accepted: "
+                          "waves of a wave vector need a periodic axis; accepted: "
                           "\"periodic\", or a list with it");
   for (auto const& bond : io::couplings(scene))
     for (std::size_t axis = 0; axis < 3; ++axis)

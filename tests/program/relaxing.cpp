@@ -208,8 +208,8 @@ TEST_F(Relax, RefusesInOneLine) {
   }
   auto const missing = run_into("out.h5", scene);
   EXPECT_EQ(missing.status, 2);
-  EXPECT_TRUE(
-      contains_all(missing.errors, {"integrator: is missing", "only cayspin relax goes without"}));
+  EXPECT_TRUE(contains_all(
+      missing.errors, {"integrator: is missing", "only cayspin relax, modes and path go without"}));
   auto const listed =
       run_into("out.h5", scene + "[integrator]\nmethod = \"rkmk4\"\ndt = 0.1\nsteps = 1\n",
                set("field.applied=[[1, 0, 0]]"));
