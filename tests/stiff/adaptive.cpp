@@ -55,6 +55,28 @@ TEST(AdaptiveStiff, TheErrorFollowsTheTolerance) {
   expect_order("error over tolerance", fitted_order(tolerances, errors), 2.0 / 3, 0.15);
 }
 
+// Without damping A is constant, and the whole error is that of the rotation.
+TEST(AdaptiveStiff, APrecessingSpinFollowsTheTolerance) {
+  auto const lattice = Lattice::chain(1);
+  auto const start = make_spins(lattice, [](auto...) { return Vector{0.6, 0, 0.8}; });
+  constexpr double t = 20;
+  for (double const damping : {0.0, 1e-3, 1e-2, 0.1})
+    for (double const tolerance : {1e-3, 1e-5}) {
+      auto const near_rest = make_spins(lattice, [](auto...) { return Vector{0.02, 0, 0.9998}; });
+      for (auto const& from : {start, near_rest}) {
+        LandauLifshitz const generator(EffectiveField(Zeeman{{0, 0, 1}}), damping);
+        auto spins = copy_of(from);
+        Stepper stepper(spins, {.tolerance = tolerance});
+        stepper.step(Space(), generator, spins, 0, t);
+        auto exact = copy_of(from);
+        AdaptiveRkmk<Spins> fine(exact, {.tolerance = 1e-11});
+        fine.step(Space(), generator, exact, 0, t);
+        EXPECT_LT(largest_distance(spins, exact), 30 * tolerance) << damping << " " << tolerance;
+        EXPECT_GT(largest_distance(spins, exact), 1e-3 * tolerance) << damping << " " << tolerance;
+      }
+    }
+}
+
 TEST(AdaptiveStiff, LooksWithinStepsAreAsGood) {
   Slab const slab = thin_slab(40, 0.5);
   auto spins = smooth_start(slab.lattice);

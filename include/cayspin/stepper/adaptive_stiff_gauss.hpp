@@ -14,10 +14,11 @@
 namespace cayspin::inline v0_2 {
 
 /// StiffGauss2 with adaptive steps, which become long as spins approach equilibrium. The error of a
-/// step is the largest angle of any spin due to the second derivative of A: a divided difference
-/// over the stages of three steps, multiplied by (1 + b K)^-1 as corrections are, so that residual
-/// short spin waves do not count. If the field depends on t, the end of the step replaces the
-/// earliest of the three. Corrections use K + c for K, where c is the mean of A.m.
+/// step is the largest angle of any spin due to the third derivative of the spins, dt^3 / 12 of it,
+/// as for a spin that precesses: a divided difference of their changes over three steps, multiplied
+/// by (1 + b K)^-1 as corrections are, so that residual short spin waves do not count. If the field
+/// depends on t, the rate at the end of the step replaces the earliest of the three. Corrections
+/// use K + c for K, where c is the mean of A.m.
 ///
 /// `step(.., t, dt)` returns the spins at t + dt; within an internal step A is interpolated
 /// linearly. The internal steps do not depend on dt. It remembers its state: `spins` and t must be
@@ -28,7 +29,7 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
 
  public:
   using typename Base::Real;
-  static constexpr int work_fields = Base::work_fields + 1;
+  static constexpr int work_fields = Base::work_fields + 2;
 
   /// Throws std::invalid_argument for invalid options, for example a tolerance below 32 epsilon of
   /// the precision.
@@ -36,7 +37,8 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
       : Base(name, like, {}),
         OwnSteps(options, Base::order + 1, StepOptions::least_tolerance<Real>(),
                  std::string("cayspin::") + name),
-        now_(std::string(name) + "::now", like.lattice()) {
+        now_(std::string(name) + "::now", like.lattice()),
+        before_(std::string(name) + "::before", like.lattice()) {
     this->solving_.tolerance =
         std::max(share_of_corrections * controller_.step_tolerance(), 16 * Base::epsilon);
     this->solving_.iterations = 10;
@@ -59,6 +61,7 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
     visit("extrapolated", this->extrapolated_);
     visit("begin_spins", this->start_);
     visit("end_spins", now_);
+    visit("spins_before", before_);
   }
 
   /// Advances `spins` from t to t + dt under `generator`. Waits. Throws StepTooSmall when no step
@@ -75,7 +78,7 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
   void step_towards(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
                     double wanted) {
     auto const region = this->begin_step(exec, spins);
-    this->require_other_memory(spins, now_);
+    for (Spins const* own : {&now_, &before_}) this->require_other_memory(spins, *own);
     go_on_to(
         t, dt, [&](double from) { begin(exec, generator, is_running() ? now_ : spins, from, dt); },
         [&] { take_step(exec, generator); });
@@ -118,6 +121,7 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
     });
     this->extrapolated_ = error < hardly_changes * controller_.step_tolerance() ? 1 : 3;
     this->history_.remember(this->x_);
+    swap(before_, this->start_);
     swap(this->start_, now_);
     swap(now_, this->end_);
   }
@@ -129,11 +133,17 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
     // Midpoints of steps may miss what a field does between them.
     bool const looks_at_end = !detail::is_stationary(generator, exec, now_);
     if (!looks_at_end && this->history_.known() < 2) return 0;
-    auto kernel = this->history_.second_difference(this->x_[0], looks_at_end);
+    auto const weights = this->history_.second_difference(looks_at_end);
+    detail::SecondDifference<Real> kernel{};
+    kernel.spins[0] = this->end_.array();
+    kernel.spins[1] = kernel.spins[2] = kernel.spins[3] = now_.array();
+    if (this->history_.known() > 0) kernel.spins[2] = this->start_.array();
+    if (this->history_.known() > 1) kernel.spins[3] = before_.array();
+    for (std::size_t i = 0; i < 3; ++i) kernel.weights[i] = weights[i];
     kernel.stage = this->stage_[0].array();
     kernel.difference = this->part_of_residual(0);
     if (looks_at_end)
-      with_end(exec, generator, t + dt, kernel);
+      with_end(exec, generator, t, dt, kernel);
     else
       detail::for_each_site<Real>(exec, difference_label_, this->residual_.layout(), kernel);
     std::complex<double> const step(dt * this->exchange_.damping, -dt * this->exchange_.precession);
@@ -141,16 +151,17 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
     double const square = detail::reduce_sites<detail::Maximum, 1>(
         exec, error_label_, this->residual_.layout(),
         detail::LargestSolution<Real>{this->solution_[0].array(), this->stage_[0].array()})[0];
-    return dt * std::sqrt(square) / 6;
+    return std::sqrt(square) / 6;
   }
 
   template <class Exec, class Generator>
-  void with_end(Exec const& exec, Generator const& generator, double t,
+  void with_end(Exec const& exec, Generator const& generator, double t, double dt,
                 detail::SecondDifference<Real> const& kernel) {
-    auto prepared = detail::prepare_term(generator, exec, this->end_, t);
-    detail::for_each_site<Real>(exec, difference_label_, this->residual_.layout(),
-                                detail::SecondDifferenceWithEnd<decltype(prepared), Real>{
-                                    std::move(prepared), kernel, this->end_.array()});
+    auto prepared = detail::prepare_term(generator, exec, this->end_, t + dt);
+    detail::for_each_site<Real>(
+        exec, difference_label_, this->residual_.layout(),
+        detail::SecondDifferenceWithEnd<decltype(prepared), Real>{
+            std::move(prepared), kernel, this->end_.array(), dt * kernel.weights[2]});
     ++this->evaluations_done_;
   }
 
@@ -182,7 +193,7 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
   std::string local_label_ = this->label("::local_field"),
               difference_label_ = this->label("::difference"),
               error_label_ = this->label("::error"), dense_label_ = this->label("::dense_output");
-  Spins now_;
+  Spins now_, before_;   // at the end of the last step, and at the start of the one before
   double local_dt_ = 0;  // when local_ was measured
 };
 

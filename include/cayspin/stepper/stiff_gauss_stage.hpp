@@ -145,10 +145,11 @@ struct SumAlongSpins {
   }
 };
 
-/// Functor that sums A at stages, normal to the spins at one.
+/// Functor that sums weighted changes of the spins over steps, and turns the sum by the spins at a
+/// stage: a vector that corrections can be applied to.
 template <class Real>
 struct SecondDifference {
-  SiteArray<Real, 3> values[3];
+  SiteArray<Real, 3> spins[4];  // at the end of a step, at its start, at the starts of those before
   double weights[3];
   SiteArray<Real, 3> stage;
   OutputArray<Real, 3> difference;
@@ -157,28 +158,33 @@ struct SecondDifference {
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     store(site, zero<typename Site::value_type>(), 3);
   }
-  /// Adds this many values to the stored one.
+  /// Adds the changes over this many steps to the stored one.
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void store(Site const& site, Vec3<Value> sum, int count) const {
-    for (int i = 0; i < count; ++i)
-      sum = multiply_add(as_value<Value>(weights[i]), Vec3<Value>(site.load(values[i])), sum);
-    site.store(across_spin(sum, Vec3<Value>(site.load(stage))), difference);
+    Vec3<Value> later = site.load(spins[0]);
+    for (int i = 0; i < count; ++i) {
+      Vec3<Value> const earlier = site.load(spins[i + 1]);
+      sum = multiply_add(as_value<Value>(weights[i]), later - earlier, sum);
+      later = earlier;
+    }
+    site.store(cross(Vec3<Value>(site.load(stage)), sum), difference);
   }
 };
 
-/// SecondDifference with A at the end of the step as the third value.
+/// SecondDifference with the rate of the spins at the end of the step as the third change.
 template <class Generator, class Real>
 struct SecondDifferenceWithEnd {
   Generator generator;
-  SecondDifference<Real> of_two;  // its third weight is that of A at the end
+  SecondDifference<Real> of_two;
   SiteArray<Real, 3> end;
+  double weight;
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     using Value = typename Site::value_type;
     Stencil<Site, Real> const stencil(site, end);
-    Vec3<Value> const across = across_spin(evaluate(generator, stencil), stencil.center());
-    of_two.store(site, as_value<Value>(of_two.weights[2]) * across, 2);
+    Vec3<Value> const rate = cross(evaluate(generator, stencil), stencil.center());
+    of_two.store(site, as_value<Value>(weight) * rate, 2);
   }
 };
 

@@ -86,26 +86,18 @@ class StiffHistory {
     }
   }
 
-  /// Returns half the second derivative of A in units of dt, from x of a step, of the one before,
-  /// and of the one before that or at the end of the step. For a first step it returns the first
+  /// Returns weights for half the second derivative of the rates of the spins in units of dt, from
+  /// the changes over a step, over the one before, and over the one before that; with `has_end`
+  /// from dt times the rate at the end instead of the last. For a first step they give the first
   /// derivative.
-  SecondDifference<Real> second_difference(Spins const& x, bool has_end) const
+  std::array<double, 3> second_difference(bool has_end) const
     requires(Stages == 1)
   {
-    SecondDifference<Real> kernel{};
-    kernel.values[0] = kernel.values[1] = kernel.values[2] = x.array();
-    for (int i = 0; i < known_ && i < 2; ++i)
-      kernel.values[i + 1] = earlier_[static_cast<std::size_t>(i)].array();
     double const now = node(0), before = times_[0], other = has_end ? 1 : times_[1];
-    if (known_ > 0) {
-      kernel.weights[0] = 1 / ((now - before) * (now - other));
-      kernel.weights[1] = 1 / ((before - now) * (before - other));
-      kernel.weights[2] = 1 / ((other - now) * (other - before));
-    } else {
-      kernel.weights[2] = 1 / (other - now);
-      kernel.weights[0] = -kernel.weights[2];
-    }
-    return kernel;
+    if (known_ == 0) return {1 / (now - other), 0, 1 / (other - now)};
+    double const last = -2 * times_[0], one_before = -2 * (times_[1] + last);  // their lengths
+    return {1 / ((now - before) * (now - other)), 1 / ((before - now) * (before - other) * last),
+            1 / ((other - now) * (other - before) * (has_end ? 1 : one_before))};
   }
 
   /// Interpolates within the last step at this share of it, with A linear since the previous step.
