@@ -278,9 +278,15 @@ class PathFinder {
       if (k > 0) at += distance_between(exec_, string_.spins(k - 1), string_.spins(k));
       found_.distance.push_back(at);
       found_.energy.push_back(string_.energy(k));
-      for (auto& known : found_.saddles)
-        if (string_.is_fixed(k) && known.energy == string_.energy(k)) known.image = k;
     }
+    std::vector<bool> is_taken(string_.size());  // several saddles may have equal energies
+    for (auto& known : found_.saddles)
+      for (std::size_t k = 0; k < string_.size(); ++k)
+        if (!is_taken[k] && string_.is_fixed(k) && known.energy == string_.energy(k)) {
+          known.image = k;
+          is_taken[k] = true;
+          break;
+        }
     if (!found_.saddles.empty())
       Kokkos::deep_copy(exec_, saddle.allocation(), highest_.allocation());
     exec_.fence("cayspin::minimum_energy_path");

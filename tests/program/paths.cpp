@@ -45,6 +45,31 @@ uniform = [0, 0, 1]
   }
 };
 
+// Two saddles of equal energy, on both sides of a minimum across the path.
+TEST_F(PathCommand, PlacesEachSaddleAtItsImage) {
+  std::string const cubic = R"toml([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [1]
+[field]
+anisotropy = [{ cubic = 1.0, axes = [[1, 0, 0], [0, 1, 0]] }, { constant = -3.0, axis = [0, 0, 1] }]
+[initial]
+uniform = [1, 0, 0]
+)toml";
+  write_ends(cubic);
+  expect_status(0, {"relax", in_folder("scene.toml"), "--output", "b.h5", "--quiet", "--overwrite",
+                    "--set", "initial={ uniform = [-1, 0, 0] }"});
+  expect_status(0, arguments({"--images", "17", "--quiet"}));
+  auto const image = read_dataset("path.h5", "/saddles/image").values,
+             energy = read_dataset("path.h5", "/energy").values,
+             of_saddles = read_dataset("path.h5", "/saddles/energy").values;
+  ASSERT_EQ(image.size(), 2U);
+  EXPECT_NE(image[0], image[1]);
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_EQ(energy.at(static_cast<std::size_t>(image[i])), of_saddles[i]);
+}
+
 TEST_F(PathCommand, FindsTheBarrierOfAMacrospin) {
   write_ends(scene);
   auto const outcome = start(arguments({"--images", "12", "--rates"}));

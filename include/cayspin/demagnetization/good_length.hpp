@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <initializer_list>
+
 namespace cayspin::inline v0_2::detail {
 
 /// Returns the next number with no prime factors but 2, 3, 5 and 7: FFTs of such lengths are fast.

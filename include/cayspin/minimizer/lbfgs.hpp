@@ -91,7 +91,6 @@ class Lbfgs {
   }
 
  private:
-  /// Preconditions a vector.
   template <class Exec>
   auto products_with_changes(Exec const& exec, Spins const& spins) const {
     return reduce_sites<Sum, static_cast<int>(pairs_kept)>(

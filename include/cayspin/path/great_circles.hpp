@@ -114,7 +114,7 @@ double distance_between(Exec const& exec, Spins const& from, Spins const& to) {
                                         SquareOfAngle<Real>{from.array(), to.array()})[0]);
 }
 
-/// Squared length of a PathTangent, and the slope of the energy along it.
+/// Squared length of a direction along a path, and the slope of the energy along it.
 struct Along {
   double square, slope;
 };

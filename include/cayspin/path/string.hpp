@@ -103,8 +103,7 @@ class PathString {
     return largest;
   }
 
-  /// Moves all images by a step, after an evaluation. `has_step`: another step was taken since the
-  /// pairs were forgotten.
+  /// Moves all images by a step, after an evaluation.
   template <class Exec>
   void step(Exec const& exec, Preconditioner<Spins>& preconditioner, Mobile const& is_mobile,
             double longest_turn) {
@@ -276,7 +275,7 @@ class PathString {
     return arrays;
   }
 
-  /// Preconditions vectors across the paths of all images.
+  /// Sums the products of each image's gradient with the steps and changes of its pairs.
   template <class Exec>
   void find_products(Exec const& exec) {
     of_pairs_ = {};

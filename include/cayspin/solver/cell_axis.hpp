@@ -28,8 +28,7 @@ class CellAxis {
 
   CellAxis coarser() const {
     CellAxis coarse(static_cast<std::int64_t>(coarse_cells()), periodic_);
-    coarse.widths_.assign(coarse_cells(), 0.0);
-    for (std::size_t i = 0; i < cells(); ++i) coarse.widths_[parent(i)] += widths_[i];
+    for (std::size_t i = 0; i < coarse_cells(); ++i) coarse.widths_[i] = coarse_width(i);
     return coarse;
   }
 
@@ -59,25 +58,23 @@ class CellAxis {
   Interpolation interpolation(std::size_t cell) const {
     std::size_t const own = parent(cell), last = coarse_cells() - 1;
     if (last == 0) return {own, 0};
-    CellAxis const coarse = coarser();
     double before = 0;  // from the parent's first edge to the cell's centre
     for (std::size_t i = 2 * own; i < cell; ++i) before += widths_[i];
-    double const way = before + 0.5 * widths_[cell] - 0.5 * coarse.widths_[own];
+    double const way = before + 0.5 * widths_[cell] - 0.5 * coarse_width(own);
     if (way == 0 || (!periodic_ && own == (way < 0 ? 0 : last))) return {own, 0};
     std::size_t const beside = way < 0 ? (own + last) % (last + 1) : (own + 1) % (last + 1);
-    return {beside, 2 * std::abs(way) / (coarse.widths_[own] + coarse.widths_[beside])};
+    return {beside, 2 * std::abs(way) / (coarse_width(own) + coarse_width(beside))};
   }
 
   /// Restriction: the transpose of the interpolation, scaled by widths. A coarse value is the
   /// weighted sum over `reach` cells, starting at 2 coarse - 1 and wrapping around.
   static constexpr std::size_t reach = 5;
   std::vector<std::array<double, reach>> restriction() const {
-    CellAxis const coarse = coarser();
     std::vector<std::array<double, reach>> weights(coarse_cells(), std::array<double, reach>{});
     auto const add = [&](std::size_t to, std::size_t cell, double weight) {
       for (std::size_t k = 0; k < reach; ++k)
         if ((2 * to + k + cells() - 1) % cells() == cell) {
-          weights[to][k] += weight * widths_[cell] / coarse.widths_[to];
+          weights[to][k] += weight * widths_[cell] / coarse_width(to);
           return;
         }
     };
@@ -90,6 +87,13 @@ class CellAxis {
   }
 
  private:
+  double coarse_width(std::size_t coarse) const {
+    std::size_t const end = coarse + 1 == coarse_cells() ? cells() : 2 * coarse + 2;
+    double width = 0;
+    for (std::size_t i = 2 * coarse; i < end; ++i) width += widths_[i];
+    return width;
+  }
+
   std::vector<double> widths_;
   bool periodic_;
 };

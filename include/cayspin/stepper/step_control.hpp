@@ -225,7 +225,9 @@ class OwnSteps {
   [[noreturn]] void give_up(double t, double dt) const {
     throw StepTooSmall(region_ + "::step: from t = " + to_text(t) +
                        " the tolerance needs a step below " + to_text(dt) +
-                       "; the numbers are not finite, or the field is not smooth");
+                       (options_.min_dt > dt
+                            ? ", and the smallest allowed is " + to_text(options_.min_dt)
+                            : "; the numbers are not finite, or the field is not smooth"));
   }
 
   std::string region_;
