@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -231,22 +232,29 @@ Curvatures<Spins> lowest_curvatures(Exec const& exec, Field const& field, Spins 
 /// is equal in all cells along the periodic axes. It takes two products of the Hessian for each
 /// site of a cell, and then the eigenvalues of a small matrix for each wave vector. A wave vector
 /// need not fit the lattice, unless the interaction reaches around it. Bonds must not be longer
-/// than half the lattice. Throws std::invalid_argument where cells differ, and for a wave vector
-/// that must fit but does not.
+/// than half the lattice; those along a periodic axis of one cell join it to itself and give its
+/// waves no phase. `poll` is asked before each product and each wave vector; after Next::stop the
+/// result is empty. Throws std::invalid_argument where cells differ, and for a wave vector that
+/// must fit but does not or has a component along an open axis.
 template <class Exec, class Field, class Spins>
 BlochModes bloch_modes(
     Exec const& exec, Field const& field,
     Turning<typename Spins::value_type, typename Spins::memory_space> const& turning,
-    Spins const& spins, std::vector<std::array<double, 3>> const& wave_vectors, double time = 0) {
+    Spins const& spins, std::vector<std::array<double, 3>> const& wave_vectors, double time = 0,
+    std::function<Next()> const& poll = {}) {
   Kokkos::Profiling::ScopedRegion const region("cayspin::bloch_modes");
   detail::check_access<Exec, typename Spins::memory_space>();
   detail::check_conservative<Field>();
   detail::require_whole("cayspin::bloch_modes", spins.lattice());
   detail::require_one_replica("cayspin::bloch_modes", spins.lattice());
+  detail::require_periodic_along(wave_vectors, spins.lattice());
   BlochModes found;
+  bool is_stopped = false;
+  auto const stops = [&] { return is_stopped = is_stopped || (poll && poll() == Next::stop); };
   auto const problem = detail::bloch_problem(exec, field, time, spins, turning.precession,
-                                             turning.damping, found.evaluations);
+                                             turning.damping, stops, found.evaluations);
   for (auto const& wave : wave_vectors) {
+    if (stops()) return {};
     auto& branches = found.bands.emplace_back();
     for (auto const& rate : problem.rates(wave))
       branches.push_back({0 - rate.imag(), 0 - rate.real()});

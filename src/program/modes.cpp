@@ -8,6 +8,7 @@
 #include "info_file.hpp"
 #include "io/notes.hpp"
 #include "io/relax.hpp"
+#include "io/toml_string.hpp"
 #include "io/trajectory.hpp"
 #include "progress.hpp"
 #include "simulation/kokkos_settings.hpp"
@@ -86,17 +87,9 @@ bool is_hdf5(std::filesystem::path const& path) {
   return file && std::string_view(first.data(), first.size()) == "\x89HDF\r\n\x1a\n";
 }
 
-std::string toml_text(std::string const& text) {
-  std::string quoted = "\"";
-  for (char const c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + '"';
-}
-
 std::string as_start(std::filesystem::path const& file) {
-  return fmt::format("initial={{file={}}}", toml_text(std::filesystem::absolute(file).string()));
+  return fmt::format("initial={{file={}}}",
+                     io::toml_string(std::filesystem::absolute(file).string()));
 }
 
 // Reports errors of the start in a trajectory file for that file, by its typed name.
@@ -229,7 +222,9 @@ class ModesOfScene {
   int find_waves(std::filesystem::path const& path, SceneField<Spins> const& field,
                  io::ModesContents const& state) const {
     io::BandsContents contents{state, path_of(options_)};
-    auto const found = find_bands<Real, Space>(exec_, scene_, field, spins_, contents.wave_vectors);
+    auto const found = find_bands<Real, Space>(exec_, scene_, field, spins_, contents.wave_vectors,
+                                               options_.search.poll);
+    if (found.is_interrupted) return interrupted();
     contents.converged = true;
     contents.evaluations += found.evaluations;
     for (auto const& branches : found.frequencies)
@@ -314,13 +309,11 @@ int find_modes_of_scene(ModesCommand const& options) {
   if (!(options.search.tolerance > 0 && options.search.tolerance < 1))
     throw UsageError(fmt::format("--tolerance {}; accepted: a number between 0 and 1",
                                  options.search.tolerance));
-  if (!options.corners.empty()) {
-    path_of(options);
-    require_bands(scene);
-  }
+  if (!options.corners.empty()) require_bands(scene, path_of(options));
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, options.device);
-  auto const plan = make_plan_of_modes(scene, options.precision, options.search, options.hessian);
+  auto plan = make_plan_of_modes(scene, options.precision, options.search, options.hessian);
+  if (!options.corners.empty()) plan.memory.work += memory_of_bands(scene);
   require_memory(scene, plan);
   warn_of_notes(scene);
   catch_signals();

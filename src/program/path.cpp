@@ -8,6 +8,7 @@
 #include "info_found.hpp"
 #include "io/notes.hpp"
 #include "io/relax.hpp"
+#include "io/toml_string.hpp"
 #include "progress.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/scene_path.hpp"
@@ -28,21 +29,14 @@ struct PathCommandOptions : DeviceOptions {
   bool quiet = false, json = false;
 };
 
-std::string as_toml(std::filesystem::path const& file) {
-  std::string text = "\"";
-  for (char const c : std::filesystem::absolute(file).string()) {
-    if (c == '"' || c == '\\') text += '\\';
-    text += c;
-  }
-  return text + '"';
-}
-
 /// An end of the path.
 struct EndOption {
   char const* name;
   std::filesystem::path const& file;
 
-  std::string as_start() const { return "initial={ file = " + as_toml(file) + " }"; }
+  std::string as_start() const {
+    return "initial={ file = " + io::toml_string(std::filesystem::absolute(file).string()) + " }";
+  }
 };
 
 /// Reports errors of the file for the option, by the typed file name.

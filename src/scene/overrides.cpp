@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "io/toml_string.hpp"
 #include "sections.hpp"
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include <cctype>
 #include <charconv>
 #include <optional>
+#include <sstream>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -108,13 +110,7 @@ void put(toml::node& parent, std::string const& key, toml::node&& value, std::st
 }  // namespace
 
 std::string as_toml_value(std::string_view value) {
-  if (!is_bare_word(value)) return std::string(value);
-  std::string text = "\"";
-  for (char const c : value) {
-    if (c == '"' || c == '\\') text += '\\';
-    text += c;
-  }
-  return text + '"';
+  return is_bare_word(value) ? toml_string(value) : std::string(value);
 }
 
 void apply_override(toml::table& root, std::string const& assignment) {
@@ -150,10 +146,23 @@ void apply_override(toml::table& root, std::string const& assignment) {
       child = parent->as_array()->get(*index);
     }
     if (child == nullptr) {
-      fail(place, "", fmt::format("\"{}\" is not an entry of the array", key), "an index from 0");
+      fail(place, "",
+           fmt::format("\"{}\" is not an entry of an array of {}", key, parent->as_array()->size()),
+           "an index from 0");
     }
     parent = child;
   }
 }
 
 }  // namespace cayspin::inline v0_2::io::detail
+
+namespace cayspin::inline v0_2::io {
+
+std::string toml_string(std::string_view text) {
+  std::ostringstream quoted;
+  toml::value<std::string> const value{std::string(text)};
+  quoted << toml::toml_formatter(value, toml::format_flags::none);
+  return quoted.str();
+}
+
+}  // namespace cayspin::inline v0_2::io

@@ -30,6 +30,7 @@ struct FoundCurvatures {
 struct FoundBands {
   std::vector<std::vector<double>> frequencies, decays;  // for each wave vector its branches
   std::int64_t evaluations = 0;
+  bool is_interrupted = false;
 };
 
 }  // namespace cayspin::simulation

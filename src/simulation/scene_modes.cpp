@@ -18,6 +18,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -195,7 +196,32 @@ FoundCurvatures find_curvatures(
   return curvatures;
 }
 
-void require_bands(io::Scene const& scene) {
+namespace {
+
+// A cell extends over the whole of the open axes.
+std::int64_t sites_of_a_cell(io::Lattice const& lattice) {
+  auto const sites = static_cast<std::int64_t>(lattice.basis.size());
+  std::int64_t count = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (lattice.boundary[axis] != io::BoundaryKind::periodic) count *= lattice.shape[axis];
+  return lattice.boundary[2] == io::BoundaryKind::periodic ? count * sites : count;
+}
+
+// Returns how many cells the terms of a scene reach along an axis, at least.
+std::int64_t reach_along(io::Scene const& scene, std::size_t axis) {
+  auto const& field = scene.field;
+  std::int64_t reach = field.exchange || field.has_dmi() || !field.exchange_between.empty() ||
+                               !field.interlayers.empty() || field.demag
+                           ? 1
+                           : 0;
+  for (auto const& bond : io::couplings(scene))
+    reach = std::max(reach, static_cast<std::int64_t>(std::abs(bond.offset[axis])));
+  return reach;
+}
+
+}  // namespace
+
+void require_bands(io::Scene const& scene, std::vector<std::array<double, 3>> const& wave_vectors) {
   require_motion(scene);
   auto const& lattice = scene.lattice;
   auto const sites = static_cast<std::int64_t>(lattice.basis.size());
@@ -205,28 +231,55 @@ void require_bands(io::Scene const& scene) {
     throw io::scene_error(scene, "lattice.boundary",
                           "waves of a wave vector need a periodic axis; accepted: "
                           "\"periodic\", or a list with it");
-  for (auto const& bond : io::couplings(scene))
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if (lattice.boundary[axis] == io::BoundaryKind::periodic && cells[axis] > 1 &&
-          2 * std::abs(bond.offset[axis]) > cells[axis])
-        throw io::scene_error(
-            scene, "lattice.shape",
-            fmt::format("{} cells along axis {}, and bonds reach over {}; accepted: at least {}",
-                        cells[axis], axis, std::abs(bond.offset[axis]),
-                        2 * std::abs(bond.offset[axis]) + 1));
+  if (auto const of_a_cell = sites_of_a_cell(lattice); of_a_cell > most_sites_of_a_cell)
+    throw io::scene_error(scene, "lattice.shape",
+                          fmt::format("has {} sites in a cell, which extends over the open axes; "
+                                      "accepted with --wave-vector: at most {}",
+                                      of_a_cell, most_sites_of_a_cell));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    auto const any_wave = [&](auto const& is) {
+      return std::ranges::any_of(wave_vectors, [&](auto const& wave) { return is(wave[axis]); });
+    };
+    if (lattice.boundary[axis] != io::BoundaryKind::periodic) {
+      if (any_wave([](double k) { return k != 0; }))
+        throw UsageError(
+            fmt::format("--wave-vector: it has a component along axis {}, which is open; accepted: "
+                        "0 there, or a periodic axis",
+                        axis));
+      continue;
+    }
+    // A single cell is its own neighbour, which gives a wave no phase.
+    auto const reach = reach_along(scene, axis);
+    bool const varies = any_wave([](double k) { return std::abs(k - std::round(k)) > 1e-9; });
+    if (cells[axis] == 1 ? varies && reach > 0 : cells[axis] < 2 * reach)
+      throw io::scene_error(
+          scene, "lattice.shape",
+          fmt::format("{} {} along axis {}, and bonds reach over {}; accepted: at least {}",
+                      cells[axis], cells[axis] == 1 ? "cell" : "cells", axis, reach,
+                      2 * reach + 1));
+  }
+}
+
+std::int64_t memory_of_bands(io::Scene const& scene) {
+  auto const of_a_cell = sites_of_a_cell(scene.lattice);
+  auto const matrix = 4 * of_a_cell * of_a_cell * static_cast<std::int64_t>(sizeof(double));
+  constexpr std::int64_t matrices = 12;  // of the eigenvalues, which are complex
+  return matrix * (io::sites(scene) / of_a_cell + matrices);
 }
 
 template <class Real, class Space>
 FoundBands find_bands(Space const& exec, io::Scene const& scene,
                       SceneField<SpinField<Real, typename Space::memory_space>> const& field,
                       SpinField<Real, typename Space::memory_space> const& spins,
-                      std::vector<std::array<double, 3>> const& wave_vectors) {
+                      std::vector<std::array<double, 3>> const& wave_vectors,
+                      std::function<Next()> const& poll) {
   auto const turning = turning_of<Real, typename Space::memory_space>(scene, spins.lattice());
   FoundBands bands;
   double const per_time = 1 / scene.units.time;
   double const cycles = scene.units.si ? 2 * std::numbers::pi : 1;
   try {
-    auto const found = bloch_modes(exec, field, turning, spins, wave_vectors);
+    auto const found = bloch_modes(exec, field, turning, spins, wave_vectors, 0, poll);
+    bands.is_interrupted = found.bands.size() < wave_vectors.size();
     bands.evaluations = found.evaluations;
     for (auto const& branches : found.bands) {
       auto &frequencies = bands.frequencies.emplace_back(), &decays = bands.decays.emplace_back();
@@ -254,7 +307,8 @@ FoundBands find_bands(Space const& exec, io::Scene const& scene,
       SpinField<Real, Space::memory_space> const&, ModesOptions const&);                       \
   template FoundBands find_bands(                                                              \
       Space const&, io::Scene const&, SceneField<SpinField<Real, Space::memory_space>> const&, \
-      SpinField<Real, Space::memory_space> const&, std::vector<std::array<double, 3>> const&);
+      SpinField<Real, Space::memory_space> const&, std::vector<std::array<double, 3>> const&,  \
+      std::function<Next()> const&);
 CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, double)
 CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, float)
 #undef CAYSPIN_INSTANTIATE

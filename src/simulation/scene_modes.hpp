@@ -41,16 +41,23 @@ FoundCurvatures find_curvatures(
     SceneField<SpinField<Real, typename Space::memory_space>> const& field,
     SpinField<Real, typename Space::memory_space> const& spins, ModesOptions const& options);
 
-/// Throws io::SceneError if a scene has no cells that could be equal, or bonds that are too long
-/// for its lattice.
-void require_bands(io::Scene const& scene);
+/// Of one cell with --wave-vector: the eigenvalues of a larger matrix take minutes.
+constexpr std::int64_t most_sites_of_a_cell = 1024;
 
-/// Finds the spin waves of given wave vectors, in cycles per cell. Throws UsageError like
-/// bloch_modes.
+/// Throws io::SceneError if a scene has no cells that could be equal, more than
+/// most_sites_of_a_cell in one, or bonds that are too long for its lattice; UsageError for wave
+/// vectors along open axes. They are in cycles per cell.
+void require_bands(io::Scene const& scene, std::vector<std::array<double, 3>> const& wave_vectors);
+
+/// Returns the bytes that find_bands takes besides those of a search for an equilibrium.
+std::int64_t memory_of_bands(io::Scene const& scene);
+
+/// Finds the spin waves of these wave vectors. Throws UsageError like bloch_modes.
 template <class Real, class Space>
 FoundBands find_bands(Space const& exec, io::Scene const& scene,
                       SceneField<SpinField<Real, typename Space::memory_space>> const& field,
                       SpinField<Real, typename Space::memory_space> const& spins,
-                      std::vector<std::array<double, 3>> const& wave_vectors);
+                      std::vector<std::array<double, 3>> const& wave_vectors,
+                      std::function<Next()> const& poll);
 
 }  // namespace cayspin::simulation

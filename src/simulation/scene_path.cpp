@@ -131,6 +131,11 @@ Plan make_plan_of_path(io::Scene const& scene, Precision precision,
   auto plan = make_plan_to_relax(scene, precision);
   auto const images = static_cast<std::size_t>(options.images);
   plan.memory.work = plan.memory.spins * (path_work_fields(images) + options.images - 1);
+  if (options.rates) {
+    constexpr std::int64_t matrices = 8;  // of two numbers for each site
+    auto const rows = 2 * io::sites(scene);
+    plan.memory.work += matrices * rows * rows * static_cast<std::int64_t>(sizeof(double));
+  }
   plan.memory.files = 2 * (options.images + 1) * 3 * 8 * io::sites(scene);
   plan.file_bytes = static_cast<double>(plan.memory.files) / 2;
   return plan;

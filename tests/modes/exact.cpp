@@ -108,8 +108,11 @@ TYPED_TEST(MacrospinModes, AreWavesInAnIsotropicAntiferromagnet) {
     EffectiveField const field(Exchange(lattice, -1.0));
     auto const found = normal_modes(this->exec, LandauLifshitz(field, 0.0), m, {.count = 8});
     EXPECT_EQ(found.end, ModesEnd::converged) << n;
+    EXPECT_GE(found.modes.size(), static_cast<std::size_t>(std::min<std::int64_t>(8, n)));
+    int waves = 0;
     for (auto const& mode : found.modes) {
       if (mode.frequency < 0.1) continue;
+      ++waves;
       double nearest = 1;
       for (std::int64_t p = 1; p <= n / 2; ++p)
         nearest = std::min(nearest, std::abs(mode.frequency - 2 * std::sin(std::numbers::pi *
@@ -117,6 +120,7 @@ TYPED_TEST(MacrospinModes, AreWavesInAnIsotropicAntiferromagnet) {
       EXPECT_LT(nearest, this->accurate) << n << ": " << mode.frequency;
       EXPECT_LT(std::abs(mode.decay), this->accurate) << n;
     }
+    EXPECT_GE(waves, 4) << n;
   }
 }
 

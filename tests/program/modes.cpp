@@ -213,6 +213,29 @@ TEST_F(Modes, RefuseWhatHasNone) {
   EXPECT_FALSE(exists("modes.h5"));
 }
 
+// The eighth and the ninth mode belong to one frequency, of which the search sees a part.
+TEST_F(Modes, ConvergeWhereALastMultipletIsCut) {
+  for (int const seed : {3, 8, 13, 38}) {
+    auto const outcome = modes(fmt::format(R"toml([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [20, 12]
+boundary = "periodic"
+[field]
+exchange = 1.0
+anisotropy = {{ constant = 0.3, axis = [0, 0, 1] }}
+applied = [0, 0.1, 0.5]
+[initial]
+random = {{ seed = {} }}
+)toml",
+                                           seed),
+                               {"--quiet", "--overwrite"});
+    EXPECT_EQ(outcome.status, 0) << seed << ": " << outcome.errors;
+    EXPECT_EQ(numbers("frequency").size(), 8U);
+  }
+}
+
 using Branches = std::vector<double>;
 
 struct Bands : Modes {
@@ -302,6 +325,29 @@ TEST_F(Bands, OfKagomeAndBccAndAFerrimagnet) {
       });
 }
 
+// A bond along an axis of one cell joins a spin to itself; elsewhere the lattice may be small.
+TEST_F(Bands, NeedCellsOnlyWhereBondsReach) {
+  std::string const
+      head = "[system]\nkind = \"llg\"\ndamping = 0\n[lattice]\nboundary = \"periodic\"\n",
+      tail = "\napplied = [0, 0, 0.5]\n[initial]\nuniform = [0, 0, 1]\n";
+  std::string const along_y = "couplings = [{ offset = [0, 1, 0], J = 1.0 }]",
+                    both =
+                        "couplings = [{ offset = [0, 1, 0], J = 1.0 }, { offset = [1, 0, 0], J = "
+                        "1.0 }]";
+  Arguments const wave{"--quiet", "--overwrite", "--wave-vector", "0.5,0.25,0"};
+  auto const lowest = [&](std::string const& shape, std::string const& bonds) {
+    auto const outcome = modes(head + "shape = " + shape + "\n[field]\n" + bonds + tail, wave);
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return numbers("frequency").at(0);
+  };
+  EXPECT_NEAR(lowest("[1, 8]", along_y), 0.5 + 2, 1e-12);
+  EXPECT_NEAR(lowest("[3, 8]", both), 0.5 + 2 + 4, 1e-12);
+  expect_refused(
+      joined({"modes", write("scene.toml", head + "shape = [1, 8]\n[field]\n" + both + tail)},
+             wave),
+      "1 cell along axis 0, and bonds reach over 1");
+}
+
 TEST_F(Bands, RefuseWhatHasNone) {
   auto const refused = [&](Arguments const& more, std::string const& part) {
     expect_refused(joined({"modes", write("scene.toml", film), "--wave-vector"}, more), part);
@@ -312,6 +358,13 @@ TEST_F(Bands, RefuseWhatHasNone) {
   refused(
       {"0.1,0,0", "--set", "lattice.boundary=\"periodic\"", "--set", "lattice.frozen=\"i < 1\""},
       "the cells differ");
+  std::string const strip = "lattice.boundary=[\"periodic\",\"open\"]";
+  refused({"0,0.3,0", "--set", strip}, "along axis 1, which is open; accepted: 0 there");
+  refused({"0.3,0,0", "--set", strip, "--set", "lattice.shape=[1,8]"},
+          "1 cell along axis 0, and bonds reach over 1; accepted: at least 3");
+  refused({"0.3,0,0", "--set", "lattice.boundary=[\"periodic\",\"open\",\"open\"]", "--set",
+           "lattice.shape=[3,40,40]"},
+          "has 1600 sites in a cell, which extends over the open axes");
 }
 
 }  // namespace

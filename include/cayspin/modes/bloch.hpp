@@ -77,6 +77,16 @@ class CellsOfLattice {
   Cell extents_{}, folded_{};
 };
 
+inline void require_periodic_along(std::vector<std::array<double, 3>> const& wave_vectors,
+                                   Lattice const& lattice) {
+  for (auto const& wave : wave_vectors)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (wave[axis] != 0 && lattice.boundary[axis] != Boundary::periodic)
+        throw std::invalid_argument(
+            "cayspin::bloch_modes: a wave vector has a component along axis " +
+            std::to_string(axis) + ", which is open; accepted: 0 there, or a periodic axis");
+}
+
 using Point = Eigen::Vector3d;
 
 /// Returns two axes in the tangent plane of a spin.
@@ -128,9 +138,9 @@ class BlochProblem {
 
 /// Multiplies the Hessian by the tangent axes of one cell. Throws std::invalid_argument where cells
 /// differ.
-template <class Exec, class Field, class Spins, class Numbers>
+template <class Exec, class Field, class Spins, class Numbers, class Stops>
 BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Spins const& spins,
-                           Numbers const& precession, Numbers const& damping,
+                           Numbers const& precession, Numbers const& damping, Stops const& stops,
                            std::int64_t& evaluations) {
   using Real = typename Spins::value_type;
   auto const named = [&](char const* name) { return Spins(name, spins.lattice()); };
@@ -155,7 +165,7 @@ BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Sp
   };
   std::vector<Part> parts(static_cast<std::size_t>(cells.parts));
   Eigen::Index rows = 0;
-  double const alike = 1e5 * std::sqrt(std::numeric_limits<Real>::epsilon()) * 1e-3;
+  double const alike = 100 * std::sqrt(std::numeric_limits<Real>::epsilon());
   for (std::int64_t site = 0; site < cells.sites(); ++site) {
     auto const place = cells(site);
     auto& part = parts[place.part];
@@ -191,6 +201,7 @@ BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Sp
     double const turn = a[number], decay = b[number];
     problem.turning.block<2, 2>(part.first, part.first) << -decay, -turn, turn, -decay;
     for (Eigen::Index axis = 0; axis < 2; ++axis) {
+      if (stops()) return problem;
       auto const& e = part.axes[static_cast<std::size_t>(axis)];
       std::vector<double> unit(m.size());
       for (Eigen::Index c = 0; c < 3; ++c) unit[3 * number + static_cast<std::size_t>(c)] = e[c];

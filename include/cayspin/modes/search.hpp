@@ -64,6 +64,7 @@ class ModeSearch {
     double least = std::numeric_limits<double>::infinity();
     for (int since = 0;; ++since) {
       find_modes();
+      if (size() > 0 && modes_.empty()) return End::stagnated;  // its eigenvalues were not found
       if (2 * block + size() > capacity_) restart();
       std::size_t const converged = first_;
       std::size_t const added = add_residuals();
@@ -72,7 +73,7 @@ class ModeSearch {
       if (hessian_.evaluations() >= options_.evaluations) return End::evaluation_limit;
       double const error = errors_[first_];
       if (first_ > converged || error < 0.5 * least) least = error, since = 0;
-      if (since > 60) return End::stagnated;
+      if (since > 60) return is_as_good_as_products() ? End::converged : End::stagnated;
       before_ = columns_of(modes_, kept_, rows());
       if (!extend(added)) return is_as_good_as_products() ? End::converged : End::stagnated;
     }
@@ -93,8 +94,8 @@ class ModeSearch {
   }
 
  private:
-  // Called when no residual adds to the subspace: what is left are errors of the Hessian's
-  // products, which no search can reduce.
+  // Called when no residual adds to the subspace, or none has helped for long: what is left are
+  // errors of the Hessian's products, which no search can reduce.
   bool is_as_good_as_products() const {
     constexpr double bound = std::is_same_v<Real, double> ? 1.5e-7 : 3.5e-3;  // 10 sqrt(epsilon)
     return std::ranges::all_of(errors_, [](double error) { return error < bound; });
