@@ -36,9 +36,6 @@ class Interruption {
   std::function<bool()> question() {
     return [this] { return asked_ = asked_ || interrupted(); };
   }
-  void rethrow() const {
-    if (asked_) throw nb::python_error();
-  }
 
  private:
   std::atomic<bool> asked_ = false;
@@ -51,7 +48,7 @@ bool advance(EnsembleRun& run, std::int64_t count, bool until_torque) {
     nb::gil_scoped_release const released;
     ended = run.advance(count, run.looks(until_torque, interruption.question()));
   }
-  if (ended == Advanced::interrupted) interruption.rethrow();
+  rethrow_interruption();
   return ended == Advanced::at_rest;
 }
 
@@ -66,7 +63,7 @@ std::vector<Minimum> relax(EnsembleRun& run, double torque, std::int64_t evaluat
                        .keep_saddles = keep_saddles,
                        .interrupted = interruption.question()});
   }
-  interruption.rethrow();
+  rethrow_interruption();
   return found;
 }
 
@@ -130,15 +127,17 @@ void define_ensemble(nb::module_& module) {
       .def("require_reachable",
            [](EnsembleRun& run, std::int64_t count) { run.first().require_reachable(count); })
       .def("step_at", [](EnsembleRun& run, double t) { return run.first().step_at(t); })
-      .def("warning", &EnsembleRun::warning)
+      .def("warning", &EnsembleRun::warning, nb::call_guard<nb::gil_scoped_release>())
       .def("spins", spins)
       .def("sample", sample)
       .def_prop_ro("replicas", &EnsembleRun::replicas)
       .def_prop_ro("last_step", &EnsembleRun::last_step)
       .def_prop_ro("steps", &EnsembleRun::steps)
       .def_prop_ro("time", &EnsembleRun::time)
-      .def_prop_ro("evaluations", &EnsembleRun::evaluations)
-      .def_prop_ro("step_seconds", &EnsembleRun::step_seconds)
+      .def_prop_ro("evaluations", &EnsembleRun::evaluations,
+                   nb::call_guard<nb::gil_scoped_release>())
+      .def_prop_ro("step_seconds", &EnsembleRun::step_seconds,
+                   nb::call_guard<nb::gil_scoped_release>())
       .def_prop_ro("space", [](EnsembleRun& run) { return run.first().space(); })
       .def_prop_ro("threads", [](EnsembleRun& run) { return run.first().threads(); })
       .def_prop_ro("precision", [](EnsembleRun& run) {

@@ -42,6 +42,10 @@ bool interrupted() {
   return PyErr_CheckSignals() != 0;
 }
 
+void rethrow_interruption() {
+  if (PyErr_Occurred()) throw nb::python_error();
+}
+
 namespace {
 
 using namespace simulation;
@@ -80,7 +84,7 @@ bool advance(SceneRun& run, std::int64_t count, std::int64_t period, bool until_
     nb::gil_scoped_release const released;
     ended = run.advance(count, {period, until_torque, interrupted});
   }
-  if (ended == Advanced::interrupted) throw nb::python_error();
+  rethrow_interruption();
   return ended == Advanced::at_rest;
 }
 
@@ -91,7 +95,7 @@ Minimum relax(SceneRun& run, double torque, std::int64_t evaluations,
     nb::gil_scoped_release const released;
     found = run.relax({torque, evaluations, applied, keep_saddles, interrupted});
   }
-  if (found.end == MinimizeEnd::interrupted) throw nb::python_error();
+  rethrow_interruption();
   return found;
 }
 
@@ -106,7 +110,7 @@ nb::tuple modes(SceneRun& run, std::int64_t count, double tolerance, std::int64_
                        .evaluations = evaluations,
                        .poll = [] { return interrupted() ? Next::stop : Next::proceed; }});
   }
-  if (found.end == ModesEnd::interrupted) throw nb::python_error();
+  rethrow_interruption();
   auto const& [nx, ny, nz] = run.scene().lattice.shape;
   nb::list shapes;
   for (auto& shape : found.shapes) shapes.append(array_of(std::move(shape), {nz, ny, 6 * nx}));
@@ -153,7 +157,7 @@ nb::dict path(SceneRun const& run, StateIn const& start, StateIn const& end, std
         .images = images, .torque = torque, .evaluations = evaluations, .rates = rates};
     found = path_of_run(run, from, to, options, interrupted, CAYSPIN_GIT_COMMIT);
   }
-  if (found->end == PathEnd::interrupted) throw nb::python_error();
+  rethrow_interruption();
   return as_dict(std::move(*found), run.scene().lattice.shape);
 }
 

@@ -9,6 +9,8 @@ namespace cayspin::python {
 
 /// Returns true with Python's exception set, which the caller raises.
 bool interrupted();
+/// Throws the exception that interrupted() has left, also where the work ended otherwise.
+void rethrow_interruption();
 
 /// Throws UsageError for another word than double and single.
 simulation::Precision precision_of(std::string const& name);

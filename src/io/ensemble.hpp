@@ -20,6 +20,7 @@ struct VariedKey {
 struct Ensemble {
   std::int64_t replicas = 0;  ///< 0: the scene has no such table
   std::vector<VariedKey> vary;
+  std::string text_of_replicas;  ///< the scene without [ensemble], whose lists may be long
 
   bool there() const { return replicas > 0; }
 };

@@ -13,7 +13,7 @@ Scene read_scene_to_relax(std::filesystem::path const& path,
 
 /// Parses a text in memory like read_scene_to_relax.
 Scene parse_scene_to_relax(std::string text, std::filesystem::path const& name,
-                           std::vector<std::string> const& overrides = {});
+                           std::vector<std::string> const& overrides = {}, Given given = {});
 
 /// Reads a scene that only `cayspin relax` accepts like read_scene_to_relax, any other one like
 /// read_scene.

@@ -61,12 +61,16 @@ std::vector<std::string> overrides_of(Scene const& scene, std::int64_t replica) 
   return overrides;
 }
 
-// A value that does not fit its key is refused with the key of [ensemble].
+// `parse`: parse_scene or parse_scene_to_relax. A value that does not fit its key is refused with
+// the key of [ensemble].
 template <class Parse>
 Scene parsed_replica(Scene const& scene, std::int64_t replica, Parse const& parse) {
+  auto const& text = scene.ensemble.text_of_replicas;
   try {
-    auto parsed = parse();
+    auto parsed = parse(text.empty() ? scene.text : text, scene.path, overrides_of(scene, replica),
+                        scene.given);
     parsed.places = scene.places;
+    parsed.field.own = scene.field.own;
     return parsed;
   } catch (SceneError const& error) {
     std::string_view const what = error.what();
@@ -135,14 +139,11 @@ void check_ensemble(Scene const& scene, bool relaxes) {
 }  // namespace detail
 
 Scene replica_of(Scene const& scene, std::int64_t replica) {
-  return detail::parsed_replica(
-      scene, replica, [&] { return with_overrides(scene, detail::overrides_of(scene, replica)); });
+  return detail::parsed_replica(scene, replica, parse_scene);
 }
 
 Scene replica_to_relax(Scene const& scene, std::int64_t replica) {
-  return detail::parsed_replica(scene, replica, [&] {
-    return parse_scene_to_relax(scene.text, scene.path, detail::overrides_of(scene, replica));
-  });
+  return detail::parsed_replica(scene, replica, parse_scene_to_relax);
 }
 
 void require_no_ensemble(Scene const& scene, std::string_view who) {

@@ -181,7 +181,11 @@ Scene parse_scene_for(Purpose purpose, std::string text, std::filesystem::path c
   }
   if (count > 0) detail::check_stage(scene, scene);
   if (purpose == Purpose::relax) require_no_stages(scene, "cayspin relax, modes or path");
-  if (scene.ensemble.there()) detail::check_ensemble(scene, !has_integrator(scene));
+  if (scene.ensemble.there()) {
+    detail::check_ensemble(scene, !has_integrator(scene));
+    document.erase("ensemble");
+    scene.ensemble.text_of_replicas = text_of(document);
+  }
   return scene;
 }
 
@@ -198,8 +202,8 @@ Scene read_scene_to_relax(std::filesystem::path const& path,
 }
 
 Scene parse_scene_to_relax(std::string text, std::filesystem::path const& name,
-                           std::vector<std::string> const& overrides) {
-  return parse_scene_for(Purpose::relax, std::move(text), name, overrides, {});
+                           std::vector<std::string> const& overrides, Given given) {
+  return parse_scene_for(Purpose::relax, std::move(text), name, overrides, std::move(given));
 }
 
 Scene parse_scene_to_run_or_relax(std::string text, std::filesystem::path const& name,

@@ -4,6 +4,7 @@
 #include "dataset_of_sites.hpp"
 #include "hdf5/error.hpp"
 #include "hdf5/guarded_reading.hpp"
+#include "io/ensemble_file.hpp"
 #include "io/ovf.hpp"
 #include "io/trajectory.hpp"
 #include "ovf_of_sites.hpp"
@@ -36,6 +37,10 @@ void check_start_file(std::filesystem::path const& path, Lattice const& lattice)
     check_ovf_of_sites(path, lattice, 3);
   } else {
     try_reading(path, [&] {
+      // Its replicas would pass for the sites of a cell.
+      if (is_ensemble(path))
+        throw_failure(path, "cannot read the spins",
+                      "it is the file of an ensemble; accepted: a file of one lattice");
       if (is_state_of_crystal(path, lattice))
         open_state(path, lattice);
       else

@@ -6,6 +6,7 @@
 #include "restart.hpp"
 #include "run_files.hpp"
 #include "scene_minimizer.hpp"
+#include "turn.hpp"
 
 #include <fmt/format.h>
 
@@ -31,6 +32,7 @@ EnsembleRun::EnsembleRun(io::Scene const& scene, RunSettings const& settings, bo
     : scene_(scene), settings_(settings) {
   auto const replicas = static_cast<std::size_t>(scene.ensemble.replicas);
   at_rest_.assign(replicas, false);
+  runs_.reserve(replicas);  // other threads read the first one
   for (std::size_t number = 0; number < replicas; ++number) {
     auto const at = static_cast<std::int64_t>(number);
     auto const replica = relaxes ? io::replica_to_relax(scene, at) : io::replica_of(scene, at);
@@ -57,6 +59,7 @@ EnsembleRun::EnsembleRun(io::Scene const& scene, RunSettings const& settings, bo
 }
 
 std::optional<std::string> EnsembleRun::continue_from(std::filesystem::path const& file) {
+  Turn::Reserved const turn;
   if (!io::is_ensemble(file)) {
     auto const kind = io::kind_of_other_file(file);
     throw UsageError(fmt::format("{}: it is {}; accepted: the file of an ensemble", file.string(),
@@ -71,6 +74,7 @@ std::optional<std::string> EnsembleRun::continue_from(std::filesystem::path cons
       scene_.integrator.steps > 0 ? plan.times.steps : std::numeric_limits<std::int64_t>::max();
   Restart const restart({file, info}, scene_, plan, settings_.precision, end);
   steps_ = restart.step();
+  at_rest_.assign(replicas(), false);
   auto const spins = io::read_ensemble_spins(file, info);
   if (columns_) columns_->continue_from(steps_, spins);
   auto const size = static_cast<std::ptrdiff_t>(3 * io::sites(first().scene()));
@@ -82,20 +86,22 @@ std::optional<std::string> EnsembleRun::continue_from(std::filesystem::path cons
 }
 
 std::optional<std::string> EnsembleRun::warning() const {
+  Turn::Reserved const turn;
+  if (columns_ && !columns_->temperatures().empty()) {
+    auto const& all = columns_->temperatures();
+    auto const hottest = std::ranges::max_element(all) - all.begin();
+    auto const warning = SceneRun::open(io::replica_of(scene_, hottest), settings_)->warning();
+    if (!warning) return std::nullopt;
+    return fmt::format("replica {}: {}", hottest, *warning);
+  }
   for (std::size_t number = 0; number < runs_.size(); ++number)
     if (auto const warning = runs_[number]->warning())
       return fmt::format("replica {}: {}", number, *warning);
   return std::nullopt;
 }
 
-double EnsembleRun::time() const {
-  if (columns_) return columns_->time();
-  double latest = 0;
-  for (auto const& run : runs_) latest = std::max(latest, run->time());
-  return latest;
-}
-
 std::int64_t EnsembleRun::evaluations() const {
+  Turn::Reserved const turn;
   if (columns_) return columns_->evaluations();
   std::int64_t all = 0;
   for (auto const& run : runs_) all += run->evaluations();
@@ -103,6 +109,7 @@ std::int64_t EnsembleRun::evaluations() const {
 }
 
 double EnsembleRun::step_seconds() const {
+  Turn::Reserved const turn;
   if (columns_) return columns_->step_seconds();
   double all = 0;
   for (auto const& run : runs_) all += run->step_seconds();
@@ -110,6 +117,7 @@ double EnsembleRun::step_seconds() const {
 }
 
 bool EnsembleRun::is_at_rest() const {
+  Turn::Reserved const turn;
   return std::ranges::all_of(at_rest_, [](bool rests) { return rests; });
 }
 
@@ -123,7 +131,23 @@ Looks EnsembleRun::looks(bool until_torque, std::function<bool()> interrupted) c
 }
 
 Advanced EnsembleRun::advance(std::int64_t count, Looks const& looks) {
-  if (columns_) return advance_columns(count, looks);
+  Turn::Reserved const turn;
+  auto const target = steps_ + count;
+  if (!looks.until_torque) at_rest_.assign(replicas(), false);
+  return columns_ ? advance_columns(target, looks) : advance_runs(target, looks);
+}
+
+std::int64_t EnsembleRun::steps_of_all() const {
+  auto least = std::numeric_limits<std::int64_t>::max(), most = steps_.load();
+  for (std::size_t number = 0; number < runs_.size(); ++number) {
+    auto const steps = runs_[number]->steps();
+    most = std::max(most, steps);
+    if (!at_rest_[number]) least = std::min(least, steps);
+  }
+  return std::min(least, most);
+}
+
+Advanced EnsembleRun::advance_runs(std::int64_t target, Looks const& looks) {
   std::vector<SceneRun*> moving;
   std::vector<std::size_t> numbers;
   for (std::size_t number = 0; number < runs_.size(); ++number) {
@@ -131,27 +155,29 @@ Advanced EnsembleRun::advance(std::int64_t count, Looks const& looks) {
     moving.push_back(runs_[number].get());
     numbers.push_back(number);
   }
-  auto const outcomes = SceneRun::advance_all(moving, count, looks);
+  auto const outcomes = SceneRun::advance_all(moving, target, looks);
   bool interrupted = false;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    auto const& [advanced, error] = outcomes[i];
+    interrupted = interrupted || outcomes[i].advanced == Advanced::interrupted;
+    at_rest_[numbers[i]] = outcomes[i].advanced == Advanced::at_rest;
+  }
+  steps_ = steps_of_all();
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    if (!outcomes[i].error) continue;
     try {
-      if (error) std::rethrow_exception(error);
+      std::rethrow_exception(outcomes[i].error);
     } catch (NumbersFailed const& failure) {
       throw NumbersFailed(fmt::format("replica {}: {}", numbers[i], failure.what()));
     }
-    interrupted = interrupted || advanced == Advanced::interrupted;
-    at_rest_[numbers[i]] = advanced == Advanced::at_rest;
   }
   if (interrupted) return Advanced::interrupted;
-  for (auto const& run : runs_) steps_ = std::max(steps_, run->steps());
   return is_at_rest() ? Advanced::at_rest : Advanced::whole;
 }
 
-Advanced EnsembleRun::advance_columns(std::int64_t count, Looks const& looks) {
-  auto const target = steps_ + count;
+Advanced EnsembleRun::advance_columns(std::int64_t target, Looks const& looks) {
   samples_.clear();
-  auto const ended = columns_->advance(count, looks);
+  auto const ended = columns_->advance(target, looks);
+  steps_ = columns_->steps();
   if (ended.error) {
     // Only a run of its own can tell which replica fails.
     for (auto const number : ended.failed) {
@@ -166,7 +192,6 @@ Advanced EnsembleRun::advance_columns(std::int64_t count, Looks const& looks) {
     std::rethrow_exception(ended.error);
   }
   if (ended.interrupted) return Advanced::interrupted;
-  steps_ = target;
   if (looks.at_end) check_columns();
   return Advanced::whole;
 }
@@ -196,6 +221,8 @@ void EnsembleRun::leave_columns() {
 }
 
 std::vector<Minimum> EnsembleRun::relax(RelaxSettings const& settings) {
+  Turn::Reserved const turn;
+  at_rest_.assign(replicas(), false);
   if (columns_) leave_columns();
   std::vector<SceneRun*> all;
   for (auto const& run : runs_) all.push_back(run.get());
@@ -212,6 +239,7 @@ std::vector<Minimum> EnsembleRun::relax(RelaxSettings const& settings) {
 }
 
 std::vector<io::Scalars> EnsembleRun::scalars() {
+  Turn::Reserved const turn;
   std::vector<io::Scalars> all;
   if (columns_) {
     if (samples_.empty()) samples_ = columns_->samples();
@@ -223,6 +251,7 @@ std::vector<io::Scalars> EnsembleRun::scalars() {
 }
 
 std::vector<std::byte> EnsembleRun::spins() {
+  Turn::Reserved const turn;
   std::vector<std::byte> all;
   auto const add = [&](auto const& numbers) {
     auto const bytes = std::as_bytes(std::span(numbers));

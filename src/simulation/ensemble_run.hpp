@@ -6,6 +6,7 @@
 #include "replica_columns.hpp"
 #include "scene_run.hpp"
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -20,6 +21,7 @@ namespace cayspin::simulation {
 /// The replicas of a scene with [ensemble], which go on together from one step to another: as
 /// columns of a few lattices if they can, otherwise each as a run of its own, small ones side by
 /// side on the threads of the host. Replica r has the bits of a run of io::replica_of(scene, r).
+/// Calls from several threads take turns, as those of SceneRun do; steps and time do not wait.
 class EnsembleRun {
  public:
   /// For cayspin run, or where `relaxes` for cayspin relax; without settings.restart. Throws what
@@ -36,13 +38,14 @@ class EnsembleRun {
   /// for a method that remembers more than the spins.
   std::optional<std::string> continue_from(std::filesystem::path const& file);
 
-  /// Returns the warning of the first replica that has one about its steps, with its number.
+  /// Returns the warning of the first replica that has one about its steps, with its number; of
+  /// replicas as columns that of the hottest.
   std::optional<std::string> warning() const;
 
-  /// Those of the replicas that have gone furthest.
+  /// Steps that all replicas have taken that have not ended early.
   std::int64_t steps() const { return steps_; }
   std::int64_t last_step() const { return first().last_step(); }
-  double time() const;  // after them
+  double time() const { return first().time_at(steps_); }  // after them
   std::int64_t evaluations() const;
   double step_seconds() const;
   /// Has each replica ended early, without torque?
@@ -53,8 +56,9 @@ class EnsembleRun {
   /// of its own, so that a replica ends where that would.
   Looks looks(bool until_torque, std::function<bool()> interrupted) const;
 
-  /// Takes `count` more steps in all replicas that have not ended early. If one fails or is
-  /// interrupted, some of the others have taken them.
+  /// Advances all replicas to step steps() + count. With looks.until_torque those that have ended
+  /// early stay where they are. If one fails or is interrupted, some of the others are further than
+  /// steps(), and wait for it when the run goes on.
   Advanced advance(std::int64_t count, Looks const& looks);
 
   /// Moves each replica to its own equilibrium, those that are small side by side. If one is
@@ -66,7 +70,10 @@ class EnsembleRun {
   std::vector<std::byte> spins();
 
  private:
-  Advanced advance_columns(std::int64_t count, Looks const& looks);
+  Advanced advance_runs(std::int64_t target, Looks const& looks);
+  Advanced advance_columns(std::int64_t target, Looks const& looks);
+  /// Returns the steps that all runs have taken that have not ended early.
+  std::int64_t steps_of_all() const;
   void check_columns();
   /// Gives each replica a run of its own, from where it is.
   void leave_columns();
@@ -78,7 +85,7 @@ class EnsembleRun {
   std::vector<Guard> guards_;    // of columns
   std::vector<Sample> samples_;  // of columns after these steps, or empty
   std::vector<bool> at_rest_;
-  std::int64_t steps_ = 0;
+  std::atomic<std::int64_t> steps_ = 0;
 };
 
 }  // namespace cayspin::simulation

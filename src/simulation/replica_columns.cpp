@@ -3,6 +3,7 @@
 
 #include "io/notes.hpp"
 #include "kokkos_settings.hpp"
+#include "plan.hpp"
 #include "space.hpp"
 
 #include <cayspin/detail/execution.hpp>
@@ -137,10 +138,12 @@ std::optional<ReplicaColumns> ReplicaColumns::open(io::Scene const& scene, io::S
   bool const on_host = is_on_host(sample->space());
   // On several threads, these run faster one to a thread.
   if (on_host && sample->threads() > 1 && columns_on_a_thread(sites) < 2 * lanes) return opened;
-  opened.emplace();
-  auto const& temperatures = opened->temperatures_ = temperatures_of(scene);
   auto const columns =
       on_host ? columns_of_a_lattice(replicas, sites, sample->threads()) : replicas;
+  require_memory(scene, make_plan(scene_of_columns(one, 0, columns, {}), settings.precision),
+                 static_cast<int>((replicas + columns - 1) / columns));
+  opened.emplace();
+  auto const& temperatures = opened->temperatures_ = temperatures_of(scene);
   for (std::int64_t begin = 0; begin < replicas; begin += columns) {
     std::int64_t const count = std::min(columns, replicas - begin);
     auto run = SceneRun::open(scene_of_columns(one, begin, count, temperatures), settings);
@@ -163,11 +166,16 @@ double ReplicaColumns::step_seconds() const {
   return all;
 }
 
-ReplicaColumns::Ended ReplicaColumns::advance(std::int64_t count, Looks const& looks) {
+std::int64_t ReplicaColumns::steps() const {
+  auto least = groups_.front().columns->steps();
+  for (auto const& group : groups_) least = std::min(least, group.columns->steps());
+  return least;
+}
+
+ReplicaColumns::Ended ReplicaColumns::advance(std::int64_t target, Looks const& looks) {
   std::vector<SceneRun*> runs;
   for (auto const& group : groups_) runs.push_back(group.columns.get());
-  runs.front()->require_reachable(count);
-  auto const outcomes = SceneRun::advance_all(runs, count, looks);
+  auto const outcomes = SceneRun::advance_all(runs, target, looks);
   Ended ended;
   for (std::size_t number = 0; number < outcomes.size(); ++number) {
     auto const& [advanced, error] = outcomes[number];

@@ -27,8 +27,8 @@ class ReplicaColumns {
   /// Those of the replicas, reduced; empty if all have that of the scene.
   std::vector<double> const& temperatures() const { return temperatures_; }
 
-  std::int64_t steps() const { return groups_.front().columns->steps(); }
-  double time() const { return groups_.front().columns->time(); }
+  /// Steps that all replicas have taken.
+  std::int64_t steps() const;
   std::int64_t evaluations() const;
   double step_seconds() const;
 
@@ -38,9 +38,9 @@ class ReplicaColumns {
     std::vector<std::int64_t> failed;  // replicas of the lattices that failed
     std::exception_ptr error = {};     // of the first of these
   };
-  /// Takes `count` more steps. A lattice in which a replica fails stays before the step that
+  /// Advances to step `target`. A lattice in which a replica fails stays before the step that
   /// failed.
-  Ended advance(std::int64_t count, Looks const& looks);
+  Ended advance(std::int64_t target, Looks const& looks);
 
   /// Continues after this step from the spins of all replicas, one after the other.
   void continue_from(std::int64_t step, std::vector<double> const& spins);

@@ -81,7 +81,8 @@ class SceneRun {
   /// Return the steps taken, and the time after them. Times, energies and fields are in the scene's
   /// units.
   std::int64_t steps() const { return number_; }
-  double time() const { return reduced_time() * scene_.units.time; }
+  double time() const { return time_at(number_); }
+  double time_at(std::int64_t step) const { return plan().times.at(step) * scene_.units.time; }
   /// Returns the last step of the scene, if it has an end.
   std::int64_t last_step() const { return scene_.begin.step + scene_.integrator.steps; }
   std::int64_t evaluations() const { return evaluations_; }  // of the generator over all sites
@@ -116,9 +117,10 @@ class SceneRun {
     Advanced advanced = Advanced::whole;
     std::exception_ptr error = {};  // what advance would have thrown
   };
-  /// Takes `count` more steps in each of these runs, of one space. On hosts small ones go side by
-  /// side, one to a thread. Runs that have not begun when another is interrupted do not begin.
-  static std::vector<Outcome> advance_all(std::span<SceneRun* const> runs, std::int64_t count,
+  /// Advances these runs, of one space, to step `target` unless they are there. On hosts small ones
+  /// go side by side, one to a thread. Runs that have not begun when another is interrupted do not
+  /// begin.
+  static std::vector<Outcome> advance_all(std::span<SceneRun* const> runs, std::int64_t target,
                                           Looks const& looks);
 
   /// Result of relax_all for one run.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Several runs together: their steps, searches for equilibria and samples.
+#include "failure.hpp"
 #include "scene_run.hpp"
 #include "side_by_side.hpp"
 #include "turn.hpp"
@@ -7,27 +8,44 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <functional>
 
 namespace cayspin::simulation {
+namespace {
+
+// Returns the question whether one of several runs was interrupted, which asks `asked` as well.
+std::function<bool()> or_asked(std::atomic<bool>& interrupted, std::function<bool()> const& asked) {
+  return [&] {
+    if (!interrupted && asked && asked()) interrupted = true;
+    return interrupted.load();
+  };
+}
+
+}  // namespace
 
 std::vector<SceneRun::Outcome> SceneRun::advance_all(std::span<SceneRun* const> runs,
-                                                     std::int64_t count, Looks const& looks) {
+                                                     std::int64_t target, Looks const& looks) {
   Turn const turn;
   std::vector<Outcome> outcomes(runs.size());
   std::atomic<bool> interrupted = false;
+  auto asking = looks;
+  asking.interrupted = or_asked(interrupted, looks.interrupted);
   side_by_side(runs, [&](std::size_t number) {
     auto& [advanced, error] = outcomes[number];
     auto& run = *runs[number];
-    interrupted = interrupted || (looks.interrupted && looks.interrupted());
-    if (interrupted) {
+    if (asking.interrupted()) {
       advanced = Advanced::interrupted;
       return;
     }
+    if (run.number_ >= target) return;
     try {
-      run.require_reachable(count);
-      advanced = run.advance_to(run.number_ + count, looks);
+      run.require_reachable(target - run.number_);
+      advanced = run.advance_to(target, asking);
+    } catch (NumbersFailed const&) {
+      error = std::current_exception();
     } catch (...) {
       error = std::current_exception();
+      interrupted = true;  // of the program itself, which the others need not wait for
     }
     interrupted = interrupted || advanced == Advanced::interrupted;
   });
@@ -39,17 +57,21 @@ std::vector<SceneRun::Relaxed> SceneRun::relax_all(std::span<SceneRun* const> ru
   Turn const turn;
   std::vector<Relaxed> all(runs.size());
   std::atomic<bool> interrupted = false;
+  auto asking = settings;
+  asking.interrupted = or_asked(interrupted, settings.interrupted);
   side_by_side(runs, [&](std::size_t number) {
     auto& [minimum, error] = all[number];
-    interrupted = interrupted || (settings.interrupted && settings.interrupted());
-    if (interrupted) {
+    if (asking.interrupted()) {
       minimum.end = MinimizeEnd::interrupted;
       return;
     }
     try {
-      minimum = runs[number]->relaxed(settings);
+      minimum = runs[number]->relaxed(asking);
+    } catch (NumbersFailed const&) {
+      error = std::current_exception();
     } catch (...) {
       error = std::current_exception();
+      interrupted = true;
     }
     interrupted = interrupted || minimum.end == MinimizeEnd::interrupted;
   });
@@ -60,7 +82,11 @@ void SceneRun::side_by_side(std::span<SceneRun* const> runs,
                             std::function<void(std::size_t)> const& work) {
   std::int64_t sites = 0;
   for (auto const* const run : runs) sites = std::max(sites, run->plan().lattice.sites());
-  if (!runs.empty()) for_each_small_run(runs.front()->space_, sites, runs.size(), work);
+  if (runs.empty()) return;
+  for_each_small_run(runs.front()->space_, sites, runs.size(), [&](std::size_t number) {
+    Turn::Work const of_the_turn;
+    work(number);
+  });
 }
 
 std::vector<std::vector<Sample>> SceneRun::sample_columns(std::span<ColumnsToSample const> all) {

@@ -10,21 +10,47 @@ namespace cayspin::simulation {
 /// One for all runs: a space of Kokkos takes work from one thread at a time.
 class Turn {
  public:
-  Turn() : lock_(mutex()) {
-    if (taken_)
-      throw UsageError("a field or an observer's question may not use a run that is stepping");
+  Turn() : lock_(mutex_of_others()) {
+    require_free();
     taken_ = true;
   }
   ~Turn() { taken_ = false; }
   Turn(Turn const&) = delete;
   Turn& operator=(Turn const&) = delete;
 
+  /// Keeps other threads from taking a turn; its own thread may.
+  class Reserved {
+   public:
+    Reserved() : lock_(mutex_of_others()) { require_free(); }
+
+   private:
+    std::lock_guard<std::recursive_mutex> lock_;
+  };
+
+  /// Marks a thread that works for the thread with the turn, which waits for it.
+  class Work {
+   public:
+    Work() : before_(works_) { works_ = true; }
+    ~Work() { works_ = before_; }
+    Work(Work const&) = delete;
+    Work& operator=(Work const&) = delete;
+
+   private:
+    bool before_;
+  };
+
  private:
-  static std::recursive_mutex& mutex() {
+  static void require_free(bool taken = taken_) {
+    if (taken)
+      throw UsageError("a field or an observer's question may not use a run that is stepping");
+  }
+  static std::recursive_mutex& mutex_of_others() {
     static std::recursive_mutex one;
+    require_free(works_);
     return one;
   }
   static inline bool taken_ = false;
+  static inline thread_local bool works_ = false;
   std::lock_guard<std::recursive_mutex> lock_;
 };
 

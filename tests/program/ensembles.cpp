@@ -282,6 +282,31 @@ TEST_F(Ensembles, WarnOfAStepThatIsTooLongForOneReplica) {
   EXPECT_FALSE(exists("b.h5"));
 }
 
+// Small replicas that differ only in temperature are columns of one lattice.
+TEST_F(Ensembles, WarnOfTheHottestReplica) {
+  write("all.toml", chain_scene() + "[thermal]\ntemperature = 0.1\nseed = 3\n" +
+                        vary("\"thermal.temperature\" = { from = 0.1, to = 15 }\n", 32));
+  auto const options = set("integrator.dt=0.1", "system.damping=0.5");
+  auto const outcome = start(joined({"run", "all.toml", "--quiet", "--output", "all.h5"}, options));
+  EXPECT_TRUE(contains(outcome.errors, "warning: replica 31: ")) << outcome.errors;
+  expect_refused(joined({"run", "all.toml", "--quiet", "--output", "b.h5", "--set",
+                         "integrator.refuse_unstable=true"},
+                        options),
+                 "integrator");
+  EXPECT_FALSE(exists("b.h5"));
+}
+
+TEST_F(Ensembles, AreNoStartOfACrystal) {
+  run_ensemble(chain_scene() + vary("\"field.exchange\" = [1, 2]\n", 2));
+  auto const shape = read_dataset("all.h5", "/spins").extents;
+  write("crystal.toml", chain_scene());
+  expect_refused(joined({"run", "crystal.toml", "--output", "b.h5"},
+                        set(fmt::format("lattice={{shape=[{},{},{}],crystal='bcc'}}", shape[4],
+                                        shape[3], shape[2]),
+                            "field={couplings={shells=[1.0]}}", "initial={file='all.h5'}")),
+                 "it is the file of an ensemble");
+}
+
 TEST_F(Ensembles, AreChecked) {
   write("all.toml", chain_scene() + vary("\"field.exchange\" = [1, 2, 3]\n"));
   EXPECT_TRUE(contains(output_of({"check", "all.toml"}),

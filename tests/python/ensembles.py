@@ -5,6 +5,7 @@ import os
 import pathlib
 import subprocess
 import tempfile
+import threading
 import unittest
 
 import cayspin
@@ -154,6 +155,48 @@ class EnsembleSimulations(unittest.TestCase):
             field = np.array([FIELDS[replica], 0, 0.5])
             np.testing.assert_allclose(sim.magnetization()[replica],
                                        field / np.linalg.norm(field), atol=1e-7)
+
+    def test_fields_and_starts_of_the_program_count_in_a_search(self):
+        def made(constant, **more):
+            return cayspin.Scene(
+                system={"kind": "llg", "damping": 0.1}, lattice={"shape": [4]},
+                field={"anisotropy": {"constant": constant, "axis": [0, 0, 1]},
+                       "applied": lambda t: [1.9, 0, 0]},
+                initial=np.tile([0.3, 0.1, 0.9], (1, 1, 4, 1)), **more)
+
+        constants = [1.0, 1.1, 1.2]
+        together = cayspin.EnsembleSimulation(made(1.0, ensemble={
+            "replicas": 3, "vary": {"field.anisotropy.constant": constants}}))
+        together.relax(torque=1e-9)
+        for replica, constant in enumerate(constants):
+            alone = cayspin.Simulation(made(constant))
+            alone.relax(torque=1e-9)
+            np.testing.assert_array_equal(together.spins[replica], alone.spins)
+            self.assertAlmostEqual(together.energy()[replica], -4 * 1.9, 12)
+
+    def test_threads_take_turns(self):
+        sim = cayspin.EnsembleSimulation(scene(
+            lattice={"shape": [8]}, ensemble={"replicas": 64},
+            integrator={"method": "heun", "dt": 0.02}))
+        ended = threading.Event()
+        counts = []
+
+        def look():
+            while not ended.is_set():
+                counts.append((sim.spins.shape, len(sim.energy()), sim.evaluations, sim.steps))
+
+        thread = threading.Thread(target=look)
+        thread.start()
+        try:
+            for _ in range(300):
+                sim.step(3)
+            sim.relax(torque=1e-6)
+        finally:
+            ended.set()
+            thread.join()
+        self.assertEqual(sim.steps, 900)
+        self.assertEqual({(shape, energies) for shape, energies, *_ in counts},
+                         {((64, 1, 1, 8, 3), 64)})
 
     def test_wrong_calls_are_one_line(self):
         for call, part in ((lambda: cayspin.EnsembleSimulation(scene()), "has no .ensemble."),

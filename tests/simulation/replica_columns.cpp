@@ -5,7 +5,9 @@
 #include "simulation/ensemble_run.hpp"
 #include "simulation/failure.hpp"
 
+#include <atomic>
 #include <optional>
+#include <string>
 
 namespace cayspin::simulation::test {
 namespace {
@@ -94,6 +96,55 @@ TEST(ReplicaColumns, AreSampledAndRelaxedAsRunsOfTheirOwn) {
   own->advance(5);
   EXPECT_EQ(run.scalars()[17].energy, own->sample().energy.value);
   EXPECT_EQ(run.steps(), 16);
+}
+
+// An interrupt lets some replicas go on and not others; afterwards all meet at the same step.
+TEST(ReplicaColumns, MeetAfterAnInterrupt) {
+  auto const columns = llg_scene("0.1", "heun", 400, chains + noise);
+  for (auto const& scene :
+       {columns, scene_of(columns.text, {"ensemble.replicas=8"}),
+        scene_of(columns.text, {"ensemble.replicas=8", "integrator.method='implicit_midpoint'"})}) {
+    EnsembleRun run(scene, {}, false), whole(scene, {}, false);
+    run.advance(3, run.looks(false, {}));
+    std::atomic<int> asked = 0;
+    auto const stop = [&] { return ++asked > 1; };
+    if (scene.ensemble.replicas == 8) {
+      EXPECT_EQ(run.advance(20, run.looks(false, stop)), Advanced::interrupted);
+      EXPECT_EQ(run.steps(), 3);
+      EXPECT_DOUBLE_EQ(run.time(), 3 * 0.02);
+    } else {
+      run.advance(20, run.looks(false, stop));
+    }
+    run.advance(40 - run.steps(), run.looks(false, {}));
+    whole.advance(40, whole.looks(false, {}));
+    EXPECT_EQ(run.steps(), 40);
+    EXPECT_EQ(run.spins(), whole.spins());
+  }
+}
+
+TEST(ReplicaColumns, GoOnFromRest) {
+  auto const scene = scene_of(llg_scene("0.5", "heun", 4000, chains).text,
+                              {"ensemble={replicas=2,vary={'field.exchange'=[0.5,2.0]}}",
+                               "field.applied=[0,0,1]", "integrator.until_torque=1e-2"});
+  EnsembleRun run(scene, {}, false), steps(scene, {}, false);
+  EXPECT_EQ(run.advance(4000, run.looks(true, {})), Advanced::at_rest);
+  auto const rest = run.steps();
+  EXPECT_LT(rest, 4000);
+  run.advance(10, run.looks(false, {}));
+  EXPECT_EQ(run.steps(), rest + 10);
+  steps.advance(rest + 10, steps.looks(false, {}));
+  EXPECT_EQ(run.spins(), steps.spins());
+}
+
+TEST(ReplicaColumns, AreReadWithoutTheListsOfAll) {
+  std::string values;
+  for (int replica = 0; replica < 40; ++replica) values += std::to_string(0.01 * replica) + ", ";
+  auto scene = scene_of(llg_scene("0.1", "heun", 40, chains).text,
+                        {"ensemble.vary={'field.exchange'=[" + values + "]}"});
+  auto const replica = io::replica_of(scene, 17);
+  EXPECT_EQ(scene.ensemble.text_of_replicas.find("ensemble"), std::string::npos);
+  scene.ensemble.text_of_replicas.clear();
+  EXPECT_EQ(replica.text, io::replica_of(scene, 17).text);
 }
 
 // The field makes the steps unstable.
