@@ -310,8 +310,9 @@ class Simulation:
 
     def field(self) -> np.ndarray:
         """The effective field H of every site now, (nz, ny, nx, 3), of a crystal with several sites
-        in a cell (site, nz, ny, nx, 3), in T in SI; read-only. Raises CayspinError for rigid
-        bodies."""
+        in a cell (site, nz, ny, nx, 3), in T in SI; read-only. It includes the torques of currents
+        as the field in which spins turn alike, and is 0 at frozen sites. Raises CayspinError for
+        rigid bodies."""
         return sites.by_site(self._run.field(), self._scene._scene.cell_sites)
 
     def energy(self) -> float:

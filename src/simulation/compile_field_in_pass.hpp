@@ -162,7 +162,8 @@ SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::evaluate_with(
                               .spins = spins.array(),
                               .moves = {},
                               .field = terms_->field_.output(false),
-                              .energies = terms_->energies_.output(false)};
+                              .energies = terms_->energies_.output(false),
+                              .is_field = purpose == FieldFor::itself};
   if (terms_->moves_ && purpose != FieldFor::generator) kernel.moves = terms_->moves_->array();
   auto now = nothing();
   if (adds_applied) {

@@ -17,10 +17,15 @@ struct EvaluateInPass {
   cayspin::SiteArray<Real, 1> moves;  // without data: all move
   cayspin::OutputArray<Real, 3> field;
   cayspin::OutputArray<Real, 1> energies;
+  bool is_field = false;  // H, without the gyromagnetic ratios of the cell's sites
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     auto found = terms(Stencil<Site, Real>(site, spins));
+    if (is_field)
+      found.field =
+          as_value<typename Site::value_type>(1 / terms.site_of_plane(site.z()).gyromagnetic) *
+          found.field;
     if (moves.data) found.field = site.load(moves) * found.field;
     site.store(found.field, field);
     site.store(found.energy, energies);

@@ -60,8 +60,9 @@ void FieldInPass<Spins>::Terms::add_rates(io::Scene const& scene, io::SiteBox co
   if (!ratios.empty()) std::ranges::transform(moves, ratios, moves.begin(), std::multiplies<>());
   if (!ratios.empty() || scene.system.gilbert_of_sites)
     rates_ = scalar_field_of<Real, Memory>("rates", lattice_, moves);
-  // Strengths in T turn spins by gamma, as fields do.
-  bool const are_fields = scene.units.si && scene.field.torque.slonczewski;
+  // Strengths in T turn spins by a site's material.gamma, as fields do.
+  bool const are_fields =
+      scene.material && scene.material->gamma_factors.there() && scene.field.torque.slonczewski;
   if (!ratios.empty() && io::has_torque(scene.field) && !are_fields) {
     for (double& ratio : ratios) ratio = 1 / ratio;
     per_gyromagnetic_ = scalar_field_of<Real, Memory>("per_gyromagnetic", lattice_, ratios);

@@ -71,8 +71,11 @@ io::Field with_joined_own_field(io::Scene const& scene, io::Field field, Lattice
   bool const on_host =
       field.slab_demag && (field.slab_demag->on_host || field.slab_demag->multirate);
   if (!field.own.nonlocal || (!field.demag && !on_host)) return field;
+  auto const box = own_sites(lattice);
+  auto moments = field.demag && field.demag->dipoles ? io::all_moments(scene, box)
+                                                     : io::moments_of_sites(scene, box);
   field.own.nonlocal = Sum<Real>(std::move(field.own.nonlocal), beside_own<Real>(field, lattice),
-                                 io::moments_of_sites(scene, own_sites(lattice)), lattice);
+                                 std::move(moments), lattice);
   if (field.demag)
     field.demag.reset();
   else

@@ -103,6 +103,10 @@ Minimum SceneMinimizer<Real, Space>::relax(Space const& exec, io::Scene const& s
   constexpr int tries = 20;
   for (int i = 0; i < tries; ++i) {
     closer.evaluations = options.evaluations - all.evaluations;
+    if (closer.evaluations < 1) {  // a search may end above its limit
+      all.end = MinimizeEnd::evaluation_limit;
+      return all;
+    }
     auto found = minimize(exec, scene, field, spins, closer);
     double const of_gradient = found.torque;
     found.torque = largest_torque(exec, field, spins, options.time, moments);

@@ -77,10 +77,32 @@ void scale(io::HostVectors const& vectors, double factor) {
   });
 }
 
+// Multiplies each vector by the number of its site of the cell.
+void scale_by_site(io::HostVectors const& vectors, std::vector<double> const& factors) {
+  auto const sites = static_cast<std::int64_t>(factors.size());
+  for (std::int64_t plane = 0; plane < vectors.shape[0]; ++plane) {
+    auto of_plane = vectors;
+    auto const from = plane * vectors.strides[0];
+    of_plane.shape[0] = 1;
+    of_plane.data = vectors.is_double
+                        ? static_cast<void*>(static_cast<double*>(vectors.data) + from)
+                        : static_cast<void*>(static_cast<float*>(vectors.data) + from);
+    scale(of_plane, factors[static_cast<std::size_t>(plane % sites)]);
+  }
+}
+
 // A program gives its fields in the units of its scene.
 io::Scene with_reduced_own_field(io::Scene scene) {
   auto const units = scene.units;
   auto& own = scene.field.own;
+  // Beside moments of the cell's sites, fields are those of moments 1, which each moment divides.
+  if (auto const& moments = scene.lattice.moments;
+      own.nonlocal && !moments.empty() && !io::has_moments_of_sites(scene))
+    own.nonlocal = [given = own.nonlocal, moments](io::HostVectors const& spins,
+                                                   io::HostVectors const& field, double t) {
+      given(spins, field, t);
+      scale_by_site(field, moments);
+    };
   if (!units.si) return scene;
   if (own.uniform)
     own.uniform = [given = own.uniform, units](double t) {
@@ -280,7 +302,7 @@ Minimum SceneRun::relaxed(RelaxSettings const& settings) {
               .observer = [&](Minimum const&) { return poll() ? Next::stop : Next::proceed; }});
   evaluations_ += found.evaluations;
   found.torque *= scene_.units.field;
-  found.curvature *= scene_.units.field;
+  found.curvature *= scene_.units.energy;
   found.energy.value *= scene_.units.energy;
   found.energy.magnitude *= scene_.units.energy;
   return found;

@@ -27,6 +27,14 @@ void keep_numbers_of_free_sides(io::Scene const& scene, std::vector<io::Anisotro
   }
 }
 
+// Beside dipoles each site has its own moment.
+void keep_moments_of_sites(io::Scene const& scene, io::Lattice& lattice) {
+  if (!io::has_moments_of_sites(scene) || lattice.moments_of_sites.there()) return;
+  lattice.moments_of_sites.key = "lattice.moments";
+  lattice.moments_of_sites.given = std::make_shared<std::vector<double> const>(
+      io::all_moments(scene, {{0, 0, 0}, scene.lattice.shape}));
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, io::Scene>> single_terms(io::Scene const& scene) {
@@ -76,7 +84,10 @@ std::vector<std::pair<std::string, io::Scene>> single_terms(io::Scene const& sce
   if (field.own.uniform) add("applied").own.uniform = field.own.uniform;
   if (field.slab_demag) add("slab_demag").slab_demag = field.slab_demag;
   if (field.demag) add(field.demag->key).demag = field.demag;
-  if (field.own.nonlocal) add("nonlocal").own.nonlocal = field.own.nonlocal;
+  if (field.own.nonlocal) {
+    add("nonlocal").own.nonlocal = field.own.nonlocal;
+    keep_moments_of_sites(scene, terms.back().second.lattice);
+  }
   for (auto& [name, alone] : terms) {
     auto& of_alone = alone.field;
     if (!of_alone.exchange) of_alone.exchange_factors = {}, of_alone.exchange_between.clear();

@@ -47,6 +47,34 @@ TEST_F(Relax, FindsTheStateOfAFilm) {
   EXPECT_TRUE(contains(output_of({"info", "out.h5"}), "at rest      yes, max |m x H| = "));
 }
 
+// The bound on the torque takes several searches where moments differ, which share the evaluations.
+TEST_F(Relax, EndsAtAnyLimitOfEvaluations) {
+  auto const file = write("scene.toml", R"toml([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [2, 2, 2]
+crystal = "bcc"
+moments = [1, 0.2]
+[field]
+anisotropy = { constant = 1.0, axis = [0, 0, 1] }
+applied = [0.1, 0.2, 0.3]
+[initial]
+random = { seed = 1 }
+)toml");
+  int converged = 0;
+  for (int evaluations = 1; evaluations <= 40; ++evaluations) {
+    auto const outcome = start({"relax", file, "--output", "out.h5", "--overwrite", "--torque",
+                                "1e-6", "--evaluations", std::to_string(evaluations)});
+    if (outcome.status == 0)
+      ++converged;
+    else
+      EXPECT_EQ(outcome.status, 3) << evaluations << ": " << outcome.errors;
+  }
+  EXPECT_GT(converged, 0);
+  EXPECT_LT(converged, 40);
+}
+
 // Along the easy axis a uniform film switches at |h| = K.
 TEST_F(Relax, FollowsAHysteresis) {
   std::string fields;

@@ -67,7 +67,8 @@ TERMS = {
 
 class OwnFields(PackageTest):
     def test_add_to_each_term(self):
-        lattices = [TABLES["lattice"], MOMENTS]
+        doubled = {**TABLES["lattice"], "moments": 2.0}
+        lattices = [TABLES["lattice"], MOMENTS, doubled]
         cases = [(name, field, lattice) for name, field in TERMS.items() for lattice in lattices]
         cases += [("dipoles of a crystal", {"dipoles": True}, CRYSTAL)]
         for name, field, lattice in cases:
@@ -80,7 +81,7 @@ class OwnFields(PackageTest):
                     there = (spins**2).sum(-1, keepdims=True) > 0
                     np.testing.assert_allclose(both.field() * there,
                                                (without.field() + own) * there, atol=limit, rtol=0)
-                    moments = 1.0
+                    moments = lattice.get("moments") if lattice is doubled else 1.0
                     if lattice is MOMENTS:
                         moments = 1 + 0.2 * np.arange(4.0)[:, None]
                     of_own = -0.5 * (moments * (spins * own).sum(-1)).sum()

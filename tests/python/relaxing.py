@@ -24,6 +24,16 @@ def scene(**tables):
 
 
 class Relaxing(PackageTest):
+    def test_the_curvature_is_an_energy_in_si(self):
+        edge, easy = 3e-9, 1e5
+        sim = cayspin.Simulation(cayspin.Scene(
+            units="SI", system={"kind": "llg"}, lattice={"shape": [1], "spacing": [edge] * 3},
+            material={"Ms": 8e5, "Ku": easy, "axis": [0, 0, 1], "alpha": 0.1,
+                      "damping_form": "gilbert"},
+            initial={"uniform": [0.1, 0.2, 0.9]}))
+        curvature = sim.relax(torque=1e-9).curvature
+        self.assertAlmostEqual(curvature / (2 * easy * edge**3), 1, 6)
+
     def test_saddles(self):
         sim = cayspin.Simulation(scene(initial={"uniform": [0, 1, 0]}))
         self.assertEqual(sim.relax(keep_saddles=True).saddles, 0)

@@ -88,6 +88,49 @@ steps = 20
           << method;
 }
 
+// In SI, too, the ratio multiplies fields but not the torques of currents, however it is given.
+TEST(GyromagneticOfSites, LeavesTorquesInSi) {
+  auto const torques = [](std::string const& gyromagnetic, std::string const& more) {
+    return scene_of(fmt::format(R"toml(
+units = "SI"
+system = {{ kind = "llg" }}
+material = {{ Ms = 8e5, A = 1e-11, alpha = 0.1, damping_form = "gilbert" }}
+lattice = {{ shape = [6, 3], spacing = 2e-9, gyromagnetic = {} }}
+field = {{ applied = [0, 0.1, 0.3] }}
+torque = {{ slonczewski = {{ damping_like = 0.1, polarization = [1, 0, 1] }}{} }}
+initial = {{ random = {{ seed = 5 }} }}
+integrator = {{ method = "rkmk4", dt = 1e-14, steps = 40 }}
+)toml",
+                                gyromagnetic, more));
+  };
+  for (std::string const more :
+       {"", ", zhang_li = { velocity = [100, 0, 0], nonadiabaticity = 0.05 }"})
+    EXPECT_LT(largest_distance(end_of(torques("[2.0]", more)), end_of(torques("'2 + 0*i'", more))),
+              40 * 64 * epsilon(Precision::double_precision))
+        << more;
+}
+
+// The field and the torque at rest do not depend on the ratio.
+TEST(GyromagneticOfSites, IsNoPartOfTheField) {
+  for (std::string const ratio : {"1", "0.01", "'0.01'", "'0.01 + 0*i'"}) {
+    double const g = ratio == "1" ? 1 : 0.01;
+    auto const scene =
+        scene_of(llg_scene("0.5", "rkmk4", 1,
+                           "lattice = { shape = [2], gyromagnetic = " + ratio +
+                               " }\nfield = { exchange = 0.5, applied = [0, 0, 1] }\n"
+                               "initial = { uniform = [1, 0, 0.1] }")
+                     .text,
+                 {fmt::format("integrator={{method='rkmk4',dt={},steps=100000,until_torque=1e-3}}",
+                              0.05 / g)});
+    auto const run = SceneRun::open(scene, {});
+    auto const field = packed<double>(run->field().vectors);
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(field[i], i % 3 == 2 ? 1 : 0, 1e-14) << ratio;
+    EXPECT_EQ(run->advance(100000, {.period = 1, .until_torque = true}), Advanced::at_rest);
+    auto const m = packed<double>(run->spins().vectors);
+    EXPECT_NEAR(std::hypot(m[0], m[1]), 0.98e-3, 0.03e-3) << ratio;
+  }
+}
+
 struct MeanOfRegion {
   double sum = 0, of_squares = 0, count = 0;
 
