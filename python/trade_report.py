@@ -12,7 +12,7 @@ import re
 import statistics
 import subprocess
 
-from cayspin_plots import command_line, trade_costs, trade_figure, trade_overview
+from cayspin_plots import command_line, trade_costs, trade_figure
 from cayspin_plots.trade_costs import ERRORS, cheapest, cost
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -161,8 +161,6 @@ def main():
         rows[title] = f"{ratio_row(title, medians)} {spread} |"
         print(rows[title], flush=True)
         trade_figure.draw(trades[title], ROOT / f"docs/images/trade_{name}.png")
-    named = [trade | {"name": title} for title, trade in trades.items()]
-    trade_overview.draw(named, ROOT / "docs/images/trade_overview.png")
     for page in PAGES:
         page.write_text(with_tables(page.read_text(), trades, rows))
 

@@ -8,9 +8,10 @@ def draw_components(axes, trajectory):
     """Fills three axes with m_x, m_y, m_z of the first row (y = z = 0) over time and position."""
     row = trajectory.spins[:, 0, 0]
     sites = row.shape[1]
-    time = np.append(trajectory.time, trajectory.time[-1])
-    if len(trajectory.time) > 1:
-        time[-1] += trajectory.time[-1] - trajectory.time[-2]
+    time = trajectory.in_time_unit(trajectory.time)
+    time = np.append(time, time[-1])
+    if len(time) > 2:
+        time[-1] += time[-2] - time[-3]
     else:
         time[-1] += 1
     for component, (axis, name) in enumerate(zip(axes, "xyz")):
@@ -27,7 +28,7 @@ def draw_components(axes, trajectory):
         axis.grid(False)
         axis.set_title(f"$m_{name}$ along x")
         axis.set_ylabel("site")
-        axis.set_xlabel("time")
+        axis.set_xlabel(trajectory.time_label())
         axis.figure.colorbar(image, ax=axis, pad=0.02, ticks=[-limit, 0, limit], format="%.2g")
 
 

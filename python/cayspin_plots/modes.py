@@ -72,8 +72,8 @@ def _draw_spectrum(file, axis):
     for mode, place in enumerate(zip(frequency, decay)):
         axis.annotate(str(mode), place, xytext=(0, 5), textcoords="offset points", ha="center")
     axis.margins(y=0.25)
-    axis.set_xlabel("frequency, GHz" if si else "angular frequency")
-    axis.set_ylabel("decay, 1/ns" if si else "decay")
+    axis.set_xlabel("frequency (GHz)" if si else "angular frequency")
+    axis.set_ylabel("decay (1/ns)" if si else "decay")
 
 
 def _draw_modes(file):
@@ -125,6 +125,6 @@ def _draw_bands(file):
     axis.set_xticks(along[turns], ["(" + ", ".join(f"{k:.3g}" for k in waves[i]) + ")"
                                    for i in turns])
     axis.set_xlabel("wave vector, cycles a cell")
-    axis.set_ylabel("frequency, GHz" if si else "angular frequency")
+    axis.set_ylabel("frequency (GHz)" if si else "angular frequency")
     axis.set_ylim(bottom=min(0, frequency.min()))
     return figure

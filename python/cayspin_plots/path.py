@@ -84,7 +84,7 @@ def draw(file, texture, colors):
             *barriers, unit=unit))
     axis.legend()
     axis.set_xlabel("distance, rad")
-    axis.set_ylabel("energy above the start" + (", J" if si else ""))
+    axis.set_ylabel("energy above the start" + (" (J)" if si else ""))
     if pictures:
         cells = rows[1].subgridspec(1, len(pictures))
         for cell, image in zip(cells, pictures):

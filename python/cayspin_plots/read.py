@@ -28,6 +28,14 @@ class Trajectory:
     scalars: Series
     precision: str
     complete: bool
+    si: bool
+
+    def in_time_unit(self, time):
+        """Times as pictures show them: ns in SI."""
+        return 1e9 * time if self.si else time
+
+    def time_label(self):
+        return "time (ns)" if self.si else "time"
 
     def sites(self):
         return int(np.prod(self.spins.shape[1:4]))
@@ -89,4 +97,5 @@ def read_trajectory(path):
             scalars=samples if len(samples.time) >= count else frames,
             precision=file.attrs["precision"],
             complete=bool(file.attrs["complete"]),
+            si=file.attrs.get("units") == "SI",
         )

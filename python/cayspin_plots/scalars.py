@@ -10,9 +10,10 @@ SMALLEST = 1e-17
 
 
 def draw_energy(axis, trajectory):
-    axis.plot(trajectory.scalars.time, trajectory.scalars.energy, color=BLUE)
-    axis.set_title("energy")
-    axis.set_xlabel("time")
+    axis.plot(trajectory.in_time_unit(trajectory.scalars.time), trajectory.scalars.energy,
+              color=BLUE)
+    axis.set_title("energy (J)" if trajectory.si else "energy")
+    axis.set_xlabel(trajectory.time_label())
 
 
 def draw_norm_defect(axis, trajectory, **line):
@@ -20,9 +21,9 @@ def draw_norm_defect(axis, trajectory, **line):
     line.setdefault("color", BLUE)
     defect = np.maximum(trajectory.scalars.norm_defect, SMALLEST)
     axis.set_ylim(SMALLEST, max(1e-12, 30 * float(defect.max())))
-    axis.semilogy(trajectory.scalars.time, defect, **line)
+    axis.semilogy(trajectory.in_time_unit(trajectory.scalars.time), defect, **line)
     axis.set_title(r"norm defect,  max $|\,|m| - 1\,|$")
-    axis.set_xlabel("time")
+    axis.set_xlabel(trajectory.time_label())
 
 
 def draw_means(axis, x, m, *line, **look):
@@ -34,7 +35,8 @@ def draw_means(axis, x, m, *line, **look):
 
 
 def draw_magnetization(axis, trajectory):
-    draw_means(axis, trajectory.scalars.time, trajectory.scalars.magnetization)
+    draw_means(axis, trajectory.in_time_unit(trajectory.scalars.time),
+               trajectory.scalars.magnetization)
     axis.legend(ncol=3, loc="lower right", bbox_to_anchor=(1, 0.98), borderaxespad=0)
     axis.set_title("magnetization")
-    axis.set_xlabel("time")
+    axis.set_xlabel(trajectory.time_label())

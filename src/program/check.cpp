@@ -248,12 +248,12 @@ int check_in_stages(CheckOptions const& options, io::Scene const& scene) {
 
 // Prints how many replicas there are, and returns the scene of the first, which is checked.
 io::Scene first_replica(CheckOptions const& options, io::Scene const& scene) {
-  auto const& [replicas, vary] = scene.ensemble;
+  auto const& ensemble = scene.ensemble;
   std::vector<std::string> keys;
-  for (auto const& varied : vary) keys.push_back(varied.key);
+  for (auto const& varied : ensemble.vary) keys.push_back(varied.key);
   if (!options.json)
     print("ensemble",
-          fmt::format("{} replicas of what follows, whose memory is for one{}", replicas,
+          fmt::format("{} replicas of what follows, whose memory is for one{}", ensemble.replicas,
                       keys.empty() ? std::string()
                                    : fmt::format("; they vary in {}", fmt::join(keys, ", "))));
   return io::is_to_relax(scene) ? io::replica_to_relax(scene, 0) : io::replica_of(scene, 0);
@@ -263,6 +263,7 @@ int check(CheckOptions const& options) {
   auto scene =
       io::with_shape_of_start(io::read_scene_to_run_or_relax(options.scene, options.overrides));
   io::check_files(scene);
+  if (options.ranks) io::require_no_ensemble(scene, "a run on several ranks");
   if (scene.ensemble.there()) scene = first_replica(options, scene);
   if (io::is_to_relax(scene)) return check_to_relax(options, scene);
   if (!scene.stages.empty()) return check_in_stages(options, scene);

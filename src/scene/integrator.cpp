@@ -115,9 +115,9 @@ void read_error(Table const& table, Integrator& integrator) {
 constexpr double usual_looks = 128;
 
 double read_dt(Table const& table, Integrator const& integrator) {
-  auto const end = table.find("end");
-  if (!integrator.method->has_equal_steps() && end && !table.contains("dt"))
-    return positive_number(*end) / usual_looks;
+  bool const has_default = !integrator.method->has_equal_steps() && !table.contains("steps");
+  if (has_default && !table.contains("dt"))
+    return positive_number(table.required("end", "a time > 0")) / usual_looks;
   return positive_number(table.required("dt", "a number > 0"));
 }
 

@@ -36,6 +36,7 @@ class Notes {
     of_couplings();
     if (sites(scene_) <= most_sites_counted) of_sites();
     of_mesh();
+    if (scene_.units.si) of_magnitudes();
     return std::move(lines_);
   }
 
@@ -274,6 +275,33 @@ class Notes {
     if (any_axis(differs))
       add("initial.file", fmt::format("its cells are {:.6g} m, and lattice.spacing is {:.6g} m",
                                       fmt::join(mesh.step, " x "), fmt::join(edges, " x ")));
+  }
+
+  /// Names numbers that are right in other units.
+  void of_magnitudes() {
+    auto const& material = *scene_.material;
+    auto const look = [&](std::string_view key, double value, double least, double most,
+                          std::string_view meaning) {
+      if (value != 0 && !(std::abs(value) >= least && std::abs(value) <= most))
+        add(key, fmt::format("{:.6g} {}", value, meaning));
+    };
+    look("material.gamma", material.gamma, 1e9, 1e13,
+         "rad/(s T) is far from an electron's 1.76e11; in m/(A s) that is 2.21e5");
+    if (material.atomistic) {
+      look("material.mu_s", material.moment, 1e-26, 1e-20,
+           "J/T is far from a Bohr magneton, 9.274e-24 J/T");
+      look("material.J", material.exchange.value_or(0), 0, 1e-18,
+           "J is far above the bonds of spins; 1 meV is 1.602e-22 J");
+    } else {
+      look("material.Ms", material.moment, 100, 1e7,
+           "A/m is far from those of magnets; mu0 Ms = 1 T is 7.96e5 A/m");
+      look("material.A", material.exchange.value_or(0), 0, 1e-9,
+           "J/m is far above those of magnets, about 1e-11 J/m");
+    }
+    for (double const edge : scene_.lattice.spacing)
+      if (edge * scene_.units.length > 1e-4)
+        return add("lattice.spacing", fmt::format("{:.6g} m is large for a cell; 1 nm is 1e-9 m",
+                                                  edge * scene_.units.length));
   }
 
   Scene const& scene_;

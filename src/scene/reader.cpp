@@ -95,7 +95,8 @@ std::string did_you_mean(std::string_view word, std::span<std::string_view const
   std::size_t best_distance = 3;
   for (auto const candidate : known) {
     auto const distance = edit_distance(word, candidate);
-    if (distance < best_distance && distance < candidate.size()) {
+    // Short words are near to many others.
+    if (distance < best_distance && 2 * distance < std::max(word.size(), candidate.size())) {
       best = candidate;
       best_distance = distance;
     }

@@ -34,8 +34,7 @@ double largest(AppliedField const& vector, std::string_view key, io::Scene const
     try {
       auto const h = vector(t);
       largest = std::max(largest, std::hypot(h.x, h.y, h.z));
-    } catch (NumbersFailed const& error) {
-      if (!scene.units.si) throw io::scene_error(scene, key, error.what());
+    } catch (NumbersFailed const&) {
       throw io::scene_error(scene, key, "is not finite at t = " + time_text(scene.units, t));
     }
   }

@@ -95,6 +95,34 @@ TEST(Notes, SayWhatActsNowhere) {
   }
 }
 
+// Numbers of other units are far from those of any magnet.
+TEST(Notes, NameMagnitudesOfOtherUnits) {
+  auto const notes_of = [](std::string const& material, std::string const& more = "") {
+    return notes(scene_of(
+        "units = 'SI'\nsystem = { kind = 'llg' }\nmaterial = { damping_form = 'gilbert', " +
+            material +
+            " }\nlattice = { shape = [4, 4], spacing = " + (more.empty() ? "5e-9" : more) +
+            " }\ninitial = { uniform = [0, 0, 1] }\nintegrator = { method = 'heun', dt "
+            "= 1e-14, steps = 1 }\n",
+        {}));
+  };
+  EXPECT_TRUE(notes_of("Ms = 8e5, A = 1.3e-11, alpha = 0.1").empty());
+  EXPECT_TRUE(notes_of("mu_s = 2.2e-23, J = 1e-21, alpha = 0.1").empty());
+  for (auto const& [material, key] :
+       {std::pair{"Ms = 1.0, A = 1.3e-11, alpha = 0.1", "material.Ms"},
+        std::pair{"Ms = 8e5, A = 13, alpha = 0.1", "material.A"},
+        std::pair{"Ms = 8e5, A = 1.3e-11, alpha = 0.1, gamma = 2.211e5", "material.gamma"},
+        std::pair{"mu_s = 2.2, J = 1e-21, alpha = 0.1", "material.mu_s"},
+        std::pair{"mu_s = 2.2e-23, J = 10, alpha = 0.1", "material.J"}}) {
+    auto const found = notes_of(material);
+    ASSERT_EQ(found.size(), 1U) << material;
+    EXPECT_NE(found[0].find(key), std::string::npos) << found[0];
+  }
+  auto const large = notes_of("Ms = 8e5, A = 1.3e-11, alpha = 0.1", "5");
+  ASSERT_EQ(large.size(), 1U);
+  EXPECT_NE(large[0].find("lattice.spacing"), std::string::npos) << large[0];
+}
+
 TEST(Notes, SayWhereImagesAndBoundariesDiffer) {
   std::string const periodic = "lattice.boundary='periodic'",
                     images = "field.demag.periodic_images=";

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..command_line import require_file
 from ..texture import checksum, lattice_of, plane_of, require_trajectory
+from ..texture.replica import is_ensemble
 
 OF_FRAMES = ("spins", "time", "step", "energy", "norm_defect", "magnetization")
 OF_SAMPLES = ("time", "energy", "magnetization")
@@ -62,6 +63,9 @@ class Reader:
         for tries_left in range(10, -1, -1):
             try:
                 with h5py.File(self.path, "r", locking=False) as file:
+                    if is_ensemble(file):
+                        raise ValueError("the file of an ensemble; accepted: the file of a run, or "
+                                         "cayspin plot --replica for one of its replicas")
                     require_trajectory(file)
                     return read(file)
             except ValueError as error:
