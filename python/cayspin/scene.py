@@ -147,10 +147,10 @@ class Scene:
                 nonlocal_ = _nonlocal_by_planes(nonlocal_, shape, scene.cell_sites)
             scene.set_own_field(own.get("applied"), nonlocal_)
         self._scene, self._overrides = scene, overrides
-        self._only_here = ["a function in field"] * bool(own)
+        self._only_here = {f"field.{key}": "a function" for key in own}
         if scene.given_start:
-            self._only_here.append("an array as initial")
-        self._only_here += [f"an array as {key}" for key in arrays]
+            self._only_here["initial"] = "an array"
+        self._only_here |= dict.fromkeys(arrays, "an array")
 
     def at_sites(self, expression: str) -> np.ndarray:
         """The values of an `expression` at the sites, (nz, ny, nx), of a crystal with several sites
@@ -189,10 +189,10 @@ class Scene:
     def _changed(self, scene, overrides, arrays):
         changed = Scene.__new__(Scene)
         changed._scene, changed._overrides = scene, None
-        replaced = [f"an array as {one.partition('=')[0]}" for one in overrides]
-        kept = [one for one in self._only_here if not any(
-            one == other or one.startswith((f"{other}.", f"{other}[")) for other in replaced)]
-        changed._only_here = kept + [f"an array as {key}" for key in arrays]
+        replaced = [one.partition("=")[0] for one in overrides]
+        kept = {key: kind for key, kind in self._only_here.items() if not any(
+            key == other or key.startswith((f"{other}.", f"{other}[")) for other in replaced)}
+        changed._only_here = kept | dict.fromkeys(arrays, "an array")
         return changed
 
     @property

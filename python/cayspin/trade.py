@@ -12,9 +12,10 @@ import subprocess
 import tempfile
 from typing import Any
 
-from cayspin import arguments
+from cayspin import arguments, toml_text
 from cayspin._cayspin import CayspinError, NumbersFailed
 from cayspin.scene import Scene
+from cayspin.texture import toml
 
 
 def program() -> str:
@@ -27,22 +28,47 @@ def program() -> str:
 LONGEST = 7 * 24 * 3600  # seconds: trials of large scenes take hours
 
 
+def _input_files(command: str, scene: Scene) -> list[str]:
+    """Overrides that name the scene's input files from any folder."""
+    folder = pathlib.Path(scene._scene.path).parent.absolute()
+
+    def found(thing, key):
+        if isinstance(thing, list):
+            return [one for n, entry in enumerate(thing) for one in found(entry, f"{key}.{n}")]
+        if not isinstance(thing, dict):
+            return []
+        return [one for name, entry in thing.items() for one in (
+            [f"{key}.{name}={toml_text.value(folder / entry, name)}"]
+            if name in ("file", "image") and isinstance(entry, str)
+            else found(entry, f"{key}.{name}"))]
+
+    if "file" not in scene.text and "image" not in scene.text:
+        return []
+    try:
+        tables = toml.loads(scene.text)
+    except ImportError as error:
+        raise CayspinError(f"{command}: to find the input files of the scene takes {error}; "
+                           "accepted: a scene without such files") from None
+    return [one for name, table in tables.items() if name != "output" for one in found(table, name)]
+
+
 def _ask(command: str, scene: Scene, *options: str) -> dict:
     if not isinstance(scene, Scene):
         raise CayspinError(f"{command}: a {type(scene).__name__}; accepted: a Scene")
-    if scene._only_here:
-        raise CayspinError(f"{command}: the scene has {scene._only_here[0]}, which the program "
-                           "cannot run; accepted: a scene that is only text")
+    for key, kind in scene._only_here.items():
+        raise CayspinError(f"{command}: the scene has {kind} as {key}, which the program cannot "
+                           "run; accepted: a scene that is only text")
     with tempfile.TemporaryDirectory() as folder:
         if scene._overrides is None:
             file = pathlib.Path(folder, "scene.toml")
             file.write_text(scene.text, encoding="utf-8")
-            changed = []
+            changed = _input_files(command, scene)
         else:
             file = scene._scene.path
-            changed = [part for one in scene._overrides for part in ("--set", one)]
+            changed = scene._overrides
+        settings = [part for one in changed for part in ("--set", one)]
         try:
-            done = subprocess.run([program(), command, str(file), *changed, *options, "--json"],
+            done = subprocess.run([program(), command, str(file), *settings, *options, "--json"],
                                   capture_output=True, text=True, timeout=LONGEST)
         except subprocess.TimeoutExpired:
             raise CayspinError(f"{command}: the program has not ended after {LONGEST} s") from None

@@ -6,6 +6,7 @@ import unittest
 import warnings
 
 import cayspin
+import h5py
 import numpy as np
 from package_test import PackageTest
 
@@ -152,6 +153,31 @@ class Stages(PackageTest):
             cayspin.advise(sim.scene, 1e-3)
         sim.set("field.anisotropy", {"axis": [0, 0, 1], "constant": 0.5})
         self.assertLess(cayspin.advise(sim.scene, 1e-3).error, 1e-3)
+
+    def test_a_function_that_was_replaced(self):
+        sim = cayspin.Simulation(scene(field={"exchange": 1.0, "applied": lambda t: [0, 0, 5.0]}))
+        sim.set("system.damping", 0.2)
+        with self.assertRaisesRegex(cayspin.CayspinError, "has a function as field.applied, which"):
+            cayspin.advise(sim.scene, 1e-3)
+        sim.set("field.applied", [0, 0, 0.2])
+        self.assertLess(cayspin.advise(sim.scene, 1e-3).error, 1e-3)
+
+    def test_input_files_are_found_after_it(self):
+        (self.folder / "states").mkdir()
+        with h5py.File(self.folder / "states" / "damping.h5", "w") as file:
+            file["values"] = np.full((1, 3, 12), 0.3)
+        with h5py.File(self.folder / "states" / "x-is-first.h5", "w") as file:
+            file["spins"] = np.broadcast_to([1.0, 0, 0], (1, 3, 12, 3))
+        given = self.folder / "states" / "given.toml"
+        given.write_text(scene(system={"kind": "llg", "damping": {"file": "damping.h5"}},
+                               initial={"file": "x-is-first.h5"}, output={"file": "new.h5"},
+                               ).text, encoding="utf-8")
+        sim = cayspin.Simulation(cayspin.Scene.from_file(given))
+        sim.set("field.applied", [0, 0, 1])
+        advice = cayspin.advise(sim.scene, 1e-3, precision="double")
+        self.assertLess(advice.error, 1e-3)
+        self.assertEqual(cayspin.Simulation(advice.scene).magnetization()[0], 1)
+        self.assertLess(cayspin.advise(advice.scene, 1e-2).error, 1e-2)
 
     def test_in_an_observer(self):
         sim = cayspin.Simulation(scene())
