@@ -16,6 +16,7 @@ from cayspin.equilibrium import Minimum, Modes
 from cayspin.scene import Scene
 
 _GUARD_PERIOD = 100  # steps between two checks of energy and lengths in step()
+_LAST_STEP = 2**53
 
 
 class Simulation:
@@ -71,7 +72,7 @@ class Simulation:
         self._run.require_reachable(n)
         self._check_dt()
         if n > 0 and self._observers:
-            self._advance(self._run.steps + n, _GUARD_PERIOD, False, None)
+            self._advance(self._run.steps + n, _GUARD_PERIOD)
         else:
             self._run.advance(n, _GUARD_PERIOD, False)
 
@@ -81,7 +82,7 @@ class Simulation:
 
         Frames go into the HDF5 file `output`, or into the scene's output.file; output=False writes
         none. `overwrite` replaces an existing file. The run ends early if the scene's until_torque
-        or an observer says so.
+        or an observer says so. If an observer changes dt, the run still ends at `until`.
 
         Raises NumbersFailed and SceneError as step() does. Raises CayspinError for a time that has
         passed or is not a whole number of steps, for a scene without end, and for a file that
@@ -93,24 +94,26 @@ class Simulation:
         if until is None and self._scene.steps == 0:
             raise _cayspin.CayspinError("run: the scene has no end; accepted: run(until=t), or "
                                         "integrator.end in the scene")
-        end = self._run.last_step if until is None else self._run.step_at(
-            arguments.real(until, "run: until"))
+        if until is not None:
+            until = arguments.real(until, "run: until")
+        end = self._run.last_step if until is None else self._run.step_at(until)
         if end < self.steps:
-            until = end * self._scene.dt if until is None else until
-            raise _cayspin.CayspinError(f"run: until t = {until:g}, and the time is "
+            passed = end * self._scene.dt if until is None else until
+            raise _cayspin.CayspinError(f"run: until t = {passed:g}, and the time is "
                                         f"{self.time:g}; accepted: a later time")
         self._run.require_reachable(end - self.steps)
         self._check_dt()
         if output is None:
             output = self._scene._scene.output
         if output is None or arguments.is_false(output):
-            self._advance(end, self._scene._scene.guard_period, True, None)
+            self._advance(end, self._scene._scene.guard_period, True, until)
             return
         file = arguments.file_name(output, "run: output")
-        recorder = _cayspin.Recorder(self._run, end, file, overwrite)
+        # An observer may move the end, so it is left to _advance().
+        recorder = _cayspin.Recorder(self._run, _LAST_STEP, file, overwrite)
         try:
             recorder.look(False)
-            self._advance(end, self._scene._scene.guard_period, True, recorder)
+            self._advance(end, self._scene._scene.guard_period, True, until, recorder)
             recorder.look(True)
         except KeyboardInterrupt:
             recorder.look(True)
@@ -220,7 +223,7 @@ class Simulation:
             if warning:
                 warnings.warn(warning, stacklevel=3)
 
-    def _advance(self, end, guard_period, until_torque, recorder):
+    def _advance(self, end, guard_period, until_torque=False, until=None, recorder=None):
         run = self._run
         while run.steps < end:
             due = min([(run.steps // every + 1) * every for every, _ in self._observers] + [end])
@@ -228,11 +231,14 @@ class Simulation:
                 due = min(due, recorder.next)
             at_rest = run.advance(due - run.steps, guard_period, until_torque)
             if recorder:
-                recorder.look(at_rest)
+                recorder.look(at_rest or run.steps == end)
+            scene = self._scene
             stop = [arguments.wants_stop(f(self)) for every, f in self._observers
                     if run.steps % every == 0]
             if at_rest or any(stop):
                 return
+            if until is not None and self._scene is not scene:
+                end = run.step_at(until)
 
     def observe(self, every: int, f: Callable[[Simulation], Any]) -> None:
         """Calls the function `f` with this simulation after each step whose number is a multiple of

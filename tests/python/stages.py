@@ -187,6 +187,26 @@ class Stages(PackageTest):
         self.assertAlmostEqual(sim.energies()["applied"],
                                -2.0 * sim.spins[..., 2].sum(), delta=1e-9)
 
+    def test_a_new_dt_in_an_observer_keeps_the_end(self):
+        for dt, steps in ((0.01, 10 + 80), (0.04, 10 + 20)):
+            sim = cayspin.Simulation(scene(output={"every": 8, "scalars_every": 16}))
+            sim.observe(10, lambda sim, dt=dt: sim.set("integrator.dt", dt)
+                        if sim.steps == 10 else None)
+            file = self.folder / f"{dt}.h5"
+            sim.run(until=1.0, output=file)
+            self.assertEqual(sim.steps, steps)
+            self.assertAlmostEqual(sim.time, 1.0, 14)
+            with cayspin.open(file) as run:
+                self.assertEqual(list(run.step), [*range(0, steps, 8), steps])
+                self.assertEqual(list(run.scalars["step"]), [*range(0, steps, 16), steps])
+                np.testing.assert_array_equal(run.spins[-1], sim.spins)
+                self.assertTrue(run.complete)
+        sim = cayspin.Simulation(scene())
+        sim.observe(49, lambda sim: sim.set("integrator.dt", 0.04))
+        with self.assertRaisesRegex(cayspin.CayspinError, "t = 1 is 0.5 steps of dt = 0.04"):
+            sim.run(until=1.0)
+        self.assertEqual(sim.steps, 49)
+
     def test_a_new_dt_is_warned_of(self):
         sim = cayspin.Simulation(scene())
         sim.step()
