@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import operator
 import os
-from typing import Any
+from typing import Any, Iterable
 
 import numpy as np
 
@@ -95,12 +95,21 @@ def entries(things: Any, name: str, accepted: str) -> list:
     raise CayspinError(f"{name}: {_shown(things)}; accepted: {accepted}")
 
 
+def options(given: Iterable[str], accepted: Iterable[str], name: str) -> None:
+    """Checks the names of further options."""
+    for option in given:
+        if option not in accepted:
+            raise CayspinError(f"{name}: no option {option}; accepted: {', '.join(accepted)}")
+
+
 def file_name(path: Any, name: str) -> str:
     """The name of a file."""
     try:
         text = os.fsdecode(os.fsencode(_one(path)))
     except (TypeError, UnicodeEncodeError):
         raise CayspinError(f"{name}: {_shown(path)}; accepted: the name of a file") from None
+    if not text:
+        raise CayspinError(f"{name}: an empty name; accepted: the name of a file")
     if "\0" in text:
         raise CayspinError(f"{name}: {_shown(text)}; accepted: a name without a null character")
     return text

@@ -8,9 +8,8 @@ from typing import Any, Sequence
 
 from cayspin import arguments, texture
 from cayspin._cayspin import CayspinError
-from cayspin.frames import Frames, at_equal_steps, with_lattice
+from cayspin.frames import Frames, at_equal_steps, found_in, reading, texture_of, with_lattice
 from cayspin.spectra import StructureFactor, structure_factor
-from cayspin.texture.replica import Replica
 
 
 class Ensemble:
@@ -35,33 +34,56 @@ class Ensemble:
         self.path: str | os.PathLike = path  #: name of the file
         self.file: Any = file  #: the open h5py.File
         #: time, step, energy, norm_defect and magnetization at the samples
-        self.scalars: dict[str, Any] = {name: file["scalars"][name] for name in file["scalars"]}
+        self.scalars: dict[str, Any] = {}
         #: the values, (replica), of each varied key
-        self.vary: dict[str, Any] = {name: file["vary"][name][:] for name in file["vary"]}
+        self.vary: dict[str, Any] = {}
+        with reading(file, path):
+            self._require_arrays()
+            self.scalars.update(file["scalars"])
+            self.vary.update((name, values[:]) for name, values in file["vary"].items())
+
+    def _require_arrays(self):
+        import h5py
+
+        some = [name for name in self._of_searches if name in self.file]
+        groups = ("scalars", "vary")
+        found = found_in(self.file, (*self._names, *some, *groups))
+        missing = [name for name, one in found.items()
+                   if not isinstance(one, h5py.Group if name in groups else h5py.Dataset)]
+        missing += [f"attribute {name}" for name in ("replicas", "scene", "complete")
+                    if name not in self.file.attrs]
+        if missing:
+            raise CayspinError(f"{self.path}: no ensemble, it has no {missing[0]}; accepted: the "
+                               "file of an ensemble")
 
     def __getattr__(self, name: str) -> Any:
         if name in self._names:
-            return self.file[name]
-        if name in self._of_searches:
-            if name in self.file:
+            with reading(self.file, self.path):
                 return self.file[name]
+        if name in self._of_searches:
+            with reading(self.file, self.path):
+                if name in self.file:
+                    return self.file[name]
             raise AttributeError(f"{self.path}: it has no {name}; accepted: a file of cayspin relax")
         raise AttributeError(name)
 
     @property
     def replicas(self) -> int:
         """The number of replicas."""
-        return int(self.file.attrs["replicas"])
+        with reading(self.file, self.path):
+            return int(self.file.attrs["replicas"])
 
     @property
     def scene(self) -> str:
         """The TOML text of the scene that ran."""
-        return self.file.attrs["scene"]
+        with reading(self.file, self.path):
+            return self.file.attrs["scene"]
 
     @property
     def complete(self) -> bool:
         """Whether the run ended as planned."""
-        return bool(self.file.attrs["complete"])
+        with reading(self.file, self.path):
+            return bool(self.file.attrs["complete"])
 
     def structure_factor(self, replicas: Sequence[int] | None = None,
                          frames: slice = slice(None), **options: Any) -> StructureFactor:
@@ -85,7 +107,7 @@ class Ensemble:
                 raise CayspinError(f"structure_factor: replica {one}; accepted: {-self.replicas} "
                                    f"to {self.replicas - 1}")
         shown, dt = at_equal_steps(self.file, self.path, len(self), frames, "structure_factor")
-        runs = [Frames(self.file["spins"], shown, one % self.replicas) for one in chosen]
+        runs = [Frames(self.spins, shown, one % self.replicas) for one in chosen]
         return structure_factor(runs, dt, **with_lattice(self.path, self.scene, options))
 
     def plot(self, replica: int = 0, frame: int = -1, axes: Any = None, **options: Any) -> Any:
@@ -98,15 +120,17 @@ class Ensemble:
         """
         replica = arguments.whole(replica, "plot: replica")
         frame = arguments.whole(frame, "plot: frame")
+        arguments.options(options, texture.OPTIONS, "plot")
+        shown, _ = texture_of(self.file, self.path, frame, replica=replica)
         try:
-            shown, options["before"] = texture.of_file(Replica(self.file, replica), frame)
             return texture.draw(shown, axes, **options)
         except ValueError as error:
             raise CayspinError(f"{self.path}: {error}") from None
 
     def __len__(self) -> int:
         """The number of complete frames; a killed run may have written part of another one."""
-        return min(len(self.file[name]) for name in self._names)
+        with reading(self.file, self.path):
+            return min(len(self.file[name]) for name in self._names)
 
     def __enter__(self) -> Ensemble:
         return self

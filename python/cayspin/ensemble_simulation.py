@@ -46,7 +46,11 @@ class EnsembleSimulation:
             None if space is None else arguments.word(space, "space"),
             None if threads is None else arguments.whole(threads, "threads", 32))
         if restart is not None:
-            warning = self._run.continue_from(arguments.file_name(restart, "restart"))
+            file = arguments.file_name(restart, "restart")
+            try:
+                warning = self._run.continue_from(file)
+            except RuntimeError as error:  # of a file that cannot be opened
+                raise _cayspin.CayspinError(str(error)) from None
             if warning:
                 warnings.warn(warning, stacklevel=2)
         self._scene = scene

@@ -3,14 +3,46 @@
 
 from __future__ import annotations
 
-from typing import Any
+import contextlib
+from typing import Any, Iterable, Iterator
 
 import numpy as np
 
-from cayspin import arguments
+from cayspin import arguments, texture
 from cayspin._cayspin import CayspinError
 from cayspin.scene import Scene
 from cayspin.texture import toml
+from cayspin.texture.replica import Replica
+
+
+@contextlib.contextmanager
+def reading(file: Any, path: Any) -> Iterator[None]:
+    """Errors of h5py, and of the text of a scene, as a CayspinError of one line."""
+    if not file:
+        raise CayspinError(f"{path}: the file is closed; accepted: an open one")
+    try:
+        yield
+    except (ArithmeticError, AttributeError, LookupError, OSError, RuntimeError, TypeError,
+            ValueError) as error:
+        reason = " ".join(str(error.args[-1] if error.args else error).split())
+        raise CayspinError(f"{path}: cannot be read: {reason}") from None
+
+
+def found_in(file: Any, names: Iterable[str]) -> dict[str, Any]:
+    """Arrays and groups by their names; None for what is not there. Raises KeyError for what is
+    damaged, unlike file.get()."""
+    return {name: file[name] if name in file else None for name in names}
+
+
+def texture_of(file: Any, path: Any, frame: int, before: int | None = None,
+               replica: int | None = None) -> tuple[texture.Texture, np.ndarray | None]:
+    """A frame to draw, and the spins of the frame `before`; of one replica of an ensemble."""
+    with reading(file, path):
+        try:
+            return texture.of_file(file if replica is None else Replica(file, replica), frame,
+                                   before)
+        except ValueError as error:
+            raise CayspinError(f"{path}: {error}") from None
 
 
 class Frames:
@@ -19,12 +51,13 @@ class Frames:
 
     def __init__(self, dataset: Any, frames: range, replica: int | None = None):
         self.dataset, self.frames, self.replica = dataset, frames, replica
+        self.path = dataset.file.filename
         self.shape = (len(frames), *dataset.shape[1 if replica is None else 2:])
 
     def __getitem__(self, frame: int) -> np.ndarray:
-        if self.replica is None:
-            return self.dataset[self.frames[frame]]
-        return self.dataset[self.frames[frame], self.replica]
+        place = self.frames[frame]
+        with reading(self.dataset, self.path):
+            return self.dataset[place if self.replica is None else (place, self.replica)]
 
 
 def at_equal_steps(file: Any, path: Any, count: int, frames: Any,
@@ -42,7 +75,8 @@ def at_equal_steps(file: Any, path: Any, count: int, frames: Any,
                            "with a step above 0")
     if len(chosen) < 4:
         raise CayspinError(f"{name}: {len(chosen)} frames; accepted: at least 4")
-    time = file["time"][:][chosen]
+    with reading(file, path):
+        time = file["time"][:][chosen]
     dt = (time[-1] - time[0]) / (len(time) - 1)
     if not (np.abs(np.diff(time) - dt) < 1e-6 * dt).all():
         raise CayspinError(f"{path}: frames at unequal steps of time; accepted: equal "
@@ -54,6 +88,8 @@ def tables(path: Any, text: str, key: str, otherwise: str) -> dict:
     """The tables of a scene, from which a key is read; `otherwise` is accepted in its place."""
     try:
         return toml.loads(text)
+    except ValueError as error:
+        raise CayspinError(f"{path}: its scene cannot be read: {error}") from None
     except ImportError as error:
         raise CayspinError(f"{path}: to read {key} of its scene takes {error}; accepted: "
                            f"{otherwise}") from None
@@ -62,7 +98,8 @@ def tables(path: Any, text: str, key: str, otherwise: str) -> dict:
 def along_axes(path: Any, text: str, key: str, default: Any, argument: str) -> list:
     """The scene's lattice.KEY for x, y and z: one for all axes, or one for each."""
     read = tables(path, text, f"lattice.{key}", f"the argument {argument}")
-    given = read.get("lattice", {}).get(key, default)
+    lattice = read.get("lattice")
+    given = lattice.get(key, default) if isinstance(lattice, dict) else default
     given = given if isinstance(given, list) else [given] * 3
     return given + [default] * (3 - len(given))
 
@@ -70,7 +107,10 @@ def along_axes(path: Any, text: str, key: str, default: Any, argument: str) -> l
 def crystal(path: Any, text: str, argument: str) -> Scene:
     """A scene with only these cells."""
     read = tables(path, text, "lattice.cell", f"the argument {argument}")
-    lattice = read.get("lattice", {})
+    lattice = read.get("lattice")
+    if not isinstance(lattice, dict) or not isinstance(lattice.get("shape"), list):
+        raise CayspinError(f"{path}: its scene has no lattice.shape; accepted: the argument "
+                           f"{argument}")
     cells = {key: lattice[key] for key in ("crystal", "cell", "basis") if key in lattice}
     cells["shape"] = [*lattice["shape"], 1, 1][:3]
     cells["spacing"] = along_axes(path, text, "spacing", 1.0, argument)

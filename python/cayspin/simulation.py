@@ -298,6 +298,7 @@ class Simulation:
 
         Raises CayspinError for a plane or an option that does not exist.
         """
+        arguments.options(options, texture.OPTIONS, "plot")
         try:
             return texture.draw(self._texture(), axes, **options)
         except ValueError as error:

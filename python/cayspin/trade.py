@@ -78,7 +78,11 @@ def _ask(command: str, scene: Scene, *options: str) -> dict:
     if done.returncode:
         message = done.stderr.strip() or f"{command}: the program ended with {done.returncode}"
         raise (NumbersFailed if done.returncode == 3 else CayspinError)(message)
-    return json.loads(done.stdout)
+    try:
+        return json.loads(done.stdout)
+    except ValueError:
+        raise CayspinError(f"{command}: the program {program()} printed no result; accepted: the "
+                           "program cayspin") from None
 
 
 def _options(precision, space, threads):

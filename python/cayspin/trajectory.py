@@ -12,7 +12,8 @@ import numpy as np
 from cayspin import arguments, observables, texture
 from cayspin._cayspin import CayspinError, complete_file
 from cayspin.ensemble import Ensemble
-from cayspin.frames import Frames, along_axes, at_equal_steps, with_lattice
+from cayspin.frames import (Frames, along_axes, at_equal_steps, found_in, reading, texture_of,
+                            with_lattice)
 from cayspin.spectra import StructureFactor, structure_factor
 
 
@@ -49,25 +50,40 @@ class Trajectory:
         except (OSError, ValueError) as error:
             reason = " ".join(str(error).split())
             raise CayspinError(f"{self.path}: cannot be opened: {reason}") from None
-        names = (*self._names, "scalars")
-        if "spins" in self.file and self.file["spins"].ndim == 6:
-            names += ("sublattice_magnetization",)
-        missing = [name for name in names if name not in self.file]
-        if missing:
-            self.file.close()
-            raise CayspinError(f"{self.path}: no trajectory, it has no {missing[0]}; "
-                               "accepted: the file of a run")
         #: the same names at the samples, and where the scene asks for them region_magnetization,
         #: (sample, region, 3), region_energy, (sample, region), and term_energy, (sample, term)
-        self.scalars: dict[str, Any] = {name: self.file["scalars"][name]
-                                        for name in self.file["scalars"]}
+        self.scalars: dict[str, Any] = {}
+        try:
+            with reading(self.file, self.path):
+                self._require_arrays()
+                self.scalars.update(self.file["scalars"])
+        except CayspinError:
+            self.file.close()
+            raise
+
+    def _require_arrays(self):
+        import h5py
+
+        some = [name for name in self._of_some if name in self.file]
+        found = found_in(self.file, (*self._names, *some, "scalars"))
+        if getattr(found["spins"], "ndim", 0) == 6:
+            found.setdefault("sublattice_magnetization", None)
+        missing = [name for name, one in found.items()
+                   if not isinstance(one, h5py.Group if name == "scalars" else h5py.Dataset)]
+        if not missing and (found["spins"].ndim not in (5, 6) or found["spins"].shape[-1] != 3):
+            missing.append("frames of spins")
+        if missing:
+            raise CayspinError(f"{self.path}: no trajectory, it has no {missing[0]}; "
+                               "accepted: the file of a run")
 
     def __getattr__(self, name: str) -> Any:
         if name in self._names:
-            return self.file[name]
-        if name in self._of_some:
-            if name in self.file:
+            with reading(self.file, self.path):
                 return self.file[name]
+        if name in self._of_some:
+            with reading(self.file, self.path):
+                if name in self.file:
+                    return self.file[name]
             raise AttributeError(f"{self.path}: it has no {name}; accepted: the file of "
                                  f"{self._of_some[name]}")
         raise AttributeError(name)
@@ -75,19 +91,22 @@ class Trajectory:
     @property
     def scene(self) -> str:
         """The TOML text of the scene that ran."""
-        return self.file.attrs["scene"]
+        with reading(self.file, self.path):
+            return self.file.attrs["scene"]
 
     @property
     def terms(self) -> list[str]:
         """The names of the terms of scalars["term_energy"]; empty if the file has none."""
         if "term_energy" not in self.scalars:
             return []
-        return [name.decode() for name in self.scalars["term_energy"].attrs["terms"]]
+        with reading(self.file, self.path):
+            return [name.decode() for name in self.scalars["term_energy"].attrs["terms"]]
 
     @property
     def complete(self) -> bool:
         """Whether the run ended as planned."""
-        return bool(self.file.attrs["complete"])
+        with reading(self.file, self.path):
+            return bool(self.file.attrs["complete"])
 
     def topological_charge(self, boundary: Sequence[str] | None = None) -> np.ndarray:
         """The topological charge of each plane, (frame, nz), of a crystal (frame, site, nz), as
@@ -98,8 +117,10 @@ class Trajectory:
         """
         if boundary is None:
             boundary = along_axes(self.path, self.scene, "boundary", "open", "boundary")[:2]
-        return np.stack([observables.topological_charge(self.file["spins"][frame], boundary)
-                         for frame in range(len(self))])
+        spins = Frames(self.spins, range(len(self)))
+        none = observables.topological_charge(np.empty((0, *spins.shape[1:])), boundary)
+        return np.array([observables.topological_charge(spins[frame], boundary)
+                         for frame in range(len(self))]).reshape(-1, *none.shape[1:])
 
     def dispersion(self, path: Any, frames: slice = slice(None),
                    **options: Any) -> observables.Dispersion:
@@ -111,7 +132,7 @@ class Trajectory:
         time.
         """
         chosen, dt = at_equal_steps(self.file, self.path, len(self), frames, "dispersion")
-        return observables.dispersion(Frames(self.file["spins"], chosen), dt, path,
+        return observables.dispersion(Frames(self.spins, chosen), dt, path,
                                       **with_lattice(self.path, self.scene, options))
 
     def structure_factor(self, frames: slice = slice(None), **options: Any) -> StructureFactor:
@@ -123,7 +144,7 @@ class Trajectory:
         time.
         """
         chosen, dt = at_equal_steps(self.file, self.path, len(self), frames, "structure_factor")
-        return structure_factor(Frames(self.file["spins"], chosen), dt,
+        return structure_factor(Frames(self.spins, chosen), dt,
                                 **with_lattice(self.path, self.scene, options))
 
     def plot(self, frame: int = -1, axes: Any = None, *, difference_to: int | None = None,
@@ -139,9 +160,11 @@ class Trajectory:
         frame = arguments.whole(frame, "plot: frame")
         if difference_to is not None:
             difference_to = arguments.whole(difference_to, "plot: difference_to")
+        accepted = [name for name in texture.OPTIONS if name != "before"]
+        arguments.options(options, ["difference_to", *accepted], "plot")
+        shown, before = texture_of(self.file, self.path, frame, difference_to)
         try:
-            shown, options["before"] = texture.of_file(self.file, frame, difference_to)
-            return texture.draw(shown, axes, **options)
+            return texture.draw(shown, axes, before=before, **options)
         except ValueError as error:
             raise CayspinError(f"{self.path}: {error}") from None
 
@@ -196,9 +219,12 @@ class Trajectory:
     def __len__(self) -> int:
         """The number of complete frames; a killed run may have written part of another one."""
         names = (*self._names, "sublattice_magnetization", "shift", "stage")
-        return builtins.min(len(self.file[name]) for name in names if name in self.file)
+        with reading(self.file, self.path):
+            return builtins.min(len(self.file[name]) for name in names if name in self.file)
 
     def __repr__(self):
+        if not self.file:
+            return f"<cayspin.Trajectory {self.path}: closed>"
         *of_cell, nz, ny, nx = self.file["spins"].shape[1:-1]
         crystal = f" cells of {of_cell[0]} sites" if of_cell else ""
         return (f"<cayspin.Trajectory {self.path}: {len(self)} frames of "
@@ -219,7 +245,12 @@ def open(path: str | os.PathLike) -> Trajectory | Ensemble:
         file = h5py.File(name, "r")
     except (OSError, ValueError):
         return Trajectory(path)  # completes it, or says why it cannot be opened
-    if is_ensemble(file):
-        return Ensemble(name, file)
+    try:
+        with reading(file, name):
+            if is_ensemble(file):
+                return Ensemble(name, file)
+    except CayspinError:
+        file.close()
+        raise
     file.close()
     return Trajectory(path)

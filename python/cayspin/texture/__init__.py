@@ -4,9 +4,9 @@
     axes = draw(of_file(h5py.File("film.h5"), frame=-1)[0])
 """
 
-from .pictures import draw, largest
+from .pictures import OPTIONS, draw, largest
 from .spins import (Texture, frame_number, lattice_of, of_file, plane_of, require_trajectory,
                     time_text)
 
-__all__ = ["Texture", "draw", "frame_number", "largest", "lattice_of", "of_file", "plane_of",
+__all__ = ["OPTIONS", "Texture", "draw", "frame_number", "largest", "lattice_of", "of_file", "plane_of",
            "require_trajectory", "time_text"]

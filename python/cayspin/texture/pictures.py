@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import numbers
 from typing import Any
 
 import numpy as np
@@ -203,6 +204,12 @@ def _draw_chain(axes, picture, texture):
     return axes
 
 
+def _is_limit(limit):
+    if isinstance(limit, (np.generic, np.ndarray)) and limit.ndim == 0:
+        limit = limit.item()
+    return isinstance(limit, numbers.Real) and 0 <= limit < np.inf
+
+
 def _picture(texture, plane, quantity, colors, before, limit):
     """Checks the arguments of draw(). Returns the picture, and "film", "crystal" or "chain"."""
     for name, word, accepted in (("quantity", quantity, ("spins", "charge")),
@@ -210,8 +217,8 @@ def _picture(texture, plane, quantity, colors, before, limit):
         if not isinstance(word, str) or word not in accepted:
             shown = " ".join(repr(word).split())
             raise ValueError(f'{name} {shown}; accepted: "{accepted[0]}" or "{accepted[1]}"')
-    if limit is not None and (isinstance(limit, (str, bytes)) or np.ndim(limit) or not limit >= 0):
-        raise ValueError(f"limit {limit!r}; accepted: a number >= 0")
+    if limit is not None and not _is_limit(limit):
+        raise ValueError(f"limit {' '.join(repr(limit).split())}; accepted: a finite number >= 0")
     if before is not None and before.dtype.kind not in "buif":
         raise ValueError(f"a difference to an array of {before.dtype}; accepted: one of real "
                          "numbers")
@@ -253,7 +260,11 @@ def draw(texture: Texture, axes: Any = None, *, plane: str | None = None,
 
     Raises ValueError for other words, planes and shapes.
     """
-    before = None if before is None else np.asarray(before)
+    try:
+        before = None if before is None else np.asarray(before)
+    except ValueError:
+        raise ValueError("before: rows of other lengths; accepted: spins of shape "
+                         f"{texture.spins.shape}") from None
     picture, kind = _picture(texture, plane, quantity, colors, before, limit)
     key = axes is None if key is None else key
     if kind == "chain":
@@ -267,3 +278,6 @@ def draw(texture: Texture, axes: Any = None, *, plane: str | None = None,
     if key:
         picture.draw_key(axes)
     return axes
+
+
+OPTIONS = tuple(draw.__kwdefaults__)  #: their names
