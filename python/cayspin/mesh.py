@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from cayspin import _cayspin
+from cayspin import _cayspin, arguments
 
 
 def _triangles(mesh):
@@ -23,13 +23,43 @@ def _triangles(mesh):
             mesh = trimesh.load_mesh(mesh)
         except (OSError, ValueError, NotImplementedError) as error:
             raise _cayspin.CayspinError(f"occupied_of_mesh: {mesh}: {error}") from None
-    corners = np.asarray(getattr(mesh, "triangles", mesh), dtype=float)
+    corners = arguments.numbers(getattr(mesh, "triangles", mesh), "occupied_of_mesh: triangles")
+    corners = corners.astype(np.float64, copy=False)
     if corners.ndim != 3 or corners.shape[1:] != (3, 3) or not len(corners) \
             or not np.isfinite(corners).all():
         raise _cayspin.CayspinError(
             f"occupied_of_mesh: triangles of shape {corners.shape}; accepted: finite numbers of "
             "shape (count, 3, 3)")
     return corners
+
+
+def _up_to_three(values, name, accepted):
+    """One to three values, for x, y and z."""
+    values = arguments.entries(values, f"occupied_of_mesh: {name}", accepted)
+    if not 1 <= len(values) <= 3:
+        raise _cayspin.CayspinError(f"occupied_of_mesh: {name} of {len(values)} numbers; "
+                                    f"accepted: {accepted}")
+    return values
+
+
+def _cells(shape):
+    accepted = "one to three whole numbers >= 1"
+    cells = [arguments.whole(one, "occupied_of_mesh: shape")
+             for one in _up_to_three(shape, "shape", accepted)]
+    if min(cells) < 1:
+        raise _cayspin.CayspinError(f"occupied_of_mesh: shape {cells}; accepted: {accepted}")
+    return np.array([*cells, 1, 1][:3])
+
+
+def _edges(spacing):
+    accepted = "a number > 0, or one to three of them"
+    if not np.iterable(spacing):
+        spacing = [spacing] * 3
+    edges = [arguments.real(one, "occupied_of_mesh: spacing")
+             for one in _up_to_three(spacing, "spacing", accepted)]
+    if not all(0 < edge < np.inf for edge in edges):
+        raise _cayspin.CayspinError(f"occupied_of_mesh: spacing {edges}; accepted: {accepted}")
+    return np.array([*edges, 1.0, 1.0][:3])
 
 
 def occupied_of_mesh(mesh: Any, shape: tuple[int, ...], spacing: float | tuple[float, ...] = 1.0, *,
@@ -44,12 +74,16 @@ def occupied_of_mesh(mesh: Any, shape: tuple[int, ...], spacing: float | tuple[f
     corner. Bodies that overlap are united, if the corners of all triangles are counter-clockwise
     seen from outside.
 
-    Raises CayspinError for a mesh that cannot be read, or where trimesh is missing.
+    Raises CayspinError for a mesh that cannot be read, for other arguments, and where trimesh is
+    missing.
     """
+    cells, edges = _cells(shape), _edges(spacing)
+    scale = arguments.real(scale, "occupied_of_mesh: scale")
+    if not 0 < abs(scale) < np.inf:
+        raise _cayspin.CayspinError(f"occupied_of_mesh: scale {scale}; accepted: a finite number "
+                                    "other than 0")
     corners = _triangles(mesh) * scale
-    cells = np.array([*shape, 1, 1][:3])
-    edges = np.broadcast_to(spacing, 3) if np.ndim(spacing) == 0 else np.array([*spacing, 1, 1][:3])
-    if center:
+    if arguments.flag(center, "occupied_of_mesh: center"):
         low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
         corners = corners - (low + high) / 2 + cells * edges / 2
     corners = corners / edges - 0.5  # in cells, from the middle of the first one

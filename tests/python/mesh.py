@@ -89,6 +89,31 @@ class Meshes(PackageTest):
             self.assert_refused(cayspin.CayspinError, "files need trimesh",
                                 cayspin.occupied_of_mesh, "a.stl", (2, 2, 2))
 
+    def test_wrong_arguments(self):
+        surface = sphere(2)
+
+        def refused(part, mesh=surface, shape=(4, 4, 4), **options):
+            self.assert_refused(cayspin.CayspinError, f"occupied_of_mesh: {part}",
+                                cayspin.occupied_of_mesh, mesh, shape, **options)
+
+        for shape in (30, "ab", None):
+            refused(f"shape: {shape!r}; accepted: one to three whole numbers >= 1", shape=shape)
+        for shape in ((), (4, 4, 4, 4)):
+            refused(f"shape of {len(shape)} numbers; accepted: one to three", shape=shape)
+        refused("shape: 4.5; accepted: a whole number", shape=(4.5, 4, 4))
+        for shape in ([4, 0, 4], [-1]):
+            refused(f"shape {shape}; accepted: one to three whole numbers >= 1", shape=shape)
+        for spacing in (-1, 0, np.nan, np.inf, (1, 0, 1)):
+            refused("spacing [", spacing=spacing)
+        refused("spacing of 4 numbers; accepted: a number > 0", spacing=(1, 1, 1, 1))
+        refused("spacing: ", spacing="a")
+        refused("spacing: ", spacing=[[1], [1, 2]])
+        for scale in (np.nan, np.inf, 0):
+            refused("scale ", scale=scale)
+        refused("scale: ", scale="a")
+        refused("center: ", center=3)
+        refused("triangles: rows of other lengths", mesh=[[[1, 2, 3]], [[1]]])
+
     @unittest.skipUnless(importlib.util.find_spec("trimesh"), "trimesh is not installed")
     def test_files(self):
         file = self.folder / "sphere.stl"
