@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from cayspin import _cayspin, arguments, sites, toml_text
+from cayspin.texture import toml
 
 _OWN = ("applied", "nonlocal")
 _VECTORS = re.compile(r".*(sources\[\d+\]\.profile|axis|axes\[\d+\]|in_plane|normal|polarization)")
@@ -49,6 +50,17 @@ def _split(tables):
     arrays = {}
     tables = {name: _without_arrays(table, name, arrays) for name, table in tables.items()}
     return tables, spins, own, arrays
+
+
+def _text_without_applied(scene, path):
+    """The text of a scene without its field.applied, which a function replaces; None if it has
+    none."""
+    try:
+        tables = toml.loads(scene.text)
+    except ImportError as error:
+        raise _cayspin.CayspinError(f"{path}: to replace its field.applied takes {error}") from None
+    applied = tables.get("field", {}).pop("applied", None)
+    return None if applied is None else toml_text.document(tables)
 
 
 def _as_planes(spins):
@@ -119,7 +131,8 @@ class Scene:
     def from_file(cls, path: str | os.PathLike, **overrides: Any) -> Scene:
         """Reads a scene from the TOML file `path`, with keys changed by `overrides`, as in
         from_file("film.toml", integrator={"dt": 0.1}). Overrides are tables as in Scene(); one of
-        `initial` replaces the whole table, and may be an array.
+        `initial` replaces the whole table, and may be an array. A function as field.applied takes
+        the place of the file's.
 
         Raises SceneError with file and line for what is wrong in it.
         """
@@ -129,6 +142,9 @@ class Scene:
         with toml_text.errors_of_overrides():
             scene = _cayspin.Scene.read(arguments.file_name(path, "from_file"), changed,
                                         _as_planes(spins), _flat(arrays))
+        text = _text_without_applied(scene, path) if "applied" in own else None
+        if text is not None:
+            scene = _cayspin.Scene.parse(text, scene.path, [], _as_planes(spins), _flat(arrays))
         self._finish(scene, own, changed, spins, arrays)
         return self
 

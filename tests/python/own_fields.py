@@ -4,6 +4,7 @@
 import unittest
 
 import cayspin
+import h5py
 import numpy as np
 from package_test import PackageTest
 
@@ -178,6 +179,30 @@ class OwnFields(PackageTest):
             cayspin.SceneError, "field.demag.multirate: is computed with the program's own field",
             lambda: cayspin.Simulation(scene({"demag": {"multirate": False}, "nonlocal": slab},
                                              integrator={**TABLES["integrator"], "substeps": 2})))
+
+
+class FieldsOfFiles(PackageTest):
+    def test_a_function_replaces_the_applied_field_of_a_file(self):
+        name, mask = "only-one.h5", np.arange(48).reshape(SHAPE) != 5
+        with h5py.File(self.folder / name, "w") as file:
+            file["spins"] = np.broadcast_to([0.0, 0.6, 0.8], (*SHAPE, 3))
+        given = scene({"exchange": 0.6, "applied": [0.3, 0, 0]}, initial={"file": name},
+                      output={"file": "a \"b\".h5", "every": 7})
+        file = self.written(given)
+
+        def applied(t):
+            return 0.1, 0.2, t
+
+        for override in ({"field": {"applied": applied}}, {"field.applied": applied}):
+            made = cayspin.Scene.from_file(file, integrator={"dt": 0.01},
+                                           lattice={"occupied": mask}, **override)
+            sim = cayspin.Simulation(made)
+            self.assertEqual((made.dt, made.steps, made._scene.output.name), (0.01, 40, 'a "b".h5'))
+            expected = np.where(mask[..., None], [0, 0.6, 0.8], 0)
+            np.testing.assert_allclose(sim.spins, expected, atol=1e-15)
+            sim.step(10)
+            self.assertAlmostEqual(sim.energies()["applied"],
+                                   -(sim.spins @ [0.1, 0.2, 0.1]).sum(), 12)
 
 
 class ConstantFields(PackageTest):
