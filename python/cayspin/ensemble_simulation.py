@@ -116,7 +116,7 @@ class EnsembleSimulation:
         (replica, site, nz, ny, nx, 3): a copy."""
         spins, cell_sites = self._run.spins(), self._scene._scene.cell_sites
         if cell_sites == 1:
-            return spins
+            return np.array(spins)
         return np.stack([sites.by_site(replica, cell_sites) for replica in spins])
 
     def energy(self) -> np.ndarray:

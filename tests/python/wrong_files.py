@@ -111,6 +111,17 @@ class WrongFiles(FilesTest):
             self.assert_refused(cayspin.CayspinError, f"{wrong}: cannot open the file",
                                 cayspin.EnsembleSimulation, of, restart=wrong)
 
+    def test_spins_of_ensembles_are_copies(self):
+        crystal = {"crystal": "honeycomb", "shape": [4, 3]}
+        for lattice in (FILM["lattice"], {**FILM["lattice"], **crystal}):
+            sim = cayspin.EnsembleSimulation(scene(
+                field={"slab_demag": None, "exchange": None}, lattice=lattice,
+                ensemble={"replicas": 2}))
+            spins = sim.spins
+            before = spins.copy()
+            spins[...] = 0
+            np.testing.assert_array_equal(sim.spins, before)
+
     def test_empty_names(self):
         sim, spins = cayspin.Simulation(scene(**FILM)), np.ones(FRAME)
         self.assert_all_refused(cayspin.CayspinError, {
