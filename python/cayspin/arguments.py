@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import operator
 import os
+import re
 from typing import Any, Iterable
 
 import numpy as np
@@ -20,10 +21,15 @@ def _one(thing: Any) -> Any:
     return thing.item() if is_numpy and thing.ndim == 0 else thing
 
 
-def _shown(thing: Any) -> str:
+def shown(thing: Any) -> str:
     """A value as text for a message of one line."""
     text = " ".join(repr(thing).split())
     return text if len(text) <= 80 else text[:77] + "..."
+
+
+def without_line(message: str) -> str:
+    """A warning without the line of the text made from tables, and without --set."""
+    return re.sub(r"^(replica \d+: )?(Scene:\d+: |--set )", r"\1", message)
 
 
 def whole(number: Any, name: str, bits: int = 64) -> int:
@@ -33,7 +39,7 @@ def whole(number: Any, name: str, bits: int = 64) -> int:
             raise TypeError
         value = operator.index(_one(number))
     except TypeError:
-        raise CayspinError(f"{name}: {_shown(number)}; accepted: a whole number") from None
+        raise CayspinError(f"{name}: {shown(number)}; accepted: a whole number") from None
     if not -2**(bits - 1) <= value < 2**(bits - 1):
         raise CayspinError(f"{name}: {value}; accepted: a whole number of {bits} bits")
     return value
@@ -48,7 +54,7 @@ def real(number: Any, name: str) -> float:
             return float(value)
     except (TypeError, ValueError, OverflowError):
         pass
-    raise CayspinError(f"{name}: {_shown(number)}; accepted: a number")
+    raise CayspinError(f"{name}: {shown(number)}; accepted: a number")
 
 
 def flag(truth: Any, name: str) -> bool:
@@ -56,7 +62,7 @@ def flag(truth: Any, name: str) -> bool:
     value = _one(truth)
     if isinstance(value, (bool, int)) and value in (0, 1):
         return bool(value)
-    raise CayspinError(f"{name}: {_shown(truth)}; accepted: True or False")
+    raise CayspinError(f"{name}: {shown(truth)}; accepted: True or False")
 
 
 def is_false(thing: Any) -> bool:
@@ -81,7 +87,7 @@ def word(text: Any, name: str) -> str:
     """A string."""
     value = _one(text)
     if not isinstance(value, str) or not is_unicode(value):
-        raise CayspinError(f"{name}: {_shown(text)}; accepted: a string")
+        raise CayspinError(f"{name}: {shown(text)}; accepted: a string")
     return str(value)
 
 
@@ -92,7 +98,7 @@ def entries(things: Any, name: str, accepted: str) -> list:
             return list(things)
         except TypeError:
             pass
-    raise CayspinError(f"{name}: {_shown(things)}; accepted: {accepted}")
+    raise CayspinError(f"{name}: {shown(things)}; accepted: {accepted}")
 
 
 def options(given: Iterable[str], accepted: Iterable[str], name: str) -> None:
@@ -107,11 +113,11 @@ def file_name(path: Any, name: str) -> str:
     try:
         text = os.fsdecode(os.fsencode(_one(path)))
     except (TypeError, UnicodeEncodeError):
-        raise CayspinError(f"{name}: {_shown(path)}; accepted: the name of a file") from None
+        raise CayspinError(f"{name}: {shown(path)}; accepted: the name of a file") from None
     if not text:
         raise CayspinError(f"{name}: an empty name; accepted: the name of a file")
     if "\0" in text:
-        raise CayspinError(f"{name}: {_shown(text)}; accepted: a name without a null character")
+        raise CayspinError(f"{name}: {shown(text)}; accepted: a name without a null character")
     return text
 
 

@@ -107,7 +107,7 @@ class EnsembleSimulation:
             warning = self._run.warning()
             self._dt_is_checked = True
             if warning:
-                warnings.warn(warning, stacklevel=3)
+                warnings.warn(arguments.without_line(warning), stacklevel=3)
         self._run.advance(count, until_torque)
 
     @property

@@ -64,14 +64,14 @@ def at_equal_steps(file: Any, path: Any, count: int, frames: Any,
                    name: str) -> tuple[range, float]:
     """The frames that a slice chooses from a file of `count`, and the time from one to the next."""
     if not isinstance(frames, slice):
-        raise CayspinError(f"{name}: frames {frames!r}; accepted: a slice")
+        raise CayspinError(f"{name}: frames {arguments.shown(frames)}; accepted: a slice")
     try:
         chosen = range(count)[frames]
     except (TypeError, ValueError):
-        raise CayspinError(f"{name}: frames {frames!r}; accepted: a slice of whole numbers"
+        raise CayspinError(f"{name}: frames {arguments.shown(frames)}; accepted: a slice of whole numbers"
                            ) from None
     if chosen.step < 0:
-        raise CayspinError(f"{name}: frames {frames!r} go back in time; accepted: a slice "
+        raise CayspinError(f"{name}: frames {arguments.shown(frames)} go back in time; accepted: a slice "
                            "with a step above 0")
     if len(chosen) < 4:
         raise CayspinError(f"{name}: {len(chosen)} frames; accepted: at least 4")

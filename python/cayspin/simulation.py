@@ -201,6 +201,9 @@ class Simulation:
         if not isinstance(changes, dict):
             raise _cayspin.CayspinError(f"set: a {type(changes).__name__}; accepted: a key and its "
                                         "value, or a dict of them")
+        for key in changes:
+            if "=" in arguments.word(key, "set") or not key:
+                raise _cayspin.CayspinError(f"set: {key!r}; accepted: the name of a key")
         changes, arrays = self._scene._changes(changes)
         overrides = toml_text.overrides(changes)
         with toml_text.errors_of_overrides():
@@ -221,7 +224,7 @@ class Simulation:
             warning = self._run.warning()
             self._dt_is_checked = True
             if warning:
-                warnings.warn(warning, stacklevel=3)
+                warnings.warn(arguments.without_line(warning), stacklevel=3)
 
     def _advance(self, end, guard_period, until_torque=False, until=None, recorder=None):
         run = self._run

@@ -128,10 +128,27 @@ class Calls(PackageTest):
             "Simulation: a dict": lambda: cayspin.Simulation(TABLES),
             "trade: a NoneType": lambda: cayspin.trade(None),
             "advise: a dict": lambda: cayspin.advise(TABLES, 0.1),
+            "set: 'field.applied='; accepted: the name of a key":
+                lambda: sim.set("field.applied=", [0, 0, 1]),
+            "set: ''; accepted: the name of a key": lambda: sim.set("", 1),
+            "set: 3; accepted: a string": lambda: sim.set({3: 4}),
             "error: 'x'": lambda: cayspin.advise(of, "x"),
         }
         self.assert_all_refused(cayspin.CayspinError, calls)
         self.assertEqual(sim.steps, 0)
+
+    def test_warnings_name_no_line_of_text(self):
+        large = {"dt": 5.0}
+        changed = cayspin.Simulation(scene())
+        changed.set("integrator.dt", 5.0)
+        for sim, start in ((cayspin.Simulation(scene(integrator=large)), ""), (changed, "integrator.dt=5.0: "),
+                           (cayspin.EnsembleSimulation(scene(integrator=large,
+                                                             ensemble={"replicas": 2})), "replica 0: ")):
+            with self.assertWarnsRegex(UserWarning, f"^{start}integrator.dt: 5 is above"):
+                try:
+                    sim.step()
+                except cayspin.NumbersFailed:
+                    pass
 
     def test_tables(self):
         for part, tables in {

@@ -122,6 +122,13 @@ class WrongFiles(FilesTest):
             spins[...] = 0
             np.testing.assert_array_equal(sim.spins, before)
 
+    def test_frames_that_are_no_slice(self):
+        with cayspin.open(self.run_of()) as run:
+            for call in (run.structure_factor, lambda frames: run.dispersion(
+                    [[0, 0, 0], [0.5, 0, 0]], frames)):
+                self.assert_refused(cayspin.CayspinError, "accepted: a slice", call,
+                                    np.zeros((3, 3)))
+
     def test_empty_names(self):
         sim, spins = cayspin.Simulation(scene(**FILM)), np.ones(FRAME)
         self.assert_all_refused(cayspin.CayspinError, {
