@@ -7,6 +7,7 @@ import dataclasses
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
@@ -52,6 +53,17 @@ def _input_files(command: str, scene: Scene) -> list[str]:
     return [one for name, table in tables.items() if name != "output" for one in found(table, name)]
 
 
+def _as_of_a_call(command: str, message: str, file: str, written: bool,
+                  changed: list[str]) -> str:
+    """A message of the program without its options, and without the file written for it."""
+    if written:
+        message = re.sub(rf"^{re.escape(file)}:(\d+: )?", "", message).strip()
+    for one in changed:
+        message = message.removeprefix(f"--set {one}: ")
+    message = re.sub(r" \(see cayspin help \w+\)$", "", message)
+    return re.sub(r"^cayspin: --(\w+):? ", rf"{command}: \1 ", message)
+
+
 def _ask(command: str, scene: Scene, *options: str) -> dict:
     if not isinstance(scene, Scene):
         raise CayspinError(f"{command}: a {type(scene).__name__}; accepted: a Scene")
@@ -76,7 +88,9 @@ def _ask(command: str, scene: Scene, *options: str) -> dict:
             raise CayspinError(f"{command}: the program {program()} does not run: {error.strerror}"
                                ) from None
     if done.returncode:
-        message = done.stderr.strip() or f"{command}: the program ended with {done.returncode}"
+        message = _as_of_a_call(command, done.stderr.strip(), str(file),
+                                scene._overrides is None, changed)
+        message = message or f"{command}: the program ended with {done.returncode}"
         raise (NumbersFailed if done.returncode == 3 else CayspinError)(message)
     try:
         return json.loads(done.stdout)

@@ -50,7 +50,15 @@ class Advice(PackageTest):
                    scene(initial=np.ones((2, 3, 7, 3)))):
             self.assert_refused(cayspin.CayspinError, "the program cannot run", cayspin.advise,
                                 of, error=1e-3)
-        self.assert_refused(cayspin.CayspinError, "--error", cayspin.advise, scene(), error=5)
+
+    def test_messages_name_neither_options_nor_files_of_the_program(self):
+        for part, options in (("^advise: error 5; accepted: ", {"error": 5}),
+                              ("^advise: precision half: accepted: ", {"precision": "half"}),
+                              ("^advise: threads Value 0 not in range 1 to 65536$", {"threads": 0})):
+            with self.assertRaisesRegex(cayspin.CayspinError, part):
+                cayspin.advise(scene(), **{"error": 0.1, **options})
+        with self.assertRaisesRegex(cayspin.CayspinError, "^integrator: is missing"):
+            cayspin.advise(scene(integrator=None), 0.1)
 
     def test_a_program_that_ends_without_a_word(self):
         with unittest.mock.patch.dict(os.environ, {"CAYSPIN_PROGRAM": "/bin/false"}):
