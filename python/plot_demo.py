@@ -38,8 +38,9 @@ def draw_norms(axis, geometric, classical):
                              (geometric, style.BLUE, "geometric Euler")):
         scalars.draw_norm_defect(axis, run, color=color, linewidth=1.8)
         worst = float(run.scalars.norm_defect.max())
-        axis.annotate(f"{name}: at most {worst:.2g}", (run.in_time_unit(run.scalars.time[-1]), worst), (0, 8),
-                      textcoords="offset points", ha="right", color=color, weight="bold")
+        end = run.in_time_unit(run.scalars.time[-1])
+        axis.annotate(f"{name}: at most {worst:.2g}", (end, worst), (0, 8), textcoords="offset points",
+                      ha="right", color=color, weight="bold")
     axis.set_title(r"How far the spins are from the sphere:  max $|\,|m| - 1\,|$ over the slab")
     axis.set_ylim(scalars.SMALLEST, 100)
     axis.set_yticks([1e-16, 1e-12, 1e-8, 1e-4, 1])
