@@ -12,8 +12,10 @@ import unittest
 import h5py
 import matplotlib.image
 import numpy as np
+from matplotlib.figure import Figure
 from script_test import BLUE, PIXELS_PER_INCH, RED, SCRIPTS, ScriptTest, dimensions, write
 
+from cayspin_plots import scalars
 from cayspin_plots.read import read_trajectory
 from cayspin_plots.table import read_table
 
@@ -42,6 +44,18 @@ class PlotTrajectory(ScriptTest):
     def test_single_spin_has_no_components_along_x(self):
         file = write(self.folder / "spin.h5", sites=1)
         self.assert_drawn(file.with_suffix(".png"), (11, 8.3), (BLUE, RED), self.plot(file))
+
+    def test_runs_in_si_have_units(self):
+        file = write(self.folder / "chain.h5")
+        for units, labels, scale in (("reduced", ("time", "energy"), 1),
+                                     ("SI", ("time (ns)", "energy (J)"), 1e9)):
+            with h5py.File(file, "r+") as data:
+                data.attrs["units"] = units
+            trajectory = read_trajectory(file)
+            axis = Figure().subplots()
+            scalars.draw_energy(axis, trajectory)
+            self.assertEqual((axis.get_xlabel(), axis.get_title(loc="left") or axis.get_title()), labels)
+            np.testing.assert_allclose(axis.lines[0].get_xdata(), scale * trajectory.scalars.time)
 
     def test_chosen_panel_under_another_name(self):
         file = write(self.folder / "chain.h5")
