@@ -110,7 +110,10 @@ class Simulation:
             return
         file = arguments.file_name(output, "run: output")
         # An observer may move the end, so it is left to _advance().
-        recorder = _cayspin.Recorder(self._run, _LAST_STEP, file, overwrite)
+        try:
+            recorder = _cayspin.Recorder(self._run, _LAST_STEP, file, overwrite)
+        except _cayspin.CayspinError as error:
+            raise type(error)(str(error).replace("with --overwrite", "with overwrite=True")) from None
         try:
             recorder.look(False)
             self._advance(end, self._scene._scene.guard_period, True, until, recorder)

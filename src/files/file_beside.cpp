@@ -26,9 +26,7 @@ void require_free(fs::path const& path, bool overwrite) {
   if (!fs::exists(status)) return;
   if (!fs::is_regular_file(status)) throw_unwritten(path, "it exists and is not a regular file");
   if (!overwrite)
-    throw_unwritten(
-        path,
-        "it exists (choose another name, or overwrite it: --overwrite, in Python overwrite=True)");
+    throw_unwritten(path, "it exists (choose another name, or overwrite with --overwrite)");
 }
 
 FileBeside::FileBeside(fs::path path, bool overwrite)

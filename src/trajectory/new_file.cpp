@@ -103,9 +103,7 @@ NewFile::NewFile(fs::path path, bool overwrite, bool shared, SyncedFile* synced)
   if (replaces_ && !fs::is_regular_file(status))
     throw_failure(path_, action, "it exists and is not a regular file");
   if (replaces_ && !overwrite)
-    throw_failure(
-        path_, action,
-        "it exists (choose another name, or overwrite it: --overwrite, in Python overwrite=True)");
+    throw_failure(path_, action, "it exists (choose another name, or overwrite with --overwrite)");
   if (replaces_) {
     if (!shared) require_replaceable(path_);
     target_ = fs::canonical(path_);

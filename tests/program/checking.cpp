@@ -100,7 +100,7 @@ TEST_F(Checking, SaysWhatIsWrongWithTheOutputFile) {
   EXPECT_EQ(last_line("there.h5"),
             begin +
                 "there.h5: cannot write the file: it exists (choose another name, or overwrite "
-                "it: --overwrite, in Python overwrite=True)\n");
+                "with --overwrite)\n");
   EXPECT_TRUE(last_line("left.h5").starts_with(begin + "left.checkpoint.h5: cannot write"));
   EXPECT_EQ(last_line("no/folder.h5"),
             begin + "no/folder.h5: cannot create the file: No such file or directory\n");

@@ -129,8 +129,9 @@ class Calls(PackageTest):
         for truth in TRUE:
             cayspin.Simulation(of).run(until=0.05, output=file, overwrite=truth)
         for truth in FALSE:
-            self.assert_refused(cayspin.CayspinError, "exist", cayspin.Simulation(of).run,
-                                until=0.05, output=file, overwrite=truth)
+            self.assert_refused(cayspin.CayspinError, "or overwrite with overwrite=True",
+                                cayspin.Simulation(of).run, until=0.05, output=file,
+                                overwrite=truth)
         self.refused("run: overwrite: ", lambda truth: sim.run(overwrite=truth), NO_TRUTHS)
         for no_file in (False, np.False_, np.array(False)):
             cayspin.Simulation(of).run(until=0.05, output=no_file)
