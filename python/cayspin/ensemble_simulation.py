@@ -59,7 +59,7 @@ class EnsembleSimulation:
     def step(self, n: int = 1) -> None:
         """Takes `n` steps of dt in every replica; those that run() has ended early go on, to the
         step of the others. The first step warns of a dt that is too large for one of them. After
-        Ctrl-C some replicas may be further than `steps`; the next call moves all to one step.
+        Ctrl-C some replicas may be further than `steps`; they wait for the others.
 
         Raises NumbersFailed when spins of a replica are not finite, leave the sphere or gain energy
         without a source, SceneError for a dt that integrator.refuse_unstable refuses, CayspinError

@@ -110,8 +110,8 @@ class Scene:
     `field["applied"]` may be a function of t that returns three numbers: the uniform field, in T in
     SI. `field["nonlocal"]` may be a function of (spins, t) that returns H of all sites in the shape
     of the spins, in SI also in T. It is called before each stage with a copy of the spins, and H
-    has to be linear in them and symmetric: its energy is -sum mu m.H / 2
-    with the moments mu.
+    has to be linear in them and symmetric: its energy is -sum mu m.H / 2 with the
+    moments mu.
 
     Raises SceneError with one line that names the key, what is wrong and what is accepted.
     """

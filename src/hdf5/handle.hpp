@@ -59,7 +59,7 @@ enum class Locking { on, off };
 
 /// Opens an existing file for reading, completed from its journal.
 FileHandle open_file(std::filesystem::path const& path, Locking locking = Locking::on);
-/// The same for a small file that nobody writes: reads it into memory in one piece.
+/// Opens a small file that nobody writes, by reading it into memory in one piece.
 FileHandle open_file_in_memory(std::filesystem::path const& path);
 
 // Creates a group of the file `path`.

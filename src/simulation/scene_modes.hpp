@@ -41,7 +41,7 @@ FoundCurvatures find_curvatures(
     SceneField<SpinField<Real, typename Space::memory_space>> const& field,
     SpinField<Real, typename Space::memory_space> const& spins, ModesOptions const& options);
 
-/// Of one cell with --wave-vector: the eigenvalues of a larger matrix take minutes.
+/// Limit for --wave-vector: the eigenvalues of the matrices of a larger cell take minutes.
 constexpr std::int64_t most_sites_of_a_cell = 1024;
 
 /// Throws io::SceneError if a scene has no cells that could be equal, more than
