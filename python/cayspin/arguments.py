@@ -108,6 +108,17 @@ def options(given: Iterable[str], accepted: Iterable[str], name: str) -> None:
             raise CayspinError(f"{name}: no option {option}; accepted: {', '.join(accepted)}")
 
 
+def axes(given: Any) -> Any:
+    """Matplotlib axes; new ones for None."""
+    if given is None:
+        import matplotlib.pyplot
+
+        return matplotlib.pyplot.subplots(figsize=(8, 6))[1]
+    if not hasattr(given, "quiver"):
+        raise CayspinError(f"plot: axes {shown(given)}; accepted: matplotlib axes, or None")
+    return given
+
+
 def file_name(path: Any, name: str) -> str:
     """The name of a file."""
     try:

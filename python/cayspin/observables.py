@@ -58,10 +58,7 @@ class Dispersion:
     def plot(self, axes: Any = None) -> Any:
         """Draws the logarithm of S(k, w) into matplotlib `axes` (default: new ones), which it
         returns. Raises ImportError without matplotlib."""
-        if axes is None:
-            import matplotlib.pyplot
-
-            axes = matplotlib.pyplot.subplots(figsize=(8, 6))[1]
+        axes = arguments.axes(axes)
         floor = self.intensity.max() * 1e-8
         axes.pcolormesh(self.distance, self.frequency,
                         np.log10(np.maximum(self.intensity.T, floor)), shading="nearest")

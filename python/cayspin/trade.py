@@ -93,10 +93,14 @@ def _ask(command: str, scene: Scene, *options: str) -> dict:
         message = message or f"{command}: the program ended with {done.returncode}"
         raise (NumbersFailed if done.returncode == 3 else CayspinError)(message)
     try:
-        return json.loads(done.stdout)
+        answer = json.loads(done.stdout)
     except ValueError:
         raise CayspinError(f"{command}: the program {program()} printed no result; accepted: the "
                            "program cayspin") from None
+    if scene._overrides is None and answer.get("warning"):
+        answer["warning"] = re.sub(rf"^{re.escape(str(file))}:(\d+: )?", "",
+                                   answer["warning"]).strip()
+    return answer
 
 
 def _options(precision, space, threads):
@@ -132,10 +136,7 @@ class Trade(list):
         """
         if cost not in ("seconds", "evaluations"):
             raise CayspinError(f'plot: cost {cost!r}; accepted: "seconds" or "evaluations"')
-        if axes is None:
-            import matplotlib.pyplot
-
-            axes = matplotlib.pyplot.subplots(figsize=(8, 6))[1]
+        axes = arguments.axes(axes)
         for name in dict.fromkeys(run["method"] for run in self):
             runs = [run for run in self if run["method"] == name and run["error"] > 0]
             if not runs:

@@ -60,6 +60,18 @@ class Advice(PackageTest):
         with self.assertRaisesRegex(cayspin.CayspinError, "^integrator: is missing"):
             cayspin.advise(scene(integrator=None), 0.1)
 
+    def test_warnings_name_no_file_of_the_package(self):
+        answer = {"method": "rkmk4", "error": 0.01, "seconds": 1, "memory": 1, "dt": 0.5,
+                  "precision": "double", "steps": 2, "tolerance": None, "horizon": 1,
+                  "units": "reduced", "space": "Serial", "threads": 1, "others": [],
+                  "overrides": [], "warning": "FILE:3: integrator.dt: 0.5 is above the stable 0.4"}
+        program = self.folder / "program"
+        program.write_text(f"#!/bin/sh\nsed \"s|FILE|$2|\" <<'TXT'\n{json.dumps(answer)}\nTXT\n")
+        program.chmod(0o755)
+        with unittest.mock.patch.dict(os.environ, {"CAYSPIN_PROGRAM": str(program)}):
+            advice = cayspin.advise(scene(), error=0.1)
+        self.assertEqual(advice.warning, "integrator.dt: 0.5 is above the stable 0.4")
+
     def test_a_program_that_ends_without_a_word(self):
         with unittest.mock.patch.dict(os.environ, {"CAYSPIN_PROGRAM": "/bin/false"}):
             self.assert_refused(cayspin.CayspinError, "advise: the program ended with 1",

@@ -244,6 +244,8 @@ class Files(TextureTest):
         self.assert_refused(cayspin.CayspinError, "accepted: (2, 3, 7, 3)", sim.plot,
                             before=np.ones((2, 2)))
         self.assert_refused(cayspin.CayspinError, "plane 'x=7'", sim.plot, plane="x=7")
+        self.assert_refused(cayspin.CayspinError, "axes: 3; accepted: matplotlib axes", sim.plot, 3)
+        self.assert_refused(cayspin.CayspinError, "key: 'no'; accepted: True", sim.plot, key="no")
         chain = texture.Texture(random_spins((1, 1, 9), 1))
         self.assert_refused(ValueError, "a crystal or a chain", texture.draw, chain,
                             quantity="charge")

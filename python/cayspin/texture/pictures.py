@@ -265,6 +265,10 @@ def draw(texture: Texture, axes: Any = None, *, plane: str | None = None,
     except ValueError:
         raise ValueError("before: rows of other lengths; accepted: spins of shape "
                          f"{texture.spins.shape}") from None
+    if axes is not None and not hasattr(axes, "quiver"):
+        raise ValueError(f"axes: {axes!r}; accepted: matplotlib axes, or None")
+    if not isinstance(key, (bool, np.bool_, type(None))):
+        raise ValueError(f"key: {key!r}; accepted: True, False or None")
     picture, kind = _picture(texture, plane, quantity, colors, before, limit)
     key = axes is None if key is None else key
     if kind == "chain":
