@@ -63,15 +63,34 @@ def moving(file, mode, frame, texture):
     return texture.Texture(spins, spacing, boundary, None, si, f"mode {_title(file, mode)}")
 
 
+def together(places, extent):
+    """Groups points (n, 2) whose labels would overlap: lists of numbers, in a picture that shows
+    an `extent` of two lengths."""
+    groups = []
+    for number, place in enumerate(places / extent):
+        for group in groups:
+            if (np.abs(place - places[group[0]] / extent) < (0.03, 0.06)).all():
+                group.append(number)
+                break
+        else:
+            groups.append([number])
+    return groups
+
+
 def _draw_spectrum(file, axis):
     """Each mode at its frequency and decay, with its number."""
     si = file.attrs["units"] == "SI"
     scale = 1e-9 if si else 1
     frequency, decay = scale * file["frequency"][:], scale * file["decay"][:]
     axis.plot(frequency, decay, "o", color=style.BLUE)
-    for mode, place in enumerate(zip(frequency, decay)):
-        axis.annotate(str(mode), place, xytext=(0, 5), textcoords="offset points", ha="center")
     axis.margins(y=0.25)
+    if np.ptp(decay) < 1e-6 * np.abs(frequency).max():  # round-off
+        axis.set_ylim(decay.mean() + np.array([-1, 1]) * max(np.abs(decay).max(), 1e-3))
+    places = np.column_stack([frequency, decay])
+    extent = np.abs(np.diff([axis.get_xlim(), axis.get_ylim()], axis=1)).ravel()
+    for group in together(places, extent):
+        axis.annotate(", ".join(map(str, group)), places[group].mean(axis=0), xytext=(0, 5),
+                      textcoords="offset points", ha="center")
     axis.set_xlabel("frequency (GHz)" if si else "angular frequency")
     axis.set_ylabel("decay (1/ns)" if si else "decay")
 

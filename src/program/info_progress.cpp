@@ -2,6 +2,7 @@
 #include "info_progress.hpp"
 
 #include "io/stages.hpp"
+#include "simulation/restart.hpp"
 #include "simulation/text.hpp"
 
 #include <fcntl.h>
@@ -56,7 +57,13 @@ PlannedSteps planned_steps(io::TrajectoryInfo const& info) {
   scene.path = info.path;
   scene.text = header.resolved_scene.empty() ? header.scene_text : header.resolved_scene;
   try {
-    auto const stages = io::stages_of(io::with_overrides(scene, {}));
+    auto stages = io::stages_of(io::with_overrides(scene, {}));
+    if (stages.size() > 1 && info.frames > 0) {  // those before may have ended early
+      auto const begin = last_frame(info, stages).begin;
+      auto const now = static_cast<std::size_t>(begin.stage);
+      stages.at(now).scene.begin = begin;
+      io::put_begins(stages, now);
+    }
     bool const equal = std::ranges::none_of(
         stages, [](auto& one) { return one.scene.integrator.tolerance.has_value(); });
     return {io::end_of(stages.back()), equal};

@@ -28,8 +28,8 @@ class RestSearch {
 
   RestSearch(io::Scene const& scene, double bound) : scene_(scene), bound_(bound) {}
 
-  /// `torque`: max |m x H|. `fell`: the energy is below that of the first check. `field`: made for
-  /// energies. With `at_end` a saddle is always reported.
+  /// `torque`: max |m x H|. `fell`: the energy is below that of the first check, or the field has
+  /// changed since. `field`: made for energies. With `at_end` a saddle is always reported.
   Found look(Space const& exec, Step const& step, Spins const& spins,
              SceneField<Spins> const& field, double torque, bool fell, bool at_end) {
     bool const grew = torque > last_torque_;

@@ -125,13 +125,12 @@ std::string const& EarlierRun::scene_as_run() const {
   return resolved_scene().empty() ? scene_text() : resolved_scene();
 }
 
-// Stages start after the last frame of the previous ones, except the one that the file starts in.
-EarlierRun::State EarlierRun::last_frame(std::vector<io::Stage> stages) const {
-  if (!trajectory || trajectory->frames == 0) return {};
-  auto const frames = static_cast<std::size_t>(trajectory->frames);
-  auto const& steps = trajectory->frame_steps;
-  auto const& of_frames = trajectory->frame_stages;
-  State state{trajectory->header.stage.value_or(io::StageBegin{}), steps.back()};
+LastFrame last_frame(io::TrajectoryInfo const& trajectory, std::vector<io::Stage> stages) {
+  if (trajectory.frames == 0) return {};
+  auto const frames = static_cast<std::size_t>(trajectory.frames);
+  auto const& steps = trajectory.frame_steps;
+  auto const& of_frames = trajectory.frame_stages;
+  LastFrame state{trajectory.header.stage.value_or(io::StageBegin{}), steps.back()};
   for (std::size_t frame = 0; frame < of_frames.size() && frame < frames; ++frame)
     while (state.begin.stage < of_frames[frame]) {
       auto const now = static_cast<std::size_t>(state.begin.stage), next = now + 1;
@@ -139,7 +138,7 @@ EarlierRun::State EarlierRun::last_frame(std::vector<io::Stage> stages) const {
         throw UsageError(
             fmt::format("{}: its frame {} is of stage {}; accepted: the scene in as "
                         "many stages",
-                        path.string(), frame, of_frames[frame]));
+                        trajectory.path.string(), frame, of_frames[frame]));
       stages[now].scene.begin = state.begin;
       state.begin = io::begin_after(stages[now].scene, steps[frame - 1], stages[next].scene);
     }
@@ -156,7 +155,7 @@ io::StageBegin EarlierRun::enter(std::vector<io::Stage> stages) {
                                                 trajectory->frame_stages.back() > 0);
     return has_left ? io::StageBegin{} : in_file;
   }
-  auto state = last_frame(stages);
+  auto state = trajectory ? last_frame(*trajectory, stages) : LastFrame{};
   bool const has_frame = state.step >= 0;
   auto const use_checkpoint = [&] {
     if (has_frame && stored->stage.stage != state.begin.stage) trajectory->frames = 0;

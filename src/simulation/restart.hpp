@@ -18,6 +18,16 @@ namespace cayspin::simulation {
 /// Returns true if a run of this plan needs more than its spins to continue with the same bits.
 bool remembers(io::Scene const& scene, Plan const& plan);
 
+/// The last frame of a run: the start of its stage, and its step; -1 without frames.
+struct LastFrame {
+  io::StageBegin begin;
+  std::int64_t step = -1;
+};
+
+/// Returns the last frame of a file. Stages start after the last frame of the previous ones, except
+/// the one that the file starts in. Throws UsageError if the frames belong to other stages.
+LastFrame last_frame(io::TrajectoryInfo const& trajectory, std::vector<io::Stage> stages);
+
 /// Files of an earlier run: a trajectory, the checkpoint next to it, or only a checkpoint.
 struct EarlierRun {
   explicit EarlierRun(std::filesystem::path path);
@@ -39,13 +49,6 @@ struct EarlierRun {
   std::unique_ptr<io::CheckpointReader> checkpoint;
   bool at_begin = false;  // of a stage: there is no memory of steps
   bool is_ensemble = false;
-
- private:
-  struct State {
-    io::StageBegin begin;
-    std::int64_t step = -1;
-  };
-  State last_frame(std::vector<io::Stage> stages) const;
 };
 
 /// The state from which a run of a scene, or of a stage, continues with the bits of an

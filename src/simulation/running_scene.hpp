@@ -108,9 +108,12 @@ class RunningScene : public Simulation<Real, Space> {
     auto const& now = found.sample;
     found.failure = guard_.judge(step, now.energy, now.norm_defect);
     if (with_torque && !found.failure) {
+      // Energies of a field that has changed since cannot be compared.
+      bool const fell =
+          last_change_ > 0 ? step.time >= last_change_ : now.energy.value < guard_.first_energy();
       auto const rest = rest_->look(
           exec, step, spins, this->generator.landau_lifshitz().field().made_for(FieldFor::energy),
-          now.largest_rate, now.energy.value < guard_.first_energy(), at_end);
+          now.largest_rate, fell, at_end);
       found.at_rest = rest.at_minimum && step.time >= last_change_;
       found.at_saddle = rest.at_saddle;
     }

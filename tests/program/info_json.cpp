@@ -103,6 +103,21 @@ TEST_F(JsonOutput, SaysThatARunFailed) {
   expect_attributes(found, "out.h5", {"evaluations", "wall_seconds"}, {});
 }
 
+TEST_F(JsonOutput, CountsThePlannedStepsFromWhereEarlierStagesEnded) {
+  run_into("out.h5", macrospin_scene() + R"([[stage]]
+field.applied = ["0", "0", "sqrt(50 - t)"]
+integrator = { method = "rkmk4", dt = 0.1, steps = 1000 }
+)",
+           set("integrator.end=1000.0", "integrator.until_torque=1e-6", "output.every=10"));
+  auto const found = info("out.h5");
+  auto const stages = found.at("stage").get<std::vector<int>>();
+  auto const first = std::ranges::count(stages, 0);
+  ASSERT_GT(std::ranges::count(stages, 1), 0);
+  auto const end = found.at("step").at(static_cast<std::size_t>(first - 1)).get<int>();
+  EXPECT_LT(end, 10000);
+  EXPECT_EQ(found.at("progress").at("steps"), end + 1000);
+}
+
 TEST_F(JsonOutput, MatchesTheFileOfASweep) {
   auto const outcome =
       start({"sweep", "chain.toml", "--quiet", "--output", "all.h5", "--set",

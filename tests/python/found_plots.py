@@ -106,6 +106,12 @@ class PlotModes(PlotFound):
         png = self.folder / "modes_modes.png"
         self.assert_drawn(png, (0.5 + 2 * 3.6, 6.6), (BLUE,), self.plot(self.file))
 
+    def test_modes_of_equal_frequency_have_one_label(self):
+        from cayspin_plots import modes
+
+        places = np.array([[1.0, 3.0], [1.001, 3.0], [5.0, 3.0], [1.0, 2.0], [1.0, 3.001]])
+        self.assertEqual(modes.together(places, np.array([10.0, 2.0])), [[0, 1, 4], [2], [3]])
+
     def test_a_mode_that_moves(self):
         self.assert_movie(self.file, 40, "--frame", 1)
         from cayspin_plots import modes

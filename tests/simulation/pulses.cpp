@@ -6,6 +6,8 @@
 #include "scenes_of_text.hpp"
 #include "simulation/time_features.hpp"
 
+#include <cmath>
+
 namespace cayspin::simulation::test {
 namespace {
 
@@ -154,6 +156,20 @@ TEST(Pulses, AreWaitedForByRunsThatEndAtRest) {
   EXPECT_EQ(run->advance(scene.integrator.steps, {.until_torque = true}), Advanced::at_rest);
   EXPECT_GT(run->time(), 501.5);
   EXPECT_LE(run->time(), 600);  // the next check
+}
+
+// The energy at rest, -0.5, is above that of the start, -0.8.
+TEST(Pulses, ThatLowerAFieldDoNotKeepARunFromEndingAtRest) {
+  auto const scene = scene_of(
+      "system = { kind = 'llg', damping = 0.5 }\nlattice = { shape = [1] }\n"
+      "field = { applied = ['0', '0', 't < 2 ? 4 : 0.5'] }\n"
+      "initial = { uniform = [1, 0, 0.2] }\nintegrator = { method = 'rkmk4', dt = 0.05, "
+      "end = 1000, until_torque = 1e-6 }\n");
+  auto const run = SceneRun::open(scene, {});
+  EXPECT_EQ(run->advance(scene.integrator.steps, {.until_torque = true}), Advanced::at_rest);
+  EXPECT_LT(run->time(), 100);
+  auto const m = spins_of(*run);
+  EXPECT_LT(std::hypot(m[0], m[1]), 1e-5);
 }
 
 TEST(Pulses, BitsOfARunInPiecesAreThoseOfOne) {
