@@ -306,7 +306,7 @@ double bound_of_dipoles(io::Scene const& scene, Lattice const& lattice) {
   if (scene.lattice.moments_of_sites.there())
     std::ranges::fill(moments, range_of_moments(scene).largest);
   return std::abs(scene.field.mu0 * demag->strength) *
-         dipolar_bound(lattice, *demag->dipoles, moments);
+         dipolar_bound(lattice, *demag->dipoles, moments, demag->periodic_images);
 }
 
 double largest_damping(io::Scene const& scene) {

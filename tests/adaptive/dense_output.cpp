@@ -43,7 +43,7 @@ class WithinAStep {
     double const near = 1e-5;
     auto const start = chain_start();
     auto const end = run<typename Stepper::Plain>(slab_.natural(), start, dt, 1);
-    expect_below(std::string(name) + ", rate at the begin",
+    expect_below(std::string(name) + ", rate at the start",
                  apart(slopes(start, at(near, dt), near * dt), rates(start)), tolerance);
     expect_below(std::string(name) + ", rate at the end",
                  apart(slopes(at(1 - near, dt), end, near * dt), rates(end)), tolerance);

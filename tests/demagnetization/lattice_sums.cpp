@@ -137,11 +137,23 @@ TEST(DipolarBound, IsAboveTheLargestEigenvalueAndNotFarAbove) {
         for (std::int64_t site = 0; site < lattice.sites(); ++site)
           spins.set(site, 1 / std::sqrt(of_field) * spins.get(site));
       }
-      double const bound = dipolar_bound(lattice, sample.crystal, moments);
+      double const bound = dipolar_bound(lattice, sample.crystal, moments, images);
       EXPECT_GE(bound, eigenvalue);
       bool const is_lattice = lattice.shape[0] > 1;
       EXPECT_LE(bound, is_lattice ? 7 * eigenvalue : bound) << moments.size();
     }
+}
+
+// Chains along y, whose sites are images of each other.
+TEST(DipolarBound, CountsImagesAlongAnAxisOfOneCell) {
+  Crystal const chains{{{{1, 0, 0}, {0, 0.3, 0}, {0, 0, 1}}}, {{0, 0, 0}}};
+  for (int const images : {1, 20, all}) {
+    Images const along_y{0, images, 0};
+    auto const h = of_uniform(chains, {2, 1, 1}, {.periodic_images = along_y}, {0, 1, 0});
+    double const bound = dipolar_bound(chains.lattice({2, 1, 1}), chains, {1}, along_y);
+    EXPECT_GE(bound, h.y);
+    EXPECT_LE(bound, 7 * h.y);
+  }
 }
 
 }  // namespace

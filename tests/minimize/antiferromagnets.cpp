@@ -47,15 +47,15 @@ TYPED_TEST(Antiferromagnets, TakeAsFewEvaluations) {
 
 // Energy differences below round-off must not stop the search.
 TYPED_TEST(Antiferromagnets, ConvergeWhereRoundOffHidesTheEnergy) {
-  if (!TestFixture::is_double) return;
   auto const lattice = with({16, 16, 16}, Boundary::periodic);
+  double const torque = TestFixture::is_double ? 1e-6 : 1e-2;
   EffectiveField const field(Exchange(lattice, -50), UniaxialAnisotropy(0.1, {1, 0, 0}));
   for (unsigned const seed : {1U, 2U, 3U, 4U}) {
     auto spins = this->random_spins(lattice, seed);
     auto const found =
-        minimize(this->exec, field, spins, {.torque = 1e-6, .preconditioned = false});
+        minimize(this->exec, field, spins, {.torque = torque, .preconditioned = false});
     EXPECT_EQ(found.end, MinimizeEnd::converged) << seed;
-    EXPECT_NEAR(found.energy.value, -1229004.8, 1e-4) << seed;
+    EXPECT_NEAR(found.energy.value, -1229004.8, TestFixture::is_double ? 1e-4 : 1) << seed;
   }
 }
 

@@ -23,7 +23,8 @@ namespace cayspin::inline v0_2 {
 /// sum are bounded separately, and the best of several splittings is used. For sc, bcc and fcc the
 /// bound is about twice the eigenvalue.
 inline double dipolar_bound(Lattice const& lattice, Crystal crystal,
-                            std::vector<double> const& moments) {
+                            std::vector<double> const& moments,
+                            std::array<int, 3> const& periodic_images = {}) {
   using namespace detail;
   std::vector<Point> places, cell;
   for (std::size_t site = 0; site < crystal.basis.size(); ++site)
@@ -34,8 +35,9 @@ inline double dipolar_bound(Lattice const& lattice, Crystal crystal,
     auto const extent = whole(lattice).shape[axis];
     auto const cells = axis == 2 ? extent / lattice.cell_sites : extent;
     auto const& vector = crystal.cell[axis];
-    // An axis with one layer has no images: any spacing will do.
-    cell.push_back(add_scaled(cells > 1 ? 1 : longest / length(vector), vector, {}));
+    // Across a single layer without images, any spacing will do.
+    bool const repeats = cells > 1 || periodic_images[axis] != 0;
+    cell.push_back(add_scaled(repeats ? 1 : longest / length(vector), vector, {}));
   }
   auto const scaled = [&](Point r) {
     for (std::size_t axis = 0; axis < 3; ++axis) r[axis] *= lattice.spacing[axis];
