@@ -17,11 +17,12 @@ namespace cayspin::inline v0_2::detail {
 /// The field of interactions between cells, by FFTs. Rows along x are transformed first. Each wave
 /// number along x is then transformed along y and z in one thread's memory, multiplied by the
 /// interactions and transformed back. So no zeros beyond the lattice are stored, and each number of
-/// the spectrum is read and written once. Parts of a lattice each transform their own rows and a
-/// share of the wave numbers, which they exchange. The bits do not depend on the number of threads
-/// and parts.
+/// the spectrum is read and written once. Each part of a lattice transforms its own rows and a
+/// share of the wave numbers; in between, the parts exchange their spectra. The bits do not depend
+/// on the numbers of threads and parts.
 ///
-/// Kernel: the transformed interactions. It multiplies the transforms of all sites of a cell.
+/// `Kernel`: holds the transformed interactions, and multiplies the transforms of all sites of a
+/// cell by them.
 template <class Real, class Kernel>
 class Convolution {
   using Complex = std::complex<Real>;
@@ -51,7 +52,8 @@ class Convolution {
         plane_workers_("cayspin::DemagnetizingField: planes", spectrum_.own_waves(),
                        planes() * padded_plane_ + kernel_.work_numbers()) {}
 
-  /// Returns bytes without the memory of each thread: three planes and some rows.
+  /// Returns the bytes of the spectrum and the interactions. Each thread also has work memory:
+  /// three planes for each site of a cell, and some rows.
   static std::int64_t work_bytes(Lattice const& lattice, Interactions const& interactions) {
     Parts const parts(lattice);
     std::int64_t const ny = interactions.cells()[1];
@@ -101,8 +103,9 @@ class Convolution {
   }
 
  private:
-  /// Neighbouring rows of a plane: their y, z within the part. Each row is transformed in the slot
-  /// that it has in the whole lattice, because FFTW does not promise equal bits in different slots.
+  /// Neighbouring rows of a plane, which are transformed together; y and z count from the part's
+  /// first row. Each row has the slot that it has in the whole lattice, because FFTW does not
+  /// promise equal bits in different slots.
   struct BlockOfRows {
     std::int64_t y, z;
     int slot, count;
@@ -153,11 +156,12 @@ class Convolution {
     return spectrum_.of_own_lines(k) + std::int64_t(c) * own_.count() + rows.z * own_.ny + rows.y;
   }
 
-  /// Returns the place of a component of a site of the cells.
+  /// Returns the plane of one component at one site of the cells.
   Complex* plane_of(Complex* planes, std::int64_t site, std::size_t c) const {
     return planes + (std::size_t(site) * 3 + c) * padded_plane_;
   }
-  /// Calls body(in plane, in spectrum, count) for all rows of a wave number.
+  /// Calls body(row in its plane, row in the spectrum, length of the row) for all rows of one
+  /// component, at one wave number.
   template <class Body>
   void for_each_row(std::int64_t k, std::size_t c, Complex* planes, Body const& body) const {
     for (std::size_t part = 0; part < rows_of_parts_.size(); ++part) {
@@ -168,7 +172,8 @@ class Convolution {
     }
   }
 
-  /// Convolves one wave number along x.
+  /// Convolves the planes of one wave number along x: transforms along y and z, multiplies, and
+  /// transforms back.
   void convolve(std::int64_t k, Complex* planes) const {
     for (std::size_t c = 0; c < 3; ++c)
       for_each_row(k, c, planes, [](Complex* row, Complex const* from, std::int64_t count) {

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <string>
 
-// Transforms of a demagnetising field by cuFFT, with the data layout of fftw.hpp, in device memory
-// and in the order of an execution space instance.
+// FFTs of the demagnetising field by cuFFT, with the data layout of fftw.hpp. They work in device
+// memory, on the CUDA stream of an execution space instance.
 namespace cayspin::inline v0_2::detail {
 
 template <class Real>
@@ -98,7 +98,7 @@ class CufftComplexTransforms {
 };
 
 /// Transforms of `count` rows of real numbers, row after row, to and from wave numbers 0 .. length
-/// / 2. Values of one wave number are adjacent. Unscaled.
+/// / 2. The values of all rows at one wave number are adjacent. Unscaled.
 template <class Real>
 class CufftRowTransforms {
   using Functions = Cufft<Real>;

@@ -15,17 +15,17 @@
 namespace cayspin::inline v0_2 {
 
 /// The demagnetising field of a lattice of uniformly magnetized cells, each as large as the
-/// lattice's spacings: H_i = -strength sum_j N_ij m_j, by FFTs. A solver for HostField, which
-/// SlowField can hold: E = -m.H/2.
+/// lattice's spacings: H_i = -strength sum_j N_ij m_j, by FFTs. Its energy is -m.H/2. It is a
+/// solver for HostField, which can be put into a SlowField.
 ///
 /// An axis with images is periodic: a cell sees the nearest image of another cell and
 /// `periodic_images` more on both sides of it, whatever boundary the lattice has for other terms.
 ///
 /// Real and MemorySpace are those of the spins; DemagnetizingField(spins) deduces both. On CUDA the
-/// transforms use cuFFT, elsewhere FFTW on the host. Copies share their work memory; evaluate one
-/// at a time. On a part of a lattice (mpi::Domain, host only) it is the field of all parts, with
-/// the bits of a single one: all parts construct and evaluate it together. Needs the target
-/// cayspin::fftw.
+/// transforms use cuFFT, elsewhere FFTW on the host. Copies share their work memory, so evaluate
+/// one at a time. On a part of a lattice (mpi::Domain, host only) the field is that of all parts,
+/// with the same bits as on a single one. All parts construct and evaluate it together. Needs the
+/// target cayspin::fftw.
 template <class Real, class MemorySpace = Kokkos::HostSpace>
 class DemagnetizingField {
   static constexpr bool on_host = std::is_same_v<MemorySpace, Kokkos::HostSpace>;
@@ -37,8 +37,9 @@ class DemagnetizingField {
   static constexpr int degree = 2;
 
   /// Throws std::invalid_argument for a crystal, cell edges with a ratio above 1e9, a non-finite
-  /// strength, a negative number of images, infinitely_many_images along three axes, and on a
-  /// device for a part of a lattice.
+  /// strength, a negative number of images, and infinitely_many_images along three axes, along two
+  /// whose lengths have a ratio above 1e4, or with another tensor function. On a device also for a
+  /// part of a lattice.
   explicit DemagnetizingField(Lattice const& lattice, DemagnetizationOptions const& options = {})
       : lattice_(lattice),
         convolution_(std::make_shared<Convolution const>(
@@ -48,7 +49,8 @@ class DemagnetizingField {
                               DemagnetizationOptions const& options = {})
       : DemagnetizingField(like.lattice(), options) {}
 
-  /// Returns the bytes of the spectrum and the interactions; on a part, those of that part.
+  /// Returns the bytes of the spectrum and the interactions, and on a device of the padded rows. On
+  /// a part of a lattice, these are the bytes of that part.
   static std::int64_t work_bytes(Lattice const& lattice,
                                  DemagnetizationOptions const& options = {}) {
     return Convolution::work_bytes(lattice, {lattice, options});

@@ -19,8 +19,7 @@ namespace cayspin::inline v0_2::detail {
 /// Memory layout of a DeviceConvolution.
 struct DeviceSpectrum {
   std::int64_t cells[3], period[3], octant[3];
-  std::int64_t
-      waves;  // number of wave numbers along x that are multiplied by the interactions at once
+  std::int64_t waves;  // wave numbers along x that the planes hold at once
 
   std::int64_t rows() const { return cells[1] * cells[2]; }
   std::int64_t numbers() const { return 3 * rows() * period[0]; }
@@ -30,7 +29,8 @@ struct DeviceSpectrum {
   std::int64_t octant_plane() const { return octant[1] * octant[2]; }
 };
 
-/// Output order component, row, x: the rows of spins, padded with zeros up to a period.
+/// Functor that copies the rows of spins and pads them with zeros up to a period. Output order:
+/// component, row, x.
 template <class Real>
 struct PadRows {
   DeviceSpectrum at;
@@ -63,8 +63,8 @@ struct TakeRows {
   }
 };
 
-/// Output order z, line, y, from the spectrum with the order line, z, y; a line is a wave number
-/// along x and a component. Padded with zeros up to the periods.
+/// Functor that copies the spectrum (order: line, z, y) into planes (order: z, line, y) and pads
+/// them with zeros up to the periods. A line is one component at one wave number along x.
 template <class Real>
 struct PadPlanes {
   DeviceSpectrum at;
@@ -81,7 +81,7 @@ struct PadPlanes {
   }
 };
 
-/// Functor that copies planes back into the spectrum.
+/// Functor that copies the planes back into the spectrum, without the padding.
 template <class Real>
 struct CutPlanes {
   DeviceSpectrum at;
@@ -127,8 +127,8 @@ struct MultiplyPlanes {
 };
 
 /// The field of interactions between cells in device memory. Rows along x are transformed first.
-/// Then some wave numbers at a time are transformed along y and z, multiplied by the interactions
-/// and transformed back, in planes that are the only padded ones.
+/// Then some wave numbers at a time are copied into planes, transformed along y and z, multiplied
+/// by the interactions and transformed back. Only these planes are padded along y and z.
 template <class Real, class Exec>
 class DeviceConvolution {
   using Complex = Kokkos::complex<Real>;
@@ -139,7 +139,8 @@ class DeviceConvolution {
                 "Kokkos::HostSpace, in a HostField, goes with any.");
 
  public:
-  /// Planes of a few MiB stay in the second-level cache of a large device.
+  /// `bytes_at_once`: the size that the planes should not exceed. 32 MiB stay in the second-level
+  /// cache of a large device.
   DeviceConvolution(Lattice const& lattice, InteractionsOfCells const& interactions,
                     std::int64_t bytes_at_once = 32 << 20)
       : at_(places(interactions, bytes_at_once)),
@@ -159,7 +160,7 @@ class DeviceConvolution {
     Kokkos::deep_copy(kernel_, kernel);
   }
 
-  /// Returns all bytes kept, without the planes and the work memory of the transforms.
+  /// Returns the bytes of everything kept, except the planes and the work memory of the transforms.
   static std::int64_t work_bytes(Lattice const&, InteractionsOfCells const& interactions) {
     auto const at = places(interactions, 0);
     return (at.numbers() + 2 * at.spectrum() + static_cast<std::int64_t>(kernel_size(at))) *

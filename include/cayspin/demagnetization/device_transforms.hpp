@@ -8,7 +8,8 @@
 #include <cayspin/demagnetization/cufft.hpp>
 #endif
 
-// Selects the FFT library of an execution space. The transforms of each have equal members.
+// Selects the FFT library of an execution space. The classes of both libraries have the same
+// members.
 namespace cayspin::inline v0_2::detail {
 
 /// FFTW in a host space, so that tests can run the device code there; none elsewhere.

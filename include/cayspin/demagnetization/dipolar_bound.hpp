@@ -17,11 +17,11 @@
 
 namespace cayspin::inline v0_2 {
 
-/// Returns an upper bound of |H| of DipolarField with strength 1, as it enters the modes that a
-/// method has to follow: a bound on the largest eigenvalue of the matrix from spins to H, for open
-/// and periodic lattices of any size. `moments`: one for each site of a cell. Both parts of Ewald's
-/// sum are bounded separately, and the best of several splittings is used. For sc, bcc and fcc the
-/// bound is about twice the eigenvalue.
+/// Returns an upper bound of the magnitude of all eigenvalues of the matrix from spins to H, for a
+/// DipolarField with strength 1 on an open or periodic lattice of any size. Stable steps depend on
+/// these eigenvalues; |H| at a site can be larger. `moments`: one for each site of a cell. Both
+/// parts of Ewald's sum are bounded separately, for several splittings, and the smallest result is
+/// used. For large sc, bcc and fcc lattices it is about twice the largest eigenvalue.
 inline double dipolar_bound(Lattice const& lattice, Crystal crystal,
                             std::vector<double> const& moments,
                             std::array<int, 3> const& periodic_images = {}) {
@@ -35,7 +35,8 @@ inline double dipolar_bound(Lattice const& lattice, Crystal crystal,
     auto const extent = whole(lattice).shape[axis];
     auto const cells = axis == 2 ? extent / lattice.cell_sites : extent;
     auto const& vector = crystal.cell[axis];
-    // Across a single layer without images, any spacing will do.
+    // The bound is that of an infinite lattice. A single layer without images is part of one with
+    // any spacing.
     bool const repeats = cells > 1 || periodic_images[axis] != 0;
     cell.push_back(add_scaled(repeats ? 1 : longest / length(vector), vector, {}));
   }

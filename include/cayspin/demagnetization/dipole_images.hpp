@@ -12,8 +12,8 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Sum of f over the points r + i a + j b + k c within a distance, for a lattice of one to three
-/// periods.
+/// A lattice with one to three periods a, b, c. It calls a function for all points r + i a + j b +
+/// k c within a distance of the origin.
 class PointsOfLattice {
  public:
   PointsOfLattice() = default;
@@ -34,13 +34,13 @@ class PointsOfLattice {
   }
 
   std::size_t dimensions() const { return count_; }
-  /// Returns the volume of a cell; with two periods its area.
+  /// Returns the volume of a cell; with two periods its area, with one its length.
   double measure() const { return measure_; }
-  /// The normal of the plane of two periods.
+  /// Returns the unit normal of the plane of two periods.
   Point const& normal() const { return vectors_[2]; }
 
-  /// Returns the reciprocal lattice: the product of a vector with its period is 2 pi, with another
-  /// one 0.
+  /// Returns the reciprocal lattice: the scalar product of its vector i with period j is 2 pi if i
+  /// = j, else 0.
   PointsOfLattice reciprocal() const {
     std::vector<Point> waves;
     for (std::size_t i = 0; i < count_; ++i)
@@ -48,7 +48,7 @@ class PointsOfLattice {
     return PointsOfLattice(waves);
   }
 
-  /// `work` also receives the integers of the point.
+  /// Calls work(point, {i, j, k}) for all points r + i a + j b + k c with |point| <= distance.
   template <class Work>
   void for_each_within(Point const& r, double distance, Work const& work) const {
     std::array<int, 3> first{}, last{};
@@ -83,13 +83,14 @@ class PointsOfLattice {
   double measure_ = 0;
 };
 
-/// The tensor of a dipole summed over its images along one to three periods, infinitely many. Along
-/// three, the images end far away at a medium without poles (tin foil), so that the mean
-/// magnetization makes no field.
+/// The tensor of a dipole, summed over infinitely many images along one to three periods. With
+/// three periods, the body that the images fill has no poles on its surface ("tin-foil" boundary),
+/// so that its mean magnetization makes no field.
 ///
-/// Along two and three periods by Ewald's sums: C. Kittel, Introduction to Solid State Physics,
-/// appendix B; D. E. Parry, Surf. Sci. 49, 433 (1975). Along one, the nearest 32 images on each
-/// side are summed; the others are integrated, with a correction by differences over a period.
+/// With two or three periods, Ewald's sums are used: C. Kittel, Introduction to Solid State
+/// Physics, appendix B; D. E. Parry, Surf. Sci. 49, 433 (1975). With one period, the nearest 32
+/// images on each side are summed. The others are replaced by an integral with a correction from
+/// differences over a period.
 class DipoleImages {
  public:
   explicit DipoleImages(std::vector<Point> const& periods) : lattice_(periods) {
@@ -99,11 +100,12 @@ class DipoleImages {
       return;
     }
     bool const is_bulk = periods.size() == 3;
-    // This makes both sums about equally long.
+    // With this value both sums have about equally many terms.
     alpha_ = is_bulk ? 2.2 / std::cbrt(lattice_.measure()) : 1.77 / std::sqrt(lattice_.measure());
     lattice_.reciprocal().for_each_within(
         {}, 2 * ewald_reach * alpha_, [&](Point const& g, std::array<int, 3> const& numbers) {
-          if (numbers <= std::array{0, 0, 0}) return;  // the opposite one stands for both
+          if (numbers <= std::array{0, 0, 0})
+            return;  // 0, or the opposite of a kept g, whose term is equal
           double const g2 = scalar_product(g, g);
           double const gauss = std::exp(-g2 / (4 * alpha_ * alpha_));
           waves_.push_back({g, std::sqrt(g2), is_bulk ? gauss / g2 : gauss});
@@ -142,8 +144,7 @@ class DipoleImages {
       sum.add_product(factor * weight * std::cos(scalar_product(g, r)), g, g);
   }
 
-  /// exp(g z) erfc(g / 2 alpha + alpha z), without overflow: where erfc underflows, the product is
-  /// 0.
+  /// Returns exp(g z) erfc(g / (2 alpha) + alpha z) without overflow: 0 where erfc underflows.
   double wave_beyond(double g, double z) const {
     double const at = g / (2 * alpha_) + alpha_ * z;
     return at > 26 ? 0 : std::exp(g * z) * std::erfc(at);
@@ -173,7 +174,8 @@ class DipoleImages {
     DipoleTensor sum;
     for (int i = -images; i <= images; ++i)
       sum += dipole_tensor(add_scaled(i * period_, direction_, r));
-    // Turns the integral over a period into a sum: asinh(d/2) / (d/2), d the central difference.
+    // Weights of the operator that turns the integral into a sum over images: asinh(d/2) / (d/2),
+    // with the central difference d over a period.
     constexpr double second = -1. / 24, fourth = 3. / 640, sixth = -5. / 7168;
     constexpr std::array weights{1 - 2 * second + 6 * fourth - 20 * sixth,
                                  second - 4 * fourth + 15 * sixth, fourth - 6 * sixth, sixth};
@@ -185,7 +187,8 @@ class DipoleImages {
                          (images + 0.5 + n) * period_ + side * x, side, rho);
     return sum;
   }
-  /// Adds the integral over a half-line that starts at distance u along it.
+  /// Adds the integral of the tensor over a half-line of dipoles, which starts u away along the
+  /// line.
   void add_rest_of_line(DipoleTensor& sum, double weight, double u, int side,
                         Point const& rho) const {
     auto const& e = direction_;

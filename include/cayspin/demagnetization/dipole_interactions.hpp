@@ -24,20 +24,21 @@ namespace cayspin::inline v0_2 {
 
 struct DipolarOptions {
   double strength = 1;
-  /// Images on each side beyond the nearest one, along the cell's vectors that have any; or
-  /// infinitely_many_images for all. A finite number along one vector cannot be combined with
-  /// infinitely many along another.
+  /// For each vector of the cell: the number of images on each side beyond the nearest one; 0 for a
+  /// vector along which the lattice is not periodic. infinitely_many_images along one vector cannot
+  /// be combined with a finite number along another.
   std::array<int, 3> periodic_images{};
-  /// Demagnetising factors N along x, y and z of the body that the images fill, with infinitely
-  /// many images along three vectors: H = -N M of its mean magnetization M. 0: no poles on its
-  /// surface.
+  /// Demagnetising factors N along x, y and z of the body that the images fill: its mean
+  /// magnetization M adds the field -N M. They are used only with infinitely many images along all
+  /// three vectors. 0: the body has no poles on its surface.
   std::array<double, 3> demagnetizing_factors{};
 };
 
 namespace detail {
 
-/// Tensors between the sites of a crystal's cells; of the whole lattice, even if a part is given.
-/// Counts of cells are those of a cyclic convolution with room for all distances.
+/// Tensors between the sites of a crystal's cells. If the lattice is a part of another, they are
+/// those of the whole lattice. `period` has the extents of the cyclic convolution, which has room
+/// for all distances.
 class InteractionsOfDipoles {
  public:
   InteractionsOfDipoles(Lattice const& lattice, Crystal crystal, DipolarOptions const& options)
@@ -81,8 +82,10 @@ class InteractionsOfDipoles {
   std::array<int, 3> const& period() const { return period_; }
   std::size_t sites() const { return crystal_.basis.size(); }
 
-  /// Returns H at a site of the cell that is `distance` cells away from the source's cell; 0 for
-  /// distances that no two cells have.
+  /// Returns the tensor from a dipole at the site `source` of a cell to H at the site `site` of
+  /// another cell, strength included. `distance`: between these cells, as indices of the cyclic
+  /// convolution, so that negative distances count from the end. 0 for distances that no two cells
+  /// have.
   DipoleTensor between(std::array<int, 3> const& distance, std::size_t site,
                        std::size_t source) const {
     DipoleTensor sum;
@@ -117,7 +120,8 @@ class InteractionsOfDipoles {
   }
 
   /// Returns the distances along an axis that share one index of the convolution. Half a period
-  /// away there are two nearest images, and each counts half.
+  /// away, two images are nearest. The mean over both choices counts the outermost image on each
+  /// side by half.
   Steps steps_of(std::size_t axis, int distance) const {
     int const images = options_.periodic_images[axis], cells = cells_[axis];
     if (images == 0) {

@@ -40,7 +40,7 @@ inline Point add_scaled(double factor, Point const& a, Point const& b) {
   return {factor * a[0] + b[0], factor * a[1] + b[1], factor * a[2] + b[2]};
 }
 
-/// Returns the tensor of a dipole at distance r; zero for r = 0.
+/// Returns the tensor at a point that is the vector r away from the dipole; zero for r = 0.
 inline DipoleTensor dipole_tensor(Point const& r) {
   DipoleTensor sum;
   double const r2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
@@ -49,8 +49,8 @@ inline DipoleTensor dipole_tensor(Point const& r) {
   return sum.add_unit(-per_cube).add_product(3 * per_cube / r2, r, r);
 }
 
-/// Ewald's short-range part, which falls off like exp(-(alpha r)^2), from erfc(alpha r) / r: the
-/// factor of the identity, and the factor of r r^T.
+/// The short-range part of Ewald's sum: second derivatives of erfc(alpha r) / r, which fall off
+/// like exp(-(alpha r)^2). `unit` is the factor of the identity, and `product` that of r r^T.
 struct ShortRangeDipole {
   ShortRangeDipole(double r2, double alpha) {
     double const r = std::sqrt(r2), two = 2 * alpha / std::sqrt(std::numbers::pi);
@@ -61,11 +61,13 @@ struct ShortRangeDipole {
   }
   double unit, product;
 };
-/// Returns minus Ewald's long-range part at r = 0, the field of a dipole on itself.
+/// Ewald's sum over wave numbers contains the field of each dipole on itself. Returns the factor of
+/// the identity that removes it: minus the long-range part at r = 0.
 inline double self_field_of_ewald(double alpha) {
   return 4 * alpha * alpha * alpha / (3 * std::sqrt(std::numbers::pi));
 }
-/// Ewald's sums are below round-off beyond this many 1 / alpha, and 2 alpha in wave numbers.
+/// Terms of Ewald's sums are below round-off at distances above ewald_reach / alpha, and at wave
+/// numbers above 2 alpha ewald_reach.
 inline constexpr double ewald_reach = 6.2;
 
 }  // namespace cayspin::inline v0_2::detail

@@ -15,10 +15,12 @@
 namespace cayspin::inline v0_2::detail {
 
 /// The sum of tensors between a cell and infinitely many images of another, along one or two
-/// periodic axes, without the nearest images. Images beyond 16 periods are replaced by lines of
-/// dipoles, and lines by sheets, whose fields are integrals. Corrections by differences over a
-/// period, up to the sixth, turn the integrals into sums over images and the dipoles into cells.
-/// The error is below 1e-10 of the trace of a cell.
+/// periodic axes, without the nearest images. Beyond 16 periods (or the nearest images, if there
+/// are more), lines of dipoles replace the images along the axis of the shorter period. Sheets
+/// replace the lines that are as far away along the other axis. Fields of lines and sheets are
+/// integrals in closed form. Corrections by differences over a period, up to the sixth, turn the
+/// integrals into sums over images, and the dipoles into cells. The error is below 1e-10, where 1
+/// is the trace of a cell's own tensor.
 class FarImages {
  public:
   /// `period`: 0 along non-periodic axes. `nearest`: images on each side to leave out.
@@ -68,8 +70,9 @@ class FarImages {
   double beyond(std::size_t axis) const { return (images_[axis] + 0.5) * period_[axis]; }
   std::size_t normal() const { return 3 - line_ - *sheet_; }
 
-  /// With d^2 the second difference: asinh(d/2) / (d/2), which turns an integral into a sum, times
-  /// the mean over both cells.
+  /// Returns the shifts and weights of an operator along a periodic axis: asinh(d/2) / (d/2), which
+  /// turns an integral into a sum over images, times the mean over both cells. d is the central
+  /// difference over a period.
   WeightedShifts over_periods(std::size_t axis) const {
     double const edge = cell_[axis] / period_[axis], q = edge * edge;
     double const of_sum[] = {-1. / 24, 3. / 640, -5. / 7168};
@@ -87,8 +90,9 @@ class FarImages {
     return shifts;
   }
 
-  /// The mean over both cells, by pieces with a three-point rule of fifth order. `distance`: to the
-  /// images.
+  /// Returns the shifts and weights of the mean over both cells along an axis. The cells are
+  /// divided into pieces, with a three-point rule of fifth order for each pair of pieces.
+  /// `distance`: of the images.
   WeightedShifts over_an_edge(std::size_t axis, double distance) const {
     auto const pieces = static_cast<int>(std::ceil(24 * cell_[axis] / distance));
     double const piece = cell_[axis] / pieces, point = std::sqrt(0.4) * piece;
@@ -133,7 +137,8 @@ class FarImages {
     if (i != j) e[j][i] += value;
   }
 
-  /// -d_i d_j of the integral of 1/r over the line beyond the images.
+  /// Adds -d_i d_j of the integral of 1/r over both ends of the line, beyond the images that are
+  /// summed.
   void add_line(Entries& e, double weight, Lengths const& at) const {
     std::size_t const p = line_, q = (p + 1) % 3, n = (p + 2) % 3;
     double const y = at[q], z = at[n];
@@ -151,7 +156,7 @@ class FarImages {
     }
   }
 
-  /// Adds the sheets of the lines farther away.
+  /// Adds the field of the two sheets that replace the lines farther away.
   void add_sheet(Entries& e, double weight, double y, double z) const {
     std::size_t const q = *sheet_, n = normal();
     for (int const side : {-1, 1}) {

@@ -16,11 +16,12 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Sums over far images for all distances of a lattice. They vary smoothly along the periodic axes:
-/// they are computed at ten points there and interpolated to 1e-12 of the trace.
+/// Sums over far images for all distances of a lattice. They vary smoothly along axes with
+/// infinitely many images. There they are computed at ten points and interpolated, with an error of
+/// 1e-12, where 1 is the trace of a cell's own tensor.
 class FarImagesTable {
  public:
-  /// Distances along an axis.
+  /// The distances 0, step, 2 step, .. along an axis.
   struct Axis {
     int distances = 1;
     double step = 1;
@@ -83,7 +84,7 @@ class FarImagesTable {
     return (static_cast<double>(point) + 0.5) * std::numbers::pi / most_points;
   }
 
-  /// Lagrange's polynomials of Chebyshev's points, in the barycentric form.
+  /// Returns the weights of Lagrange interpolation from Chebyshev points, in barycentric form.
   static std::vector<OfPoint> interpolated(std::vector<double> const& points, double at) {
     std::vector<OfPoint> weights;
     double sum = 0;

@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <type_traits>
 
-// Transforms of a demagnetising field by FFTW, in both precisions. Plans use FFTW_ESTIMATE, which
-// does not measure: it chooses the same plan each time, and so the same bits. Arrays are aligned to
-// cache lines, as Kokkos allocates them.
+// FFTs of the demagnetising field by FFTW, in both precisions. Plans use FFTW_ESTIMATE, which
+// measures no times. So FFTW always chooses the same plan, and results have the same bits. Arrays
+// are aligned to cache lines, as Kokkos allocates them.
 namespace cayspin::inline v0_2::detail {
 
 template <class Real>
@@ -117,7 +117,7 @@ class ComplexTransforms {
 };
 
 /// Transforms of `count` rows of real numbers, row after row, to and from wave numbers 0 .. length
-/// / 2. Values of one wave number are adjacent. Unscaled.
+/// / 2. The values of all rows at one wave number are adjacent. Unscaled.
 template <class Real>
 class RowTransforms {
  public:

@@ -24,20 +24,20 @@ namespace cayspin::inline v0_2 {
 
 struct DemagnetizationOptions {
   double strength = 1;
-  /// Images on each side beyond the nearest one, along periodic axes. infinitely_many_images is
-  /// allowed along one or two axes, not along three, where the sum depends on the shape of the
-  /// body.
+  /// For each axis: the number of images on each side beyond the nearest one; 0 for an axis that is
+  /// not periodic. infinitely_many_images is allowed along one or two axes. Along three, the sum
+  /// would depend on the shape of the body.
   std::array<int, 3> periodic_images{};
   TensorOfCells* tensor = demagnetizing_tensor;
-  /// Cache for the tensors of a whole lattice: called with the function that computes them, and
-  /// returns its result or a stored one. Empty: the tensors are computed.
+  /// Cache for the tensors of a whole lattice. It receives the function that computes them, and
+  /// returns that function's result or a stored one. Empty: no cache.
   std::function<DemagnetizingTensors(std::function<DemagnetizingTensors()> const& compute)> kept{};
 };
 
 namespace detail {
 
-/// Interactions -strength N between the cells of a lattice, on the octant of non-negative
-/// distances; of the whole lattice, even if a part is given.
+/// Interactions -strength N between the cells of a lattice, for the octant of non-negative
+/// distances. If the lattice is a part of another, they are those of the whole lattice.
 class InteractionsOfCells {
  public:
   InteractionsOfCells(Lattice const& lattice, DemagnetizationOptions const& options)
@@ -65,16 +65,18 @@ class InteractionsOfCells {
   }
 
   std::array<int, 3> const& cells() const { return cells_; }
-  /// Returns the extents of the cyclic convolution: room for all distances, or the lattice itself.
+  /// Returns the extents of the cyclic convolution in cells: those of the lattice along axes with
+  /// images, and enough for all distances along the others.
   std::array<int, 3> const& period() const { return period_; }
-  /// Distances 0 .. octant - 1 along each axis stand for all.
+  /// Returns the number of distances that are stored along an axis, 0 .. octant - 1. Symmetry gives
+  /// the others.
   int octant(std::size_t axis) const { return period_[axis] / 2 + 1; }
 
   /// Returns the number of lines along x in the octant.
   std::int64_t lines() const { return std::int64_t{octant(1)} * octant(2); }
 
-  /// Returns tensors for all distances of `count` lines, x fastest, then y; 0 for distances that no
-  /// two cells have.
+  /// Returns the tensors of `count` lines from number `first` on, for all distances along x. Order:
+  /// x fastest, then y. Tensors are 0 for distances that no two cells have.
   DemagnetizingTensors of_lines(std::int64_t first, std::int64_t count) const {
     if (options_.kept && count == lines())
       return options_.kept([&] { return computed(first, count); });
@@ -86,7 +88,7 @@ class InteractionsOfCells {
     DemagnetizingTensors found(static_cast<std::size_t>(octant(0)) *
                                static_cast<std::size_t>(lines));
     auto const far = far_images();
-    // Near cells take longest, so they are dealt out one by one.
+    // Near cells take longest, so threads fetch small chunks of work as they finish.
     auto const count = static_cast<std::int64_t>(found.size());
     Kokkos::parallel_for(
         "cayspin::DemagnetizingField: tensors",
@@ -115,8 +117,8 @@ class InteractionsOfCells {
   bool is_infinite(std::size_t axis) const { return images(axis) == infinitely_many_images; }
   double period_length(std::size_t axis) const { return cells_[axis] * cell_[axis]; }
 
-  /// Chooses the images to sum for each distance: those within two of the longer periods.
-  /// far_images.hpp adds the infinitely many others.
+  /// Chooses how many images to sum one by one. Along an axis with infinitely many, these are the
+  /// ones within twice the longest of the infinite axes' periods; FarImages adds the others.
   void choose_nearest() {
     nearest_ = options_.periodic_images;
     std::vector<double> periods;
@@ -139,7 +141,7 @@ class InteractionsOfCells {
         nearest_[axis] = static_cast<int>(std::ceil(2 * longest / period_length(axis)));
   }
 
-  /// Returns the far images, or nothing if no axis has infinitely many.
+  /// Returns the table of far images, or nothing if no axis has infinitely many.
   std::optional<FarImagesTable> far_images() const {
     std::array<double, 3> period{};
     std::array<FarImagesTable::Axis, 3> axes;

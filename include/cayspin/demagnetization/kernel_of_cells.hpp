@@ -18,7 +18,8 @@ struct PlaneStrides {
   std::size_t plane;
 };
 
-/// Interactions between cells at wave numbers. One octant is stored; the others follow by symmetry.
+/// The Fourier transform of the interactions between cells. One octant of wave numbers is stored;
+/// the others follow by symmetry.
 template <class Real>
 class KernelOfCells {
   using Complex = std::complex<Real>;
@@ -41,7 +42,8 @@ class KernelOfCells {
   /// Returns how many numbers of work memory `multiply` needs after the planes.
   std::size_t work_numbers() const { return 0; }
 
-  /// Multiplies the planes of one wave number along x.
+  /// Multiplies the planes of one wave number along x by the interactions. `k` counts from the
+  /// first wave number of this part.
   void multiply(std::int64_t k, Complex* planes, PlaneStrides const& strides) const {
     for (int z = 0; z < period_[2]; ++z) {
       bool const beyond = z >= octant_[2];
@@ -57,7 +59,7 @@ class KernelOfCells {
  private:
   std::size_t octant_plane() const { return std::size_t(octant_[1]) * std::size_t(octant_[2]); }
 
-  /// `Sign`: the sign of y. `sign_of_z`: -1 where the mirror image is stored.
+  /// `Sign` and `sign_of_z` are -1 where the mirrored wave number along y or z is the stored one.
   template <int Sign>
   void multiply_row(Real const* kernel, Real sign_of_z, Complex* row, std::size_t plane, int begin,
                     int end) const {

@@ -17,8 +17,10 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Interactions between the sites of a crystal's cells at wave numbers. Those of a site with itself
-/// are real. Those of a pair are complex, and conjugate for the pair in the other order.
+/// The Fourier transform of the interactions between the sites of a crystal's cells. It is real
+/// between equal sites of different cells. Between two different sites a and b of the cell it is
+/// complex. The transform from a to b is the conjugate of that from b to a, so only one of them is
+/// stored.
 template <class Real>
 class KernelOfPairs {
   using Complex = std::complex<Real>;
@@ -44,7 +46,8 @@ class KernelOfPairs {
   /// Returns how many numbers of work memory `multiply` needs after the planes.
   std::size_t work_numbers() const { return 3 * sites_ * row_length(); }
 
-  /// Multiplies the planes of one wave number along x.
+  /// Multiplies the planes of one wave number along x by the interactions. `k` counts from the
+  /// first wave number of this part.
   void multiply(std::int64_t k, Complex* planes, PlaneStrides const& strides) const {
     Complex* const sum = planes + 3 * sites_ * strides.plane;
     for (int z = 0; z < period_[2]; ++z) {
@@ -65,7 +68,7 @@ class KernelOfPairs {
   }
 
  private:
-  /// Rows of vector components and the distance between them.
+  /// A row for each component of vectors, and the distance in memory from one row to the next.
   struct Vectors {
     Complex* data;
     std::size_t next;
@@ -75,8 +78,8 @@ class KernelOfPairs {
   };
 
   std::size_t row_length() const { return std::size_t(period_[1]); }
-  /// Returns the place of rows xx, yy, zz, xy, xz, yz of a pair of sites a <= b. For two different
-  /// sites each real part precedes its imaginary part.
+  /// Returns where the rows xx, yy, zz, xy, xz, yz of a pair of sites a <= b begin. For two
+  /// different sites, the row of imaginary parts follows each row of real parts.
   std::size_t place(std::int64_t k, int z, std::size_t a, std::size_t b) const {
     std::size_t const sites_before = a * (2 * sites_ - a - 1) / 2 * 12 + 6 * a;
     std::size_t const in_pairs = sites_before + (b == a ? 0 : 6 + 12 * (b - a - 1));
@@ -99,7 +102,7 @@ class KernelOfPairs {
       h[2][y] += xz[y] * mx + yz[y] * my + zz[y] * mz;
     }
   }
-  /// `Sign`: the sign of the imaginary parts.
+  /// `Sign`: -1 for the conjugate of the stored interactions.
   template <int Sign>
   void multiply_other(Real const* n, Vectors const& m, Vectors const& h) const {
     constexpr std::size_t in_matrix[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
@@ -130,7 +133,8 @@ class KernelOfPairs {
     }
   };
 
-  /// Threads share lines of distances along x, and then wave numbers along x.
+  /// Computes, transforms and stores the interactions of a pair of sites. Threads divide the lines
+  /// along x among themselves, and after the transform along x the wave numbers along x.
   void transform(Interactions const& interactions, Parts const& parts, std::size_t a,
                  std::size_t b) {
     auto const [nx, ny, nz] = period_;

@@ -14,9 +14,9 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// The transform of the interactions, which is real: each component is even or odd along each axis,
-/// and odd along two axes or none. It holds an octant of wave numbers, along x only the share of
-/// this part.
+/// The Fourier transform of the interactions, which is real: each component is even or odd along
+/// each axis, and odd along two axes or none. Wave numbers of one octant are kept; along x only the
+/// share of this part.
 class SpectrumOfInteractions {
  public:
   SpectrumOfInteractions(InteractionsOfCells const& interactions, Parts const& parts)
@@ -29,7 +29,7 @@ class SpectrumOfInteractions {
         along_x_("cayspin::DemagnetizingField: spectrum of interactions", parts, octant_[0],
                  lines_) {}
 
-  /// Returns values in the order wave number along x, along z, along y.
+  /// Returns one component. Order: wave number along x, z, y.
   std::vector<double> operator()(double DemagnetizingTensor::*component,
                                  std::array<bool, 3> const& is_odd) const {
     along(
@@ -68,7 +68,8 @@ class SpectrumOfInteractions {
     return of_parts;
   }
 
-  /// Transforms number(line, i) and passes the values on: result(line, i, value).
+  /// Transforms number(line, i) along an axis, and calls result(line, i, value) for each
+  /// transformed value.
   template <class Number, class Result>
   void along(std::size_t axis, bool is_odd, std::int64_t lines, Number const& number,
              Result const& result) const {
@@ -85,8 +86,8 @@ class SpectrumOfInteractions {
         whole[i] = value;
         if (i > 0) whole[length - i] = is_odd ? -value : value;
       }
-      // Half a period away there are two nearest images, whose odd parts cancel. So the imaginary
-      // part leaves out that number and the first.
+      // At half a period two images are nearest, and their odd parts cancel to 0. `whole` holds
+      // another number there, but the imaginary part depends neither on it nor on the first number.
       transforms.forward(whole, waves);
       for (int i = 0; i < count; ++i) result(line, i, is_odd ? waves[i].imag() : waves[i].real());
     });

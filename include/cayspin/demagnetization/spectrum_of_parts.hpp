@@ -24,7 +24,8 @@ class Parts {
   std::size_t count() const { return part_ == nullptr ? 1 : part_->parts(); }
   std::size_t index() const { return part_ == nullptr ? 0 : part_->index(); }
 
-  /// Returns the start of the share of part `of` when all parts have equal shares.
+  /// Returns where the share of part `of` begins when `total` is divided among the parts as evenly
+  /// as possible.
   std::int64_t begin_of_share(std::int64_t total, std::size_t of) const {
     return total * static_cast<std::int64_t>(of) / static_cast<std::int64_t>(count());
   }
@@ -59,7 +60,8 @@ class Parts {
   Part const* part_;
 };
 
-/// A part's rows in planes, complete along x, and their place in the whole lattice.
+/// A part's rows along x: where the first one is in the whole lattice, and how many there are along
+/// y and z.
 struct RowsOfPart {
   std::int64_t y, z, ny, nz;
 
@@ -86,8 +88,9 @@ inline std::vector<RowsOfPart> rows_of_parts(Lattice const& lattice) {
   return all;
 }
 
-/// Lines of wave numbers on the parts of a lattice. A part holds all wave numbers of its own lines,
-/// and a share of the wave numbers of all lines. On a single part these are the same memory.
+/// A spectrum of lines, distributed over the parts of a lattice. A part holds all wave numbers of
+/// its own lines, and a share of the wave numbers of all lines. If there is only one part, both are
+/// the same memory.
 template <class Number>
 class SpectrumOfParts {
  public:
@@ -117,20 +120,24 @@ class SpectrumOfParts {
   /// Returns the number of wave numbers in this part's share.
   std::int64_t own_waves() const { return static_cast<std::int64_t>(own_waves_); }
 
-  /// Returns one wave number of this part's lines; `wave` counts all of them.
+  /// Returns the values of this part's lines at one wave number, which counts from the first of
+  /// all.
   Number* of_own_lines(std::int64_t wave) const {
     return of_lines_.data() + static_cast<std::size_t>(wave) * own_lines_;
   }
-  /// Returns one wave number of this part's share, counted from its first, on the lines of `part`.
+  /// Returns the values of the lines of `part` at one wave number of this part's share, which
+  /// counts from the first of the share.
   Number* of_own_wave(std::int64_t wave, std::size_t part) const {
     return of_waves_.data() + for_waves_[part] + static_cast<std::size_t>(wave) * lines_[part];
   }
 
-  /// Sends lines to the shares. Call after all of_own_lines are written.
+  /// Sends the values of this part's lines to the parts whose shares contain the wave numbers. Call
+  /// after all of_own_lines are written.
   void lines_to_waves() const {
     if (parts_.count() > 1) parts_.exchange<Number>(of_lines(), of_waves());
   }
-  /// Sends shares back to the lines. Call after all of_own_wave are written.
+  /// Sends the values of this part's share back to the parts with the lines. Call after all
+  /// of_own_wave are written.
   void waves_to_lines() const {
     if (parts_.count() > 1) parts_.exchange<Number>(of_waves(), of_lines());
   }
@@ -143,10 +150,9 @@ class SpectrumOfParts {
 
   Parts parts_;
   std::size_t own_lines_, own_waves_;
-  std::vector<std::size_t> lines_;  // on each part
-  std::vector<std::size_t> for_lines_,
-      for_waves_;               // where what goes to, or is of, each part begins
-  Memory of_lines_, of_waves_;  // wave number, line; part, wave number, line
+  std::vector<std::size_t> lines_;                  // on each part
+  std::vector<std::size_t> for_lines_, for_waves_;  // begin of each part's block
+  Memory of_lines_, of_waves_;                      // wave number, line; part, wave number, line
 };
 
 }  // namespace cayspin::inline v0_2::detail

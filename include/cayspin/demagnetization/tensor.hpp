@@ -13,19 +13,20 @@
 
 namespace cayspin::inline v0_2 {
 
-/// The symmetric demagnetising tensor N between two equal rectangular cells: H = -N m, in units of
-/// the saturation magnetization.
+/// The symmetric demagnetising tensor N between two equal rectangular cells. If one has the uniform
+/// magnetization m, its mean field in the other is H = -N m.
 struct DemagnetizingTensor {
   double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 };
 
 using DemagnetizingTensors = std::vector<DemagnetizingTensor>;
 
-/// A function from the position and the edges of a cell to such a tensor.
+/// Function that returns N for two cells whose centres differ by `position`; `cell` has their
+/// edges.
 using TensorOfCells = DemagnetizingTensor(std::array<double, 3> const& position,
                                           std::array<double, 3> const& cell);
 
-/// Largest ratio of a cell's edges for which the tensor is tested.
+/// Largest ratio of a cell's edges that DemagnetizingField accepts; the tensor is tested up to it.
 inline constexpr double largest_edge_ratio = 1e9;
 
 namespace detail {
@@ -40,8 +41,8 @@ void add(Tensor& sum, Number weight, Tensor const& a) {
   sum.xy += weight * a.xy, sum.xz += weight * a.xz, sum.yz += weight * a.yz;
 }
 
-/// Newell's functions at one point: f for the diagonal entries, g for the others. Their second
-/// differences cancel most digits, so they use long double.
+/// Newell's functions at one point: f for the diagonal entries, g for the others. They are long
+/// double because most digits cancel in their second differences.
 struct NewellFunctions {
   long double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 };
@@ -71,7 +72,8 @@ inline NewellFunctions newell_functions(long double x, long double y, long doubl
   };
 }
 
-/// Returns second differences of Newell's functions along each axis, at 27 points.
+/// Returns the tensor from the second differences of Newell's functions along all three axes, which
+/// take 27 points.
 inline DemagnetizingTensor near_demagnetizing_tensor(Lengths const& position, Lengths const& cell) {
   using Number = long double;
   NewellFunctions sum;
@@ -95,9 +97,10 @@ constexpr std::array<double, Size> factorials() {
   return result;
 }
 
-/// Factors of the Taylor series. The second differences divided by the squares of the edges are sum
-/// 8 h_x^2i h_y^2j h_z^2k / ((2i+2)! (2j+2)! (2k+2)!) d_x^2i d_y^2j d_z^2k. It acts on 1/r, so
-/// d_z^2 = -(d_x^2 + d_y^2). The factors of d_x^2i d_y^2j, with i + j = m, are returned at [m][i].
+/// Returns coefficients of the Taylor series. The product of the second differences along x, y and
+/// z, each divided by the square of its edge, is d_x^2 d_y^2 d_z^2 times the sum of 8 h_x^2i h_y^2j
+/// h_z^2k / ((2i+2)! (2j+2)! (2k+2)!) d_x^2i d_y^2j d_z^2k. This sum acts on derivatives of 1/r, so
+/// d_z^2 = -(d_x^2 + d_y^2). Element [m][i] is the coefficient of d_x^2i d_y^2j with j = m - i.
 template <std::size_t HalfOrder>
 std::array<std::array<double, HalfOrder + 1>, HalfOrder + 1> difference_series(Lengths const& h) {
   constexpr auto factorial = factorials<2 * HalfOrder + 3>();
@@ -120,7 +123,8 @@ std::array<std::array<double, HalfOrder + 1>, HalfOrder + 1> difference_series(L
   return series;
 }
 
-/// Returns the Taylor series in edge / distance up to Order. Order 0 is the field of a dipole.
+/// Returns the tensor by its Taylor series in edge / distance, up to `Order`. Order 0 is the field
+/// of a dipole.
 template <std::size_t Order>
 DemagnetizingTensor far_demagnetizing_tensor(Lengths const& position, Lengths const& cell,
                                              double distance) {
@@ -130,9 +134,10 @@ DemagnetizingTensor far_demagnetizing_tensor(Lengths const& position, Lengths co
   Lengths const h{cell[0] / distance, cell[1] / distance, cell[2] / distance};
   auto const series = difference_series<Order / 2>(h);
 
-  // The Taylor coefficients b_n = d^n (1/r) / n! at r = 1: `even` has the multi-indices (i, degree
-  // - i, 0), `odd` (i, degree - i - 1, 1), for three consecutive degrees, between zeros: |n| b_n +
-  // (2 |n| - 1) sum_a x_a b_(n - e_a) + (|n| - 1) sum_a b_(n - 2 e_a) = 0.
+  // Taylor coefficients b_n = d^n (1/r) / n! at r = 1, for multi-indices n of the last three
+  // degrees: `even` holds n = (i, degree - i, 0), `odd` holds n = (i, degree - i - 1, 1). Zeros
+  // surround both. The recurrence is |n| b_n + (2 |n| - 1) sum_a x_a b_(n - e_a) + (|n| - 1) sum_a
+  // b_(n - 2 e_a) = 0, with the unit vectors e_a.
   constexpr std::size_t pad = 2;
   using Numbers = std::array<double, Order + 3 + 2 * pad>;
   std::array<Numbers, 3> even{}, odd{};
@@ -180,16 +185,16 @@ inline DemagnetizingTensor cheapest_demagnetizing_tensor(Lengths const& position
   if (distance >= 4 * edge) return far_demagnetizing_tensor<22>(position, cell, distance);
   if (edge > 1000 * std::min({cell[0], cell[1], cell[2]}))
     return slender_demagnetizing_tensor(position, cell);
-  // Second differences lose digits in proportion to the square of this number. Very close cells
-  // would be divided into too many pieces.
+  // The rounding error of second differences is proportional to the square of `loss`. Cells that
+  // are very close are not divided, since they would need too many pieces.
   double const reach = distance + edge;
   double const loss = (distance / cell[0]) * (reach / cell[1]) * (reach / cell[2]);
   if (loss > 6000 && 100 * distance > edge) return divided_demagnetizing_tensor(position, cell);
   return near_demagnetizing_tensor(position, cell);
 }
 
-/// Returns the mean over pairs of pieces, one of each cell, with edges up to a fifth of the
-/// distance.
+/// Divides both cells into pieces whose edges are at most a fifth of the distance. Returns the sum
+/// over the pieces of one cell of the mean over the pieces of the other.
 inline DemagnetizingTensor divided_demagnetizing_tensor(Lengths const& position,
                                                         Lengths const& cell) {
   std::array<int, 3> pieces{};
@@ -211,8 +216,9 @@ inline DemagnetizingTensor divided_demagnetizing_tensor(Lengths const& position,
   return sum;
 }
 
-/// Returns the tensor of slender cells: the longest edge is halved until no edge exceeds 16 times
-/// the shortest. Pairs of pieces that are already far apart are summed at once, so that few remain.
+/// Returns the tensor of slender cells: halves the longest edge until no edge exceeds 16 times the
+/// shortest. Pairs of pieces that are already far apart are summed immediately, so that few pairs
+/// remain to be halved.
 inline DemagnetizingTensor slender_demagnetizing_tensor(Lengths const& position,
                                                         Lengths const& cell) {
   using Offset = std::array<std::int64_t, 3>;  // between the pieces of a pair, in pieces
@@ -257,14 +263,15 @@ inline DemagnetizingTensor slender_demagnetizing_tensor(Lengths const& position,
 /// position 0, and 0 where the cells do not overlap. Its symmetries are exact: xy is odd in x and
 /// in y, and so on.
 ///
-/// Below 4 longest edges, second differences of the functions of Newell, Williams and Dunlop,
-/// J. Geophys. Res. 98, 9551 (1993), eqs. 27 and 32. From there on, the Taylor series of these
-/// differences in edge / distance, of order 22, 12 (from 8 edges) and 6 (from 50 edges). Long and
-/// flat cells are divided where the differences would cancel.
+/// At distances below 4 longest edges, N comes from second differences of the functions of Newell,
+/// Williams and Dunlop, J. Geophys. Res. 98, 9551 (1993), eqs. 27 and 32. Farther away it comes
+/// from the Taylor series of these differences in edge / distance, of order 22, 12 (from 8 edges)
+/// and 6 (from 50 edges). Long or flat cells are divided into pieces where the differences would
+/// cancel.
 ///
 /// For edges of up to 1e6 : 1, the error is at most 3e-11 of the largest entry at this position,
-/// and 1e-12 of it from 4 edges on. For edges of up to 1e9 : 1, it is at most 1e-15 and 1e-8 of
-/// that entry. This needs a long double of 64 bits or more.
+/// and 1e-12 of it from a distance of 4 edges on. For edges of up to 1e9 : 1, it is at most 1e-8 of
+/// that entry, and at most 1e-15. This needs a long double with a mantissa of 64 bits or more.
 inline DemagnetizingTensor demagnetizing_tensor(std::array<double, 3> const& position,
                                                 std::array<double, 3> const& cell) {
   auto const [x, y, z] = position;

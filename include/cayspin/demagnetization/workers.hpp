@@ -10,18 +10,19 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Host threads with work memory, which is reused from task to task.
+/// Host threads with work memory that is reused from task to task.
 template <class Number>
 class Workers {
  public:
-  /// Allocates `numbers` for each of `tasks` threads, or of fewer.
+  /// Allocates memory of `numbers` values for each thread: as many threads as the host space has,
+  /// but at most `tasks`.
   Workers(std::string const& label, std::int64_t tasks, std::size_t numbers)
       : label_(label),
         count_(std::min<std::int64_t>(tasks, Kokkos::DefaultHostExecutionSpace().concurrency())),
         numbers_(whole_lines(numbers)),
         memory_(label, static_cast<std::size_t>(count_) * numbers_) {}
 
-  /// Calls body(task, memory) for all tasks. The memory is 0 before the first call.
+  /// Calls body(task, memory of the thread) for all tasks. The memory is 0 before the first call.
   template <class Body>
   void run(std::int64_t tasks, Body const& body) const {
     Kokkos::DefaultHostExecutionSpace const exec;
