@@ -22,7 +22,8 @@
 // The bonds of each site of a cell, in the order in which kernels sum them.
 namespace cayspin::inline v0_2::detail {
 
-/// Distance of another site in memory, in numbers of double and of single precision.
+/// Distance in memory to another site, in arrays of doubles and of floats: their rows are padded
+/// differently.
 struct OffsetInMemory {
   std::ptrdiff_t of_doubles, of_floats;
 
@@ -31,11 +32,11 @@ struct OffsetInMemory {
     return std::is_same_v<Real, double> ? of_doubles : of_floats;
   }
 };
-/// The offset to the other site.
+/// The offset to the other site, in memory and along x, y and z.
 struct Bond : OffsetInMemory {
   std::int32_t dx, dy, dz;
 };
-/// Bonds of equal exchange constant.
+/// A range of bonds that have the same exchange constant.
 struct Shell {
   std::int32_t first, last;
   double exchange;
@@ -44,7 +45,7 @@ struct Shell {
 struct BondTensor {
   double of[10];
 };
-/// Range of the bonds.
+/// How far the bonds of a site reach towards lower and higher coordinates, along each axis.
 struct Reach {
   std::int32_t low[3] = {}, high[3] = {};
 
@@ -54,7 +55,8 @@ struct Reach {
       high[axis] = std::max(high[axis], way[axis]);
     }
   }
-  /// Returns true if the bonds of all sites end in rows, or sites of a row, that need no wrapping.
+  /// Return true if no bond needs wrapping: along y and z, from the row at y, z; along x, from the
+  /// sites x .. x + lanes - 1.
   KOKKOS_FORCEINLINE_FUNCTION bool holds_rows(std::int32_t y, std::int32_t z,
                                               std::int32_t const* extent) const {
     return y >= low[1] && y + high[1] < extent[1] && z >= low[2] && z + high[2] < extent[2];
@@ -68,7 +70,7 @@ struct Reach {
 /// Bonds of one site of a cell: first those of its shells, then those with a tensor.
 struct BondsOfSite {
   std::int32_t first_shell, last_shell, first_bond, first_tensor, last_bond;
-  std::int32_t to_tensor;  // from a bond's number to its tensor's number
+  std::int32_t to_tensor;  // a bond's number plus this is its tensor's number
   std::int32_t first_round;
   std::int32_t farthest;  // bond to the row that a pass through the lattice reaches last
   Reach reach;
@@ -97,8 +99,8 @@ class BondLists {
   std::vector<Shell> shells;
   std::vector<Bond> bonds;
   std::vector<BondTensor> tensors;
-  /// All bonds of a site, wrapped along x on a periodic lattice, at the first reach.low[0] sites of
-  /// a row and at the last reach.high[0].
+  /// For lattices that are periodic along x: the wrapped offsets of all bonds of a site, at each of
+  /// the first reach.low[0] and the last reach.high[0] sites of a row.
   std::vector<OffsetInMemory> rounds;
   bool has_biquadratic = false;
   /// Largest |H| of unit spins at each site of a cell, or an upper bound of it.
@@ -123,7 +125,7 @@ class BondLists {
     }
   }
 
-  /// Returns how many rows along y and cells along z bonds span.
+  /// Returns how many rows along y and cells along z the longest bonds reach.
   std::array<std::int32_t, 2> rows_and_cells() const {
     std::array<std::int32_t, 2> most{};
     auto const of_cell = static_cast<std::int32_t>(sites.size());
@@ -146,8 +148,8 @@ class BondLists {
       return t[0] == t[4] && t[4] == t[8] && t[1] == 0 && t[2] == 0 && t[3] == 0 && t[5] == 0 &&
              t[6] == 0 && t[7] == 0 && t[9] == 0;
     }
-    /// Returns a bound from the Frobenius norm of T, or T itself if it is a multiple of 1, and the
-    /// biquadratic part.
+    /// Returns an upper bound of the bond's |H| for unit spins: |J| for exchange; otherwise the
+    /// Frobenius norm of T plus that of the biquadratic part.
     double bound() const {
       if (is_exchange()) return std::abs(tensor.of[0]);
       double sum = 0;
@@ -186,7 +188,7 @@ class BondLists {
     };
     if (lattice.boundary[0] != Boundary::periodic ||
         std::max(mine.reach.low[0], mine.reach.high[0]) > host_lanes<float>)
-      return;  // not needed
+      return;  // no wrapping, or each bond is wrapped in the kernel
     for (std::int32_t site = 0; site < mine.reach.low[0]; ++site) add_at(site);
     for (std::int32_t site = nx - mine.reach.high[0]; site < nx; ++site) add_at(site);
   }
@@ -261,7 +263,8 @@ class BondLists {
     if (!finite) throw std::invalid_argument("cayspin::PairCouplings: a number is not finite");
   }
 
-  /// Shortens an offset around a periodic axis; returns false if it passes an open end.
+  /// Shortens an offset by whole turns around a periodic axis. Returns false if it is too long for
+  /// an open axis.
   static bool stays(std::array<std::int64_t, 3>& way, Lattice const& of_sites) {
     auto const& lattice = whole(of_sites);
     for (std::size_t axis = 0; axis < 3; ++axis) {

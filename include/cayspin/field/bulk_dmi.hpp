@@ -11,7 +11,7 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// BulkDmi for kernels: D / spacing of each axis, or 0.
+/// BulkDmi for kernels, with D / spacing of each axis; 0 along an axis of one site.
 class UniformBulkDmi {
  public:
   static constexpr int degree = 2;  // H is linear in the spins
@@ -39,7 +39,7 @@ class UniformBulkDmi {
     return field(stencil);
   }
 
-  /// Returns half the energy of each bond of the site.
+  /// Returns half the energy of all bonds of the site.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;

@@ -34,8 +34,9 @@ struct NumbersOfCell {
 template <class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class CellMoments {
  public:
-  /// `gyromagnetic`: if empty, all are 1. Throws std::invalid_argument unless both are one finite
-  /// number for each site of a cell, moments not negative and gyromagnetic ratios positive.
+  /// `gyromagnetic`: all are 1 if it is empty. Throws std::invalid_argument unless there is one
+  /// finite moment >= 0 and one finite gyromagnetic ratio > 0 for each site of a cell, and for a
+  /// part of a lattice.
   CellMoments(Lattice const& lattice, std::vector<double> const& moments,
               std::vector<double> const& gyromagnetic = {})
       : lattice_(lattice),
@@ -46,7 +47,7 @@ class CellMoments {
   Lattice const& lattice() const { return lattice_; }
 
   NumbersOfCell moments() const { return numbers(moments_); }
-  /// Returns g / mu, or 0 without a spin.
+  /// Returns g / mu, or 0 for sites without a spin.
   NumbersOfCell factors() const { return numbers(factors_); }
 
  private:

@@ -39,7 +39,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value coefficient(SiteArray<Real, 1> const& numbers,
   return site.load(numbers);
 }
 
-/// Kernels address a coefficient like the spins, by rows whose pitch depends on the type.
+/// Kernels address a coefficient like the spins, by rows whose pitch depends on the type. So both
+/// must have the same type.
 template <class Spins, class Real, int Components, class MemorySpace>
 constexpr void require_type_of(SiteField<Real, Components, MemorySpace> const&) {
   static_assert(std::is_same_v<typename Spins::value_type, Real> &&

@@ -108,7 +108,7 @@ class EffectiveField<First, Rest...>
     return first_.energy_density(stencil) + rest_.energy_density(stencil);
   }
 
-  /// Returns the energy density of each term, in order.
+  /// Writes the energy density of each term, in order.
   template <class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Stencil const& stencil, Value* energies) const {
     detail::check_energy_density<First, Stencil>();

@@ -11,7 +11,7 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// Exchange for kernels: A / spacing^2 of each axis, or 0.
+/// Exchange for kernels, with A / spacing^2 of each axis; 0 along an axis of one site.
 class UniformExchange {
  public:
   static constexpr int degree = 2;  // H is linear in the spins
@@ -39,7 +39,7 @@ class UniformExchange {
       return second_difference<0>(stencil,
                                   second_difference<1>(stencil, second_difference<2>(stencil, h)));
     if (is_cubic_) [[likely]] {
-      // Exactly zero where all are equal, as below.
+      // This form is exactly zero where all spins are equal, like that of second_difference.
       auto const in_plane =
           multiply_add(Value(-4), stencil.center(), pair<0>(stencil) + pair<1>(stencil));
       auto const across = multiply_add(Value(-2), stencil.center(), pair<2>(stencil));
@@ -50,7 +50,8 @@ class UniformExchange {
     if (couples_[2]) h = second_difference<2>(stencil, h);
     return h;
   }
-  /// Returns H without a multiple of the spin itself; past an open end the neighbour is the spin.
+  /// Adds H up to a multiple of the spin itself: the sum of neighbours, times A / spacing^2. Past
+  /// an open end, the spin replaces the missing neighbour.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_turning_field(Stencil const& stencil,
                                                                   VectorOf<Stencil> h) const {
@@ -66,7 +67,8 @@ class UniformExchange {
     return h;
   }
 
-  /// Returns the sum of neighbours / spacing^2: H without a multiple of the spin itself.
+  /// Returns H up to a multiple of the spin itself: the sum of existing neighbours, times A /
+  /// spacing^2.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
@@ -98,7 +100,8 @@ class UniformExchange {
     return stencil.template previous<Axis>() + stencil.template next<Axis>();
   }
 
-  // Returns previous + next - 2 center, in a form that is exactly zero where the three are equal.
+  // Adds A / spacing^2 (previous + next - 2 center), in a form that is exactly zero where the three
+  // are equal.
   template <int Axis, class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector second_difference(Stencil const& stencil,
                                                        Vector const& sum) const {
@@ -122,7 +125,7 @@ class UniformExchange {
                         sum);
   }
 
-  // Returns half the energy of each bond of the site.
+  // Adds half the energy of the site's bonds along an axis.
   template <int Axis, class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Value bonds(Stencil const& stencil, Value const& sum) const {
     auto const back = stencil.template previous<Axis>() - stencil.center();
@@ -138,8 +141,8 @@ class UniformExchange {
 
 }  // namespace detail
 
-/// Exchange with the nearest neighbours along each axis: H = A Lap(m), the second difference over
-/// existing neighbours, divided by the axis' spacing squared.
+/// Exchange with the nearest neighbours along each axis: H = A Lap(m). Lap is the sum over the axes
+/// of the second difference over existing neighbours, divided by the spacing squared.
 /// E = sum over bonds of (A/2) |m_q - m_n|^2 / spacing^2.
 class Exchange : public detail::TermOnLattice<detail::UniformExchange> {
  public:

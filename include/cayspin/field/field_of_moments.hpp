@@ -42,7 +42,7 @@ class FieldTimesNumbers : public ForwardingEnergy<FieldTimesNumbers<Field>, Fiel
     return gather(WholeField(), stencil);
   }
   template <class Take, class Stencil>
-    requires(!std::is_same_v<Take, TurningField>)  // H itself turns spins, to the bits of `field`
+    requires(!std::is_same_v<Take, TurningField>)  // turning_field() then calls `field`
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> gather(Take const& take,
                                                        Stencil const& stencil) const {
     return factors_.at(stencil.site()) * take(field_, stencil);
@@ -78,13 +78,13 @@ struct AppliedToMoments {
 
 }  // namespace detail
 
-/// The field of spins that each have a moment mu and a gyromagnetic ratio g, by the site of a
-/// crystal's cell: H = -(g / mu) dE/dm with the energies E of the terms inside. All terms must be
-/// inside; for an applied field use ZeemanOfMoments. Sites without a spin have H = 0; their spins
-/// must be zero vectors, so that PairCouplings sees none there. Lattice terms need a
-/// FieldWithVacancies for that.
-/// Without damping, E is conserved as usual. But H is not the derivative of E: EnergyControl, and
-/// others that need H to be that derivative, refuse this field and accept the field inside.
+/// The field of spins whose moment mu and gyromagnetic ratio g depend on the site of a crystal's
+/// cell: H = -(g / mu) dE/dm, with the energy E of the terms inside. All terms must be inside; for
+/// an applied field use ZeemanOfMoments. Sites without a spin have H = 0. Their spins must be zero
+/// vectors, so that PairCouplings sees none there. Terms like Exchange, which use the lattice's
+/// nearest neighbours, need a FieldWithVacancies for that.
+/// Without damping, E is conserved as usual. But H is not -dE/dm. So EnergyControl, and others that
+/// need H = -dE/dm, refuse this field; they accept the field inside.
 template <class Field, class MemorySpace>
 class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Field> {
  public:

@@ -32,7 +32,8 @@ constexpr bool holds() {
   return is_a<Wanted, Term> || any_holds<Wanted>(PartsOfTerm<Term>());
 }
 
-/// A stencil that treats a vacant neighbour as missing: the spin itself replaces it.
+/// A stencil that treats a vacant neighbour as missing: the spin itself, or the vector passed for
+/// missing neighbours, replaces it.
 template <class Stencil, class Real>
 class StencilAmongVacancies {
  public:
@@ -66,7 +67,7 @@ class StencilAmongVacancies {
   template <int Axis, int Direction>
   KOKKOS_FORCEINLINE_FUNCTION vector_type unless_vacant(vector_type const& neighbor,
                                                         vector_type const& missing) const {
-    value_type const zero(0);  // also past an open end, where the neighbour is the spin itself
+    value_type const zero(0);  // past an open end, which counts as vacant
     auto const vacant = site().template neighbor<Axis, Direction>(occupation_, zero) == zero;
     return select<value_type>(vacant, missing, neighbor);
   }
@@ -93,7 +94,7 @@ class FieldAmongVacancies {
     return gather(WholeField(), stencil);
   }
   template <class Take, class Stencil>
-    requires(!std::is_same_v<Take, TurningField>)  // H itself turns spins, to the bits of `field`
+    requires(!std::is_same_v<Take, TurningField>)  // turning_field() then calls `field`
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> gather(Take const& take,
                                                        Stencil const& stencil) const {
     return unless_vacant(stencil, take(field_, Inner<Stencil>(stencil, occupation_)));

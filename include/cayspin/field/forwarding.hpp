@@ -31,8 +31,8 @@ struct PrepareForRows {
 ///   auto with_parts(make) const    returns the kernel version, made of make(part) for each part
 ///   bool all_parts(test) const     true if test(part) holds for every part
 /// Members that Derived defines take precedence. The result of with_parts may omit gather
-/// (parts.hpp) and begin_row (detail/row_fields.hpp): RedBlack then does not split the field, and
-/// the field is evaluated spin by spin.
+/// (parts.hpp); RedBlack then does not split the field. It may omit begin_row
+/// (detail/row_fields.hpp); the field is then evaluated spin by spin.
 template <class Derived, class... Parts>
 class Forwarding {
  public:
@@ -75,7 +75,7 @@ class Forwarding {
   friend detail::PartsOf<Parts...> parts_of(Forwarding const*) { return {}; }
 
  private:
-  /// True if with_parts of the parts for rows calls begin_row of each part.
+  /// True if the kernel version, made of parts for rows, calls begin_row of each part.
   template <class Exec, class Spins>
   static constexpr bool goes_along_rows() {
     using Make = detail::PrepareForRows<Exec, Spins>;
@@ -89,12 +89,12 @@ class Forwarding {
 
 namespace detail {
 
-/// True if a part needs all spins to be evaluated, whatever the stencil.
+/// Marks a term that is evaluated for all spins, whatever the stencil. parts_of lists it as a part.
 template <class Term>
 struct SeesAllSpins {};
 
-/// Device members about the energy of a generator with a single part that has an energy, given by
-/// Derived::part().
+/// Device members for the energy of a generator that has one part, Derived::part(). They exist if
+/// that part has an energy.
 template <class Derived, class Part>
 class ForwardingEnergy {
  public:

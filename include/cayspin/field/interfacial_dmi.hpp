@@ -13,7 +13,8 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// InterfacialDmi for kernels: (D / spacing) n x e of each axis e, or 0.
+/// InterfacialDmi for kernels, with (D / spacing) n x e of each axis e; 0 along an axis of one
+/// site.
 class UniformInterfacialDmi {
  public:
   static constexpr int degree = 2;  // H is linear in the spins
@@ -44,7 +45,7 @@ class UniformInterfacialDmi {
     return field(stencil);
   }
 
-  /// Returns half the energy of each bond of the site.
+  /// Returns half the energy of all bonds of the site.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;

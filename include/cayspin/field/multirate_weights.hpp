@@ -23,17 +23,18 @@ inline MultirateWeights interpolating_weights(double x, std::span<double const> 
   return weights;
 }
 
-/// Returns a polynomial of degree 2 in x with a given mean over the step: the mean fixes the order
-/// of a method, the shape its stability.
+/// Returns the value at x of a polynomial of degree 2 with a given mean over the step. The mean
+/// determines the order of a method; slope and curvature determine its stability.
 inline double with_mean(double mean, double slope, double curvature, double x) {
   return mean + slope * (x - 0.5) + curvature * (x * x - x + 1.0 / 6);
 }
 
-// Polynomials of Multirate of order 4. A mode that turns by half a turn per step looks alternating,
-// with an image that turns the other way: the polynomial of degree 3 through the last values
-// amplifies both. The polynomials below keep the conditions of order 4: interpolation of degree 1
-// or 2, and one mean. The other 10 numbers come from a search over linear modes m' = (i - damping)
-// (w + D) m with elliptical D: none grows up to the longest step, and linewidths change least.
+// Polynomials for Multirate of order 4. At half a turn per step, a mode cannot be told from one
+// that turns the other way. The polynomial of degree 3 through the last values amplifies both. The
+// polynomials below keep the conditions of order 4: interpolation of degree 1 (predictor) or 2
+// (corrector), and one mean each. The other 10 numbers come from a search over linear modes m' = (i
+// - damping) (w + D) m with elliptical D: none grows up to the longest step, and linewidths change
+// least.
 
 /// Returns predictor weights for values at 0, -1, -2, -3.
 inline MultirateWeights damping_predictor(double x, std::span<double const> /*nodes*/) {

@@ -16,10 +16,10 @@
 namespace cayspin::inline v0_2 {
 
 /// Bonds between any sites of a crystal: E = -m.T m' - B (m.m')^2 of each Coupling, so that H = T
-/// m' + 2 B (m.m') m' at m, and with T transposed at m'. Bonds past an open end are omitted. A
-/// periodic axis shorter than a bond wraps around repeatedly. On a part of a lattice (mpi::Domain)
-/// every evaluation is refused, because between the stages of a step no ghosts are updated as deep
-/// as bonds reach.
+/// m' + 2 B (m.m') m' at m, and with T transposed at m'. Bonds past an open end are omitted. A bond
+/// that is longer than a periodic axis wraps around it repeatedly. On a part of a lattice
+/// (mpi::Domain) every evaluation throws, because between the stages of a step no ghosts are
+/// updated as deep as bonds reach.
 template <class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class PairCouplings {
  public:

@@ -25,7 +25,8 @@ class PairField {
     return table_.site_of_plane(z);
   }
 
-  /// Sums for H, split by its degree in the spins, and for the energy: half that of each bond.
+  /// Sums over the bonds of a site: H, split by its degree in the spins. energy() is half the
+  /// energy of all these bonds.
   template <class Value>
   struct Parts {
     Vec3<Value> linear, cubic;
@@ -67,7 +68,8 @@ class PairField {
     Real const* const own = spins_.array.data + row.offset;
     if (of_site.last_bond - of_site.first_bond > RowsOfBonds::most ||
         Kokkos::max(of_site.reach.low[0], of_site.reach.high[0]) > lanes) {
-      // At most one pack may be read past the ends of the first and the last row.
+      // Memory may be read at most one pack past the ends of the first and the last row. Bonds that
+      // reach farther are wrapped one by one.
       for (std::int32_t x = begin; x < end; x += lanes)
         store(sum_at_edge(of_site, spins_.template load_at<OnHost>(own + x), x, row.y, row.z),
               to.data + (x - begin));
@@ -82,9 +84,10 @@ class PairField {
   using OnHost = Pack<Real>;
   static constexpr std::int32_t lanes = lanes_of<OnHost>;
 
-  // The rows to which the bonds of a row's sites lead, shifted along x by the bond.
+  // For each bond, the row to which it leads, shifted along x by the bond: element x is the site to
+  // which the bond of site x leads.
 
-  /// For rows that are all inside.
+  /// For bonds that all lead to rows inside the lattice.
   struct RowsInPlace {
     static constexpr bool all_there = true;
     Real const* own;
@@ -92,7 +95,8 @@ class PairField {
 
     Real const* operator[](std::int32_t b) const { return own + bonds[b].template offset<Real>(); }
   };
-  /// Rows reached by bonds; null past an open end.
+  /// For bonds of which some wrap around along y or z, or lead past an open end; these rows are
+  /// null.
   class RowsOfBonds {
    public:
     static constexpr bool all_there = false;
@@ -129,7 +133,8 @@ class PairField {
     while (x + 4 * lanes <= end) sum(std::integral_constant<int, 4>());
     while (x + 2 * lanes <= end) sum(std::integral_constant<int, 2>());
     while (x < end) sum(std::integral_constant<int, 1>());
-    // So far, bonds past an end of the row were read without wrapping.
+    // So far, bonds past an end of the row were read without wrapping. Sites near the ends are
+    // summed again.
     std::int32_t const nx = spins_.extent[0];
     for (x = begin; x < Kokkos::min(of_site.reach.low[0], end); ++x)
       sum_near_end(of_site, rows, x, to + (x - begin));
@@ -186,7 +191,7 @@ class PairField {
         add_tensor(of_site, b, m, spins_.template load_at<OnHost>(rows[b] + x), sums);
     store(sums, to);
   }
-  /// Corrects one site, some of whose bonds lead past an end of the row.
+  /// Sums the bonds of one site again, some of which lead past an end of the row.
   template <class Rows>
   CAYSPIN_DETAIL_NOINLINE void sum_near_end(BondsOfSite const& of_site, Rows const& rows,
                                             std::int32_t x, Real* to) const {
@@ -270,8 +275,8 @@ class PairField {
   BondTable table_;
 };
 
-/// PairCouplings in a loop over rows, which calls begin_row. A separate type, because g++ keeps the
-/// spins in memory if the kernel also has H site by site.
+/// PairCouplings for loops over rows, which call begin_row. A separate type, because g++ does not
+/// keep the spins in registers if the kernel also has H site by site.
 template <class Real>
 class PairFieldAlongRows : public PairField<Real> {
  public:

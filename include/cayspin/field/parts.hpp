@@ -14,13 +14,13 @@
 // where `take` is one of the structs below and says which quantity of each part is wanted.
 // Optional:
 //   energy_terms, energy_densities(stencil, energies)    the number of terms, and E of each
-//   energy_magnitude(stencil)    sum of absolute energies, if it differs from the sum over these
+//   energy_magnitude(stencil)    sum of absolute energies, if not the sum over these terms
 //   local_field_varies()         true if the local part of H changes with the spin
 // The local part of H at a site depends only on its spin and t; the rest is the neighbour field.
 // RedBlack rotates each spin about the field of its neighbours.
 namespace cayspin::inline v0_2::detail {
 
-/// The parts of a term or generator made of others (Forwarding); empty for any other.
+/// Type list of the parts of a term or generator made of others (Forwarding); empty for all others.
 template <class... Parts>
 struct PartsOf {};
 PartsOf<> parts_of(void const*);
@@ -53,7 +53,8 @@ constexpr bool has_local_part() {
   return is_local<Term> || any_has_local_part(PartsOfTerm<Term>());
 }
 
-// These structs select a quantity of each part. `add` returns `h` plus that of one part.
+// These structs select a quantity of each part. `add` returns `h` plus the quantity of one part.
+// `skips` is true for parts where it is zero.
 
 struct WholeField {
   template <class Term>
@@ -192,7 +193,7 @@ inline constexpr int energy_terms = [] {
   return 1;
 }();
 
-/// Returns the energy of each of these terms.
+/// Writes the energy of each of these terms.
 template <class Source, class Stencil, class Value>
 KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Source const& source, Stencil const& stencil,
                                                   Value* energies) {
@@ -204,7 +205,7 @@ KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Source const& source, Stencil 
   }
 }
 
-/// Returns the sum of their absolute values.
+/// Returns the sum of the absolute energies of these terms.
 template <class Source, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_magnitude(Source const& source,
                                                               Stencil const& stencil) {

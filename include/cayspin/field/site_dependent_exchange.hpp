@@ -18,8 +18,9 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// H_n = sum of A_nq (m_q - m_n) / spacing^2, with A_nq / spacing^2 of the bond to the next site
-/// along each axis; no data: no bonds along that axis.
+/// SiteDependentExchange for kernels: H_n = sum of A_nq (m_q - m_n) / spacing^2. `bonds`: A_nq /
+/// spacing^2 of the bond from each site to the next one, for each axis; no data: no bonds along
+/// that axis.
 template <class Real>
 struct ExchangeOfSites {
   static constexpr int degree = 2;  // H is linear in the spins
@@ -38,7 +39,7 @@ struct ExchangeOfSites {
     return h;
   }
 
-  /// Returns the sum of A_nq m_q / spacing^2: H without a multiple of the spin itself.
+  /// Returns H up to a multiple of the spin itself: the sum of A_nq m_q / spacing^2.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
     auto h = zero<ValueOf<Stencil>>();
@@ -48,7 +49,7 @@ struct ExchangeOfSites {
     return h;
   }
 
-  /// Returns half the energy of each bond of the site.
+  /// Returns half the energy of all bonds of the site.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     ValueOf<Stencil> e(0);
@@ -64,8 +65,8 @@ struct ExchangeOfSites {
     ValueOf<Stencil> on, back;
     VectorOf<Stencil> next, previous;  // from the spin to its neighbours
   };
-  // The bond to the previous site is stored there as the bond to its next site. Past an open end
-  // its value does not matter, since it multiplies zero.
+  // The bond to the previous site is stored at that site, as its bond to the next one. Past an open
+  // end the constant does not matter, since it multiplies zero.
   template <int Axis, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION BondsOfSite<Stencil> with_differences(Stencil const& stencil) const {
     auto const on = stencil.site().load(bonds[Axis]);
@@ -95,7 +96,8 @@ struct ExchangeOfSites {
   }
 };
 
-/// Functor that computes the constants of the bonds to next sites, over the spacing squared.
+/// Functor that computes the constants of the bonds to the next sites, divided by the spacing
+/// squared.
 template <class Real>
 struct FindBonds {
   SiteArray<Real, 1> constants;
@@ -163,9 +165,9 @@ class SiteDependentExchange : public detail::PreparedOnce {
     return prepared;
   }
 
-  /// Multiplies the constant of the bond from each site to the next one along an axis; `factors`
-  /// has one number for each own site, x fastest. Throws std::invalid_argument for another number
-  /// of factors.
+  /// Multiplies the constant of the bond from each site to the next one along an axis. `factors`
+  /// has one number for each site except ghosts, x fastest. Throws std::invalid_argument for
+  /// another number of factors.
   void scale_bonds(int axis, std::vector<double> const& factors) {
     if (!bonds_[axis]) return;
     auto const& bonds = *bonds_[axis];

@@ -45,7 +45,7 @@ struct CombineFields {
   }
 };
 
-/// Returns E of a site over m.H, for a term whose energy follows from its degree.
+/// Returns the ratio of a site's E to m.H, for a term whose energy follows from its degree.
 template <class Term>
 double energy_factor_of(Term const& term) {
   if constexpr (requires { term.energy_factor; }) {
@@ -82,7 +82,7 @@ class SlowField {
     std::array<Spins, most> values;
     std::array<double, most> nodes{};
     Weights weights = nullptr;
-    std::size_t count = 0;  // 0: the term itself
+    std::size_t count = 0;  // 0: the term itself is evaluated
     double begin = 0, dt = 0;
     double at = 0;  // time of `field`
     std::int64_t reads = 0;
@@ -119,14 +119,14 @@ class SlowField {
   }
   template <class Exec, class Others>
   bool needs_only_time(Exec const&, Others const&) const {
-    return false;  // it is stored for the spins
+    return false;  // the stored field belongs to the spins
   }
   bool is_affine() const { return true; }  // by the term's degree
   /// Returns true while interpolated values replace evaluations.
   bool is_interpolated() const { return state_->count > 0; }
 
   friend auto parts_of(SlowField const*) {
-    // A user's solver leaves out vacant spins itself.
+    // A HostField's solver leaves out vacant spins itself.
     if constexpr (detail::is_local<Term> || detail::is_host_field<Term>)
       return detail::PartsOf<Term>();
     else
@@ -151,8 +151,10 @@ class SlowField {
     ++state_->evaluations;
   }
 
-  /// While this object lives, the field is the sum of `values`, at most 5, with `weights` of (time
-  /// - begin) / dt and `nodes`; default: the polynomial through the values.
+  /// While this object lives, the field is not evaluated but interpolated: it is the sum of
+  /// `values`, at most 5, with the weights `weights((t - begin) / dt, nodes)`. `nodes`: the times
+  /// of the values, as (t - begin) / dt. The default weights are those of the polynomial through
+  /// the values.
   class Interpolated {
    public:
     Interpolated(SlowField const& slow, std::span<Spins const> values,

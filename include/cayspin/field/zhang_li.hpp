@@ -11,7 +11,7 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// ZhangLi for kernels: velocity / (2 spacing) of each axis, or 0.
+/// ZhangLi for kernels, with velocity / (2 spacing) of each axis; 0 along an axis of one site.
 class UniformZhangLi {
  public:
   static constexpr bool is_conservative = false;  // H is the derivative of no energy
