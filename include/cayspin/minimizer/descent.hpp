@@ -38,7 +38,7 @@ class Descent {
   Minimum so_far;
 
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
-  /// Least turn of the spin that turns most, on leaving a saddle.
+  /// On leaving a saddle, the spin that turns most turns by at least this angle.
   static constexpr double least_turn = 1e-5;
 
   double strongest_field() const { return strongest_field_; }
@@ -110,23 +110,26 @@ class Descent {
     return std::nullopt;
   }
 
-  /// L-BFGS resumes if many modes are soft.
+  /// Takes Newton steps for at most 250 evaluations. They do not suffice if many modes are soft;
+  /// L-BFGS then resumes.
   void begin_newton() {
     takes_newton_ = true;
     newton_until_ = so_far.evaluations + 250;
   }
 
-  /// Assumes independently rounded spin components, and sums in double.
+  /// Returns a bound of an energy's round-off, if spin components are rounded independently and the
+  /// sums are in double.
   double round_off(Energy const& energy) const {
     auto const sites = static_cast<double>(is_mobile.lattice().sites());
     double const of_spins = epsilon / std::sqrt(sites);
     return 8 * (of_spins + std::numeric_limits<double>::epsilon()) * energy.magnitude;
   }
 
-  /// Turns the spins along search.direction, by `longest` at most, and then by Newton steps across
-  /// soft modes to where the energy is lower than before; otherwise restores them. Along a curved
-  /// valley the energy rises before it falls (the watchdog of Chamberlain, Powell, Lemarechal and
-  /// Pedersen 1982).
+  /// Turns the spins along search.direction, and then corrects them by Newton steps that leave soft
+  /// modes alone. Along a curved valley the energy rises in the first turn and falls in the
+  /// corrections (the watchdog of Chamberlain, Powell, Lemarechal and Pedersen 1982). Returns true
+  /// if the energy is then lower than before; otherwise tries shorter turns, and at last restores
+  /// the spins. `longest`: the longest vector of search.direction.
   template <class Exec, class Field>
   bool move_and_correct(Exec const& exec, Field const& field, Spins& spins, double slope,
                         double longest, MinimizeOptions const& options) {
@@ -162,7 +165,7 @@ class Descent {
       copy(exec, gradient_before, search.gradient);
       copy(exec, direction, search.direction);
       if (factor * longest < least_turn) break;
-      // Goes to the lowest point of the parabola.
+      // Goes to the lowest point of the parabola through the slope and the rise.
       factor *= std::clamp(0.5 * factor * slope / (factor * slope - rise), 0.1, 0.5);
     }
     return false;
@@ -228,7 +231,8 @@ class Descent {
     return false;
   }
 
-  /// Where L-BFGS is slow, soft modes are left: takes a Newton step to lower energy.
+  /// Takes a Newton step to lower energy. Where L-BFGS is slow, soft modes are left, along which
+  /// Newton steps go faster.
   template <class Exec, class Field>
   bool take_newton_step(Exec const& exec, Field const& field, Spins& spins,
                         MinimizeOptions const& options) {

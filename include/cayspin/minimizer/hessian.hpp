@@ -12,12 +12,12 @@
 #include <limits>
 #include <utility>
 
-// Hessian of the energy on the tangent planes of mobile spins, P (-dH/dm) P + (H.m), from the field
-// at the spins plus a tangent vector. Immobile spins, including the zero vectors of vacant sites,
-// never change in these fields of spins.
+// Hessian of the energy on the tangent planes of mobile spins, P (-dH/dm) P + (H.m). Its products
+// with tangent vectors come from fields at the spins plus a multiple of the vector. Tangent vectors
+// are 0 at immobile spins, which include the zero vectors of vacant sites. So these never change.
 namespace cayspin::inline v0_2::detail {
 
-/// Functor that sets v to its part along which spins move.
+/// Functor that computes the tangent part of v on mobile sites, and sets 0 on the others.
 template <class Real>
 struct KeepTangent {
   SiteArray<Real, 3> spins, vectors;
@@ -33,8 +33,9 @@ struct KeepTangent {
   }
 };
 
-/// Functor that computes the Hessian times v from the change of the field between two sets of
-/// spins: m + shift v, and those at which the field is `before`. Sums v.product and v.v.
+/// Functor that computes the Hessian times v. `shifted`: the spins plus a multiple of v. `before`:
+/// the field at other spins; `inverse_shift`: 1 over the multiple of v between both. Sums v.product
+/// and v.v.
 template <class Field, class Real>
 struct HessianProduct {
   Field field;
@@ -148,7 +149,8 @@ class Hessian {
   }
 
  private:
-  /// Balances the errors of a central difference: round-off over the shift, and the squared shift.
+  /// Returns the shift that balances the errors of a central difference: round-off over the shift,
+  /// and the squared shift.
   static double longest_shift() { return 4 * std::cbrt(std::numeric_limits<Real>::epsilon()); }
 
   Exec const& exec_;

@@ -99,7 +99,7 @@ class Lbfgs {
                                   static_cast<int>(pairs_.count())});
   }
 
-  /// Returns s.y / y.P y of the last pair.
+  /// Returns the factor of the preconditioner P: s.y / y.P y of the last pair.
   template <class Exec>
   double scale_of_preconditioner(Exec const& exec, Spins const& spins) {
     std::size_t const last = pairs_.count() - 1;

@@ -61,15 +61,15 @@ struct LowestCurvature {
 struct CurvatureSearch {
   double scale;            // strength of fields other than exchange
   double tolerance;        // curvatures above -tolerance count as not negative
-  double error;            // of the curvature, unless negative; infinity: only its sign is needed
+  double error;            // largest, unless it is negative; infinity: only its sign
   std::int64_t stream;     // of the random start vector
   bool has_start = false;  // arrays.vector holds the start
 };
 
-/// Returns the lowest curvature found. Stops when the Rayleigh quotient is below -tolerance, or
-/// will not fall below zero. Each saddle needs a new random stream: a start that led out of one
-/// saddle can be orthogonal to the descent from the next. Calls `precondition(from, to)`. Leaves
-/// the vector in arrays.vector.
+/// Returns the lowest curvature found. Stops when the Rayleigh quotient is below -tolerance, when
+/// it will not fall below zero, or, if search.error is finite, when its error is below that. Each
+/// saddle needs a new random stream: a start that led out of one saddle can be orthogonal to the
+/// descent from the next. Calls `precondition(from, to)`. Leaves the vector in arrays.vector.
 template <class AnyHessian, class Exec, class Spins, class Precondition>
 LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
                                       CurvatureArrays<Spins> const& arrays,
@@ -136,7 +136,7 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
     if (!(decrease > 0) || is_clear) break;
     bool const has_p = step > 0;
     if (!make_normal(w, has_p)) break;
-    double of_pairs[3][3] = {{found.value}};  // v.Hv of x, w and p, the previous step
+    double of_pairs[3][3] = {{found.value}};  // products u.Hv of x, w and p, the previous step
     auto const set = [&](int i, int j, double value) { of_pairs[i][j] = of_pairs[j][i] = value; };
     set(1, 1, hessian.multiply(w, hw).along);
     set(0, 1, inner_product(exec, x, hw));

@@ -15,7 +15,7 @@ namespace cayspin::inline v0_2 {
 /// Why a minimisation ended.
 enum class MinimizeEnd {
   converged,  ///< max |m x H| is below the bound, at a minimum (with keep_saddles also at a saddle)
-  stagnated,  ///< round-off keeps max |m x H| above the bound
+  stagnated,  ///< max |m x H| stays above the bound, mostly because of round-off
   evaluation_limit,  ///< the largest number of evaluations was reached
   interrupted        ///< the observer said Next::stop
 };
@@ -55,7 +55,8 @@ struct Minimum {
 /// Options of minimize.
 struct MinimizeOptions {
   double torque = 1e-6;  ///< bound on max |m x H|, in the units of H
-  /// At most this many, plus those of one more iteration and one search for a way out of a saddle.
+  /// Limit of the evaluations of the field. One more iteration and one search for a way out of a
+  /// saddle may exceed it.
   std::int64_t evaluations = 10000;
   double time = 0;             ///< time at which H is evaluated
   bool preconditioned = true;  ///< by the exchange measured on the field

@@ -19,7 +19,7 @@ struct NewtonArrays {
 struct NewtonOptions {
   double error = 0;              // relative error of the step
   double longest = 0;            // largest turn of a spin
-  double residual = 0;           // largest residual of a site that is small enough
+  double residual = 0;           // stops when no site has a larger residual
   bool follows_negative = true;  // follows a direction of negative curvature
 };
 

@@ -23,7 +23,8 @@ using OfPairs = Kokkos::Array<Number, pairs_kept>;
 template <class Real>
 using PairArrays = OfPairs<SiteArray<Real, 3>>;
 
-/// s_i.g, and s_i.y_j for i < j; then the energy of the last step in the exchange.
+/// Functor that computes s_i.g, and s_i.y_j for i < j; then s.K s for the last step s, with the
+/// exchange K.
 template <class Real>
 struct ProductsOfPairs {
   static constexpr int pairs = static_cast<int>(pairs_kept);
@@ -137,13 +138,13 @@ class Pairs {
       : steps_(numbered_fields<Spins, pairs_kept + 1>(name + "::step", lattice)),
         changes_(numbered_fields<Spins, pairs_kept + 1>(name + "::change", lattice)) {}
 
-  /// Returns memory for a pair that may be kept or discarded.
+  /// Return memory for a pair that may be kept or discarded.
   Spins const& next_step() const { return steps_[count_]; }
   Spins const& next_change() const { return changes_[count_]; }
 
   std::size_t count() const { return count_; }
   void forget() { count_ = 0; }
-  /// Keeps next_step and next_change as a pair with this product.
+  /// Keeps next_step and next_change as a pair; `product` is their s.y.
   void keep(double product) {
     products_[count_] = product;
     if (count_ < pairs_kept) {
@@ -155,7 +156,7 @@ class Pairs {
     std::rotate(products_.begin(), products_.begin() + 1, products_.end());
   }
 
-  /// Return step `i`, and the product s.y of its pair.
+  /// Return the product s.y, the step s and the change y of pair `i`.
   double product(std::size_t i) const { return products_[i]; }
   Spins const& step(std::size_t i) const { return steps_[i]; }
   Spins const& change(std::size_t i) const { return changes_[i]; }

@@ -19,12 +19,12 @@ class Preconditioner {
   using Real = typename Spins::value_type;
 
  public:
-  /// Allocates. Without exchange the preconditioner is 1 / c.
+  /// Sets K and c, and allocates memory. Without exchange the preconditioner is 1 / c.
   void set(Lattice const& lattice, FieldStrengths const& found, bool with_exchange) {
     couplings_ = with_exchange ? found.couplings : std::array<double, 3>{};
     exchange_.emplace("Minimizer::exchange", lattice, couplings_);
     double const strongest = found.strongest();
-    // Below this it is what round-off leaves of the exchange.
+    // A rest below this is only round-off of the exchange.
     double const least =
         100 * static_cast<double>(std::numeric_limits<Real>::epsilon()) * strongest;
     first_shift_ = found.rest > least ? found.rest : strongest > 0 ? 1e-3 * strongest : 1;
@@ -33,10 +33,11 @@ class Preconditioner {
 
   std::array<double, 3> const& couplings() const { return couplings_; }
 
-  /// Sets the constant to the curvature along the last step (of square length `step_square`) that
-  /// exchange does not explain. Far from equilibrium, a small constant makes long steps: waves as
-  /// long as the lattice vanish before walls and vortices form, which move by a cell per iteration.
-  /// Near equilibrium it slows the convergence of the stiffest long waves.
+  /// Sets c to the part of the curvature along the last step that exchange does not explain.
+  /// `step_square`: squared length of that step. Far from equilibrium a small c gives long steps.
+  /// Waves as long as the lattice then vanish before walls and vortices form, which would move by
+  /// only a cell per iteration. Near equilibrium a small c slows the convergence of the stiffest
+  /// long waves. There, c is at least its first value.
   void follow_curvature(double product, double exchange_energy, double step_square, double torque) {
     double const rest = (product - exchange_energy) / step_square;
     if (!std::isfinite(rest)) return;

@@ -19,7 +19,7 @@
 // of the rest, and which spins see no field.
 namespace cayspin::inline v0_2::detail {
 
-/// A uniform direction, or one that is reversed from site to site.
+/// Functor that sets all spins to one direction, reversed on sites where `signs` are negative.
 template <class Real>
 struct AlternateSpins {
   AlternatingSigns signs;
@@ -28,14 +28,14 @@ struct AlternateSpins {
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     using Value = typename Site::value_type;
-    // A direction in no plane of symmetry.
+    // This direction is in no plane of symmetry.
     Vec3<Value> const m{Value(Real(0.26726124)), Value(Real(0.53452248)), Value(Real(0.80178373))};
     site.store(signs.template at<Value>(site) * m, output);
   }
 };
 
-/// Components of random sign, with sizes that differ by up to `scatter`: a direction without
-/// symmetry, different for each `stream`.
+/// Functor that sets vectors without symmetry: their components have random signs, and sizes that
+/// differ by up to `scatter`. They are different for each `stream`.
 template <class Real>
 struct RandomSigns {
   std::int64_t nx, ny, stream;
@@ -70,7 +70,8 @@ struct RandomSigns {
   }
 };
 
-/// The pattern on sites that hold a spin, and the zero vector on vacant ones.
+/// Functor that copies the pattern on sites that hold a spin, and sets the zero vector on vacant
+/// ones.
 template <class Real>
 struct WithoutVacancies {
   SiteArray<Real, 3> spins, pattern;
@@ -84,8 +85,9 @@ struct WithoutVacancies {
   }
 };
 
-/// Functor that sums over the occupied sites of a pattern, whose vacant sites hold the zero vector.
-/// Marks sites with H nonzero by 1, and finds whether any spin saw no field.
+/// Functor that computes sums over the occupied sites of a pattern, whose vacant sites hold the
+/// zero vector. Sets is_mobile to 1 on sites with H nonzero, and finds whether any occupied site
+/// has seen no field yet.
 template <class Field, class Real>
 struct FieldAlongSpins {
   enum { along, along_square, square, sites, opposed_neighbors, rests, values };
@@ -127,10 +129,11 @@ struct FieldAlongSpins {
 
 /// Measured strengths of a field.
 struct FieldStrengths {
-  /// Mean J of a bond along each axis: H = J (m' - m). Negative ones are omitted where an odd ring
-  /// keeps spins from alternating, since the pattern of their order is not known beforehand.
+  /// Mean J of a bond along each axis: H = J (m' - m). Negative ones are replaced by 0 if a
+  /// periodic axis has an odd number of sites and a negative J. Spins cannot alternate there, and
+  /// the pattern of their order is not known beforehand.
   std::array<double, 3> couplings{};
-  double rest = 0;  ///< root mean square of |H| for parallel spins
+  double rest = 0;  ///< root mean square of |H| without exchange, for parallel spins
   int evaluations = 0;
 
   /// Returns an estimate of the largest |H|.
@@ -142,8 +145,8 @@ struct FieldStrengths {
 };
 
 /// Returns the mean |H|^2 of parallel spins, from sums over `sites`. Couplings H = J m' give
-/// parallel spins a field without torque; J (m' - m) gives none. So the `isotropic` part of the
-/// first is subtracted.
+/// parallel spins a field along m, which turns no spin; couplings H = J (m' - m) give no field. So
+/// if H looks like the field of the former, that field, `isotropic`, is subtracted.
 inline double rest_of_parallel(double square, double along_square, double along, double isotropic,
                                double sites) {
   bool const is_along = square - along_square < 0.1 * square;

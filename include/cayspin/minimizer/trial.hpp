@@ -41,8 +41,8 @@ struct TurnTowards {
   }
 };
 
-/// Functor that computes at m(a) the gradient g = -(H - (H.m) m), and the pair of step and change
-/// of the gradient, transported there along the path.
+/// Functor that computes at m(a) the energy, the gradient g = -(H - (H.m) m), and a pair for
+/// L-BFGS: the step and the change of the gradient, both transported to m(a) along the path.
 template <class Field, class Real>
 struct LookAtTrial {
   enum { energy, magnitude, slope, curvature, step_square, change_square, torque, values };
@@ -90,7 +90,7 @@ struct SearchArrays {
   Spins trial, gradient, new_gradient, direction;
 };
 
-/// Turns `spins` by `step` into `search.trial` and evaluates there.
+/// Writes `spins`, turned by `step`, to `search.trial`, and evaluates the field there.
 template <class Exec, class Field, class Spins>
 PointOnPath look_along(Exec const& exec, Field const& field, double time, Spins const& spins,
                        double step, SearchArrays<Spins> const& search, Spins const& moved,

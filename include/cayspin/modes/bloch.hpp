@@ -20,12 +20,12 @@
 #include <string>
 #include <vector>
 
-// Spin waves of a wave vector: if all cells of a periodic lattice are equal, small matrices give
-// them.
+// Spin waves with given wave vectors. If all cells of a periodic lattice are equal, they follow
+// from small matrices.
 namespace cayspin::inline v0_2::detail {
 
-/// Division of a lattice's sites into cells along its periodic axes. A cell extends over the whole
-/// of the other axes.
+/// Division of a lattice's sites into cells along its periodic axes. Along the other axes, a cell
+/// extends over the whole lattice.
 class CellsOfLattice {
  public:
   using Cell = std::array<std::int64_t, 3>;
@@ -51,7 +51,7 @@ class CellsOfLattice {
     Cell cell;
     std::size_t part;
   };
-  /// Returns the place of a site, numbered in the order of copy_to_host.
+  /// Returns the cell and the part of a site. Sites are numbered as in copy_to_host.
   Place operator()(std::int64_t site) const {
     auto const plane = site / (extents_[0] * extents_[1]);
     Cell const at{site % extents_[0], site / extents_[0] % extents_[1], plane / sites_};
@@ -65,7 +65,7 @@ class CellsOfLattice {
     return place;
   }
 
-  /// Returns the distance in cells from the first one, the shorter way around.
+  /// Returns the distance in cells from the first cell, the shorter way around.
   Cell distance(Cell cell) const {
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (2 * cell[axis] > cells[axis]) cell[axis] -= cells[axis];
@@ -96,7 +96,7 @@ inline std::array<Point, 2> tangent_axes(Point const& m) {
   return {e, m.cross(e)};
 }
 
-/// The Hessian between one cell and all others, and how its spins turn.
+/// The Hessian between the first cell and every cell, and how the spins of a cell turn.
 class BlochProblem {
  public:
   struct Block {
@@ -105,11 +105,11 @@ class BlochProblem {
   };
   std::vector<Block> blocks;
   Eigen::MatrixXd turning;
-  std::array<bool, 3> reaches_around{};  // as far as half the lattice along an axis
+  std::array<bool, 3> reaches_around{};  // interaction as far as half the lattice
   CellsOfLattice::Cell cells{};
 
-  /// Returns complex rates (decay and frequency) of waves with this wave vector, in cycles per
-  /// cell.
+  /// Returns the complex rates of waves with this wave vector (in cycles per cell): a wave grows as
+  /// e^(rate t). Only the half of higher frequencies is returned; lowest frequency first.
   std::vector<std::complex<double>> rates(std::array<double, 3> const& wave) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double const around = wave[axis] * static_cast<double>(cells[axis]);
@@ -127,7 +127,7 @@ class BlochProblem {
       sum += std::polar(1.0, -2 * std::numbers::pi * turns) * hessian;
     }
     Eigen::ComplexEigenSolver<Eigen::MatrixXcd> const found(turning * sum, false);
-    // e^(i (k r - w t)) turns with time by -w.
+    // For a wave e^(i (k.r - w t)), the imaginary part of the rate is -w.
     std::vector<std::complex<double>> rates(found.eigenvalues().begin(), found.eigenvalues().end());
     std::ranges::sort(rates, {}, [](auto const& rate) { return rate.imag(); });
     rates.resize(rates.size() / 2);
@@ -136,8 +136,8 @@ class BlochProblem {
   }
 };
 
-/// Multiplies the Hessian by the tangent axes of one cell. Throws std::invalid_argument where cells
-/// differ.
+/// Returns the problem, from products of the Hessian with the tangent axes of one cell. Throws
+/// std::invalid_argument where cells differ.
 template <class Exec, class Field, class Spins, class Numbers, class Stops>
 BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Spins const& spins,
                            Numbers const& precession, Numbers const& damping, Stops const& stops,

@@ -88,8 +88,8 @@ struct BlochModes {
   std::int64_t evaluations = 0;
 };
 
-/// Coefficients of dm/dt = -precession m x H - damping m x (m x H), one number for each site; H is
-/// the derivative of the energy. They must not both be 0 where a spin moves.
+/// Coefficients of dm/dt = -precession m x H - damping m x (m x H), one number for each site, with
+/// H = -dE/dm. They must not both be 0 where a spin moves.
 template <class Real, class MemorySpace>
 struct Turning {
   ScalarField<Real, MemorySpace> precession, damping;

@@ -13,12 +13,12 @@
 #include <limits>
 #include <vector>
 
-// Eigenvalue problems in a small subspace: K c = rate S c, with the Hessian K and with S, the
-// inverse of how spins turn in a field.
+// Eigenvalue problems K c = rate S c in a small subspace. K is the Hessian. S (`turning`) is the
+// inverse of the operator G by which spins turn (vectors.hpp).
 namespace cayspin::inline v0_2::detail {
 
-/// An eigenvalue and its vector in the subspace. A complex conjugate pair is represented by the one
-/// with positive imaginary part.
+/// An eigenvalue, and its vector in the subspace. One mode represents a complex conjugate pair: the
+/// one whose eigenvalue has a positive imaginary part.
 struct RitzMode {
   std::complex<double> rate;
   Eigen::VectorXcd coefficients;
@@ -44,7 +44,8 @@ inline void sort_by(std::vector<RitzMode>& modes, auto const& number) {
 }
 
 /// Returns modes of undamped motion about a minimum. Their rates are imaginary: the problem is
-/// Hermitian in the inner product of the Hessian. Returns none where that is not positive.
+/// Hermitian in the inner product of the Hessian. Returns no modes if the Hessian is not clearly
+/// positive definite.
 inline std::vector<RitzMode> undamped_modes(Pencil const& pencil) {
   using namespace std::complex_literals;
   Eigen::LLT<Eigen::MatrixXd> const factors(pencil.hessian);
@@ -52,7 +53,7 @@ inline std::vector<RitzMode> undamped_modes(Pencil const& pencil) {
   Eigen::VectorXd const pivots = factors.matrixLLT().diagonal();
   if (!(pivots.minCoeff() > 1e-5 * pivots.maxCoeff())) return {};
   Eigen::MatrixXd inner = factors.matrixL().solve(pencil.turning);
-  inner = factors.matrixL().solve(inner.transpose().eval());  // the transpose: skew
+  inner = factors.matrixL().solve(inner.transpose().eval());  // transposed, and skew
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> const found(-1i * inner);
   std::vector<RitzMode> modes;
   double const least = 1e-14 * found.eigenvalues().cwiseAbs().maxCoeff();
@@ -63,10 +64,10 @@ inline std::vector<RitzMode> undamped_modes(Pencil const& pencil) {
   return modes;
 }
 
-/// Returns the modes of any pencil, slowest first. A positive shift keeps the inverted matrix
-/// regular where the Hessian is not: at least `least_shift`. Zero modes that drift, as an
-/// antiferromagnet has, enter the inverse by the square of 1 / shift, so the shift is no small part
-/// of the rates.
+/// Returns the modes of any pencil, slowest first. The inverted matrix is shifted to keep it
+/// regular if the Hessian is singular. The shift is positive, and at least `least_shift`. Zero
+/// modes that drift, as an antiferromagnet has, contribute 1 / shift^2 to the inverse. So the shift
+/// must not be small compared with the rates.
 inline std::vector<RitzMode> slowest_modes(Pencil const& pencil, bool is_undamped,
                                            double least_shift) {
   if (is_undamped)
@@ -89,7 +90,8 @@ inline std::vector<RitzMode> slowest_modes(Pencil const& pencil, bool is_undampe
   return modes;
 }
 
-/// Returns the eigenvalues of the Hessian, lowest first, when `turning` is the identity.
+/// Returns the eigenvectors of the Hessian, lowest eigenvalue first, for a pencil whose `turning`
+/// is the identity.
 inline std::vector<RitzMode> lowest_modes(Pencil const& pencil) {
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> const found(pencil.hessian);
   std::vector<RitzMode> modes;
@@ -100,7 +102,8 @@ inline std::vector<RitzMode> lowest_modes(Pencil const& pencil) {
   return modes;
 }
 
-/// Returns the real and imaginary parts of the first modes, as columns.
+/// Returns the real and imaginary parts of the first `count` modes, as normalised columns of length
+/// `rows`.
 inline Eigen::MatrixXd columns_of(std::vector<RitzMode> const& modes, std::size_t count,
                                   Eigen::Index rows) {
   std::vector<Eigen::VectorXd> columns;
@@ -124,8 +127,9 @@ inline Eigen::MatrixXd orthonormal(Eigen::MatrixXd const& columns) {
   return factors.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), factors.rank());
 }
 
-/// Returns columns that orthonormalise vectors with this Gram matrix, fewer where they are linearly
-/// dependent (Stathopoulos and Wu 2002).
+/// Returns the coefficients of orthonormal combinations of vectors with this Gram matrix, as
+/// columns. There are fewer columns than vectors if these are linearly dependent (Stathopoulos and
+/// Wu 2002). `least`: eigenvalues of the scaled Gram matrix up to this count as 0.
 inline Eigen::MatrixXd orthonormalizing(Eigen::MatrixXd const& products, double least) {
   Eigen::VectorXd scale = products.diagonal();
   for (double& square : scale) square = square > 0 ? 1 / std::sqrt(square) : 0;

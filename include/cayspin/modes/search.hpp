@@ -19,14 +19,15 @@
 #include <type_traits>
 #include <vector>
 
-// Eigenvectors of B v = rate G^-1 v, with the Hessian B, from a subspace extended by preconditioned
-// residuals (Davidson 1975; Morgan and Scott 1986). It restarts with the current approximate modes
-// and those of the previous step (Stathopoulos 2007).
+// Solves B v = rate G^-1 v, with the Hessian B and the operator G by which spins turn. The subspace
+// of the solution is extended by preconditioned residuals (Davidson 1975; Morgan and Scott 1986).
+// The search restarts with the current approximate modes and those of the previous step
+// (Stathopoulos 2007).
 namespace cayspin::inline v0_2::detail {
 
 struct ModeSearchOptions {
   std::size_t count = 8;
-  double tolerance = 1e-9;  // of a vector
+  double tolerance = 1e-9;  // largest error of a vector
   std::int64_t evaluations = 0;
   double scale = 1;  // strength of the field without exchange
   double shift = 0;  // shift of rates, if the Hessian is not positive
@@ -64,7 +65,7 @@ class ModeSearch {
     double least = std::numeric_limits<double>::infinity();
     for (int since = 0;; ++since) {
       find_modes();
-      if (size() > 0 && modes_.empty()) return End::stagnated;  // its eigenvalues were not found
+      if (size() > 0 && modes_.empty()) return End::stagnated;  // no eigenvalues were found
       if (2 * block + size() > capacity_) restart();
       std::size_t const converged = first_;
       std::size_t const added = add_residuals();
@@ -84,7 +85,7 @@ class ModeSearch {
   std::size_t count() const { return std::min(options_.count, modes_.size()); }
   double error(std::size_t mode) const { return mode < errors_.size() ? errors_[mode] : 0; }
 
-  /// Writes the fields of a mode.
+  /// Writes the real and the imaginary part of a mode.
   void write(std::size_t mode, Spins const& real, Spins const& imaginary) const {
     Eigen::MatrixXd columns(rows(), 2);
     columns.col(0) = modes_[mode].coefficients.real();
@@ -94,8 +95,9 @@ class ModeSearch {
   }
 
  private:
-  // Called when no residual adds to the subspace, or none has helped for long: what is left are
-  // errors of the Hessian's products, which no search can reduce.
+  // Called when no residual extends the subspace, or none has helped for long. The errors left may
+  // be those of products with the Hessian, which no search can reduce: returns true if all are that
+  // small.
   bool is_as_good_as_products() const {
     constexpr double bound = std::is_same_v<Real, double> ? 1.5e-7 : 3.5e-3;  // 10 sqrt(epsilon)
     return std::ranges::all_of(errors_, [](double error) { return error < bound; });
@@ -164,7 +166,8 @@ class ModeSearch {
     return added;
   }
 
-  /// Returns the first unconverged mode, starting at `first`.
+  /// Appends preconditioned residuals of unconverged modes from `first` on. Returns the first of
+  /// these modes, or count() if all have converged.
   std::size_t improve_modes(std::size_t first, std::size_t& added) {
     std::size_t unconverged = count();
     for (std::size_t mode = first; mode < count() && added < most_added(); mode += block) {
@@ -177,7 +180,7 @@ class ModeSearch {
   }
   std::size_t most_added() const { return columns_of_mode() * block; }
 
-  /// Writes residuals of the modes from `first` on to scratch_.
+  /// Writes residuals of the modes first .. last - 1 to scratch_.
   void find_residuals(std::size_t first, std::size_t last) {
     auto const count = static_cast<Eigen::Index>(last - first);
     Eigen::MatrixXd columns(rows(), 2 * count);
@@ -221,7 +224,8 @@ class ModeSearch {
     return true;
   }
 
-  /// Adds appended vectors to the subspace. Returns false if none is linearly independent.
+  /// Adds the appended vectors to the subspace. Returns false if none of them is linearly
+  /// independent.
   bool extend(std::size_t added) {
     std::size_t const old = size();
     std::size_t const fresh = make_orthonormal(added);
@@ -270,8 +274,9 @@ class ModeSearch {
     }
   }
 
-  /// Orthonormalises the appended vectors and returns how many are left. It repeats once, since the
-  /// first pass leaves round-off of the components it removes, and again if nearly all was removed.
+  /// Orthonormalises the appended vectors and returns how many are left. Repeats once, since the
+  /// first pass leaves round-off of the components that it removes. Repeats again if nearly all of
+  /// a vector was removed.
   std::size_t make_orthonormal(std::size_t added) {
     constexpr double epsilon = std::numeric_limits<Real>::epsilon();
     int rounds = 2;

@@ -45,7 +45,7 @@ Kokkos::View<Real*, Memory> table_of_numbers(Eigen::MatrixXd const& matrix) {
 
 inline constexpr int tile = 4;
 
-/// Functor that sums x_i.y_j.
+/// Functor that computes x_i.y_j for all pairs of a tile.
 template <class Real>
 struct ProductsOfTile {
   Kokkos::Array<SiteArray<Real, 3>, tile> x, y;
@@ -163,8 +163,8 @@ struct TurnBack {
   }
 };
 
-/// Functor that computes B x - rate G^-1 x for modes x = sum of vectors_i c_i, as real and
-/// imaginary parts: two columns of coefficients each.
+/// Functor that computes the residuals B x - rate G^-1 x of modes x = sum of vectors_i c_i. Each
+/// mode has two columns of coefficients: for its real and its imaginary part.
 template <class Real, class Table, class Numbers>
 struct ResidualsOfModes {
   static constexpr int most = 4;

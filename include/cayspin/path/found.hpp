@@ -14,7 +14,7 @@ namespace cayspin::inline v0_2 {
 
 /// Why a search for a path ended.
 enum class PathEnd {
-  converged,         ///< the path, and every saddle on it
+  converged,         ///< the path and every saddle on it have converged
   ends_not_at_rest,  ///< one of the two states could not be relaxed
   same_ends,         ///< both states relaxed to the same state
   no_saddle,         ///< a maximum of the energy along the path led to no saddle
@@ -46,8 +46,8 @@ constexpr std::string_view to_string(PathEnd end) {
   return "";
 }
 
-/// A state on a path without torque, from which the energy falls along one direction and its
-/// opposite.
+/// A state without torque on a path. From it, the energy falls only in one direction and in the
+/// opposite one.
 struct PathSaddle {
   double energy = 0;
   double curvature = 0;       ///< lowest eigenvalue of the Hessian, which is negative
@@ -59,12 +59,12 @@ struct PathSaddle {
 /// The result of a search for a path.
 struct MinimumEnergyPath {
   PathEnd end = PathEnd::evaluation_limit;
-  std::vector<double> energy,
-      distance;  ///< of each image; distances along the great circles of all spins
+  /// Energy of each image, and its distance from the first one along great circles of all spins.
+  std::vector<double> energy, distance;
   std::vector<PathSaddle> saddles;  ///< highest first
-  double across =
-      std::numeric_limits<double>::infinity();  ///< largest |g| of a spin across the path
-  std::int64_t evaluations = 0;                 ///< of the field over all sites
+  /// Largest |g| of a spin, for the gradient g of the energy without its part along the path.
+  double across = std::numeric_limits<double>::infinity();
+  std::int64_t evaluations = 0;  ///< of the field over all sites
 
   PathSaddle const& saddle() const { return saddles.front(); }
   double barrier_forward() const { return saddle().energy - energy.front(); }
@@ -75,7 +75,7 @@ struct MinimumEnergyPath {
 struct PathProgress {
   std::int64_t evaluations = 0;
   double energy = 0;    ///< of the highest image, or of the state that climbs to a saddle
-  double gradient = 0;  ///< largest of a spin: across the path, or of the climbing state
+  double gradient = 0;  ///< largest |g| of a spin: across the path, or of the climbing state
 };
 
 /// Options of minimum_energy_path.
@@ -84,7 +84,7 @@ struct PathOptions {
   std::int64_t evaluations = 1000000;  ///< approximate upper limit
   double time = 0;                     ///< time at which H is evaluated
   bool preconditioned = true;          ///< by the exchange measured on the field
-  bool starts_from_images = false;     ///< the images between the ends are the start
+  bool starts_from_images = false;     ///< start from the given images, not great circles
   std::function<Next(PathProgress const&)> observer = {};  ///< called after each step
 };
 

@@ -75,8 +75,8 @@ struct SquareOfAngle {
   }
 };
 
-/// Functor that computes the direction of a path at one of its states, from the vectors to the
-/// states before and after it, and the component of g along it.
+/// Functor that computes the direction t of a path at one of its states, from the vectors to the
+/// states before and after it. Sums t.t and t.g.
 template <class Real>
 struct DirectionOfPath {
   SiteArray<Real, 3> spins, before, after, gradient;
@@ -106,7 +106,8 @@ void point_between(Exec const& exec, Spins const& from, Spins const& to, double 
                                          output.output(false)});
 }
 
-/// Returns the length of the great circles between two states in the space of all spins; waits.
+/// Returns the distance of two states along the great circles of all spins, the root of the summed
+/// squares of the angles; waits.
 template <class Exec, class Spins>
 double distance_between(Exec const& exec, Spins const& from, Spins const& to) {
   using Real = typename Spins::value_type;
@@ -114,7 +115,7 @@ double distance_between(Exec const& exec, Spins const& from, Spins const& to) {
                                         SquareOfAngle<Real>{from.array(), to.array()})[0]);
 }
 
-/// Squared length of a direction along a path, and the slope of the energy along it.
+/// t.t of the direction t of a path, and t.g with the gradient g of the energy.
 struct Along {
   double square, slope;
 };

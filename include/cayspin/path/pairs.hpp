@@ -9,10 +9,10 @@
 #include <cstddef>
 #include <vector>
 
-// The last steps s of all images of a path, and the changes y of their gradients across it, from
-// which L-BFGS makes the next steps of all images together. Both are projected to the current
-// tangent planes and across the current path where they are used. Passes over the sites compute
-// inner products; the recursion then needs only numbers.
+// The last steps s of all images of a path, and the changes y of their gradients across the path.
+// From these, L-BFGS makes the next steps of all images together. Where s and y are used, they are
+// projected to the current tangent planes and across the current path. Passes over the sites
+// compute inner products; the recursion then needs only numbers.
 namespace cayspin::inline v0_2::detail {
 
 inline constexpr std::size_t path_pairs = 4;
@@ -77,7 +77,7 @@ struct ProductsOfPath {
   }
 };
 
-/// Functor that sets to = the tangent part of a v + b t + sum of weights w.
+/// Functor that computes the tangent part of factor v + along t + sum of weights_i others_i.
 template <class Real>
 struct SumOfPath {
   SiteArray<Real, 3> spins, vectors, direction;
@@ -98,7 +98,7 @@ struct SumOfPath {
   }
 };
 
-/// Functor that computes y_i.z for the tangent part of z, and t.z last.
+/// Functor that computes y_i.z for the tangent part of z; then t.z.
 template <class Real>
 struct ChangesAlong {
   static constexpr int pairs = static_cast<int>(path_pairs), values = pairs + 1;
@@ -146,7 +146,7 @@ class Recursion {
     }
   }
 
-  Numbers alpha{}, weights{};  // of changes, and then of steps
+  Numbers alpha{}, weights{};  // coefficients of changes, and of steps
 };
 
 }  // namespace cayspin::inline v0_2::detail

@@ -52,9 +52,9 @@ inline std::array<double, 2> slopes_between(PointOfProfile const& a, PointOfProf
   return {limited(a.slope), limited(b.slope)};
 }
 
-/// Returns maxima of the energy between fixed images, interpolated by cubics. Prominence: the
-/// height over the higher of the lowest points on both sides, up to a point of higher energy or a
-/// fixed image.
+/// Returns the maxima of the energy between fixed images, highest first, from cubics between the
+/// images. The prominence of a maximum is its height above the higher of two points: the lowest
+/// ones on both sides, before a point of higher energy and up to a fixed image.
 inline std::vector<Peak> peaks_of(std::vector<PointOfProfile> const& points) {
   constexpr std::size_t pieces = 50;
   struct Sample {
@@ -119,7 +119,8 @@ inline std::vector<std::size_t> places_of(std::vector<std::size_t> const& fixed,
   return places;
 }
 
-/// Returns the point among the nodes for an image, when nodes `fixed` become the images `places`.
+/// Returns where an image is among the nodes, when the nodes `fixed` become the images `places` and
+/// the others are spaced evenly between these.
 inline PlaceOnPath point_of_image(std::size_t image, std::vector<std::size_t> const& fixed,
                                   std::vector<std::size_t> const& places,
                                   std::vector<double> const& arcs) {

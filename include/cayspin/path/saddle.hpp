@@ -48,17 +48,17 @@ struct SaddleSearchOptions {
 };
 
 struct SaddleFound {
-  bool is_saddle = false;  // has one negative curvature, and a torque below the bound
+  bool is_saddle = false;  // torque below the bound; only the lowest curvature is negative (or 0)
   bool is_stopped = false;
   double torque = std::numeric_limits<double>::infinity();
   Energy energy = {};
-  double curvature = 0, next_curvature = 0;  // the lowest, and a bound of the next
+  double curvature = 0, next_curvature = 0;  // the lowest, and an upper bound of the next
   std::int64_t evaluations = 0;
 };
 
-/// Climbs from a state near a saddle to it by Newton's method: the energy rises along the vector of
-/// the lowest curvature and falls across it. If another curvature is negative, it continues down
-/// along that.
+/// Climbs by Newton's method to a saddle from a state near it. Steps raise the energy along the
+/// vector of the lowest curvature, and lower it across that vector. If another curvature is
+/// negative at the end, the search goes on downhill along the vector of that one.
 template <class Spins>
 class SaddleSearch {
   using Real = typename Spins::value_type;
@@ -72,11 +72,12 @@ class SaddleSearch {
   explicit SaddleSearch(Lattice const& lattice)
       : fields_(numbered_fields<Spins, std::size_t{work_fields}>("path::saddle", lattice)) {}
 
-  /// Return the state, where the search starts and ends, and the direction of the path.
+  /// Return the state, which the search moves, and the vector of the lowest curvature. Set both
+  /// before a search, the vector to the direction of the path.
   Spins& spins() { return fields_[0]; }
   Spins const& vector() const { return fields_[1]; }
 
-  /// `proceeds()`: returns false to stop.
+  /// `proceeds(SaddleFound)`: returns false to stop.
   template <class Exec, class Field, class Proceed>
   SaddleFound find(Exec const& exec, Field const& field, Mobile const& is_mobile,
                    Preconditioner<Spins>& preconditioner, SaddleSearchOptions const& options,
@@ -162,7 +163,7 @@ class SaddleSearch {
     return {vector, fields_[7], fields_[8], fields_[9], fields_[10], fields_[11]};
   }
 
-  /// Takes a Newton step: down across the vector, and up along it.
+  /// Writes a Newton step: down across the vector, and up along it.
   template <class Exec, class Beside, class Precondition>
   void find_step(Exec const& exec, Beside& beside, double curvature, double torque, double turn,
                  SaddleSearchOptions const& options, Precondition const& precondition) {
@@ -181,7 +182,8 @@ class SaddleSearch {
                        precondition);
     double const most = turn / largest_length(exec, vector());
     double const slope = inner_product(exec, gradient(), vector());
-    // On a plateau the slope is noise; the step along it must vanish with the torque.
+    // On a plateau, the slope is noise and the curvature about 0: the torque keeps the divisor from
+    // vanishing.
     double const climb = curvature > 1e-2 * options.scale
                              ? std::copysign(most, slope)
                              : slope / std::max(std::abs(curvature), 0.1 * torque);

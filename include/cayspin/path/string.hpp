@@ -23,7 +23,7 @@ namespace cayspin::inline v0_2::detail {
 /// A string of images between two states. Each step is a preconditioned L-BFGS step across the path
 /// for all images together, after which they are spaced evenly along it again (the simplified
 /// string method of E, Ren and Vanden-Eijnden 2007, with the directions of Henkelman and Jonsson
-/// 2000). Fixed images, the ends and known saddles, do not move.
+/// 2000). Fixed images do not move: the ends, and known saddles and minima.
 template <class Spins>
 class PathString {
   using Real = typename Spins::value_type;
@@ -180,8 +180,8 @@ class PathString {
     has_step_ = false;
   }
 
-  /// Turns the images around a point of the path, between image `after` and the next one, along a
-  /// tangent vector, by less and less towards the next fixed images.
+  /// Turns images along a tangent vector, fully at a point of the path and by less and less towards
+  /// the next fixed images. `fraction`: place of the point between image `after` and the next one.
   template <class Exec>
   void bend(Exec const& exec, Spins const& vector, std::size_t after, double fraction) {
     double const peak = static_cast<double>(after) + fraction;
@@ -199,11 +199,11 @@ class PathString {
   }
 
   /// Makes a state between image `after` and the next one a fixed image; the others shift along the
-  /// path. Returns false if there are too few.
+  /// path. Returns false if there are too few images.
   template <class Exec>
   bool insert(Exec const& exec, Spins const& state, Energy const& energy, std::size_t after) {
     std::vector<Spins> nodes;
-    std::vector<std::size_t> fixed;  // nodes
+    std::vector<std::size_t> fixed;  // indices of nodes
     for (std::size_t k = 0; k < size(); ++k) {
       if (is_fixed(k)) fixed.push_back(nodes.size());
       nodes.push_back(spins(k));
@@ -275,7 +275,7 @@ class PathString {
     return arrays;
   }
 
-  /// Sums the products of each image's gradient with the steps and changes of its pairs.
+  /// Computes s_i.g and s_i.y_j of each image, and their sums over all images.
   template <class Exec>
   void find_products(Exec const& exec) {
     of_pairs_ = {};
@@ -297,7 +297,7 @@ class PathString {
     }
   }
 
-  /// Returns s.y / y.P y of the last pair.
+  /// Returns the factor of the preconditioner P: s.y / y.P y of the last pair, within limits.
   template <class Exec, class Product>
   double scale_of(Exec const& exec, Preconditioner<Spins>& preconditioner,
                   std::array<bool, pairs> const& use, Product const& product) {
@@ -349,7 +349,7 @@ class PathString {
     for (std::size_t k = 0; k + 1 < count; ++k) arcs_[k] = distance_between(exec, at(k), at(k + 1));
   }
 
-  /// Copies the trial states to the spins.
+  /// Writes states that are evenly spaced along the path of trial states to the spins.
   template <class Exec>
   void space_evenly(Exec const& exec) {
     measure_arcs(exec, [this](std::size_t k) -> Spins const& { return images_[k].trial; });
