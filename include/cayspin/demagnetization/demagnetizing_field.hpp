@@ -36,10 +36,10 @@ class DemagnetizingField {
  public:
   static constexpr int degree = 2;
 
-  /// Throws std::invalid_argument for a crystal, cell edges with a ratio above 1e9, a non-finite
-  /// strength, a negative number of images, and infinitely_many_images along three axes, along two
-  /// whose lengths have a ratio above 1e4, or with another tensor function. On a device also for a
-  /// part of a lattice.
+  /// Throws std::invalid_argument for a crystal, several replicas, cell edges with a ratio above
+  /// 1e9, a non-finite strength, a negative number of images, and infinitely_many_images along
+  /// three axes, along two whose lengths have a ratio above 1e4, or with another tensor function.
+  /// On a device also for a part of a lattice.
   explicit DemagnetizingField(Lattice const& lattice, DemagnetizationOptions const& options = {})
       : lattice_(lattice),
         convolution_(std::make_shared<Convolution const>(

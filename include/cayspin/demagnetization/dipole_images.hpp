@@ -105,7 +105,7 @@ class DipoleImages {
     lattice_.reciprocal().for_each_within(
         {}, 2 * ewald_reach * alpha_, [&](Point const& g, std::array<int, 3> const& numbers) {
           if (numbers <= std::array{0, 0, 0})
-            return;  // 0, or the opposite of a kept g, whose term is equal
+            return;  // 0, or the opposite of a kept g: their terms are equal
           double const g2 = scalar_product(g, g);
           double const gauss = std::exp(-g2 / (4 * alpha_ * alpha_));
           waves_.push_back({g, std::sqrt(g2), is_bulk ? gauss / g2 : gauss});

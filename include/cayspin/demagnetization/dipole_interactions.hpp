@@ -37,8 +37,8 @@ struct DipolarOptions {
 namespace detail {
 
 /// Tensors between the sites of a crystal's cells. If the lattice is a part of another, they are
-/// those of the whole lattice. `period` has the extents of the cyclic convolution, which has room
-/// for all distances.
+/// those of the whole lattice. `period` has the extents of the cyclic convolution in cells: those
+/// of the lattice along vectors with images, and enough for all distances along the others.
 class InteractionsOfDipoles {
  public:
   InteractionsOfDipoles(Lattice const& lattice, Crystal crystal, DipolarOptions const& options)
@@ -82,10 +82,10 @@ class InteractionsOfDipoles {
   std::array<int, 3> const& period() const { return period_; }
   std::size_t sites() const { return crystal_.basis.size(); }
 
-  /// Returns the tensor from a dipole at the site `source` of a cell to H at the site `site` of
-  /// another cell, strength included. `distance`: between these cells, as indices of the cyclic
-  /// convolution, so that negative distances count from the end. 0 for distances that no two cells
-  /// have.
+  /// Returns T with H = T m, strength included, for a dipole m at the site `source` of a cell and H
+  /// at the site `site` of another cell. `distance`: from the first cell to the other, as indices
+  /// of the cyclic convolution, so that negative distances count from the end. 0 for distances that
+  /// no two cells have.
   DipoleTensor between(std::array<int, 3> const& distance, std::size_t site,
                        std::size_t source) const {
     DipoleTensor sum;

@@ -91,8 +91,8 @@ class FarImages {
   }
 
   /// Returns the shifts and weights of the mean over both cells along an axis. The cells are
-  /// divided into pieces, with a three-point rule of fifth order for each pair of pieces.
-  /// `distance`: of the images.
+  /// divided into pieces that are short compared with `distance`, that of the nearest image. Each
+  /// pair of pieces takes a three-point rule of fifth order.
   WeightedShifts over_an_edge(std::size_t axis, double distance) const {
     auto const pieces = static_cast<int>(std::ceil(24 * cell_[axis] / distance));
     double const piece = cell_[axis] / pieces, point = std::sqrt(0.4) * piece;

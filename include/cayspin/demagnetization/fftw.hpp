@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <type_traits>
 
-// FFTs of the demagnetising field by FFTW, in both precisions. Plans use FFTW_ESTIMATE, which
-// measures no times. So FFTW always chooses the same plan, and results have the same bits. Arrays
+// FFTs of the demagnetising field by FFTW, in both precisions. Plans use FFTW_ESTIMATE, which does
+// not measure times. So FFTW always chooses the same plan, and results have the same bits. Arrays
 // are aligned to cache lines, as Kokkos allocates them.
 namespace cayspin::inline v0_2::detail {
 

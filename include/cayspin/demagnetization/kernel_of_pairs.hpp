@@ -18,9 +18,9 @@
 namespace cayspin::inline v0_2::detail {
 
 /// The Fourier transform of the interactions between the sites of a crystal's cells. It is real
-/// between equal sites of different cells. Between two different sites a and b of the cell it is
-/// complex. The transform from a to b is the conjugate of that from b to a, so only one of them is
-/// stored.
+/// between a site and the same site of other cells. Between two different sites a and b of the cell
+/// it is complex. The transform from a to b is the conjugate of that from b to a, so only one of
+/// them is stored.
 template <class Real>
 class KernelOfPairs {
   using Complex = std::complex<Real>;

@@ -120,13 +120,12 @@ class SpectrumOfParts {
   /// Returns the number of wave numbers in this part's share.
   std::int64_t own_waves() const { return static_cast<std::int64_t>(own_waves_); }
 
-  /// Returns the values of this part's lines at one wave number, which counts from the first of
-  /// all.
+  /// Returns the values of this part's lines at number `wave` of all wave numbers.
   Number* of_own_lines(std::int64_t wave) const {
     return of_lines_.data() + static_cast<std::size_t>(wave) * own_lines_;
   }
-  /// Returns the values of the lines of `part` at one wave number of this part's share, which
-  /// counts from the first of the share.
+  /// Returns the values of the lines of `part` at number `wave` of this part's share of wave
+  /// numbers.
   Number* of_own_wave(std::int64_t wave, std::size_t part) const {
     return of_waves_.data() + for_waves_[part] + static_cast<std::size_t>(wave) * lines_[part];
   }
@@ -151,7 +150,7 @@ class SpectrumOfParts {
   Parts parts_;
   std::size_t own_lines_, own_waves_;
   std::vector<std::size_t> lines_;                  // on each part
-  std::vector<std::size_t> for_lines_, for_waves_;  // begin of each part's block
+  std::vector<std::size_t> for_lines_, for_waves_;  // where each part's block begins
   Memory of_lines_, of_waves_;                      // wave number, line; part, wave number, line
 };
 

@@ -110,8 +110,8 @@ class Descent {
     return std::nullopt;
   }
 
-  /// Takes Newton steps for at most 250 evaluations. They do not suffice if many modes are soft;
-  /// L-BFGS then resumes.
+  /// Makes the next iterations Newton steps, for at most 250 evaluations. If many modes are soft,
+  /// these do not suffice, and L-BFGS resumes.
   void begin_newton() {
     takes_newton_ = true;
     newton_until_ = so_far.evaluations + 250;

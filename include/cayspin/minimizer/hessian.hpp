@@ -33,9 +33,8 @@ struct KeepTangent {
   }
 };
 
-/// Functor that computes the Hessian times v. `shifted`: the spins plus a multiple of v. `before`:
-/// the field at other spins; `inverse_shift`: 1 over the multiple of v between both. Sums v.product
-/// and v.v.
+/// Functor that computes the Hessian times v. `shifted`: spins plus a multiple of v. `before`: the
+/// field at spins from which `shifted` differs by v / inverse_shift. Sums v.product and v.v.
 template <class Field, class Real>
 struct HessianProduct {
   Field field;

@@ -59,17 +59,19 @@ struct LowestCurvature {
 };
 
 struct CurvatureSearch {
-  double scale;            // strength of fields other than exchange
-  double tolerance;        // curvatures above -tolerance count as not negative
-  double error;            // largest, unless it is negative; infinity: only its sign
+  double scale;      // strength of fields other than exchange
+  double tolerance;  // curvatures above -tolerance count as not negative
+  /// Bound on the error of the curvature, unless that is negative. Infinity: only find its sign.
+  double error;
   std::int64_t stream;     // of the random start vector
   bool has_start = false;  // arrays.vector holds the start
 };
 
-/// Returns the lowest curvature found. Stops when the Rayleigh quotient is below -tolerance, when
-/// it will not fall below zero, or, if search.error is finite, when its error is below that. Each
-/// saddle needs a new random stream: a start that led out of one saddle can be orthogonal to the
-/// descent from the next. Calls `precondition(from, to)`. Leaves the vector in arrays.vector.
+/// Returns the lowest curvature found. Stops when the Rayleigh quotient is below -tolerance;
+/// otherwise when it will not fall below zero or, if search.error is finite, when its error is
+/// below that. Each saddle needs a new random stream: a start that led out of one saddle can be
+/// orthogonal to the descent from the next. Calls `precondition(from, to)`. Leaves the vector in
+/// arrays.vector.
 template <class AnyHessian, class Exec, class Spins, class Precondition>
 LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
                                       CurvatureArrays<Spins> const& arrays,

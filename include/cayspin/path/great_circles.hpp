@@ -115,7 +115,7 @@ double distance_between(Exec const& exec, Spins const& from, Spins const& to) {
                                         SquareOfAngle<Real>{from.array(), to.array()})[0]);
 }
 
-/// t.t of the direction t of a path, and t.g with the gradient g of the energy.
+/// Sum t.t for the direction t of a path, and t.g with the gradient g of the energy.
 struct Along {
   double square, slope;
 };

@@ -53,8 +53,8 @@ inline std::array<double, 2> slopes_between(PointOfProfile const& a, PointOfProf
 }
 
 /// Returns the maxima of the energy between fixed images, highest first, from cubics between the
-/// images. The prominence of a maximum is its height above the higher of two points: the lowest
-/// ones on both sides, before a point of higher energy and up to a fixed image.
+/// images. The prominence of a maximum is its height above the higher of two points, the lowest
+/// ones on either side. A side ends before a point of higher energy, or at a fixed image.
 inline std::vector<Peak> peaks_of(std::vector<PointOfProfile> const& points) {
   constexpr std::size_t pieces = 50;
   struct Sample {
