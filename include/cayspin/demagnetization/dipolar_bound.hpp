@@ -19,9 +19,10 @@ namespace cayspin::inline v0_2 {
 
 /// Returns an upper bound of the magnitude of all eigenvalues of the matrix from spins to H, for a
 /// DipolarField with strength 1 on an open or periodic lattice of any size. Stable steps depend on
-/// these eigenvalues; |H| at a site can be larger. `moments`: one for each site of a cell. Both
-/// parts of Ewald's sum are bounded separately, for several splittings, and the smallest result is
-/// used. For large sc, bcc and fcc lattices it is about twice the largest eigenvalue.
+/// these eigenvalues; |H| at a site can be larger. `moments`: one for each site of a cell.
+/// `periodic_images`: those of the field, needed only along axes of one cell. Both parts of Ewald's
+/// sum are bounded separately, for several splittings, and the smallest result is used. For large
+/// sc, bcc and fcc lattices it is about twice the largest eigenvalue.
 inline double dipolar_bound(Lattice const& lattice, Crystal crystal,
                             std::vector<double> const& moments,
                             std::array<int, 3> const& periodic_images = {}) {
