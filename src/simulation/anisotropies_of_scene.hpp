@@ -25,7 +25,8 @@ SiteArray<typename Spins::value_type, 3> FieldInPass<Spins>::Terms::keep_axes(
   return kept.array();
 }
 
-// 0 on the other sites of the cell if a term belongs to one site.
+// Returns a term's constant at each site. If the term belongs to one site of the cell, the constant
+// is 0 at the others.
 template <class Spins>
 std::vector<double> FieldInPass<Spins>::Terms::constants_of_site(io::Scene const& scene,
                                                                  io::SiteBox const& box,
@@ -58,7 +59,7 @@ void FieldInPass<Spins>::Terms::add_axes(io::Scene const& scene, io::SiteBox con
       one.axes = keep_axes(io::directions_of_sites(scene, term.axes, "field.anisotropy", box));
   }
   anisotropies_in_time_ = static_cast<std::int32_t>(axes.size());
-  if (auto const slab = slab_of_moments(scene)) {  // E = strength (moment m.n)^2 / 2
+  if (auto const slab = slab_of_moments(scene)) {  // E = mu0 strength (moment m.n)^2 / 2
     std::vector<double> constants(moments.size());
     std::ranges::transform(moments, constants.begin(), [&](double moment) {
       return -scene.field.mu0 * slab->strength * moment * moment;

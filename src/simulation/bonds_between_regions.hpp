@@ -17,8 +17,8 @@
 // Bonds between regions. For compile_field_in_pass.hpp.
 namespace cayspin::simulation {
 
-// Half a sweep reduces the error of the spins at a face by a factor of at most r / (1 - r), where r
-// is the ratio of bond and exchange.
+// Half a sweep multiplies the error of the spins at a face by at most r / (1 - r), where r is the
+// strength of the bond over that of the exchange in half a cell.
 template <class Spins>
 void FieldInPass<Spins>::Terms::add_exchange_at_faces(io::Scene const& scene,
                                                       io::SiteBox const& box) {
@@ -48,7 +48,8 @@ void FieldInPass<Spins>::Terms::add_exchange_at_faces(io::Scene const& scene,
   sweeps_of_faces_ = ratio > 0 ? 1 + static_cast<std::int32_t>(std::ceil(steps / 2)) : 1;
 }
 
-// Past the end of a part, bonds belong to sites of another part.
+// Each site has the bond to its next one. If a lattice is divided, the bond of a part's last site
+// leads to a site of another part.
 template <class Spins>
 void FieldInPass<Spins>::Terms::add_bonds_between(io::Scene const& scene, io::SiteBox const& box) {
   auto const& field = scene.field;
@@ -81,7 +82,7 @@ void FieldInPass<Spins>::Terms::add_bonds_between(io::Scene const& scene, io::Si
   }
 }
 
-// Both ends store the bond, with equal constants.
+// Each distant bond is stored at both of its ends, with equal constants.
 template <class Spins>
 void FieldInPass<Spins>::Terms::add_distant_bonds(io::Scene const& scene, io::SiteBox const& box) {
   std::vector<DistantBonds<Real>> all;

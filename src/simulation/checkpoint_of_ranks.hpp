@@ -15,7 +15,7 @@ namespace cayspin::simulation {
 /// Checkpoint collected from the parts of all ranks, and written by the first rank.
 class CheckpointFromRanks final : public Checkpoint {
  public:
-  /// `writer`: null except on the first rank.
+  /// `writer`: null on all ranks but the first.
   CheckpointFromRanks(Ranks& ranks, cayspin::Lattice const& local, io::CheckpointWriter* writer)
       : ranks_(ranks), local_(local), writer_(writer) {}
 
@@ -46,7 +46,8 @@ class CheckpointFromRanks final : public Checkpoint {
   }
 
  private:
-  // The first rank also takes part in later calls if it cannot write.
+  // Keeps an error until commit(): even if it cannot write, the first rank takes part in later
+  // calls, for which the others wait.
   template <class Work>
   void on_first(Work const& work) {
     if (!writer_ || error_) return;
@@ -63,7 +64,7 @@ class CheckpointFromRanks final : public Checkpoint {
   std::exception_ptr error_;
 };
 
-/// Checkpoint that gives each rank its part.
+/// Checkpoint from which each rank reads its part.
 class CheckpointForRank final : public Checkpoint {
  public:
   CheckpointForRank(cayspin::Lattice const& local, io::CheckpointReader& of_all)

@@ -24,7 +24,7 @@ class CheckpointSchedule {
     if (step.number == first_ || step.last) return false;
     return period_.steps > 0 ? step.number % period_.steps == 0 : elapsed_ && (*elapsed_)();
   }
-  /// Returns true if the steps are known in advance.
+  /// Returns true if the steps with a checkpoint are known in advance.
   bool is_by_steps() const { return period_.steps > 0; }
   /// Call it when a checkpoint is stored.
   void wait() {
@@ -37,7 +37,7 @@ class CheckpointSchedule {
   using Clock = std::chrono::steady_clock;
   io::CheckpointPeriod period_;
   std::int64_t first_;
-  mutable std::optional<InterruptPoll> elapsed_;  // called at most several times a second
+  mutable std::optional<InterruptPoll> elapsed_;  // asked at most about twenty times a second
 };
 
 }  // namespace cayspin::simulation

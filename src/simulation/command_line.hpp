@@ -42,7 +42,7 @@ inline int report(std::exception_ptr const& thrown) {
   };
   try {
     std::rethrow_exception(thrown);
-  } catch (OtherRankFailed const&) {  // which reports it
+  } catch (OtherRankFailed const&) {  // the other rank reports it
   } catch (UsageError const& error) {
     say(fmt::format("cayspin: {}", error.what()));
   } catch (std::bad_alloc const&) {
@@ -53,7 +53,7 @@ inline int report(std::exception_ptr const& thrown) {
   return status_of(thrown);
 }
 
-/// Throws if some of standard output could not be written.
+/// Throws std::runtime_error if not all of standard output could be written.
 inline void require_output_written() {
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;

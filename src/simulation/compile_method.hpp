@@ -13,7 +13,8 @@
 
 #include <limits>
 
-// Converts a row of the list of methods into its variants: the types that its words ask for.
+// Converts a row of the list of methods into its variants: one compiled stepper for each choice of
+// options that changes the stepper's type.
 namespace cayspin::simulation {
 
 /// Template parameters that distinguish the variants of a row.
@@ -25,7 +26,8 @@ struct VariantKey {
 template <std::size_t Number>
 inline constexpr io::Method const& method_at = std::get<Number>(method_list);
 
-/// The stepper whose bound on dt is used: the method's own, or another one that its family names.
+/// The stepper whose bound on dt is used: the method's own, or the one that its family names as
+/// StableAs.
 template <class Family, class Spins, class Own>
 struct BoundedStepper {
   using type = Own;
@@ -66,7 +68,7 @@ class Compiled {
     else
       return std::type_identity<typename Family::template Stepper<Spins, Isotropy, Rotation>>{};
   }
-  /// The stepper whose bound on dt is used, without compensation.
+  /// The method's stepper without compensation.
   template <class Spins, class Rotation>
   using Plain = typename decltype(plain_stepper<Spins, Rotation>())::type;
 
@@ -89,7 +91,7 @@ class Compiled {
   }
   template <class Work>
   static auto with_rotation(io::Rotation rotation, Work const& work) {
-    // A method with only one rotation has it in its stepper.
+    // If a method has only one rotation, its stepper type already contains it.
     if constexpr (rotations() == sets::both_rotations) {
       if (rotation == io::Rotation::exponential) return work(Exponential{});
     }

@@ -22,9 +22,10 @@ namespace cayspin::simulation {
 #if defined(CAYSPIN_HAS_FFTW)
 namespace {
 
-/// Describes everything that the tensors depend on.
+/// Describes everything that the tensors depend on, to identify them in a cache file.
 std::string text_of(Lattice const& lattice, DemagnetizationOptions const& options) {
-  // Tensors of cells whose edges differ by more than 1000 : 1 have version 2.
+  // Tensors of cells whose edges differ by more than 1000 : 1 have a version number, because caches
+  // of older versions hold other values.
   auto const [shortest, longest] = std::ranges::minmax(lattice.spacing);
   return fmt::format("cells {}, spacing {:a}, images {}, strength {:a}{}",
                      fmt::join(lattice.shape, " "), fmt::join(lattice.spacing, " "),
@@ -85,7 +86,8 @@ void require_demagnetization(io::Scene const&) {}
 #else
 template <class Real>
 FieldOnHost<Real> demagnetization_on_host(io::Demagnetization const&, double, Lattice const&) {
-  throw std::logic_error("a demagnetising field without FFTW");  // require_demagnetization refuses
+  // Never reached: require_demagnetization refuses the scene.
+  throw std::logic_error("a demagnetising field without FFTW");
 }
 
 template <class Spins>

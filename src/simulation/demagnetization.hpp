@@ -21,18 +21,18 @@ template <class Spins>
 using FieldInPlace = std::function<void(typename Spins::memory_space::execution_space const& exec,
                                         Spins const& spins, Spins const& field)>;
 
-/// `mu0`: multiplies the strength.
+/// Returns the field of a scene's demag; `mu0` multiplies its strength.
 template <class Real>
 FieldOnHost<Real> demagnetization_on_host(io::Demagnetization const& demag, double mu0,
                                           Lattice const& lattice);
 
-/// Returns the field for a device's spins; empty for dipoles, for a part of a lattice, and if this
-/// build has no transforms for that device.
+/// Returns the field for spins in the memory of a device; empty for dipoles, for a part of a
+/// lattice, and if this build has no Fourier transforms for that device.
 template <class Spins>
 FieldInPlace<Spins> demagnetization_in_place(io::Demagnetization const& demag, double mu0,
                                              Lattice const& lattice);
 
-/// Returns the bytes that its transforms need.
+/// Returns the bytes of memory that the field's Fourier transforms need.
 template <class Real>
 std::int64_t demagnetization_bytes(io::Demagnetization const& demag, Lattice const& lattice);
 

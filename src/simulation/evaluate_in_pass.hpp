@@ -17,7 +17,7 @@ struct EvaluateInPass {
   cayspin::SiteArray<Real, 1> moves;  // without data: all move
   cayspin::OutputArray<Real, 3> field;
   cayspin::OutputArray<Real, 1> energies;
-  bool is_field = false;  // H, without the gyromagnetic ratios of the cell's sites
+  bool is_field = false;  // write H, not H times the gyromagnetic ratio
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
@@ -32,7 +32,7 @@ struct EvaluateInPass {
   }
 };
 
-/// NormDefectOfSites at sites with a moment.
+/// Like NormDefectOfSites, but ignores sites without a moment.
 template <class Real>
 struct NormDefectOfMoments {
   cayspin::SiteArray<Real, 3> spins;

@@ -21,14 +21,15 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Thrown on ranks that wait for one that failed, which reports the error. `status` is that rank's.
+/// Thrown on all other ranks when one fails, which reports the error. `status`: the exit status of
+/// the rank that failed.
 struct OtherRankFailed : std::runtime_error {
   explicit OtherRankFailed(int status_of_it)
       : std::runtime_error("another rank failed"), status(status_of_it) {}
   int status;
 };
 
-/// Returns the exit status for the exception being handled.
+/// Returns the exit status for an exception.
 inline int status_of(std::exception_ptr const& error) {
   try {
     std::rethrow_exception(error);

@@ -15,15 +15,16 @@ struct Scene;
 
 namespace cayspin::simulation {
 
-/// Purpose of a field. generator: to turn the spins that move; itself: for output, zero where a
-/// spin is frozen; energy: as -dE/dm, zero where a spin is frozen, for an energy that falls.
+/// What a field is for. generator: H times the gyromagnetic ratio, which turns the spins; itself:
+/// H, for output; energy: -dE/dm, for searches that lower the energy. The last two are zero where a
+/// spin is frozen.
 enum class FieldFor { generator, itself, energy };
 
-/// The field of a scene with rarely used terms: couplings, sublattices, currents, vacancies. One
-/// pass evaluates all terms into memory before each stage, or on a host row by row as a Runge-Kutta
-/// stage reaches it, and the kernels of the methods load the result. So there is one such kernel,
-/// rather than one for each method. Compiled by field_in_pass_double.cpp and
-/// field_in_pass_single.cpp for the spaces of space.hpp. A handle.
+/// The field of a scene with rarely used terms: couplings, sublattices, currents, vacancies. A
+/// separate pass evaluates all terms into memory before each stage (on a host, row by row as a
+/// Runge-Kutta stage reaches each row), and the kernels of the methods load the result. So the
+/// terms are compiled once, not once for each method. Compiled by field_in_pass_double.cpp and
+/// field_in_pass_single.cpp for the spaces of space.hpp. A handle: copies share their data.
 template <class Spins>
 class FieldInPass {
   using Real = typename Spins::value_type;
@@ -37,19 +38,19 @@ class FieldInPass {
   SceneFieldNow<Real> evaluate(Exec const& exec, SceneFieldNow<Real> const& usual,
                                Spins const& spins, double t, FieldFor purpose) const;
 
-  /// Prepares a host loop over rows, without energies: it evaluates all terms, or only those that
-  /// are not compiled into stages.
+  /// Prepares the terms for a loop over rows on a host, which evaluates all of them, or only those
+  /// that are not compiled into stages; without energies. Elsewhere it works like evaluate.
   template <class Exec>
   SceneFieldNow<Real> along_rows(Exec const& exec, SceneFieldNow<Real> const& usual,
                                  Spins const& spins, double t, FieldFor purpose) const;
 
-  /// Returns true if `along_rows` reads no other spins than those of a stage.
+  /// Returns true if the loop of along_rows reads only spins that a stage reads anyway.
   bool rows_need_only_time() const;
 
   /// Returns true if H is affine in the spins.
   bool is_affine() const;
 
-  /// Returns the site-dependent numbers by which sites turn in H.
+  /// Returns the site-dependent numbers that change how spins turn in H.
   OwnOfSites<Real> own_of_sites() const;
 
   /// Returns the gyromagnetic ratio if all spins have the same.
@@ -59,19 +60,19 @@ class FieldInPass {
   template <class Exec>
   Vec3<double> magnetization(Exec const& exec, Spins const& spins) const;
 
-  /// Returns max | |m| - 1 | over these sites.
+  /// Returns max | |m| - 1 | over the sites that have a spin.
   template <class Exec>
   double norm_defect(Exec const& exec, Spins const& spins) const;
 
   /// Returns the moments; empty if each depends only on the site of the cell.
   std::optional<ScalarField<Real, Memory>> moments_of_sites() const;
 
-  /// Returns 0 where a spin is frozen; empty if all move.
+  /// Returns 0 where a spin is frozen and 1 elsewhere; empty if none is frozen.
   std::optional<ScalarField<Real, Memory>> const& moves() const;
 
  private:
-  /// `adds_applied`: kernels add the contribution of the applied field. Otherwise H includes it, as
-  /// along rows.
+  /// `adds_applied`: the kernels of the methods add the applied field. Otherwise the pass includes
+  /// it in H.
   template <class Exec>
   SceneFieldNow<Real> evaluate_with(Exec const& exec, SceneFieldNow<Real> const& usual,
                                     Spins const& spins, double t, FieldFor purpose,

@@ -19,8 +19,8 @@
 
 namespace cayspin::simulation {
 
-/// Functor that sums a component over all spins and over those at the first and at the last
-/// position, and counts the spins.
+/// Functor that sums a component over all spins, over those at the first position along the axis
+/// and over those at the last one, and counts the spins.
 template <class Real>
 struct WallOfSites {
   cayspin::SiteArray<Real, 3> spins;
@@ -40,7 +40,7 @@ struct WallOfSites {
   }
 };
 
-/// Functor that sums the solid angle at a site, and its product with the position.
+/// Functor that sums half the solid angle at each site, and its product with the position.
 template <class Real>
 struct PlaceOfCharge {
   cayspin::detail::SolidAngleOfSites<Real> angle;
@@ -53,8 +53,8 @@ struct PlaceOfCharge {
   }
 };
 
-/// Functor that returns the spin of the next or previous site along an axis; at the end, of the
-/// site itself.
+/// Functor that gives each site the spin of the next or previous one along an axis. A site at the
+/// end keeps its own.
 template <class Real>
 struct TakeNeighbor {
   cayspin::SiteArray<Real, 3> spins;
@@ -83,7 +83,7 @@ struct TakeNeighbor {
 
 namespace {
 
-constexpr double least_step = 0.2;  // of a component's mean between the ends
+constexpr double least_step = 0.2;  // between the means at the two ends; less is no wall
 constexpr double least_charge = 0.25;
 
 std::vector<double> places(Lattice const& lattice, int axis) {
@@ -107,7 +107,8 @@ template <class Spins>
 Follower<Spins>::Follower(io::Scene const& scene, Lattice const& lattice)
     : follow_(*scene.lattice.follow),
       extent_(whole(lattice).shape[static_cast<std::size_t>(follow_.axis)]),
-      // A method's internal steps lie between these.
+      // An adaptive method takes steps of its own between two of the scene's, which may be far
+      // apart.
       period_(scene.integrator.tolerance ? 1 : Guard::period_of(io::sites(scene))),
       moved_("Follower::moved", lattice),
       places_("Follower::places", lattice) {
@@ -132,7 +133,7 @@ std::int64_t Follower<Spins>::cells_off(Exec const& exec, Spins const& spins) co
                                  0.5 * static_cast<double>(extent_ - 1)};
     auto const [all, first, last, count] =
         reduce_sites<Sum, 4>(exec, "cayspin::Follower", spins.layout(), look);
-    // A shift by one cell changes the mean by the difference between the ends.
+    // A shift by one cell changes the sum by the difference between the sums at the two ends.
     double const step = first - last;
     if (std::abs(step) >= least_step * count / static_cast<double>(extent_))
       cells = (all - follow_.value * count) / step;

@@ -11,9 +11,9 @@
 
 namespace cayspin::simulation {
 
-/// Keeper of the object that lattice.follow names: keeps it in the middle by moving the spins along
-/// its axis by whole cells. Cells that enter at an end are copies of those there. Compiled in
-/// follow.cpp, for the spaces of space.hpp.
+/// Keeps the object that lattice.follow names, such as a domain wall, in the middle of the lattice,
+/// by moving all spins along the axis by whole cells. Cells that enter at an end are copies of the
+/// last ones there. Compiled in follow.cpp, for the spaces of space.hpp.
 template <class Spins>
 class Follower {
   using Real = typename Spins::value_type;
@@ -23,12 +23,13 @@ class Follower {
 
   bool due(Step const& step) const { return step.number % period_ == 0; }
 
-  /// Returns by how many cells it has left the middle; 0 below one cell, and if it is not there.
+  /// Returns by how many cells the object is off the middle; 0 if by less than one, or if there is
+  /// no object.
   template <class Exec>
   std::int64_t cells_off(Exec const& exec, Spins const& spins) const;
 
-  /// Moves the lattice by so many cells along its axis, that is, the spins in the opposite
-  /// direction; waits.
+  /// Moves the lattice by `cells` along the axis, that is, the spins in the opposite direction, and
+  /// waits for the kernels.
   template <class Exec>
   void move(Exec const& exec, Spins const& spins, std::int64_t cells);
 

@@ -16,8 +16,9 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-/// x = rate G x, where spins turn by G in a field, has this inverse of G for each spin: with
-/// B = -G^-1 the motion about a state is (H + rate B) x = 0.
+/// Returns B = G^-1, one block for each spin, where G maps the field on a spin to the velocity of
+/// the spin. A motion x exp(rate t) about a state obeys rate x = -G H x with the Hessian H, that is
+/// (H + rate B) x = 0.
 Matrix inverse_turning(io::Scene const& scene, StateHessian const& state) {
   auto const [precession, damping] = turning_of_sites(scene);
   auto const n = static_cast<Eigen::Index>(state.size());
@@ -32,8 +33,9 @@ Matrix inverse_turning(io::Scene const& scene, StateHessian const& state) {
   return found;
 }
 
-/// The positive root of det(H + rate B) for two vectors, the unstable mode and its turn, which is
-/// near the rate at which the motion grows.
+/// Estimates the rate of growth: the positive root of det(H + rate B), with both matrices
+/// restricted to two vectors, the unstable mode and the same turned by 90 degrees in each tangent
+/// plane.
 double growth_of_two(Matrix const& hessian, Matrix const& inverse, Vector const& mode) {
   Matrix two(mode.size(), 2);
   two.col(0) = mode;
@@ -55,10 +57,10 @@ double growth_rate(io::Scene const& scene, StateHessian const& saddle, Matrix co
                    Vector const& unstable) {
   Matrix const inverse = inverse_turning(scene, saddle);
   double shift = growth_of_two(hessian, inverse, unstable);
-  double const least = 1e-4 * shift;  // below it are those of zero modes
+  double const least = 1e-4 * shift;  // smaller rates are those of zero modes
   Vector mode = unstable;
   for (int factors = 0; factors < 12; ++factors) {
-    shift *= 1.001;  // of the rate itself the matrix is singular
+    shift *= 1.001;  // at the rate itself the matrix is singular
     Eigen::PartialPivLU<Matrix> const shifted(hessian + shift * inverse);
     double growth = 0;
     for (int step = 0; step < 20; ++step) {
@@ -70,7 +72,7 @@ double growth_rate(io::Scene const& scene, StateHessian const& saddle, Matrix co
       if (is_settled && growth > least) return growth;
       if (is_settled) break;
     }
-    // Where it came to another mode, the shift was too small.
+    // If the iteration found another mode, the shift was too small.
     shift = growth > least ? growth : 4 * shift;
   }
   return 0;

@@ -7,9 +7,10 @@
 
 namespace cayspin::simulation {
 
-/// The rate at which the motion about a saddle grows, with damping: the only positive one, by
-/// inverse iteration; 0 where none grows. `unstable`: the eigenvector of the Hessian that the
-/// energy falls along. Throws NumbersFailed where a spin does not move.
+/// Returns the rate at which deviations from a saddle grow in the motion with damping: the only
+/// positive rate, found by inverse iteration, or 0 if none grows. `unstable`: the eigenvector of
+/// the Hessian along which the energy falls. Throws NumbersFailed if a spin has neither precession
+/// nor damping.
 double growth_rate(io::Scene const& scene, StateHessian const& saddle,
                    Eigen::MatrixXd const& hessian, Eigen::VectorXd const& unstable);
 

@@ -19,15 +19,15 @@ inline bool energy_must_fall(io::Scene const& scene) {
          scene.integrator.energy_guard && scene.integrator.method->keeps_length;
 }
 
-/// Check of the state of a run. All numbers must be finite. A length that is conserved must be 1
-/// within 64 epsilon at the start, and later within 64 epsilon per step (up to a million steps may
-/// pass between two checks), but at most 0.01. An energy that can only fall must not rise by more
-/// than round-off: 64 epsilon times the sum of its terms' absolute values. If steps follow a
-/// tolerance, an angle of the spins, the energy may also rise by that fraction of the sum.
+/// Check of the state of a run. All numbers must be finite. If the method conserves lengths, they
+/// must be 1 within 64 epsilon at step 0, and later within 64 epsilon times the number of steps (at
+/// least a million), but at most 0.01. An energy that can only fall must not rise by more than
+/// round-off: 64 epsilon times the sum of its terms' absolute values. If an adaptive method's
+/// tolerance (an angle of the spins) is larger than 64 epsilon, it replaces that factor.
 class Guard {
  public:
-  /// `epsilon`: of the run's precision. Small lattices are checked after every step, large ones
-  /// after every tenth.
+  /// `epsilon`: of the run's precision. Small lattices are due after every step, large ones after
+  /// every tenth.
   Guard(io::Scene const& scene, double epsilon)
       : energy_must_fall_(energy_must_fall(scene)),
         keeps_norm_(scene.integrator.method->keeps_length),
@@ -44,7 +44,8 @@ class Guard {
   /// Returns what is wrong with a state, if anything: one line with step and time.
   std::optional<std::string> judge(Step const& step, Energy const& energy, double norm_defect);
 
-  /// Accounts for replaced spins, which changed the energy by `change`.
+  /// Call when spins were replaced: `change` is the resulting change of the energy, which no step
+  /// has caused.
   void add_to_energies(double change) {
     if (first_) first_->energy += change;
     if (last_) last_->energy += change;

@@ -50,7 +50,7 @@ DemagnetizingTensors InteractionsFile::read_or(std::function<DemagnetizingTensor
   return tensors;
 }
 
-/// Returns empty tensors if the file does not have these.
+/// Returns the tensors of the file; empty if it is missing, damaged or has others.
 DemagnetizingTensors InteractionsFile::read() const {
   std::error_code error;
   auto const size = fs::file_size(path_, error);
@@ -69,7 +69,8 @@ DemagnetizingTensors InteractionsFile::read() const {
   return tensors;
 }
 
-// Writes under a temporary name: runs that start together write equal files.
+// Writes under a temporary name, then renames the file: runs that start together may all do so,
+// with equal contents.
 void InteractionsFile::write(DemagnetizingTensors const& tensors) const {
   auto const partial = fs::path(path_.string() + ".partial" + std::to_string(::getpid()));
   std::error_code error;

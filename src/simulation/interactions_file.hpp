@@ -17,7 +17,7 @@ class InteractionsFile {
   InteractionsFile(std::filesystem::path path, std::string of);
 
   /// Returns the tensors of the file. If it is missing, damaged or has others, returns those of
-  /// `compute`, and stores them if they took `least_seconds` and the folder is writable.
+  /// `compute`, and stores them if they took at least `least_seconds` and the folder is writable.
   DemagnetizingTensors read_or(std::function<DemagnetizingTensors()> const& compute,
                                double least_seconds = 2) const;
 

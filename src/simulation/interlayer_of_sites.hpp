@@ -12,28 +12,28 @@
 
 namespace cayspin::simulation {
 
-/// Bonds of sites to those at distance `offset`, with only vacant sites in between.
+/// Bonds of sites to those at `offset` from them, with only vacant sites in between.
 template <class Real>
 struct DistantBonds {
   std::int32_t offset[3] = {};
   cayspin::SiteArray<Real, 1> bilinear, biquadratic;  // 0 where there is no bond
-  cayspin::SiteArray<Real, 1> exchange = {};          // of the other site, or without data
-  double per_square = 0;                              // 2 over the spacing squared
+  cayspin::SiteArray<Real, 1> exchange = {};  // of the site at the other end; or without data
+  double per_square = 0;                      // 2 over the spacing squared
 };
 
-/// E = -J s.s' - B (s.s')^2 of the bonds to next and previous sites along each axis; the arrays
-/// have those to next sites; without data: no bonds along that axis. s is the spin at the face. In
-/// the half cell between the face and the centre the exchange A has the energy k (1 - m.s), k = 2 A
-/// over the spacing squared, and s minimises the sum. That is the face's condition for the flux of
-/// exchange, which makes thick layers accurate to second order in the spacing (as in Suess et al.,
-/// PRB 107, 104424, 2023). Without A, s is m.
+/// Bonds to the next and the previous site along each axis, E = -J s.s' - B (s.s')^2, where s is
+/// the spin at the face of a cell. The arrays have the bonds to next sites; without data, there are
+/// none along that axis. In the half cell between the centre and the face, exchange A adds the
+/// energy k (1 - m.s), where k = 2 A over the spacing squared, and s minimises the total. This is
+/// the boundary condition of exchange at the face. It makes thick layers accurate to second order
+/// in the spacing (as in Suess et al., PRB 107, 104424, 2023). Without A, s is m.
 template <class Real>
 struct InterlayerOfSites {
   cayspin::detail::DistantSites<Real> spins;
   cayspin::SiteArray<Real, 1> bilinear[3] = {}, biquadratic[3] = {};
   cayspin::SiteArray<Real, 1> exchange = {};  // or without data
   double per_square[3] = {};                  // 2 over the spacing squared
-  std::int32_t sweeps = 0;                    // until s is found to rounding
+  std::int32_t sweeps = 0;                    // after which s is exact to rounding
   DistantBonds<Real> const* distant = nullptr;
   std::int32_t distant_count = 0;
 

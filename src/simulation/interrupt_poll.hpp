@@ -8,7 +8,8 @@
 
 namespace cayspin::simulation {
 
-/// Rate limit of a question: asks it at most about twenty times a second. A true answer stays.
+/// Asks a question at most about twenty times a second, however often it is called. Once the answer
+/// is true, it stays true.
 class InterruptPoll {
  public:
   explicit InterruptPoll(std::function<bool()> question) : question_(std::move(question)) {}

@@ -20,7 +20,7 @@ std::string space_name() {
   return name;
 }
 
-/// Returns true for a name of the space. "serial" is the host's space with one thread.
+/// Returns true if `word` names this space. "serial" is the host's space with one thread.
 template <class Space>
 bool has_name(std::string const& word) {
   return word == space_name<Space>() ||
@@ -39,13 +39,14 @@ template <class Space>
 int threads_of(Space const& exec) {
   return cayspin::detail::is_host_execution<Space> ? exec.concurrency() : 1;
 }
-/// Returns the number of threads of the default host space, now or by default.
+/// Returns the number of threads of the default host space; before Kokkos starts, those that it
+/// would use by default.
 int expected_threads();
 
 /// Scope in which Kokkos is initialised.
 class KokkosSession {
  public:
-  /// Throws UsageError for a missing device, and for a device with a host space.
+  /// Throws UsageError if the device does not exist, and if a device is given with a host space.
   KokkosSession(std::string const& space, std::optional<int> threads, std::optional<int> device);
   ~KokkosSession() { Kokkos::finalize(); }
   KokkosSession(KokkosSession const&) = delete;

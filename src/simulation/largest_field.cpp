@@ -21,8 +21,8 @@
 namespace cayspin::simulation {
 namespace {
 
-// Returns the largest length of a vector at 1001 equally spaced times of the run. A pulse between
-// them is among the features.
+// Returns the largest length of a vector, at 1001 equally spaced times of the run or among the
+// features, which include pulses between these times.
 double largest(AppliedField const& vector, std::string_view key, io::Scene const& scene,
                Times const& times, TimeFeatures const& features) {
   if (!vector.present()) return 0;
@@ -53,7 +53,7 @@ struct Range {
   double magnitude() const { return std::max(-least, largest); }
 };
 
-// A rank has memory only for its part.
+// Calls work(box) for a few planes at a time, because a rank may have memory only for its part.
 template <class Work>
 void for_each_box(io::Scene const& scene, Work const& work) {
   io::for_each_box_of_planes(scene.lattice.shape, sizeof(double), work);
@@ -101,7 +101,8 @@ double largest_over_moments(io::Scene const& scene, io::SiteNumbers const& numbe
   return range.magnitude();
 }
 
-// The harmonic mean of two ends is at most twice the smaller one.
+// The exchange of a bond is the harmonic mean of the constants at its ends: at most twice the
+// smaller one.
 double largest_exchange(io::Scene const& scene) {
   constexpr auto key = "field.exchange";
   auto const& numbers = scene.field.exchange_factors;
@@ -137,7 +138,8 @@ double largest_anisotropy(io::Scene const& scene, io::Anisotropy const& term) {
          3 * largest_constant(scene, term.constant2, term.factors2);
 }
 
-// Both neighbours along each axis; a biquadratic bond turns spins like one of twice its constant.
+// Both neighbours along each axis count; a biquadratic bond counts like a bilinear one of four
+// times its constant.
 double largest_interlayer(io::Scene const& scene, Lattice const& lattice) {
   double largest = 0, faces = 0;
   for (auto const& bond : scene.field.interlayers)
@@ -147,7 +149,7 @@ double largest_interlayer(io::Scene const& scene, Lattice const& lattice) {
   return faces * largest / least_moment(scene);
 }
 
-// From the second derivative of E along the sphere.
+// The factors bound the second derivatives of E on the sphere.
 double largest_crystal_anisotropy(io::Scene const& scene, io::CrystalAnisotropy const& term) {
   double const of_first = term.hexagonal ? 36 : 2;
   return of_first * largest_constant(scene, term.constant, term.factors) +
@@ -169,7 +171,7 @@ LargestFactors largest_factors(io::Scene const& scene, Times const& times,
           of(dmi, "field.in_time.dmi")};
 }
 
-// Bounds the terms with site-dependent constants.
+// Returns a bound of |H| for the terms with site-dependent constants.
 double bound_of_numbers(io::Scene const& scene, Lattice const& lattice,
                         LargestFactors const& factors) {
   auto const& field = scene.field;
@@ -189,7 +191,7 @@ double bound_of_numbers(io::Scene const& scene, Lattice const& lattice,
   return bound;
 }
 
-// Returns the couplings between sites that have a spin.
+// Returns the couplings whose sites both have a spin.
 std::vector<Coupling> couplings_of_spins(io::Scene const& scene) {
   auto couplings = io::couplings(scene);
   std::erase_if(couplings, [&](Coupling const& bond) {
@@ -217,8 +219,9 @@ double largest_gyromagnetic(io::Lattice const& lattice) {
   return largest;
 }
 
-// Evaluates terms that belong to sites of the cell at the site where they are largest. `of_all`:
-// terms of all sites; `of_moments`: fields made by the moments themselves.
+// Returns the largest bound at any site of a cell, whose sites may have different terms. `of_all`:
+// bound of the terms that all sites have; `of_moments`: of the fields that the moments themselves
+// create.
 double bound_of_sites(io::Scene const& scene, Lattice const& lattice, double of_all,
                       double of_moments, LargestFactors const& factors) {
   auto const field = io::without_numbers_of_sites(scene.field);
@@ -242,7 +245,7 @@ double bound_of_sites(io::Scene const& scene, Lattice const& lattice, double of_
   return largest;
 }
 
-// Returns the largest |profile| of a source.
+// Returns the largest |mu0 profile| of a source.
 double largest_profile(io::Scene const& scene, io::SiteVectors const& profile) {
   double largest = 0;
   io::for_each_box_of_planes(scene.lattice.shape, 3 * sizeof(double), [&](io::SiteBox const& box) {
@@ -262,7 +265,7 @@ double bound_of_sources(io::Scene const& scene, Times const& times, TimeFeatures
   return bound;
 }
 
-// a is largest where the spin is opposite to p, by lambda^2.
+// The damping-like term is largest where the spin is opposite to p: by a factor of lambda^2.
 double slonczewski_bound(io::Scene const& scene, io::Slonczewski const& torque, Times const& times,
                          TimeFeatures const& features) {
   constexpr auto key = "torque.slonczewski";

@@ -20,8 +20,8 @@ double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& 
 /// Returns the part of the bound due to point dipoles; 0 without them.
 double bound_of_dipoles(io::Scene const& scene, Lattice const& lattice);
 
-/// Returns an upper bound of |A|; for rigid bodies the largest row sum of I^-1, if it is in the
-/// scene.
+/// Returns an upper bound of |A|; for rigid bodies the largest row sum of |I^-1|, or 0 if the
+/// inertia is in a file.
 double largest_rate(io::Scene const& scene, Lattice const& lattice, Times const& times,
                     TimeFeatures const& features);
 

@@ -8,7 +8,7 @@
 
 namespace cayspin::simulation {
 
-/// A method for a scene without its steps: keys of [integrator].
+/// A method for a scene, without its steps: the keys of [integrator] that choose it.
 struct MethodChoice {
   io::Method const* method = nullptr;
   io::Generator generator = io::Generator::standard;

@@ -10,11 +10,11 @@
 #include <tuple>
 #include <type_traits>
 
-// The methods of scenes, one row each. These rows define the words of scenes and what they refuse,
-// `cayspin methods`, the candidates of `cayspin trade`, the tables of extremes, and what is
-// compiled. The file needs no Kokkos, because it only declares steppers.
-// To add a tableau, write a struct in cayspin/stepper/tableau.hpp and a row; to add a stepper, a
-// declaration and a row.
+// The methods that a scene can choose, one row each. The rows define their names in scenes and the
+// options that each accepts, the list of `cayspin methods`, the candidates of `cayspin trade`, and
+// which steppers are compiled. The file needs no Kokkos, because it only declares steppers. To add
+// a tableau, write a struct in cayspin/stepper/tableau.hpp and a row; to add a stepper, declare it
+// here and add a row.
 namespace cayspin::inline v0_2 {
 
 template <class Spins, class Isotropy, class Rotation>
@@ -69,8 +69,9 @@ struct Cayley;
 
 namespace cayspin::simulation {
 
-/// Families define the steppers of a method: Stepper for spins, an isotropy and a rotation, if the
-/// stepper has a choice of these; Chart if the method accepts the generator "tangent".
+/// A family defines the steppers of a method. Its template Stepper takes the type of the spins, an
+/// isotropy and a rotation, and ignores what the method has no choice of. If the method accepts the
+/// generator "tangent", the family also has Chart.
 namespace family {
 
 template <template <class> class Of>
@@ -96,14 +97,16 @@ struct OfOrder {
   using Stepper = Of<Spins, Order>;
 };
 
-/// A tableau in space, where spins leave the sphere unless each step is projected to it.
+/// A Runge-Kutta method in space instead of on the sphere, which spins leave unless each step is
+/// projected to it.
 template <template <class, class> class Of, class Tableau>
 struct InSpace {
   using tableau_type = Tableau;
   template <class Spins, class, class>
   using Stepper = Of<Spins, Tableau>;
 };
-/// Runge-Kutta-Munthe-Kaas, and its tableau in the stereographic chart.
+/// The Runge-Kutta-Munthe-Kaas method of a tableau, and the same tableau in the stereographic
+/// chart.
 template <class Tableau>
 struct Group {
   using tableau_type = Tableau;
@@ -113,7 +116,7 @@ struct Group {
   template <class Spins>
   using Chart = StereographicRungeKutta<Spins, Tableau>;
 };
-/// A tableau with a dedicated class.
+/// Like Group, for a tableau whose stepper is a class of its own.
 template <template <class, class, class> class Of, class Tableau>
 struct GroupBy : Group<Tableau> {
   template <class Spins, class Isotropy, class Rotation>
@@ -129,8 +132,8 @@ struct AdaptiveGroup {
   using Chart = AdaptiveStereographic<Spins, Tableau>;
 };
 
-/// The series are separate types for spins and rigid bodies, and have energy as an isotropy of the
-/// latter.
+/// The series. Spins and rigid bodies have separate variants, and the isotropy "energy" is only for
+/// the latter.
 template <class Of>
 struct Series {
   template <class Spins, class Isotropy, class>
@@ -138,7 +141,7 @@ struct Series {
                           std::conditional_t<std::is_same_v<Isotropy, isotropy::Energy>,
                                              isotropy::Energy, isotropy::Zero>,
                           Of>;
-  /// Without a sigma its linear stages are those of RKMK4.
+  /// Without a sigma, it solves linear equations by the same steps as RKMK4.
   template <class Spins>
   using StableAs = Rkmk4<Spins, isotropy::Zero, Cayley>;
   static constexpr bool distinguishes_rigid_bodies = true;
@@ -158,7 +161,8 @@ using enum io::Trial;
 inline constexpr io::SetOf<io::Rotation> both_rotations{cayley, exponential};
 }  // namespace sets
 
-/// A method and its family of steppers. Order and evaluations are those of the tableau.
+/// A method and its family of steppers. If the family has a tableau, the order and the number of
+/// evaluations are the tableau's.
 template <class Family>
 struct Row : io::Method {
   using family = Family;
@@ -171,8 +175,8 @@ struct Row : io::Method {
   }
 };
 
-/// A method on the Lie group. By default it uses Cayley coordinates, and has the generators and
-/// isotropies that its steppers have.
+/// A method on the Lie group. By default it uses Cayley coordinates, and accepts all generators and
+/// isotropies that its steppers support.
 template <class Family>
 constexpr Row<Family> row(io::Method method) {
   using namespace sets;
@@ -189,7 +193,7 @@ constexpr Row<Family> row(io::Method method) {
   return {method};
 }
 
-/// A method in space, and one that stands for others.
+/// Rows of a method in space, and of "auto", for which the program chooses a method.
 template <template <class, class> class Of, class Tableau>
 constexpr Row<family::InSpace<Of, Tableau>> baseline(io::Method const& method) {
   return {method};

@@ -9,8 +9,9 @@
 
 namespace cayspin::simulation {
 
-/// Returns true if, besides site-dependent moments, there are only the terms of magnets: exchange
-/// (uniform or site-dependent), uniform DMI, axes, the demagnetising and an applied field.
+/// Returns true if, besides site-dependent moments, there are only the usual terms of
+/// micromagnetics: exchange (uniform or site-dependent), uniform DMI, uniaxial anisotropies, the
+/// demagnetising field and an applied field.
 template <class Real>
 bool has_few_beside_moments(PassTerms<Real> const& terms) {
   return terms.per_moments.data && !terms.has_pairs && !terms.has_torques() && !terms.is_gradient &&
@@ -19,7 +20,7 @@ bool has_few_beside_moments(PassTerms<Real> const& terms) {
          terms.anisotropy_factor == 1;
 }
 
-/// For that case: H along a row as in PassTerms, by a loop that tests for no other term.
+/// Computes H along a row in that case, like PassTerms, but without tests for other terms.
 template <class Real, bool ExchangeOfSites, bool Vacancies>
 struct LoopOfMoments {
   PassTerms<Real> const& terms;

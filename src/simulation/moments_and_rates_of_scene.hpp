@@ -26,7 +26,9 @@ void FieldInPass<Spins>::Terms::add_moments_of_sites(std::vector<double> const& 
   largest_moment_ = largest_of_parts(lattice_, moments);
 }
 
-// The exchange of stages takes a vacancy, the zero vector, for a neighbour m': it adds A (m' - m).
+// Exchange that is compiled into stages takes a vacancy, which is the zero vector, for a neighbour
+// m', and adds A (m' - m). Stores the sum of A over the vacancies beside each site, to correct
+// this.
 template <class Spins>
 void FieldInPass<Spins>::Terms::add_vacancies(io::Scene const& scene) {
   auto const field = io::without_numbers_of_sites(scene.field);
@@ -60,7 +62,8 @@ void FieldInPass<Spins>::Terms::add_rates(io::Scene const& scene, io::SiteBox co
   if (!ratios.empty()) std::ranges::transform(moves, ratios, moves.begin(), std::multiplies<>());
   if (!ratios.empty() || scene.system.gilbert_of_sites)
     rates_ = scalar_field_of<Real, Memory>("rates", lattice_, moves);
-  // Strengths in T turn spins by a site's material.gamma, as fields do.
+  // Slonczewski strengths in T are fields, which turn spins by the site's material.gamma. Other
+  // torques do not depend on it, and are divided by the ratio by which all of A is multiplied.
   bool const are_fields =
       scene.material && scene.material->gamma_factors.there() && scene.field.torque.slonczewski;
   if (!ratios.empty() && io::has_torque(scene.field) && !are_fields) {

@@ -15,7 +15,7 @@ namespace cayspin::simulation {
 
 inline constexpr int regions_at_once = 4;
 
-/// Weights of several regions, starting at `first`.
+/// Functor that sums the weights (moments) of a group of regions, which starts at `first`.
 template <class Real>
 struct WeightsOfRegions {
   cayspin::SiteArray<Real, 1> regions, moments;  // without data: 1
@@ -34,7 +34,7 @@ struct WeightsOfRegions {
   }
 };
 
-/// Weighted spin and energy of several regions.
+/// Functor that sums the weighted spins and the energy of a group of regions.
 template <class Source, class Real>
 struct SumsOfRegions {
   WeightsOfRegions<Real> of;
@@ -58,7 +58,7 @@ struct SumsOfRegions {
 
 namespace {
 
-// Calls work(first) for each group of regions.
+// Calls work(first) with the first region of each group.
 template <class Work>
 void for_each_some(std::size_t count, Work const& work) {
   for (std::size_t first = 0; first < count; first += regions_at_once) work(first);

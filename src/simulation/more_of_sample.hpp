@@ -13,7 +13,7 @@
 
 namespace cayspin::simulation {
 
-/// Energy of each term of a scene; for rigid bodies "rotation".
+/// Energy of each term of a scene; rigid bodies have the one term "rotation".
 template <class Spins>
 class TermEnergies {
  public:
@@ -39,8 +39,8 @@ class RegionSums {
  public:
   RegionSums(io::Scene const& scene, Lattice const& lattice);
 
-  /// Returns all magnetizations, followed by all energies; zero for a region without a spin.
-  /// `source`: gives the energy.
+  /// Returns the magnetizations of all regions, followed by their energies. A region without a spin
+  /// has a magnetization of zero. `source`: gives the energy.
   template <class Exec, class Source>
   std::vector<double> operator()(Exec const& exec, Source const& source, Step const& step,
                                  Spins const& spins) const;
@@ -49,7 +49,7 @@ class RegionSums {
   std::size_t count_;
   Numbers regions_;
   std::optional<Numbers> moments_;  // empty if all are 1
-  std::vector<double> weights_;     // of the regions
+  std::vector<double> weights_;     // of each region: the sum of its moments
 };
 
 /// The numbers named by more_scalars(), except the shift, in the units of the scene.

@@ -31,8 +31,8 @@ template <class Simulation>
 class MethodOfScene {
  public:
   using spins_type = typename Simulation::Spins;
-  static constexpr int order = 4, work_fields = 0;  // order: an upper bound, Multirate's
-  static constexpr int ghosts = 1;                  // the method has requested its own
+  static constexpr int order = 4, work_fields = 0;  // order: an upper bound, which Multirate lowers
+  static constexpr int ghosts = 1;                  // the inner method has requested its own
 
   MethodOfScene(Simulation& simulation, std::unique_ptr<OpenMethod> method)
       : simulation_(simulation), method_(std::move(method)) {}
@@ -48,7 +48,7 @@ class MethodOfScene {
   bool takes_batches(Exec const&, Generator const&, spins_type const&) const {
     return true;
   }
-  // Takes all steps of the simulation's times.
+  // Takes all steps in one call of the method.
   template <class Exec, class Generator>
   void batch(Exec const&, Generator const&, spins_type&, double t, double dt, std::int64_t count) {
     NoLooks<Simulation> nobody;
@@ -75,7 +75,7 @@ class MultirateMethod final : public OpenMethod {
                  *simulation.generator.landau_lifshitz().field().slow(), {.substeps = substeps}) {}
 
   Summary advance() override {
-    // Substeps are integrated over their own times.
+    // A copy, because the substeps overwrite the simulation's times.
     auto const times = simulation_.times;
     return cayspin::detail::integrate_in_any_memory(simulation_.exec, stepper_,
                                                     simulation_.generator, simulation_.spins, times,

@@ -13,20 +13,23 @@
 namespace cayspin::simulation {
 
 /// Returns true if a term of the scene's field is multirate: slab_demag if slab_demag.multirate is
-/// set, demag if the method supports it, and a program's own nonlocal field if there are substeps.
+/// set, demag if demag.multirate is set or, by default, if the method supports it, and a program's
+/// own nonlocal field if there are substeps.
 bool has_slow_field(io::Scene const& scene);
 
-/// Throws io::SceneError for substeps without an expensive field, and for an expensive field
-/// combined with a feature that needs it at each stage, or that remembers stages of earlier steps.
+/// Throws io::SceneError for substeps without an expensive field, and for an expensive field with a
+/// method or a feature that cannot be combined with it: one that needs the field at each stage,
+/// remembers earlier steps, or chooses its steps.
 void require_slow_field_fits(io::Scene const& scene, Variant const& variant);
 
-/// Returns an override that makes no term multirate.
+/// Returns an override of a key with which no term of the scene is multirate.
 std::string without_multirate(io::Scene const& scene);
 
-/// Returns the order in time of its interpolation: 4 for methods of a higher order, and for those
-/// of order 4 if the damping is small, because order 3 would add to it; otherwise 3.
+/// Returns the order in time to which an expensive field is interpolated: 4 for methods of a higher
+/// order, and for those of order 4 if the damping is small, because order 3 would add to the
+/// damping; otherwise 3.
 int order_of_multirate(io::Scene const& scene, Variant const& variant);
-/// Returns the method's order around an expensive field.
+/// Returns the order of the method in a scene with an expensive field.
 inline int order_with_multirate(io::Scene const& scene, Variant const& variant) {
   return std::min(variant.order, order_of_multirate(scene, variant));
 }
@@ -35,8 +38,8 @@ inline std::int64_t work_fields_of_multirate(io::Scene const& scene, Variant con
   return order_of_multirate(scene, variant) == 4 ? 6 : 4;
 }
 
-/// Opens the method of the plan, in substeps between evaluations of an expensive field if there is
-/// one.
+/// Opens the plan's method. If the scene has an expensive field, the method takes substeps between
+/// evaluations of that field.
 std::unique_ptr<OpenMethod> open_method(io::Scene const& scene, Plan const& plan,
                                         AnySimulation simulation);
 

@@ -7,8 +7,9 @@
 
 namespace cayspin::simulation {
 
-/// A program's own field and demag, dipoles or a slab on the host are computed together: the own
-/// field of what is returned is their sum, and the others are not in it.
+/// Joins a program's own nonlocal field with demag, dipoles or a slab computed on the host. In the
+/// returned field, own.nonlocal is their sum, and the other term is removed. Without both, returns
+/// the field unchanged.
 template <class Real>
 io::Field with_joined_own_field(io::Scene const& scene, io::Field field, Lattice const& lattice);
 

@@ -47,7 +47,8 @@ std::array<int, 2> read_parts(std::string const& text, cayspin::Lattice const& l
 
 double repeated_share(cayspin::Lattice const& lattice, int ghosts,
                       std::array<int, 2> const& parts) {
-  std::array<double, 2> extent{}, ends{};  // of a part in the middle, along y and z
+  // A part in the middle has these extents along y and z, and so many ends inside the lattice.
+  std::array<double, 2> extent{}, ends{};
   for (std::size_t i = 0; i < 2; ++i) {
     extent[i] = static_cast<double>(lattice.shape[i + 1]) / parts[i];
     bool const closed = lattice.boundary[i + 1] == cayspin::Boundary::periodic;

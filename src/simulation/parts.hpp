@@ -19,14 +19,14 @@ struct Plan;
 /// for the range of couplings.
 mpi::Depth depth_of_parts(io::Scene const& scene, Plan const& plan);
 
-/// Reads numbers of parts along y and z, given as "y,z". Throws UsageError for invalid text, and
-/// for parts of fewer rows or planes than `depth`.
+/// Reads the numbers of parts along y and z from text such as "1,4". Throws UsageError for invalid
+/// text, and for parts of fewer rows or planes than `depth`.
 std::array<int, 2> read_parts(std::string const& text, cayspin::Lattice const& lattice,
                               mpi::Depth const& depth);
 
-/// Returns the work that a step repeats on such parts, relative to the work of a part: with
-/// `ghosts` stages, each works on one more row or plane per later stage, at each end inside the
-/// lattice.
+/// Returns how much work a step repeats because the parts overlap, relative to the work of a part.
+/// A step has `ghosts` stages. At each end of a part that is inside the lattice, a stage works on
+/// one additional row or plane for each later stage.
 double repeated_share(cayspin::Lattice const& lattice, int ghosts, std::array<int, 2> const& parts);
 
 }  // namespace cayspin::simulation

@@ -24,8 +24,8 @@ struct CellSite {
   std::int32_t first_cubic = 0, last_cubic = 0;
 };
 
-/// H = (K (m.e) + K2 (m.e)^3) e, site-dependent. Without data of axes all sites have the same axis,
-/// and without data of the second constants these are 0.
+/// H = (K (m.e) + K2 (m.e)^3) e, site-dependent. If `axes` has no data, all sites have the same
+/// axis; if `second` has none, K2 is 0.
 template <class Real>
 struct AnisotropyOfSites {
   cayspin::SiteArray<Real, 1> constants;
@@ -60,7 +60,8 @@ struct AnisotropyOfSites {
   }
 };
 
-/// Constants of a site's bonds to vacancies, over the spacing squared.
+/// Functor that stores the sum of the exchange constants of a site's bonds to vacancies, over the
+/// spacing squared.
 template <class Real>
 struct FindMissing {
   cayspin::SiteArray<Real, 1> moments;  // 0: a vacancy
@@ -76,7 +77,7 @@ struct FindMissing {
   template <int Axis, class Site>
   KOKKOS_FORCEINLINE_FUNCTION auto along(Site const& site) const {
     using Value = typename Site::value_type;
-    Value const one(1);  // also past an open end
+    Value const one(1);  // past an open end there is no vacancy
     Value const back = site.template neighbor<Axis, 0>(moments, one),
                 on = site.template neighbor<Axis, 1>(moments, one);
     auto const bond = as_value<Value>(bonds[Axis]);
@@ -92,7 +93,7 @@ struct FindMissing {
 /// Dzyaloshinskii-Moriya interaction with a site-dependent constant. A bond along the axis e has
 /// the mean D of its ends: H = sum of D v x m' over next and -D v x m' over previous neighbours. v
 /// is n x e / spacing for an interface, -e / spacing for the bulk; for D2d symmetry it is x /
-/// spacing and -y / spacing.
+/// spacing along x and -y / spacing along y.
 template <class Real>
 struct DmiOfSites {
   cayspin::SiteArray<Real, 1> constants;
@@ -121,7 +122,7 @@ struct DmiOfSites {
   }
 };
 
-/// H = sum of factor profile.
+/// H = sum of factor * profile over all sources, at one time.
 template <class Real>
 struct SourcesNow {
   static constexpr int most = 8;
@@ -140,7 +141,7 @@ struct SourcesNow {
   }
 };
 
-/// H and E of terms. E is computed only if it is used.
+/// H and E of terms. The compiler omits E where it is not used.
 template <class Value>
 struct FieldAndEnergy {
   Vec3<Value> field;
@@ -183,19 +184,18 @@ struct PassTerms {
   AnisotropyOfSites<Real> const* anisotropies_of_sites;
   CrystalAnisotropyOfSites<Real> const* crystals_of_sites;
   std::int32_t dmis, anisotropies, crystals, cubics_of_cell;
-  std::int32_t anisotropies_in_time;  // number of leading `anisotropies` that have the factor
-  double exchange_factor, anisotropy_factor;  // for site-dependent constants; others include theirs
+  std::int32_t anisotropies_in_time;  // how many of the first `anisotropies` have the factor
+  double exchange_factor, anisotropy_factor;  // uniform exchange already includes its factor
   cayspin::SiteArray<Real, 1> moments;        // 0 where there is no spin
   SourcesNow<Real> sources;
-  cayspin::SiteArray<Real, 1> per_moments;  // without data: moments by the site of the cell
+  cayspin::SiteArray<Real, 1> per_moments;  // without data: equal for equal sites of the cell
   cayspin::SiteArray<Real, 1>
-      per_gyromagnetic;                       // of sites whose whole A is scaled; or without data
-  cayspin::detail::StoredField<Real> of_all;  // field that moments see like an applied one
-  Vec3<double>
-      applied_in_field;  // zero if another kernel adds the contribution of the applied field
+      per_gyromagnetic;                       // for torques, if all of A is scaled; or without data
+  cayspin::detail::StoredField<Real> of_all;  // acts on moments like an applied field
+  Vec3<double> applied_in_field;  // zero if the kernels of the methods add the applied field
   bool has_usual, has_pairs, has_zhang_li, has_slonczewski, has_slonczewski_of_sites;
   bool has_vacancies, has_of_all;
-  bool is_gradient;  // -dE/dm, without moments, gyromagnetic ratios and torques
+  bool is_gradient;  // computes -dE/dm, without gyromagnetic ratios and torques
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION FieldAndEnergy<typename Stencil::value_type> operator()(
@@ -208,7 +208,7 @@ struct PassTerms {
     }
     return beside_pairs(stencil, of_pairs);
   }
-  /// Computes H, given the contribution of the pairs.
+  /// Computes H and E, given the contribution of the pairs.
   template <class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION FieldAndEnergy<Value> beside_pairs(
       Stencil const& stencil, FieldAndEnergy<Value> const& of_pairs) const {
@@ -219,7 +219,7 @@ struct PassTerms {
     return found;
   }
 
-  /// Stencil in which a vacancy is a missing neighbour.
+  /// Returns a stencil in which vacancies are missing neighbours.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION cayspin::detail::StencilAmongVacancies<Stencil, Real> among_spins(
       Stencil const& stencil) const {
@@ -233,8 +233,9 @@ struct PassTerms {
     return exchange_of_sites.any() || dmis > 0 || interlayer_of_sites.any();
   }
   bool has_local_of_sites() const { return anisotropies > 0 || crystals > 0 || cubics_of_cell > 0; }
-  /// Returns true if there are only couplings, axes of the cell's sites, and an applied field, as
-  /// in most scenes of crystals. These need not test for the rest at each site.
+  /// Returns true if there are only couplings, anisotropy axes of the cell's sites, and an applied
+  /// field, as in most scenes of crystals. Their kernels need no tests for other terms at each
+  /// site.
   bool has_few() const {
     return !has_usual && !has_torques() && !is_gradient && !has_bonds_of_sites() &&
            !has_local_of_sites() && !per_moments.data && sources.count == 0 &&
@@ -303,7 +304,8 @@ struct PassTerms {
     return sites[pairs.site_of_plane(z)];
   }
 
-  /// Returns H of a site's moment, where `h` is -dE/dm without the applied field.
+  /// Returns H of a site's moment times its gyromagnetic ratio, where `h` is -dE/dm without the
+  /// applied field.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> seen_by_moment(CellSite const& site,
                                                                 Vec3<double> const& applied,

@@ -14,7 +14,7 @@
 namespace cayspin::simulation {
 namespace {
 
-/// The scene with an end as its start.
+/// Returns the scene with an end of the path as its start.
 io::Scene scene_from(io::Scene scene, EndOfPath const& end) {
   if (auto const* const file = std::get_if<std::filesystem::path>(&end.state)) {
     scene.initial = io::FileStart{std::filesystem::absolute(*file)};
@@ -30,7 +30,7 @@ io::Scene scene_from(io::Scene scene, EndOfPath const& end) {
   return scene;
 }
 
-/// Errors name the end in place of the key of a scene.
+/// Returns the spins at an end of the path. Errors name the end instead of a scene's key.
 std::vector<double> spins_of(io::Scene const& scene, EndOfPath const& end) {
   try {
     auto const from = scene_from(scene, end);

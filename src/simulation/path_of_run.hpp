@@ -11,15 +11,16 @@
 
 namespace cayspin::simulation {
 
-/// An end of a path: a file, as initial.file of a scene takes it, or vectors of all sites.
+/// An end of a path: a file of a kind that initial.file accepts, or the vectors of all sites.
 struct EndOfPath {
   std::string name;  // for messages
   std::variant<std::filesystem::path, io::HostVectors> state;
 };
 
-/// A path of least energy between two states in the scene, space and precision of a run, whose own
-/// spins stay as they are. `interrupted` is asked after each step of the search. Throws as
-/// require_path and find_scene_path do, and UsageError for an end that is no state of the scene.
+/// Finds a path of least energy between two states, in the scene, space and precision of a run,
+/// whose own spins do not change. `interrupted` is asked between steps of the search. Throws what
+/// require_path and find_scene_path throw, and UsageError for an end that is not a state of the
+/// scene.
 ScenePath path_of_run(SceneRun const& run, EndOfPath const& from, EndOfPath const& to,
                       ScenePathOptions options, std::function<bool()> const& interrupted,
                       std::string const& git_commit);

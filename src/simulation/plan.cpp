@@ -90,7 +90,8 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
   // The search for a descent direction, which runs when the torque is small.
   if (scene.integrator.until_torque && lattice.part == nullptr)
     memory.work += (1 + Minimizer<SpinField<double>>::work_fields) * memory.spins;
-  // A rank reads its sites some planes at a time, but OVF completely. The first rank writes.
+  // A rank reads its part of a start a few planes at a time, but an OVF file as a whole. The first
+  // rank writes the files.
   auto const& all = whole(lattice);
   std::int64_t const numbers = 3 * lattice.sites(), numbers_of_all = 3 * all.sites();
   bool const is_part = lattice.part != nullptr;
@@ -106,7 +107,7 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
     memory.field += field_bytes<Real>(lattice, 6);
     start += 8 * (9 + 6 + 6) * all.sites();
   }
-  // Two queued frames or pieces of them, and the copies of a chunk that HDF5 makes.
+  // Two queued frames, or pieces of frames, and HDF5's copies of a chunk.
   auto const pieces = io::frame_pieces(all.shape, sizeof(Real), storage_of(scene), planes_at_once,
                                        std::ssize(scene.lattice.basis));
   std::int64_t const positions = writes && has_positions(scene.lattice) ? 8 * numbers_of_all : 0;
@@ -146,7 +147,7 @@ double largest_heat(io::Scene const& scene, Times const& times) {
   return io::largest_noise(scene) * damping * largest;
 }
 
-// Gives adaptive steps the features of the field.
+// Passes the features of the field to an adaptive method, so that its steps do not miss them.
 void put_features(io::Scene const& scene, TimeFeatures const& features, StepOptions& steps) {
   auto const& integrator = scene.integrator;
   if (features.unresolved && !std::isfinite(integrator.max_dt))
@@ -192,7 +193,8 @@ Plan make_plan(io::Scene const& scene, Precision precision,
                             "\"red_black2\"");
     double const heat = largest_heat(scene, plan.times);
     io::require_moderate_noise(scene, heat);
-    // Each component has this variance in half a step; two of three components move the spin.
+    // In half a step, each component of the noise has the variance heat * dt. A step has two
+    // halves, and two of the three components move the spin: the sum is four times that.
     plan.noise_turn = 2 * std::sqrt(heat * integrator.dt);
   }
   if (integrator.tolerance) {
@@ -254,7 +256,7 @@ std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units) 
     return fmt::format("{} is above the stable {}", text, time_text(units, plan.stable_dt, 6));
   if (dt > plan.stable_dt)
     return fmt::format("{} is not stable: at this damping the method amplifies at every dt", text);
-  // Order 8 is stable at steps that no longer resolve the motion.
+  // Methods of order 8 are stable even at steps that no longer resolve the motion.
   double const most = std::isfinite(plan.stable_dt) ? 3 : 2;
   if (!(plan.turn <= most))
     return fmt::format("{} turns spins by up to {:.3g} radians a step, too many to follow", text,

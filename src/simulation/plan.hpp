@@ -33,7 +33,7 @@ struct Plan {
   MethodOptions options;
   Times times;
   double stable_dt;  // infinity without a limit, 0 when every dt amplifies
-  double turn;  // largest turn of a spin in a step, in radians; for some fields without exchange
+  double turn;  // radians: bound on a spin's turn in a step; without exchange if stable_dt is known
   Memory memory;
   std::int64_t frames;
   double file_bytes;                             // may exceed the range of an integer
@@ -49,23 +49,24 @@ struct Plan {
 Plan make_plan(io::Scene const& scene, Precision precision,
                std::shared_ptr<TimeFeatures const> features = nullptr);
 
-/// Returns why dt is too large, if it is: above the stable one; turning spins by more than 2
-/// radians a step (3 if a stable dt is known); or longer than a feature of a field.
+/// Returns why dt is too large, if it is: it is above the stable one, turns spins by more than 2
+/// radians a step (3 if a stable dt is known), is longer than a feature of a field, or lets noise
+/// turn spins by more than most_noise.
 std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units);
-/// Returns that as a line about the scene; throws it as io::SceneError if the scene sets
-/// refuse_unstable.
+/// Returns the same as a line that names the scene's key; throws it as io::SceneError if the scene
+/// sets refuse_unstable.
 std::optional<std::string> dt_warning(io::Scene const& scene, Plan const& plan);
 
 /// Returns true if there is memory for the run.
 bool fits(Plan const& plan);
 
-/// Reduces the plan to one of several ranks: its part of the lattice, and memory for that. The
-/// first rank also holds some planes of the others.
+/// Reduces the plan to one of several ranks: to its part of the lattice, and the memory for that.
+/// The first rank also holds `planes_at_once` planes of the whole lattice.
 void keep_part(Plan& plan, io::Scene const& scene, Precision precision, Lattice const& local,
                std::int64_t planes_at_once);
 
-/// Throws io::SceneError when the run needs more memory than is available to one of so many ranks
-/// on this machine.
+/// Throws io::SceneError if the run needs more memory than is available to one of `ranks` ranks on
+/// this machine.
 void require_memory(io::Scene const& scene, Plan const& plan, int ranks = 1);
 
 }  // namespace cayspin::simulation

@@ -47,22 +47,22 @@ class Ranks {
   /// for an invalid division.
   virtual std::array<int, 2> division(cayspin::Lattice const& lattice, mpi::Depth const& depth,
                                       std::optional<std::string> const& asked) const = 0;
-  /// Divides a lattice; from now on only ranks with a part count.
+  /// Divides a lattice. From then on, count() and rank() ignore ranks without a part.
   virtual PartOfRank divide(cayspin::Lattice const& lattice, mpi::Depth const& depth,
                             std::array<int, 2> const& parts) = 0;
 
-  /// Returns how many planes along z, of a lattice with a part for each rank, the first rank holds
-  /// at a time: those of a part.
+  /// Returns how many planes along z of the whole lattice the first rank holds at a time: nz /
+  /// count(), at least 1.
   std::int64_t planes_at_once(cayspin::Lattice const& lattice) const {
     return std::max<std::int64_t>(1, whole(lattice).shape[2] / count());
   }
 
-  /// Returns which of two flags any rank has set.
+  /// Returns for each of two flags whether any rank has set it.
   virtual std::array<bool, 2> any(std::array<bool, 2> wanted) const = 0;
   /// Replaces the text by that of the first rank.
   virtual void tell(std::string& text) const = 0;
-  /// Gathers the numbers of a part's own sites, x fastest, in `planes` planes along z from number
-  /// `first` on, into `gathered`: planes of the whole lattice, only on the first rank.
+  /// Gathers `planes` planes along z of the whole lattice, from plane `first` on, into `gathered`,
+  /// which only the first rank has. `own`: the numbers of this part's own sites, x fastest.
   virtual void gather(cayspin::Lattice const& local, std::size_t bytes_of_site, std::int64_t first,
                       std::int64_t planes, void const* own, void* gathered) const = 0;
 
@@ -93,14 +93,14 @@ class Ranks {
     if constexpr (!std::is_void_v<Result>) return std::move(*result);
   }
 
-  /// Ends all ranks when one exits by an exception that the others do not know, after it has been
-  /// reported.
+  /// Ends all ranks. Call it on a rank with an exception that the others do not know of, after
+  /// reporting it.
   virtual void leave_by(int status) = 0;
-  /// Returns true if the last exception came from together().
+  /// Returns true if together() has thrown, so that all ranks know of the failure.
   bool agreed() const { return agreed_; }
 
  protected:
-  /// Returns the lowest of the ranks' numbers.
+  /// Returns the lowest `number` of any rank.
   virtual int lowest(int number) const = 0;
 
  private:
@@ -116,7 +116,7 @@ class Ranks {
   bool agreed_ = false;
 };
 
-/// Returns a part's own sites in the whole lattice.
+/// Returns the box that a part's own sites fill in the whole lattice.
 inline io::SiteBox own_sites(cayspin::Lattice const& local) {
   io::SiteBox box{{0, 0, 0}, {local.own(0), local.own(1), local.own(2)}};
   if (local.part != nullptr)

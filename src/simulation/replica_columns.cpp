@@ -59,12 +59,13 @@ bool can_be_columns(io::Scene const& scene, io::Scene const& one) {
 
 constexpr std::int64_t lanes = 16;  // a register has no more
 
-// Returns how many columns a lattice has whose kernels stay on one thread.
+// Returns how many columns a lattice may have if its kernels are to stay on one thread.
 std::int64_t columns_on_a_thread(std::int64_t sites) {
   return cayspin::detail::calling_thread_sites / sites / lanes * lanes;
 }
 
-// Returns so many that rows are not short, and that each thread has a lattice if it can.
+// Returns how many columns each lattice gets: enough that its rows are not short, and otherwise few
+// enough that each thread has a lattice.
 std::int64_t columns_of_a_lattice(std::int64_t replicas, std::int64_t sites, int threads) {
   auto const parts_of = [](std::int64_t all, std::int64_t part) { return (all + part - 1) / part; };
   std::int64_t const each = parts_of(parts_of(replicas, threads), lanes) * lanes;
@@ -76,7 +77,7 @@ io::Scene scene_of_columns(io::Scene const& one, std::int64_t first, std::int64_
   constexpr double far_apart = 1e200;  // its square is infinite
   auto columns = one;
   auto const& lattice = one.lattice;
-  // Random numbers go by rows, which are along x in a replica and along y here.
+  // Random numbers are drawn row by row. A row of a replica is along x there, and along y here.
   std::array<std::size_t, 2> const axes{0, lattice.shape[1] > 1 ? 1U : 2U};
   columns.lattice.shape[0] = count;
   columns.lattice.spacing[0] = far_apart;
@@ -105,14 +106,14 @@ std::vector<double> temperatures_of(io::Scene const& scene) {
   return temperatures;
 }
 
-// Puts the spins of a replica into a column of `columns`, which has `count` of them.
+// Copies the spins of a replica into one of the `count` columns of `columns`.
 void put_column(double const* spins, std::int64_t sites, std::int64_t column, std::int64_t count,
                 std::vector<double>& columns) {
   for (std::int64_t site = 0; site < sites; ++site)
     std::copy_n(spins + 3 * site, 3, columns.begin() + 3 * (site * count + column));
 }
 
-// Returns the starts of the replicas first .. first + count - 1 as columns.
+// Returns the initial spins of the replicas first .. first + count - 1 as columns.
 std::vector<double> starts_of(io::Scene& one, std::int64_t first, std::int64_t count) {
   std::vector<double> columns(static_cast<std::size_t>(3 * count * io::sites(one)));
   auto* const random = std::get_if<io::RandomStart>(&one.initial);
@@ -136,7 +137,7 @@ std::optional<ReplicaColumns> ReplicaColumns::open(io::Scene const& scene, io::S
   auto const replicas = scene.ensemble.replicas, sites = io::sites(one);
   auto sample = SceneRun::open(one, settings);
   bool const on_host = is_on_host(sample->space());
-  // On several threads, these run faster one to a thread.
+  // On several threads, larger replicas are faster as separate runs, one per thread.
   if (on_host && sample->threads() > 1 && columns_on_a_thread(sites) < 2 * lanes) return opened;
   auto const columns =
       on_host ? columns_of_a_lattice(replicas, sites, sample->threads()) : replicas;

@@ -13,21 +13,22 @@
 namespace cayspin::simulation {
 
 /// The replicas of a scene with [ensemble] as the columns of a few lattices: x counts replicas, y
-/// and z are the axes of the scene's lattice. A kernel then steps as many replicas at once as a
-/// register has lanes, and a launch serves all of a lattice. The spacing along x is so large that
-/// exchange along x vanishes. Each replica has the bits of a run of its own.
+/// and z are the axes of the scene's lattice. A kernel then advances as many replicas at once as a
+/// register has lanes, and one launch serves all replicas of a lattice. The spacing along x is so
+/// large that exchange along x vanishes. Each replica is bit-identical to a run of its own.
 class ReplicaColumns {
  public:
-  /// `one`: the scene of the first replica. Empty if the lattice has three axes or many sites, if a
-  /// term or the method depends on more than a site and its exchange, or if replicas differ by more
-  /// than seeds and temperatures.
+  /// `one`: the scene of the first replica. Returns nothing if there are few replicas, if the
+  /// lattice has three axes or many sites, if a term other than exchange or the method couples
+  /// sites, if the replicas differ in more than seeds and temperatures, or if separate runs would
+  /// be faster.
   static std::optional<ReplicaColumns> open(io::Scene const& scene, io::Scene const& one,
                                             RunSettings const& settings);
 
-  /// Those of the replicas, reduced; empty if all have that of the scene.
+  /// Returns the temperatures of the replicas, reduced; empty if all have the scene's.
   std::vector<double> const& temperatures() const { return temperatures_; }
 
-  /// Steps that all replicas have taken.
+  /// Returns the number of steps that all replicas have taken.
   std::int64_t steps() const;
   std::int64_t evaluations() const;
   double step_seconds() const;
@@ -42,15 +43,15 @@ class ReplicaColumns {
   /// failed.
   Ended advance(std::int64_t target, Looks const& looks);
 
-  /// Continues after this step from the spins of all replicas, one after the other.
+  /// Continues after this step from the given spins: those of all replicas, one after the other.
   void continue_from(std::int64_t step, std::vector<double> const& spins);
 
-  /// Moves a run of one replica to the step and the spins of that replica.
+  /// Sets a separate run of a replica to the step and the spins that the replica has here.
   void continue_in(SceneRun& run, std::int64_t replica) const;
 
   /// Samples all replicas, in their order.
   std::vector<Sample> samples() const;
-  /// The spins of all replicas, one after the other, each as packed().
+  /// Returns the spins of all replicas, one after the other, each in the order of packed().
   template <class Real>
   std::vector<Real> spins() const;
 

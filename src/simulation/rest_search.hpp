@@ -28,8 +28,9 @@ class RestSearch {
 
   RestSearch(io::Scene const& scene, double bound) : scene_(scene), bound_(bound) {}
 
-  /// `torque`: max |m x H|. `fell`: the energy is below that of the first check, or the field has
-  /// changed since. `field`: made for energies. With `at_end` a saddle is always reported.
+  /// `torque`: max |m x H|. `fell`: the energy is below that of the first check; in a field that
+  /// changes, instead, the field has reached its last change. `field`: made for energies. With
+  /// `at_end` a saddle is always reported.
   Found look(Space const& exec, Step const& step, Spins const& spins,
              SceneField<Spins> const& field, double torque, bool fell, bool at_end) {
     bool const grew = torque > last_torque_;
@@ -71,9 +72,9 @@ class RestSearch {
       minimizer_.emplace(spins);
       trial_ = Spins("RestSearch::trial", spins.lattice());
     }
-    // The search's own torque may exceed the bound, because of site-dependent moments or
-    // gyromagnetic ratios. It would then descend from here; only below its bound it looks for a way
-    // out.
+    // With site-dependent moments or gyromagnetic ratios, the search's own measure of the torque
+    // may exceed the bound. It would then simply descend from here; only below its bound does it
+    // look for a way off a saddle. So the bound is raised until it does.
     double bound = bound_;
     for (int attempt = 0; attempt < 30; ++attempt, bound *= 4) {
       Kokkos::deep_copy(exec, trial_.allocation(), spins.allocation());
@@ -89,7 +90,7 @@ class RestSearch {
   io::Scene scene_;  // for messages
   double bound_;
   double last_torque_ = std::numeric_limits<double>::infinity();
-  std::int64_t next_ = 0, wait_ = 0;  // earliest step of the next search
+  std::int64_t next_ = 0, wait_ = 0;  // earliest step of the next search; steps until then
   std::optional<SceneMinimizer<Real, Space>> minimizer_;
   Spins trial_;
 };

@@ -22,14 +22,14 @@ namespace {
 std::optional<io::Scene> parsed(std::string const& scene_as_run, io::Scene const& scene) {
   try {
     auto before = io::parse_scene_to_run_or_relax(scene_as_run, scene.path, {}, scene.given);
-    before.field.own = scene.field.own;  // not part of the text
+    before.field.own = scene.field.own;  // functions are not in the text
     return before;
   } catch (io::SceneError const&) {
     return std::nullopt;
   }
 }
 
-// Returns the stage of a plan as it was in the scene of the file.
+// Returns the stage that starts at `begin`, as it is in the scene of the file.
 std::optional<io::Scene> same_stage(std::optional<io::Scene> scene, io::StageBegin const& begin) {
   if (!scene || begin.stage == 0) return scene;
   if (begin.stage > std::ssize(scene->stages)) return std::nullopt;
@@ -45,7 +45,8 @@ bool remembers(io::Scene const& scene, Variant const& variant) {
          scene.lattice.follow.has_value();
 }
 
-// Returns true if the scene ran with the method of the plan.
+// Returns true if the scene ran with the plan's method, and with the same keys that need a memory
+// of steps.
 bool ran_alike(io::Scene const& before, io::Scene const& scene, Plan const& plan) {
   return io::has_integrator(before) && !before.integrator.method->automatic &&
          &find_variant(before) == &plan.variant &&
@@ -55,7 +56,8 @@ bool ran_alike(io::Scene const& before, io::Scene const& scene, Plan const& plan
          has_slow_field(before) == has_slow_field(scene);
 }
 
-// Returns the key of the lattice that differs in the file; empty if none does, or if unknown.
+// Returns the key of the lattice that differs in the file; empty if none does, or if that is
+// unknown.
 std::string other_lattice_key(io::Scene const& before, io::Scene const& scene) {
   try {
     return io::changed_lattice_key(before, scene);
@@ -64,13 +66,14 @@ std::string other_lattice_key(io::Scene const& before, io::Scene const& scene) {
   }
 }
 
-// Returns true for keys that may differ in a continued run: its start, end and output.
+// Returns true for keys that may differ without a warning in a continued run: its start, end and
+// output. The lattice is checked separately.
 bool is_of_one_run(std::string const& key) {
   return key.starts_with("output") || key.starts_with("initial") || key.starts_with("lattice.") ||
          key.starts_with("stage") || key == "integrator.steps" || key == "integrator.end";
 }
 
-// Returns true if a change of this key invalidates earlier steps.
+// Returns true if a change of this key makes the memory of earlier steps useless.
 bool changes_motion(std::string const& key) {
   return key == "integrator.dt" || key == "units" ||
          !(key.starts_with("integrator") || key.starts_with("thermal"));
@@ -242,7 +245,7 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
     return std::abs(time - plan.times.at(step) * units.time) <= 1e-9 * dt;
   };
   if (!is_at(step_)) {
-    // Noise depends on the number of the step.
+    // Noise depends on the number of the step, so a run with noise must keep its numbers.
     auto const step = std::llround(std::min(time / dt, 1e15));
     if (alike || scene.begin != io::StageBegin{} || scene.thermal || !is_at(step))
       refuse(

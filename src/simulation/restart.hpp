@@ -18,17 +18,19 @@ namespace cayspin::simulation {
 /// Returns true if a run of this plan needs more than its spins to continue with the same bits.
 bool remembers(io::Scene const& scene, Plan const& plan);
 
-/// The last frame of a run: the start of its stage, and its step; -1 without frames.
+/// The last frame of a run: the start of its stage, and its step, which is -1 if there is no frame.
 struct LastFrame {
   io::StageBegin begin;
   std::int64_t step = -1;
 };
 
-/// Returns the last frame of a file. Stages start after the last frame of the previous ones, except
-/// the one that the file starts in. Throws UsageError if the frames belong to other stages.
+/// Returns the last frame of a file. Each stage starts after the last frame of the previous one,
+/// except the stage in which the file starts. Throws UsageError if the frames belong to other
+/// stages.
 LastFrame last_frame(io::TrajectoryInfo const& trajectory, std::vector<io::Stage> stages);
 
-/// Files of an earlier run: a trajectory, the checkpoint next to it, or only a checkpoint.
+/// Files of an earlier run: a trajectory and, if there is one, the checkpoint next to it; or only a
+/// checkpoint.
 struct EarlierRun {
   explicit EarlierRun(std::filesystem::path path);
   /// The last frame of an ensemble's file, which has no checkpoint.
@@ -41,13 +43,14 @@ struct EarlierRun {
   std::string const& resolved_scene() const;
 
   /// Returns where a scene continues: in the current stage of the run, or in the next one if that
-  /// had ended. Discards all other state. Throws UsageError if the scene has no such stage.
+  /// had ended. Discards frames or a checkpoint of other stages. Throws UsageError if the scene has
+  /// no such stage.
   io::StageBegin enter(std::vector<io::Stage> stages);
 
   std::filesystem::path path;
   std::optional<io::TrajectoryInfo> trajectory;
   std::unique_ptr<io::CheckpointReader> checkpoint;
-  bool at_begin = false;  // of a stage: there is no memory of steps
+  bool at_begin = false;  // at the start of a stage, the method has no memory
   bool is_ensemble = false;
 };
 
@@ -62,17 +65,18 @@ class Restart {
           std::int64_t end);
 
   std::int64_t step() const { return step_; }
-  /// Returns the spins of a box, or all, in the order of io::read_spins: bits are kept. Throws
-  /// UsageError if the vacant sites differ from those of the scene. Not for ensembles.
+  /// Returns the spins of a box, or of the whole lattice, bit by bit, in the order of
+  /// io::read_spins. Throws UsageError if the vacant sites differ from those of the scene. Not for
+  /// ensembles.
   std::vector<double> spins(io::Scene const& scene, io::SiteBox const& box) const;
   std::vector<double> spins(io::Scene const& scene) const;
-  /// Returns the checkpoint with the run's memory of steps, if needed.
+  /// Returns the checkpoint with the run's memory of earlier steps; null if it is not needed.
   io::CheckpointReader* memory() const { return memory_; }
   /// Returns the cells by which the lattice had followed.
   std::int64_t shift() const { return shift_; }
-  /// Returns one line that names unexpected differences from the scene of the file.
+  /// Returns one line that names unexpected differences from the scene of the file, or nothing.
   std::optional<std::string> const& warning() const { return warning_; }
-  /// Returns the files that it reads.
+  /// Returns the files from which the run continues.
   std::vector<std::filesystem::path> files() const;
 
  private:

@@ -35,7 +35,8 @@ void require_free_output(std::filesystem::path const& path, bool overwrite) {
   io::require_free(checkpoint, overwrite || is_whole_checkpoint(checkpoint));
 }
 
-// In the order of the file: site by site of the cell.
+// Returns the positions in the order of the file: those of the cell's first site in all cells, then
+// of the next one.
 std::vector<double> positions(io::Lattice const& lattice, io::Triple const& spacing) {
   auto const [nx, ny, planes] = lattice.shape;
   auto const nz = planes / std::ssize(lattice.basis);

@@ -24,19 +24,20 @@ io::TrajectoryHeader run_header(io::Scene const& scene, Precision precision,
 io::CheckpointHeader checkpoint_header(io::Scene const& scene, Precision precision,
                                        std::int64_t step, double time);
 
-/// Returns true if a file stores the positions of sites, which are then on no regular grid.
+/// Returns true if files store the positions of the sites, because these do not form a rectangular
+/// grid.
 bool has_positions(io::Lattice const& lattice);
 /// Returns the bytes of /positions in a file; 0 without them.
 std::int64_t position_bytes(io::Lattice const& lattice);
 
-/// Returns the storage for the frames that the scene asks for.
+/// Returns how the scene wants its frames stored.
 io::TrajectoryStorage storage_of(io::Scene const& scene);
 
 io::RunOutputOptions run_output_options(io::Scene const& scene, bool overwrite);
 
 /// Opens the trajectory `path` of a new run, and its other files. Throws if one of them, or a file
-/// with the name of its checkpoint, must not be replaced. A checkpoint without trajectory may be
-/// replaced, because it would be taken for that of this file.
+/// with the name of the checkpoint, must not be replaced. Removes an old checkpoint without a
+/// trajectory, which would be taken for this run's.
 io::RunOutput open_output(std::filesystem::path const& path, io::TrajectoryHeader const& header,
                           io::RunOutputOptions const& options);
 

@@ -16,16 +16,18 @@
 
 namespace cayspin::simulation {
 
-/// The thermal noise of a run: half of it before and half after each step, in one pass if the spins
-/// are not observed in between. Both halves use the temperature of that time.
+/// The thermal noise of a run: half before each step and half after it. Between two steps, the
+/// halves of both are applied in one pass, unless the spins are observed in between. They use the
+/// temperature at that time.
 template <class Spins>
 class RunNoise {
  public:
   RunNoise(io::Scene const& scene, SceneGenerator<Spins> const& generator, Spins const& like)
       : noise_(noise(scene, generator, like)), temperature_(*scene.thermal) {}
 
-  /// Applies noise after step `step` of a run that continues from step `first`. Calls look() in
-  /// between if `wanted`. Starts the next step unless look() returns stop, or it is the last.
+  /// Applies the noise after step `step`, calls look() if `wanted`, and applies the noise before
+  /// the next step, unless look() returns stop or the step is the last. `first`: the step from
+  /// which the run continues; no noise follows it.
   template <class Exec, class Look>
   Next operator()(Exec const& exec, Step const& step, std::int64_t first, Spins const& spins,
                   bool wanted, Look const& look) {
@@ -78,12 +80,12 @@ class RunNoise {
     return {like, damping, options};
   }
 
-  // Applies noise before the next step, and after the last one if `ends`.
+  // Applies the noise before the next step and, if `ends`, also that after this one.
   template <class Exec>
   void turn(Exec const& exec, Step const& step, bool ends, Spins const& spins) {
     // A step that failed is repeated from spins that already have their noise.
     if (begun_ == step.number) return;
-    // Does not wait: remaining work on a device counts with the step that follows.
+    // Does not wait for a device: work that remains there is timed with the step that follows.
     timed([&] {
       if (ends)
         noise_.turn_between_steps(exec, step.number, step.dt, spins);

@@ -65,7 +65,7 @@ void RunRecorder::look(bool last) {
     file_.write_frame(now, run_.time(), values, {.shift = run_.shift()});
     written_ = now;
   }
-  // The caller may use HDF5 between two calls.
+  // Waits until the frame is written, because the caller may use HDF5 between two calls.
   file_.frames();
 }
 
@@ -73,7 +73,7 @@ void RunRecorder::finish(bool as_planned) {
   io::RunCost const cost{run_.evaluations() - evaluations_before_, clock_.seconds(),
                          run_.step_seconds() - seconds_before_};
   as_planned ? file_.finish(cost) : file_.close(cost);
-  // A run whose numbers failed is past its last frame: the earlier checkpoint is worth more.
+  // A run whose numbers failed is past its last frame: the earlier checkpoint is kept.
   if (run_.scene().output.checkpoint_every.is_never() || written_ != run_.steps()) return;
   if (run_.remembers())
     run_.save(checkpoint_);

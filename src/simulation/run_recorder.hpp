@@ -9,7 +9,7 @@
 
 namespace cayspin::simulation {
 
-/// Recorder of a run, from its current step to another, in a file and its companions, like `cayspin
+/// Records a run, from its current step to step `end`, in a file and its companions, like `cayspin
 /// run`:
 ///   RunRecorder recorder(run, end, "run.h5", false, commit);
 ///   for (recorder.look(); recorder.next() > run.steps(); recorder.look())
@@ -23,12 +23,12 @@ class RunRecorder {
   RunRecorder(RunRecorder const&) = delete;
   RunRecorder& operator=(RunRecorder const&) = delete;
 
-  /// Returns the step of the next frame, sample or reading of the clock; at the end, the current
-  /// one.
+  /// Returns the next step at which to call look(): for a frame, a sample or a checkpoint; at the
+  /// end, the current step.
   std::int64_t next() const;
   /// Writes what is due at the current step; with `last`, always a frame.
   void look(bool last = false);
-  /// Closes the file, and marks whether the run went as planned.
+  /// Closes the file, marks whether the run went as planned, and stores or removes the checkpoint.
   void finish(bool as_planned = true);
 
  private:

@@ -23,8 +23,8 @@
 
 namespace cayspin::simulation {
 
-/// A scene in memory with its method, its guard, and what changes its spins between steps: energy
-/// control, thermal noise, or the following of the lattice.
+/// A scene in memory with its method, its guard, and all that changes its spins between steps:
+/// energy control, thermal noise, and a lattice that follows an object.
 template <class Real, class Space>
 class RunningScene : public Simulation<Real, Space> {
   using Base = Simulation<Real, Space>;
@@ -37,8 +37,8 @@ class RunningScene : public Simulation<Real, Space> {
   struct Found {
     Sample sample;
     std::optional<std::string> failure = {};  // from the guard
-    // By the scene's until_torque. A run continues at a saddle of the energy; the last observation
-    // reports it.
+    // Set only in scenes with until_torque. A run does not end at a saddle of the energy, but its
+    // last observation reports it.
     bool at_rest = false, at_saddle = false;
   };
 
@@ -67,9 +67,9 @@ class RunningScene : public Simulation<Real, Space> {
     Between between(*this, looks);
     std::int64_t const evaluations = control_ ? control_->evaluations_done() : 0;
     if (noise_) noise_->take_seconds();
-    auto times_left = this->times;  // a method with substeps restores those
+    auto times_left = this->times;  // a copy, because substeps overwrite the times
     auto ending = Base::advance(*method_, between);
-    // With moved spins, a method restarts as in a new run.
+    // After a move of the spins, the method restarts as in a new run.
     while (between.moves() && !ending.failure) {
       times_left.first = between.move();
       times_left.continues = false;
@@ -108,7 +108,7 @@ class RunningScene : public Simulation<Real, Space> {
     auto const& now = found.sample;
     found.failure = guard_.judge(step, now.energy, now.norm_defect);
     if (with_torque && !found.failure) {
-      // Energies of a field that has changed since cannot be compared.
+      // Energies before and after a change of the field cannot be compared.
       bool const fell =
           last_change_ > 0 ? step.time >= last_change_ : now.energy.value < guard_.first_energy();
       auto const rest = rest_->look(
@@ -146,7 +146,7 @@ class RunningScene : public Simulation<Real, Space> {
  private:
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
 
-  /// Observer that calls the looks, and applies changes to the spins after or around them.
+  /// Observer that calls the run's observer, and changes the spins around and after that call.
   class Between final : public Looks {
    public:
     Between(RunningScene& scene, Looks& looks) : scene_(scene), looks_(looks) {}
@@ -166,14 +166,14 @@ class RunningScene : public Simulation<Real, Space> {
 
     /// Returns true if the run stopped to move the lattice.
     bool moves() const { return cells_ != 0; }
-    /// Moves the lattice, and returns the step after which it does.
+    /// Moves the lattice, and returns the step after which it did.
     std::int64_t move() {
       scene_.move(stopped_, std::exchange(cells_, 0));
       return moved_ = stopped_.number;
     }
 
    private:
-    // After a step at which the lattice moves, everything was observed before the move.
+    // After a move the method starts again at the same step, which was observed before the move.
     bool wants(Step const& step) const {
       return step.number != moved_ && (looks_.due(step) || follows(step));
     }
@@ -194,7 +194,7 @@ class RunningScene : public Simulation<Real, Space> {
     std::int64_t cells_ = 0, moved_ = -1;
   };
 
-  // The energy of the cells that leave at the ends is not a change by the steps.
+  // Tells the guard how the move changes the energy, since no step has caused that change.
   void move(Step const& step, std::int64_t cells) {
     auto const energy = [&] {
       return cayspin::energy(this->exec, this->generator, this->spins, step.time).value;

@@ -31,7 +31,7 @@ struct SceneBodiesNow : cayspin::detail::BodyGenerator<SceneBodiesNow<Many>> {
   }
 };
 
-/// Rigid bodies as a separate generator, for methods that support them; with or without its
+/// The generator of rigid bodies for methods that treat them separately; with or without the
 /// component along the spin, selected at run time.
 template <class Bodies>
 struct RigidBodiesNow {

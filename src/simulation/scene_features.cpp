@@ -19,8 +19,8 @@ namespace {
 
 using Components = std::array<io::AppliedComponent, 3>;
 
-// Returns the numbers of the expressions, with their sums and differences: they may be switching
-// times or the like. In SI they are typed in s.
+// Returns the numbers in the expressions, with their sums and differences: they may be times at
+// which something switches. In SI they are typed in s.
 std::vector<double> events_of(Components const& components, double time_unit) {
   static std::regex const number(R"((\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)");
   constexpr std::size_t most_paired = 16;
@@ -126,7 +126,7 @@ class Known {
   std::deque<std::pair<std::string, std::shared_ptr<TimeFeatures const>>> all_;
 };
 
-// The plan refuses vectors that are not finite.
+// Vectors that are not finite are left to make_plan, which throws for them.
 bool are_finite(std::vector<TimeDependent> const& vectors, FeatureSearch const& search) {
   constexpr int times = 100;
   double three[3];
@@ -143,8 +143,8 @@ FeatureSearch search_of(io::Scene const& scene, std::optional<double> error) {
   FeatureSearch search;
   search.begin = scene.begin.time;
   search.end = search.begin + integrator.dt * static_cast<double>(integrator.steps);
-  // Equal for all but the smallest errors, so that a run sees the features of its trials at other
-  // tolerances.
+  // The same for all errors of at least 1e-6, so that a run and trials at other tolerances see the
+  // same features.
   search.angle = std::clamp(0.01 * error.value_or(1e-6), 1e-10, 1e-8);
   if (scene.field.own.uniform) {  // a call may take long
     search.samples = 1 << 12;

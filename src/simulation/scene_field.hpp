@@ -27,7 +27,7 @@ class SceneField {
  public:
   using SlowTerm = SlowField<Spins, WholeField<Spins>>;
 
-  /// `has_slow`: the field of the whole lattice is multirate.
+  /// `has_slow`: the field that is computed from all spins at once is multirate.
   SceneField(io::Field const& field, Lattice const& lattice, bool has_slow,
              std::optional<FieldInPass<Spins>> pass)
       : lattice_terms_(lattice_terms_of(field, lattice)), applied_(field), pass_(std::move(pass)) {
@@ -42,7 +42,7 @@ class SceneField {
     }
   }
 
-  /// Returns the field for another purpose than to turn spins.
+  /// Returns a copy of the field for another purpose.
   SceneField made_for(FieldFor purpose) const {
     auto other = *this;
     other.purpose_ = purpose;
@@ -52,7 +52,7 @@ class SceneField {
 
   /// Empty if the kernels of methods evaluate the terms themselves.
   std::optional<FieldInPass<Spins>> const& pass() const { return pass_; }
-  /// Empty if no term is expensive.
+  /// Empty if no term is multirate.
   std::optional<SlowTerm> const& slow() const { return slow_; }
 
   /// Throws NumbersFailed when an applied field is not finite at t.

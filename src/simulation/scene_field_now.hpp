@@ -27,7 +27,7 @@ class QuadraticTerms {
     form_ = along_z && form_ != Form::any ? Form::along_z : Form::any;
   }
 
-  /// Returns the sum of these terms and `factor` times others.
+  /// Returns `factor` times the sum of these terms and others.
   QuadraticTerms with(QuadraticTerms const& others, double factor) const {
     QuadraticTerms both;
     both.sum_ = sum_.with(others.sum_, factor);
@@ -115,7 +115,7 @@ struct SceneFieldNow {
 
   // The row passed to begin_row.
   cayspin::detail::RowInput<Real> row = {};  // H found so far
-  std::ptrdiff_t compiled_sites = 0;         // in packs between the first and the last
+  std::ptrdiff_t compiled_sites = 0;         // sites whose packs are neither the first nor the last
   bool adds_row = false, adds_more = false;
 
   static constexpr int row_fields = 1;
@@ -129,7 +129,7 @@ struct SceneFieldNow {
     adds_more = has_stored || adds_row;
     if (adds_row) along_rows.evaluate(along_rows.terms, spins, begin, end, fields);
   }
-  /// Computes H at the packs at the ends of a row from the results of begin_row.
+  /// Computes H in the packs at the ends of a row, from the results of begin_row.
   void find_row_ends(cayspin::detail::RowOfSpins<Real> const& spins, std::int32_t begin,
                      std::int32_t end, cayspin::detail::RowFields<Real> const& fields,
                      bool turning_alone) const;
@@ -169,7 +169,7 @@ struct SceneFieldNow {
     return add_demagnetization(
         stencil, lattice_terms.add_field(stencil, quadratic.add_field(stencil.center(), none)));
   }
-  /// Returns the part due to other spins, and the rest.
+  /// Return the part of H due to other spins, and the on-site part.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> gather(
       cayspin::detail::NeighborField, Stencil const& stencil) const {
@@ -249,7 +249,7 @@ struct OwnOfSites {
   bool precession = true;
 
   KOKKOS_FORCEINLINE_FUNCTION bool any() const { return rates.data || dampings.data; }
-  /// Returns A, where `h` is H with all terms.
+  /// Returns A, where `h` is the sum of all terms of H.
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> of(Site const& site, Vec3<Value> const& m,
                                              Vec3<Value> const& h) const {

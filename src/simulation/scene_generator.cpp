@@ -108,7 +108,7 @@ SceneGeneratorNow<Spins> SceneGenerator<Spins>::now(
     LandauLifshitz<SceneFieldNow<typename Spins::value_type>> const& llg,
     SceneBodiesNow<typename SceneBodies<Spins>::Many> const& bodies) const {
   SceneGeneratorNow<Spins> now{llg, bodies, is_llg_, orthogonal_};
-  if (!is_llg_) {  // for bodies, rows have A instead of H
+  if (!is_llg_) {  // for rigid bodies, rows hold A instead of H
     auto field = llg.field();
     field.along_rows.is_whole = true;
     now.llg = LandauLifshitz(field, 0);

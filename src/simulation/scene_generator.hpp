@@ -27,7 +27,7 @@ struct SceneGeneratorNow {
   SceneBodiesNow<typename SceneBodies<Spins>::Many> bodies;
   bool is_llg, orthogonal;
   OwnOfSites<typename Spins::value_type> own = {};
-  bool is_changed = false;  // set by begin_row: A in H is not complete
+  bool is_changed = false;  // set by begin_row: A is not just that of `llg`
 
   static constexpr int row_fields = cayspin::detail::row_fields<decltype(llg)>;
   void begin_row(cayspin::detail::RowOfSpins<typename Spins::value_type> const& row,
@@ -36,7 +36,7 @@ struct SceneGeneratorNow {
     llg.begin_row(row, begin, end, fields);
     is_changed = orthogonal || own.any();
   }
-  /// For bodies it finds the complete A, instead of H.
+  /// For rigid bodies, stores A on the whole piece of the row, instead of H at its ends.
   void find_row_ends(cayspin::detail::RowOfSpins<typename Spins::value_type> const& row,
                      std::int32_t begin, std::int32_t end,
                      cayspin::detail::RowFields<typename Spins::value_type> const& fields,
@@ -76,7 +76,7 @@ struct SceneGeneratorNow {
     return other;
   }
 
-  // Series of rigid bodies have a separate generator.
+  // For series of spins only: those of rigid bodies have a separate generator.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> series_source(
       Stencil const& stencil) const {
@@ -170,15 +170,15 @@ class SceneGenerator {
   LandauLifshitz<SceneField<Spins>> llg_;
   bool is_llg_, orthogonal_;
   SceneBodies<Spins> bodies_;
-  bool alone_ = false;  // without damping
+  bool alone_ = false;  // only precession: ignores site-dependent numbers
 
   SceneGeneratorNow<Spins> now(
       LandauLifshitz<SceneFieldNow<typename Spins::value_type>> const& llg,
       SceneBodiesNow<typename SceneBodies<Spins>::Many> const& bodies) const;
 };
 
-/// cayspin::sample with the magnetization of a scene's moments, over sites that have a spin.
-/// `of_scene`: its generator or its field, which gives the energy.
+/// cayspin::sample, with the magnetization weighted by a scene's moments, and the norm defect of
+/// the sites that have a spin. `of_scene`: its generator or its field, which gives the energy.
 template <class Exec, class OfScene, class Spins, class... Generators>
 Sample sample_scene(Exec const& exec, OfScene const& of_scene, Step const& step, Spins const& spins,
                     Generators const&... generators) {
@@ -196,7 +196,7 @@ Sample sample_scene(Exec const& exec, OfScene const& of_scene, Step const& step,
   return found;
 }
 
-/// The isotropies that are a constant, including zero; selected at run time.
+/// Isotropies with a constant sigma, which is selected at run time and may be zero.
 struct SceneIsotropy {
   double sigma = 0;
 

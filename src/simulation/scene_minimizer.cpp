@@ -19,7 +19,7 @@ namespace cayspin::simulation {
 
 namespace {
 
-// Returns max |m x H|, of a field that is -dE/dm.
+// Returns max |m x H|. `field` computes -dE/dm, which is divided by the moments.
 template <class Exec, class Spins>
 double largest_torque(Exec const& exec, SceneField<Spins> const& field, Spins const& spins,
                       double time, std::vector<double> const& moments) {

@@ -8,14 +8,15 @@
 
 namespace cayspin::simulation {
 
-/// Throws io::SceneError for scenes without equilibria: rigid bodies, and spins at a temperature.
+/// Throws io::SceneError for scenes without equilibria of an energy: rigid bodies, and spins with
+/// torques or at a temperature.
 void require_rest(io::Scene const& scene);
 
-/// Plans a search for the equilibria of a scene: its memory, and a frame for each. Throws like
-/// require_rest and make_plan.
+/// Plans a search for the equilibria of a scene: the memory, and one frame for each equilibrium.
+/// Throws like require_rest and make_plan.
 Plan make_plan_to_relax(io::Scene const& scene, Precision precision);
 
-/// Search for equilibria of the fields of a scene. Reuses its memory.
+/// Searches for the equilibria of a scene in its fields, one after another, in the same memory.
 template <class Real, class Space>
 class SceneMinimizer {
  public:
@@ -28,8 +29,8 @@ class SceneMinimizer {
   Minimum minimize(Space const& exec, io::Scene const& scene, SceneField<Spins> const& field,
                    Spins& spins, MinimizeOptions const& options);
 
-  /// Like minimize, but options.torque and Minimum::torque are max |m x H|. Where a moment is not
-  /// 1, it repeats the search with other bounds until that is below options.torque.
+  /// Like minimize, but options.torque and Minimum::torque are max |m x H|. If not all moments are
+  /// 1, it repeats the search with other bounds until max |m x H| is below options.torque.
   Minimum relax(Space const& exec, io::Scene const& scene, SceneField<Spins> const& field,
                 Spins& spins, MinimizeOptions const& options);
 

@@ -198,7 +198,7 @@ FoundCurvatures find_curvatures(
 
 namespace {
 
-// A cell extends over the whole of the open axes.
+// Along open axes, a cell extends over the whole lattice.
 std::int64_t sites_of_a_cell(io::Lattice const& lattice) {
   auto const sites = static_cast<std::int64_t>(lattice.basis.size());
   std::int64_t count = 1;
@@ -248,7 +248,7 @@ void require_bands(io::Scene const& scene, std::vector<std::array<double, 3>> co
                         axis));
       continue;
     }
-    // A single cell is its own neighbour, which gives a wave no phase.
+    // A single cell is its own neighbour, so bonds between cells would have no phase.
     auto const reach = reach_along(scene, axis);
     bool const varies = any_wave([](double k) { return std::abs(k - std::round(k)) > 1e-9; });
     if (cells[axis] == 1 ? varies && reach > 0 : cells[axis] < 2 * reach)

@@ -12,7 +12,7 @@
 
 namespace cayspin::simulation {
 
-/// Returns the scene without [torque], for what needs an energy.
+/// Returns the scene without [torque], for functions that need an energy.
 io::Scene without_torque(io::Scene scene);
 
 /// Plans a search for modes after one for the equilibrium. Throws like make_plan_to_relax, except
@@ -20,8 +20,9 @@ io::Scene without_torque(io::Scene scene);
 Plan make_plan_of_modes(io::Scene const& scene, Precision precision, ModesOptions const& options,
                         bool with_hessian);
 
-/// Finds the state of rest of a scene with torques, near `spins`, or only checks them. Sets the
-/// torque, the evaluations and the end of the result.
+/// Finds a state of rest of a scene with torques, starting at `spins`, and stores it there; with
+/// `at_rest`, only checks the start. Sets only the torque, the evaluations and the end of the
+/// result.
 template <class Real, class Space>
 Minimum find_rest_with_torques(Space const& exec, io::Scene const& scene,
                                SpinField<Real, typename Space::memory_space> const& spins,
@@ -41,12 +42,12 @@ FoundCurvatures find_curvatures(
     SceneField<SpinField<Real, typename Space::memory_space>> const& field,
     SpinField<Real, typename Space::memory_space> const& spins, ModesOptions const& options);
 
-/// Limit for --wave-vector: the eigenvalues of the matrices of a larger cell take minutes.
+/// Limit for --wave-vector: for larger cells, the eigenvalues take minutes.
 constexpr std::int64_t most_sites_of_a_cell = 1024;
 
-/// Throws io::SceneError if a scene has no cells that could be equal, more than
-/// most_sites_of_a_cell in one, or bonds that are too long for its lattice; UsageError for wave
-/// vectors along open axes. They are in cycles per cell.
+/// Throws io::SceneError if a scene has no periodic axis, more than most_sites_of_a_cell sites in a
+/// cell, or bonds that are too long for its lattice; UsageError for wave vectors with a component
+/// along an open axis. Wave vectors are in cycles per cell.
 void require_bands(io::Scene const& scene, std::vector<std::array<double, 3>> const& wave_vectors);
 
 /// Returns the bytes that find_bands takes besides those of a search for an equilibrium.

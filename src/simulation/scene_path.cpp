@@ -132,7 +132,7 @@ Plan make_plan_of_path(io::Scene const& scene, Precision precision,
   auto const images = static_cast<std::size_t>(options.images);
   plan.memory.work = plan.memory.spins * (path_work_fields(images) + options.images - 1);
   if (options.rates) {
-    constexpr std::int64_t matrices = 8;  // of two numbers for each site
+    constexpr std::int64_t matrices = 8;  // with two rows for each site
     auto const rows = 2 * io::sites(scene);
     plan.memory.work += matrices * rows * rows * static_cast<std::int64_t>(sizeof(double));
   }

@@ -23,24 +23,24 @@ struct ScenePathOptions {
   std::function<Next(PathProgress const&)> observer = {};
 };
 
-/// Largest number of sites whose Hessians are diagonalised for rates: each takes 2 sites squared
-/// numbers.
+/// Largest number of sites for rates, which need matrices of (2 sites) squared numbers each.
 inline constexpr std::int64_t most_sites_for_rates = 4096;
 
-/// Throws io::SceneError for what has no path of least energy or no rates, and UsageError for
-/// options that cannot be, which begins with their name.
+/// Throws io::SceneError for scenes that have no path of least energy or are too large for rates,
+/// and UsageError for invalid options; its message begins with the option's name.
 void require_path(io::Scene const& scene, ScenePathOptions const& options);
 
 /// Plans the memory of a search for a path. Throws like make_plan_to_relax.
 Plan make_plan_of_path(io::Scene const& scene, Precision precision,
                        ScenePathOptions const& options);
 
-/// A path between two states, sites x 3 as from io::initial_spins, and why the search ended.
-/// Fills everything but `from` and `to`. Throws NumbersFailed for a field that is not finite.
+/// A path of least energy, and why the search for it ended.
 struct ScenePath {
   PathEnd end;
   io::Path path;
 };
+/// Finds a path between two states, sites x 3 as from io::initial_spins. Fills everything in it but
+/// `from` and `to`. Throws NumbersFailed for a field that is not finite.
 ScenePath find_scene_path(io::Scene const& scene, std::vector<double> const& from,
                           std::vector<double> const& to, std::string const& space,
                           Precision precision, ScenePathOptions const& options,

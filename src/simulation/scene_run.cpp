@@ -45,7 +45,8 @@ Plan plan_of(io::Scene const& scene, Precision precision) {
                           "\"auto\" is chosen by the program; accepted: the method and dt or "
                           "tolerance that `cayspin advise` names");
   auto plan = make_plan(scene, precision);
-  // A scene of no steps has no end. The features of its field are only found step by step.
+  // A scene with steps = 0 runs without an end, so the features of its field cannot be known in
+  // advance: adaptive steps are then at most dt.
   if (scene.integrator.steps == 0) {
     auto& steps = plan.options.steps;
     steps.end = std::numeric_limits<double>::infinity();
@@ -77,7 +78,7 @@ void scale(io::HostVectors const& vectors, double factor) {
   });
 }
 
-// Multiplies each vector by the number of its site of the cell.
+// Multiplies each vector by the factor of its site of the cell.
 void scale_by_site(io::HostVectors const& vectors, std::vector<double> const& factors) {
   auto const sites = static_cast<std::int64_t>(factors.size());
   for (std::int64_t plane = 0; plane < vectors.shape[0]; ++plane) {
@@ -91,11 +92,12 @@ void scale_by_site(io::HostVectors const& vectors, std::vector<double> const& fa
   }
 }
 
-// A program gives its fields in the units of its scene.
+// Converts the program's own fields, which are in the units of the scene.
 io::Scene with_reduced_own_field(io::Scene scene) {
   auto const units = scene.units;
   auto& own = scene.field.own;
-  // Beside moments of the cell's sites, fields are those of moments 1, which each moment divides.
+  // If the sites of the cell have moments, kernels divide this field by them, as they divide
+  // -dE/dm. So it is multiplied by them first.
   if (auto const& moments = scene.lattice.moments;
       own.nonlocal && !moments.empty() && !io::has_moments_of_sites(scene))
     own.nonlocal = [given = own.nonlocal, moments](io::HostVectors const& spins,
@@ -119,7 +121,8 @@ io::Scene with_reduced_own_field(io::Scene scene) {
   return scene;
 }
 
-// Reports the argument `name`, because vectors passed by a program have no key.
+// Returns the start of a scene. Errors in vectors passed by a program name the argument `name`,
+// because these have no key.
 template <class Error>
 std::vector<double> normalised(io::Scene const& scene, std::string const& name) {
   constexpr std::string_view key = "initial.given: ";

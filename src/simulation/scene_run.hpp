@@ -40,7 +40,7 @@ struct LentVectors {
 /// When a run checks its state, and why it may end early.
 struct Looks {
   std::int64_t period = 100;               // steps between checks by the guard
-  bool until_torque = false;               // ends as the scene's until_torque says
+  bool until_torque = false;               // may end early by the scene's until_torque
   std::function<bool()> interrupted = {};  // called between steps, about twenty times a second
   bool at_end = false;                     // the guard also checks the last of the steps
 };
@@ -60,11 +60,11 @@ struct RelaxSettings {
 /// runs, take turns; the counters of steps and time do not wait. Kokkos starts with the first run
 /// of a process, unless the program has started it, and ends with the process.
 ///
-/// N calls of advance(1) give the bits of advance(N), and of `cayspin run`.
+/// N calls of advance(1) give the same bits as advance(N), and as `cayspin run`.
 class SceneRun {
  public:
-  /// scene.field.own, the fields of the program, are also in the scene's units. Throws
-  /// io::SceneError, or UsageError for a space that is not compiled in.
+  /// Opens a run. The functions of the calling program in scene.field.own are also in the scene's
+  /// units. Throws io::SceneError, or UsageError for a space that is not compiled in.
   static std::unique_ptr<SceneRun> open(io::Scene const& scene, RunSettings const& settings);
 
   virtual ~SceneRun() = default;
@@ -91,7 +91,7 @@ class SceneRun {
   std::int64_t rejected_steps() const { return rejected_; }
   double step_seconds() const { return step_seconds_; }  // time spent stepping only
 
-  /// Returns true if it needs more than its spins to continue with the same bits.
+  /// Returns true if the run needs more than its spins to continue with the same bits.
   bool remembers() const;
 
   /// Returns the warning of `cayspin run` about a dt that is too large. Throws it as io::SceneError
@@ -106,10 +106,11 @@ class SceneRun {
   /// Throws what advance(count) would throw before its first step.
   void require_reachable(std::int64_t count) const;
 
-  /// Takes `count` more steps, fewer when it ends early. Throws UsageError when an adaptive method
-  /// would go beyond the scene's end, NumbersFailed when the numbers become invalid, and any
-  /// exception of a field of the program. steps() and the spins are then those before the step that
-  /// failed.
+  /// Takes `count` more steps, or fewer if the run ends early. Throws UsageError when an adaptive
+  /// method would go beyond the scene's end, NumbersFailed when the numbers become invalid, and any
+  /// exception of a field of the program. If a step fails, steps() and the spins are those before
+  /// it (of an adaptive method, up to 1000 steps before); if a check by the guard fails, those that
+  /// it checked.
   Advanced advance(std::int64_t count, Looks const& looks = {});
 
   /// Result of advance_all for one run.
@@ -117,9 +118,9 @@ class SceneRun {
     Advanced advanced = Advanced::whole;
     std::exception_ptr error = {};  // what advance would have thrown
   };
-  /// Advances these runs, of one space, to step `target` unless they are there. On hosts small ones
-  /// go side by side, one to a thread. Runs that have not begun when another is interrupted do not
-  /// begin.
+  /// Advances runs in the same space to step `target`, except those that are already there. On
+  /// hosts, small runs go side by side, one to a thread. If one is interrupted, those that have not
+  /// begun do not begin.
   static std::vector<Outcome> advance_all(std::span<SceneRun* const> runs, std::int64_t target,
                                           Looks const& looks);
 
@@ -128,12 +129,13 @@ class SceneRun {
     Minimum minimum = {};
     std::exception_ptr error = {};  // what relax would have thrown
   };
-  /// relax of each of these runs, side by side like advance_all. Those that have not begun when
-  /// another is interrupted end as interrupted.
+  /// Calls relax of each of these runs, side by side like advance_all. If one is interrupted, those
+  /// that have not begun end as interrupted.
   static std::vector<Relaxed> relax_all(std::span<SceneRun* const> runs,
                                         RelaxSettings const& settings);
 
-  /// Continues from the spins and the step of one column of a run of ReplicaColumns.
+  /// Continues from the spins of one column in a run of ReplicaColumns, and from the step of that
+  /// run.
   void continue_from_column(SceneRun const& columns, std::int64_t column);
   /// The run of the columns, and a run of a single replica. Sampling overwrites the spins of the
   /// latter.
@@ -142,7 +144,8 @@ class SceneRun {
     SceneRun* one;
     std::int64_t count;
   };
-  /// Returns a sample of each column of these runs, side by side like advance_all.
+  /// Returns a sample of each column of these runs, which are sampled side by side like
+  /// advance_all.
   static std::vector<std::vector<Sample>> sample_columns(std::span<ColumnsToSample const> all);
 
   /// Continues with changed keys, given as for `cayspin run --set`, from the current state. Steps
@@ -161,20 +164,20 @@ class SceneRun {
   /// Throws UsageError for invalid options, and what relax() throws.
   FoundModes modes(ModesOptions const& options = {});
 
-  /// Returns the spins. If the memory is still lent when the run continues, it stays unchanged: the
-  /// run moves to other memory, by one copy.
+  /// Returns the spins, on hosts without a copy. If the memory is still lent when the run
+  /// continues, it stays unchanged: the run copies the spins to other memory, and goes on there.
   LentVectors spins();
   /// Replaces the spins, normalised in double like any start. Multistep methods restart. Throws
   /// UsageError for a zero or non-finite spin, or another shape.
   void set_spins(io::HostVectors const& from);
 
-  /// Continues after this step from unit vectors, sites x 3 with x fastest, as they are. Multistep
-  /// methods restart.
+  /// Continues after this step from unit vectors, sites x 3 with x fastest, which are not
+  /// normalised again. Multistep methods restart.
   void continue_from(std::int64_t step, std::vector<double> const& spins);
 
-  /// Stores everything that another run needs to continue with the same bits, by
-  /// RunSettings::restart. Replaces an existing file; throws std::runtime_error if the file cannot
-  /// be written.
+  /// Stores everything that another run needs to continue from here with the same bits
+  /// (RunSettings::restart). Replaces an existing file; throws std::runtime_error if the file
+  /// cannot be written.
   void save(std::filesystem::path const& checkpoint);
 
   /// Returns the current energy, norm defect and magnetization.
@@ -229,7 +232,7 @@ class SceneRun {
   io::OwnField typed_own_;  // in the scene's units
 };
 
-/// Vectors packed as (nz, ny, nx, 3).
+/// Returns the vectors packed as (nz, ny, nx, 3).
 template <class Real>
 std::vector<Real> packed(io::HostVectors const& vectors);
 

@@ -13,7 +13,7 @@
 
 namespace cayspin::simulation {
 
-/// Copies the sites of one column of a lattice to the lattice of that column.
+/// Functor that copies one column of a lattice to a lattice of a single replica.
 template <class Real>
 struct CopyColumn {
   SiteArray<Real, 3> columns;
@@ -60,7 +60,7 @@ class SceneRunInSpace final
     simulation_->times.steps = target;
     simulation_->times.first = number_;
     simulation_->times.continues = continues_;
-    // An exception may have left the method's memory within a step.
+    // If an exception interrupts a step, the method's memory is not that of a whole step.
     continues_ = false;
     Ending ending;
     try {
@@ -85,7 +85,8 @@ class SceneRunInSpace final
 
   // Implements RunObserver.
   bool due(Step const& step) const override {
-    // An adaptive method leaves the spins as they were last due, at most 1000 steps ago.
+    // If an adaptive method fails, it leaves the spins as they were when last due, at most 1000
+    // steps ago.
     bool const is_adaptive = scene_.integrator.tolerance.has_value();
     if (!is_adaptive) seen_ = step.number;
     // Do not poll after the last step: integrate() ignores a stop there.
@@ -238,7 +239,7 @@ class SceneRunInSpace final
 
   static constexpr bool on_host = cayspin::detail::is_host_execution<Space>;
 
-  // For vectors on a device.
+  // Lends a copy of vectors in the memory of a device.
   template <class Field>
   LentVectors lend_copy(Field const& field) {
     auto const numbers = std::make_shared<std::vector<Real>>(copy_to_host(field));

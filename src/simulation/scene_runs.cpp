@@ -13,7 +13,7 @@
 namespace cayspin::simulation {
 namespace {
 
-// Returns the question whether one of several runs was interrupted, which asks `asked` as well.
+// Returns a function that tells whether one of several runs was interrupted; it also asks `asked`.
 std::function<bool()> or_asked(std::atomic<bool>& interrupted, std::function<bool()> const& asked) {
   return [&] {
     if (!interrupted && asked && asked()) interrupted = true;
@@ -45,7 +45,7 @@ std::vector<SceneRun::Outcome> SceneRun::advance_all(std::span<SceneRun* const> 
       error = std::current_exception();
     } catch (...) {
       error = std::current_exception();
-      interrupted = true;  // of the program itself, which the others need not wait for
+      interrupted = true;  // an error of the calling program: the other runs stop, too
     }
     interrupted = interrupted || advanced == Advanced::interrupted;
   });

@@ -13,7 +13,8 @@ namespace {
 
 using Points = std::vector<std::pair<double, double>>;  // t and value, ascending in t
 
-// Returns where values reverse by more than `height`, with the first and the last point.
+// Returns the extremes at which values turn back by more than `height`, with the first point and
+// the extreme that the values reach last.
 std::vector<std::size_t> turning_points(Points const& points, double height) {
   std::vector<std::size_t> turns{0};
   std::size_t extreme = 0;
@@ -65,7 +66,8 @@ std::optional<TimeFeatures::Shortest> shortest_feature(TimeSamples const& sample
       auto const height = [&](std::size_t other) {
         return points[turns[i]].second - points[turns[other]].second;
       };
-      // Where the start or the end of the run cuts a side off, the height is the other side's.
+      // If the start or the end of the run cuts off one side of a pulse, its height is measured on
+      // the other side.
       bool const first = i == 1, last = i + 2 == turns.size();
       double const before = height(i - 1), after = height(i + 1);
       bool const before_is_lower = std::abs(before) < std::abs(after);

@@ -20,8 +20,8 @@ struct WorkByNumber {
 };
 
 /// Calls work(0) .. work(count - 1), each of which advances a run of at most `sites` sites in
-/// `space`. If the kernels of such runs stay on the calling thread, the calls share the threads of
-/// the host; otherwise they follow one another.
+/// `space`. If the kernels of such runs stay on the calling thread, the calls are spread over the
+/// threads of the host; otherwise they follow one another.
 template <class Work>
 void for_each_small_run(std::string const& space, std::int64_t sites, std::size_t count,
                         Work const& work) {
@@ -29,7 +29,8 @@ void for_each_small_run(std::string const& space, std::int64_t sites, std::size_
   Host const host;
   if (count > 1 && is_on_host(space) && host.concurrency() > 1 &&
       cayspin::detail::runs_on_calling_thread<Host>(sites)) {
-    // The runs fence the default instance, which a kernel on it would keep locked.
+    // Uses another instance, because the runs fence the default one, which a kernel on it would
+    // keep locked.
     auto const other = Kokkos::Experimental::partition_space(host, 1).front();
     Kokkos::parallel_for("cayspin::advance_all",
                          Kokkos::RangePolicy<Host, Kokkos::Schedule<Kokkos::Dynamic>,

@@ -14,7 +14,8 @@ namespace cayspin::simulation {
 
 namespace {
 
-// Keeps the numbers of anisotropies that follow from other terms, which are left out beside them.
+// The constants of some anisotropies (free boundaries of DMI) are computed from other terms, which
+// a scene with one term does not have. Stores their numbers instead.
 void keep_numbers_of_free_sides(io::Scene const& scene, std::vector<io::Anisotropy>& terms) {
   for (auto& term : terms) {
     if (!io::is_of_free_sides(term.factors)) continue;
@@ -27,7 +28,8 @@ void keep_numbers_of_free_sides(io::Scene const& scene, std::vector<io::Anisotro
   }
 }
 
-// Beside dipoles each site has its own moment.
+// With dipoles, each site has its own moment. So it has to in a scene with only one term, without
+// the dipoles.
 void keep_moments_of_sites(io::Scene const& scene, io::Lattice& lattice) {
   if (!io::has_moments_of_sites(scene) || lattice.moments_of_sites.there()) return;
   lattice.moments_of_sites.key = "lattice.moments";

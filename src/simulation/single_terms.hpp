@@ -10,15 +10,15 @@
 
 namespace cayspin::simulation {
 
-/// Returns scenes with only one term of the field each, by the name of its key.
+/// Returns a scene for each term of the field, with only that term, and the name of the term's key.
 std::vector<std::pair<std::string, io::Scene>> single_terms(io::Scene const& scene);
 
-/// Returns the numbers of a scene's samples besides Scalars. For rigid bodies the one term is
+/// Returns which numbers a scene's samples have besides Scalars. Rigid bodies have one term,
 /// "rotation".
 io::MoreScalars more_scalars(io::Scene const& scene);
 
-/// Refuses a scene for a continued run if the samples of its file have energies of other terms.
-/// `first`: the scene that it started with.
+/// Throws io::SceneError if the samples of a scene would have energies of other terms than those of
+/// `first`, the scene with which the run started.
 void require_same_terms(io::Scene const& first, io::Scene const& scene);
 
 }  // namespace cayspin::simulation

@@ -39,7 +39,7 @@ inline SitesOfCell sites_of_cell(io::Scene const& scene) {
   return all;
 }
 
-/// Returns a slab's field if it is local and each site has its own moment.
+/// Returns a slab's demagnetising field if it is local and each site has its own moment.
 inline std::optional<io::SlabDemagnetization> slab_of_moments(io::Scene const& scene) {
   auto const& slab = scene.field.slab_demag;
   if (!slab || slab->on_host || !scene.lattice.moments_of_sites.there()) return std::nullopt;

@@ -9,7 +9,7 @@
 namespace cayspin::simulation {
 
 /// The field of cayspin::Slonczewski, H = a c m x p + b p, with the angular dependence c = 2 L^2 /
-/// ((L^2 + 1) + (L^2 - 1) m.p). Without data, a, b or p is uniform.
+/// ((L^2 + 1) + (L^2 - 1) m.p). If an array has no data, that quantity (a, b or p) is uniform.
 template <class Real>
 struct SlonczewskiOfSites {
   cayspin::SiteArray<Real, 1> damping_like_of_sites = {}, field_like_of_sites = {};  // factors

@@ -6,7 +6,7 @@
 
 namespace cayspin::simulation {
 
-/// A state and two coordinates of each spin on its tangent plane. Vacant sites and frozen spins
+/// A state, and two basis vectors of the tangent plane of each spin. Vacant sites and frozen spins
 /// have none.
 struct TangentBasis {
   std::vector<double> spins;       // sites x 3

@@ -43,7 +43,8 @@ struct RowPiece {
   KOKKOS_FORCEINLINE_FUNCTION void along(Visit const& visit, std::ptrdiff_t from, std::ptrdiff_t to,
                                          std::ptrdiff_t step) const {
     using Site = cayspin::detail::Site<cayspin::detail::Pack<Real>, AtEdge>;
-    // A copy, because stores of packs might change values known by reference.
+    // Copies, because the compiler must assume that stores of packs change values behind
+    // references.
     cayspin::detail::Row const of_sites = row.row;
     cayspin::detail::RowStencil<Real> const of_spins = row.spins;
     for (std::ptrdiff_t x = from; x < to; x += step) {
@@ -53,7 +54,7 @@ struct RowPiece {
   }
 };
 
-/// Correction of exchange, which takes vacancies for neighbours: adds the missing H = A m for each.
+/// Correction of exchange that takes vacancies for neighbours: it lacks H = A m for each vacancy.
 template <class Real>
 struct MissingNeighbors {
   cayspin::SiteArray<Real, 1> exchange;
@@ -166,11 +167,11 @@ struct AddedTerms {
   }
 };
 
-/// The whole H of scenes with couplings, or several sites per cell.
+/// The whole H of scenes with couplings, several sites per cell, or a moment for each site.
 template <class Real>
 struct WholeTerms {
   PassTerms<Real> terms;
-  bool lacks_local = false;  // it has only couplings
+  bool lacks_local = false;  // computes only couplings; stages add the rest
 
   struct Loop {
     PassTerms<Real> const& terms;
@@ -230,7 +231,7 @@ struct WholeTerms {
   }
 };
 
-/// The function stored in FieldAlongRows.
+/// The function that FieldAlongRows::evaluate points to.
 template <class Terms, class Real>
 void evaluate_along(void const* terms, cayspin::detail::RowOfSpins<Real> const& row,
                     std::int32_t begin, std::int32_t end,

@@ -32,8 +32,8 @@
 // compile_field_in_pass.hpp, which includes them all.
 namespace cayspin::simulation {
 
-// Returns the largest magnitude over all parts. The words of doubles >= 0 have the order of the
-// doubles.
+// Returns the largest magnitude over all parts. Parts compare the bits of doubles as integers,
+// which have the same order for doubles >= 0.
 inline double largest_of_parts(Lattice const& lattice, std::vector<double> const& values) {
   double largest = 0;
   for (double const value : values) largest = std::max(largest, std::abs(value));
@@ -43,7 +43,8 @@ inline double largest_of_parts(Lattice const& lattice, std::vector<double> const
   return std::bit_cast<double>(words[0]);
 }
 
-// Returns the site of the cell to which site `number` of a part belongs: each plane holds one.
+// Returns which site of its cell site `number` of a part is: all sites of a plane along z are the
+// same one.
 inline std::size_t site_of_cell(Lattice const& lattice, std::size_t number) {
   auto const in_plane = static_cast<std::size_t>(lattice.own(0) * lattice.own(1));
   return number / in_plane % static_cast<std::size_t>(lattice.cell_sites);
@@ -68,25 +69,27 @@ class FieldInPass<Spins>::Terms {
   PassTerms<Real> at(Exec const& exec, SceneFieldNow<Real> const& usual, Spins const& spins,
                      double t, FieldFor purpose) const;
 
-  /// The applied field is equal for all spins, so H without it is linear in the spins.
+  /// Returns true if the kernels of the methods add the applied field, so that H in memory is
+  /// linear in the spins. For that, all spins must have the same gyromagnetic ratio.
   bool adds_applied(FieldFor purpose) const {
     return purpose == FieldFor::generator && std::ranges::all_of(cell_, [&](auto const& site) {
              return site.gyromagnetic == cell_[0].gyromagnetic;
            });
   }
 
-  /// Returns true if a site has bonds beyond its neighbours.
+  /// Returns true if bonds may reach beyond the neighbours of a site.
   bool reaches_far() const { return has_pairs_ || distant_bonds_.size() > 0; }
 
-  /// Returns true if all sites of a cell have equal axes, and a moment and gyromagnetic ratio of 1.
+  /// Returns true if all sites of a cell have equal anisotropy axes, and a moment and gyromagnetic
+  /// ratio of 1.
   bool sites_are_alike() const {
     return !per_moments_ && std::ranges::all_of(cell_, [&](auto const& site) {
       return site.gyromagnetic == 1 && site.per_moment == 1 && site.quadratic == cell_[0].quadratic;
     });
   }
 
-  /// Returns the terms of `usual` that are evaluated inside the stages; empty if the stages load a
-  /// field computed before.
+  /// Returns the terms that are evaluated inside the stages; empty if the stages load the whole H
+  /// instead.
   std::optional<SceneFieldNow<Real>> in_stages(SceneFieldNow<Real> const& usual, double t) const;
 
  private:
@@ -176,7 +179,7 @@ class FieldInPass<Spins>::Terms {
   Interlayer interlayers_[3];
   std::vector<ScalarField<Real, Memory>> numbers_of_distant_;
   Table<DistantBonds<Real>> distant_bonds_;
-  double longest_of_distant_ = 0;  // largest spacing across their faces
+  double longest_of_distant_ = 0;  // largest spacing along the axes of distant bonds
   std::optional<ScalarField<Real, Memory>> exchange_at_faces_;
   std::int32_t sweeps_of_faces_ = 0;
   std::vector<ScalarField<Real, Memory>> constants_of_axes_;
@@ -186,13 +189,14 @@ class FieldInPass<Spins>::Terms {
   std::int32_t anisotropies_in_time_ = 0;
   bool precession_;
   std::vector<CellSite> cell_;
-  SceneLatticeTerms seen_;  // as seen by the moments of a cell with one site
+  SceneLatticeTerms
+      seen_;  // lattice terms times gyromagnetic ratio over moment, for cells with one site
   std::optional<ScalarField<Real, Memory>> missing_;
   double largest_moment_ = 0;
   Spins field_;
   ScalarField<Real, Memory> energies_, moments_;
   std::optional<ScalarField<Real, Memory>> per_moments_;  // if each site has its own moment
-  // Terms of the running stages; those of a sweep run together.
+  // Terms of the stages in progress. The stages of a sweep are in progress at the same time.
   mutable std::array<std::variant<std::monostate, AddedTerms<Real>, WholeTerms<Real>>,
                      cayspin::detail::SweepPlan::most_stages>
       along_rows_;

@@ -20,7 +20,7 @@ std::string counted(std::int64_t count, std::string_view what);
 /// Returns the cells of a lattice in the form of TrajectoryHeader: "4 x 3 x 2", or "4 x 3 x 2 cells
 /// of 3 sites".
 std::string cells_text(std::array<std::int64_t, 3> const& shape, std::int64_t cell_sites);
-/// Returns that, or "4 x 3 x 2 sites".
+/// Returns cells_text, but "4 x 3 x 2 sites" if there is one site per cell.
 std::string sites_text(std::array<std::int64_t, 3> const& shape, std::int64_t cell_sites);
 /// Returns a number with a decimal prefix: "12.3 M" for 12300000.
 std::string rate_text(double per_second);

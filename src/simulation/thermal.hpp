@@ -22,8 +22,8 @@ inline bool is_thermal(io::Scene const& scene) {
   return scene.thermal && scene.thermal->temperature > 0;
 }
 
-/// Returns the typed temperature: reduced, or in kelvin; without site-dependent numbers and
-/// expressions in t.
+/// Returns the temperature in the scene's units, reduced or in kelvin; without its factors that
+/// depend on the site or on t.
 inline double typed_temperature(io::Scene const& scene) {
   double const reduced = scene.thermal->temperature;
   return scene.units.si ? reduced * scene.units.energy / units::boltzmann : reduced;

@@ -19,7 +19,7 @@ struct Jump {
   double before, after;
 };
 
-/// Returns the jump between two samples, if the largest change there is not that of a continuous
+/// Returns the jump between two samples; nothing if bisecting the largest change shows a continuous
 /// function.
 std::optional<Jump> bisect(TimeSamples& samples, std::size_t component, double a, double b) {
   double const end = samples.end();
@@ -40,7 +40,7 @@ std::optional<Jump> bisect(TimeSamples& samples, std::size_t component, double a
 }
 
 // Returns the jumps between samples whose values differ by far more than those of samples nearby;
-// nothing if there are too many.
+// nothing if that takes too many evaluations.
 std::optional<std::vector<Jump>> find_jumps(TimeSamples& samples, std::int64_t most_evaluations) {
   std::vector<Jump> jumps;
   std::vector<std::pair<double, double>> cells;
@@ -55,7 +55,8 @@ std::optional<std::vector<Jump>> find_jumps(TimeSamples& samples, std::int64_t m
     }
   }
   std::ranges::sort(jumps, {}, &Jump::before);
-  // Several components may jump at once, and two jumps may be too close to step between them.
+  // Merges jumps that overlap: several components may jump at once, and two jumps may be too close
+  // to step between them.
   std::vector<Jump> apart;
   for (auto const& jump : jumps)
     if (!apart.empty() && jump.before <= apart.back().after)
@@ -65,7 +66,8 @@ std::optional<std::vector<Jump>> find_jumps(TimeSamples& samples, std::int64_t m
   return apart;
 }
 
-/// A polynomial through the values at Chebyshev points, to compare with other values.
+/// Divides a time span into parts in each of which a polynomial through the values at Chebyshev
+/// points agrees with the values in between.
 class Parts {
  public:
   Parts(TimeSamples& samples, FeatureSearch const& search)
@@ -113,10 +115,12 @@ class Parts {
       bounds.push_back(bound);
   }
 
-  // Uses the previous bound if that is short enough at some places, too.
+  // Bounds the rest of a span by a single length: the shortest bound so far, halved until there are
+  // no features at any of 256 places. Returns false if that fails.
   bool bound_the_rest(double begin, double end, std::vector<StepBound>& bounds) {
     constexpr int places = 256, halvings = 12;
-    if (samples_.evaluations() > 2 * search_.most_evaluations) return false;  // one of many
+    if (samples_.evaluations() > 2 * search_.most_evaluations)
+      return false;  // earlier spans have used this up
     double length = end - begin;
     for (auto const& bound : bounds)
       if (bound.max_dt > 0) length = std::min(length, bound.max_dt);
@@ -160,7 +164,7 @@ class Parts {
           std::max({noise, 1e-6 * (most - least), search_.angle / (end - begin)});
       return !(std::abs(value - interpolated(c, (t - middle) / half)) <= allowed);
     };
-    // Few samples first: most spans with features show them.
+    // Tests a few samples first: they suffice to show most features.
     for (std::size_t const stride : {std::max<std::size_t>(1, (last - first) / 64), std::size_t{1}})
       for (std::size_t i = first; i < last; i += stride)
         if (differs(samples_.time(i), samples_.sample(i, c))) return Found::features;

@@ -19,18 +19,19 @@ struct Scene;
 
 namespace cayspin::simulation {
 
-/// Features of a scene's fields and currents between the times at which a method evaluates them.
+/// Features of a scene's fields and currents in time, which a method might miss between its
+/// evaluations.
 struct TimeFeatures {
   struct Shortest {
     double length, time;  // of the shortest pulse or half period: its width at half height
     std::string key;      // of the scene
   };
 
-  std::vector<StepBound> bounds;  // with them no step of a method misses a feature
+  std::vector<StepBound> bounds;  // steps within these bounds miss no feature
   std::int64_t jumps = 0;
   double last_change = 0;  // everything is constant from then on
   std::optional<Shortest> shortest;
-  std::vector<std::pair<std::string, double>> largest;  // vector length, for each key
+  std::vector<std::pair<std::string, double>> largest;  // length of each vector, with its key
   std::optional<std::string>
       unresolved;  // the key of a vector that changes too fast to be resolved
 };
@@ -49,8 +50,8 @@ struct FeatureSearch {
   std::int64_t most_evaluations = 5'000'000;
 };
 
-/// Samples the vectors at equal times and near their events, bisects jumps, and divides the time
-/// between jumps until polynomials follow the vectors in each part.
+/// Samples the vectors at equally spaced times and near their events, bisects jumps, and divides
+/// the time between jumps until polynomials follow the vectors in each part.
 TimeFeatures find_features(std::span<TimeDependent const> vectors, FeatureSearch const& search);
 
 /// Returns the features of a scene's fields and currents up to its end, for adaptive steps with

@@ -31,7 +31,7 @@ TimeSamples::TimeSamples(std::span<TimeDependent const> vectors, FeatureSearch c
   later_.clear();
 }
 
-// Returns times ever closer to each event, so that nothing that starts, ends or has its middle
+// Returns times ever closer to each event, so that no pulse that starts, ends or has its middle
 // there is missed.
 std::vector<double> TimeSamples::times_near_events() const {
   constexpr int halvings = 45;

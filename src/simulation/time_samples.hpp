@@ -12,8 +12,8 @@
 
 namespace cayspin::simulation {
 
-/// Values of vectors that depend on t: at equal times, at times near their events, and at those
-/// evaluated since.
+/// Values of vectors that depend on t: at equally spaced times, at times near their events, and at
+/// all times evaluated later.
 class TimeSamples {
  public:
   TimeSamples(std::span<TimeDependent const> vectors, FeatureSearch const& search);
@@ -23,13 +23,13 @@ class TimeSamples {
   double end() const { return end_; }
   double time(std::size_t i) const { return times_[i]; }
   double sample(std::size_t i, std::size_t component) const { return values_[component][i]; }
-  /// Returns largest minus least sample.
+  /// Returns the difference between the largest and the least sample.
   double range(std::size_t component) const { return ranges_[component]; }
   /// Returns |sample(i + 1) - sample(i)|.
   double change(std::size_t i, std::size_t component) const;
-  /// Returns true if that is three times as much as most changes nearby.
+  /// Returns true if that change is at least three times as large as most changes nearby.
   bool changes_unusually(std::size_t i, std::size_t component) const;
-  /// Returns the first sample from which on none changes.
+  /// Returns the time from which on no component changes.
   double last_change() const;
   /// Returns first and last + 1 of the samples between two times.
   std::pair<std::size_t, std::size_t> within(double begin, double end) const;
@@ -41,18 +41,18 @@ class TimeSamples {
 
   std::string const& key_of(std::size_t component) const { return vectors_[component / 3].key; }
   std::string const& key_of_fastest() const;
-  /// Returns true if a component varies so fast that the samples do not resolve it: it crosses its
-  /// range more than once within four samples.
+  /// Returns true if a component varies so fast that the samples do not resolve it: on average it
+  /// crosses its range more than once within four samples.
   bool are_too_coarse() const;
   /// Returns the largest length of each vector, over all values.
   std::vector<double> const& largest() const { return largest_; }
-  /// Returns all values of a component in the order of time, each time once.
+  /// Returns all values of a component with their times, in the order of time.
   std::vector<std::pair<double, double>> all(std::size_t component) const;
 
  private:
   struct Fastest {
     std::size_t component = 0;
-    double times_through = -1;  // time in which it goes through its range, up or down
+    double times_through = -1;  // how often it goes through its range, up or down
   };
   Fastest fastest() const;
   std::vector<double> times_near_events() const;

@@ -43,8 +43,9 @@ std::int64_t evaluations_to_linearise(TangentBasis const& basis) {
   return 1 + evaluations_of_column * static_cast<std::int64_t>(basis.size());
 }
 
-/// Differences of order 4. The shift balances their error with round-off. Rates of spins off the
-/// sphere are those of a smooth continuation, which does not change tangent derivatives.
+/// Computes the matrix by finite differences of order 4, with a shift that balances their error
+/// with round-off. Shifted spins are off the sphere, where the rates continue smoothly; this does
+/// not change derivatives in the tangent planes.
 Linearised linearise(TorqueMotion const& motion, TangentBasis const& basis) {
   auto const n = static_cast<Eigen::Index>(basis.size());
   Linearised found{basis, components(basis, motion.rates(basis.spins)), Matrix(n, n), false};
@@ -77,7 +78,8 @@ double largest_torque_of(TorqueMotion const& motion, Vectors const& rates) {
   return largest;
 }
 
-/// Turns each spin by a tangent vector, at most by `most` radians on any site.
+/// Moves each spin by its tangent vector; all vectors are shortened by one factor if one is longer
+/// than `most`.
 Vectors moved(TangentBasis const& basis, Vector const& by, double most) {
   double longest = 0;
   for (Eigen::Index i = 0; i < by.size(); i += 2)
@@ -116,7 +118,7 @@ RestWithTorques find_rest_with_torques(TorqueMotion const& motion, Vectors const
       found.is_interrupted = true;
       break;
     }
-    // The shortest step: none along modes without stiffness.
+    // Takes the shortest step that solves the equations: none along modes without stiffness.
     Eigen::CompleteOrthogonalDecomposition<Matrix> factors;
     factors.setThreshold(1e3 * motion.epsilon);
     factors.compute(linear.matrix);

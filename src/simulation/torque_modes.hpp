@@ -8,8 +8,8 @@
 #include <functional>
 #include <vector>
 
-// Equilibria and modes of spins that also currents turn. There is no energy that falls, and the
-// linearised equation of motion is a general matrix, which is stored.
+// Equilibria and modes of spins with torques of currents. There is no energy that falls, and the
+// linearised equation of motion has a general matrix, which is stored.
 namespace cayspin::simulation {
 
 /// Unit spins, or the spins' rates dm/dt: sites x 3.
@@ -35,13 +35,13 @@ struct RestWithTorques {
 
 double largest_torque(TorqueMotion const& motion, Vectors const& spins);
 
-/// Searches a state with max |m x H| <= torque by Newton's method. Where it ends without, the
-/// result has a larger one.
+/// Searches for a state with max |m x H| <= torque by Newton's method. If it finds none, the torque
+/// of the result is larger.
 RestWithTorques find_rest_with_torques(TorqueMotion const& motion, Vectors const& start,
                                        double torque, std::int64_t evaluations);
 
-/// Returns the modes about a state of rest, in reduced units. The longest vector of a shape has no
-/// particular length. Throws NumbersFailed if the spins are not at rest.
+/// Returns the modes about a state of rest, in reduced units. The shapes are not normalised. Throws
+/// NumbersFailed if the spins are not at rest.
 FoundModes find_modes_with_torques(TorqueMotion const& motion, Vectors const& spins,
                                    std::size_t count, std::int64_t evaluations);
 

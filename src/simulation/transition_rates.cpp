@@ -18,10 +18,10 @@
 #include <utility>
 
 // Harmonic transition state theory for spins: Bessarab, Uzdin and Jonsson, Phys. Rev. B 85, 184409
-// (2012). The rate is the flux across the dividing plane at the saddle, by the precession there,
-// over the partition function of the minimum; damping does not enter. Along modes without stiffness
-// the whole volume counts, of a translation that of one cell. In Langer's theory, Ann. Phys. 54,
-// 258 (1969), the flux is that of the mode that grows at the saddle, with damping.
+// (2012). The rate is the flux by precession across the dividing plane at the saddle, over the
+// partition function of the minimum; damping does not enter. A mode without stiffness contributes
+// its whole volume, a translation only that of one cell. In Langer's theory, Ann. Phys. 54, 258
+// (1969), the flux is that of the mode that grows at the saddle, with damping.
 namespace cayspin::simulation {
 namespace {
 
@@ -58,7 +58,7 @@ class State {
             static_cast<Eigen::Index>(state.size()))) {
     hessian_ = (0.5 * (hessian_ + hessian_.transpose())).eval();
     auto const n = hessian_.rows();
-    // An upper bound.
+    // An upper bound of the eigenvalues.
     double const largest = hessian_.cwiseAbs().rowwise().sum().maxCoeff();
     Matrix rest = hessian_;
     if (unstable < 0) {
@@ -77,7 +77,7 @@ class State {
     zeros_ = vectors.leftCols(count);
     rest += largest * zeros_ * zeros_.transpose();
     factors.compute(rest);
-    // Subtracts the substitute values of the modes that are left out.
+    // The modes that are left out have the eigenvalue `largest` in `rest`.
     double const in_place = static_cast<double>(count) + (unstable < 0 ? 1 : 0);
     log_determinant_ =
         2 * factors.matrixLLT().diagonal().array().log().sum() - in_place * std::log(largest);
@@ -114,8 +114,8 @@ class State {
   }
 
  private:
-  /// Returns the eigenvectors of a matrix with the largest eigenvalues of its inverse, and their
-  /// eigenvalues, in order, by inverse iteration.
+  /// Returns the `count` eigenvectors of a matrix that inverse iteration with `inverse` (of the
+  /// matrix itself, or shifted) converges to, and their eigenvalues in ascending order.
   static std::pair<Matrix, Vector> near_vectors(Matrix const& matrix, auto const& inverse,
                                                 Eigen::Index count) {
     auto const n = matrix.rows();
@@ -148,8 +148,8 @@ class State {
     return found;
   }
 
-  /// Returns the translations by a cell along an axis, centred and one-sided; empty unless it is
-  /// periodic.
+  /// Returns the translation by a cell along an axis, from centred and from one-sided differences;
+  /// zero unless the axis is periodic.
   std::pair<Vector, Vector> translation(io::Lattice const& lattice, std::size_t axis) const {
     Vector const none = Vector::Zero(static_cast<Eigen::Index>(state_.size()));
     auto shape = lattice.shape;
@@ -176,7 +176,8 @@ class State {
             coordinates([&](std::size_t site) { return way(site, 1); })};
   }
 
-  /// Returns rotations of all spins by a radian about orthogonal axes, where they are zero modes.
+  /// Returns rotations of all spins by a radian, about those of three orthogonal axes for which
+  /// they are zero modes.
   std::vector<Vector> rotations() const {
     Matrix turned(static_cast<Eigen::Index>(state_.size()), 3);
     for (Eigen::Index axis = 0; axis < 3; ++axis)
@@ -199,9 +200,9 @@ class State {
     return found;
   }
 
-  /// Returns the axis about which the energy is symmetric, and zeros; zeros if there is none. The
-  /// zero mode does not determine it where all spins are collinear: adding a rotation about their
-  /// own direction gives the same mode.
+  /// Returns the axis about which the energy is symmetric, as the first column, and zeros
+  /// elsewhere; only zeros if there is none. If all spins are collinear, the zero mode does not
+  /// determine the axis: adding a rotation about their common direction gives the same mode.
   Eigen::Matrix3d axes_of_symmetry() const {
     Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
     for (auto const& torque : state_.torques) {
@@ -223,7 +224,7 @@ class State {
   double log_determinant_ = 0;
 };
 
-/// Returns the gyromagnetic ratio over the moment of each site, in the units by which spins turn.
+/// Returns the gyromagnetic ratio over the moment of each site, in reduced units.
 Numbers mobilities(io::Scene const& scene, StateHessian const& state) {
   auto const& lattice = scene.lattice;
   io::SiteBox const box{{0, 0, 0}, lattice.shape};
@@ -298,7 +299,7 @@ io::RatesOfPath rates_between(io::Scene const& scene, StateHessian const& start,
   double const growth = growth_rate(scene, saddle, of_saddle.hessian(), of_saddle.mode());
   double const curvature = of_saddle.mode().dot(of_saddle.hessian() * of_saddle.mode());
   double const langer = growth / (2 * pi * std::sqrt(-curvature) * scene.units.time);
-  // Without the flux.
+  // Computes the prefactor without the flux.
   auto const factor = [&](StateHessian const& minimum, char const* name, std::size_t place) {
     State const state(minimum, name, 0);
     auto const modes = rates.zero_modes[place] = state.zero_modes();

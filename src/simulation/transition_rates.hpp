@@ -20,14 +20,14 @@ namespace cayspin::simulation {
 /// An equilibrium and the Hessian of its energy.
 struct StateHessian : TangentBasis {
   std::vector<double> numbers;  // matrix elements, row by row
-  /// Sums of m x H in states far from the equilibrium. Those about an axis vanish if turning all
-  /// spins about it does not change the energy.
+  /// Sums of m x H in states far from the equilibrium. Their components along an axis vanish if
+  /// turning all spins about it does not change the energy.
   std::vector<std::array<double, 3>> torques;
 
   using TangentBasis::TangentBasis;
 
-  /// Returns the spins after one rotation of all of them, and a small one of each. `sample` chooses
-  /// the rotations.
+  /// Returns the spins after a common rotation of all of them and a different one of each. `sample`
+  /// chooses the rotations.
   std::vector<double> far_state(unsigned sample) const;
   void add_torque(std::vector<double> const& state, std::vector<double> const& field);
 };
@@ -40,7 +40,7 @@ io::RatesOfPath rates_between(io::Scene const& scene, StateHessian const& start,
                               StateHessian const& saddle, StateHessian const& end,
                               double saddle_curvature);
 
-/// Computes the Hessian by a product for each coordinate.
+/// Computes the Hessian, one column at a time, by products of the Hessian and a vector.
 template <class Exec, class Field, class Spins>
 StateHessian hessian_of(Exec const& exec, Field const& field, Spins const& spins,
                         std::vector<unsigned char> const& frozen) {

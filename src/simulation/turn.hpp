@@ -7,7 +7,8 @@
 
 namespace cayspin::simulation {
 
-/// One for all runs: a space of Kokkos takes work from one thread at a time.
+/// A thread's turn to use Kokkos, which other threads wait for: an execution space accepts work
+/// from only one thread at a time. Throws UsageError within the step of a run.
 class Turn {
  public:
   Turn() : lock_(mutex_of_others()) {
@@ -18,7 +19,7 @@ class Turn {
   Turn(Turn const&) = delete;
   Turn& operator=(Turn const&) = delete;
 
-  /// Keeps other threads from taking a turn; its own thread may.
+  /// Keeps other threads from taking a turn, while its own thread still may.
   class Reserved {
    public:
     Reserved() : lock_(mutex_of_others()) { require_free(); }

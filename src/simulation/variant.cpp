@@ -37,7 +37,7 @@ Variant const& find_variant(io::Scene const& scene) {
            variant.in_chart == (integrator.generator == io::Generator::tangent) &&
            variant.compensated == integrator.compensated;
   };
-  // If rigid bodies have a separate stepper, it differs from that of spins.
+  // If a method has a separate variant for rigid bodies, these take it; otherwise that of spins.
   bool const bodies = scene.system.kind == io::SystemKind::rigid_body;
   Variant const* found = nullptr;
   for (auto const& variant : variants())

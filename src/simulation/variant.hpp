@@ -22,13 +22,13 @@ struct MethodOptions {
   StepOptions steps = {};     // of adaptive methods
 };
 
-/// A stepper on one simulation, which outlives it. It keeps the memory of its method.
+/// A stepper for one simulation, which must outlive the stepper. It keeps the memory of its method.
 class OpenMethod {
  public:
   virtual ~OpenMethod() = default;
-  /// Integrates over the simulation's times, under its observer.
+  /// Integrates over the simulation's times, and calls the simulation's observer.
   virtual Summary advance() = 0;
-  /// Stores or restores that memory.
+  /// Stores or restores the memory of the method.
   virtual void serialize(Checkpoint& checkpoint) = 0;
 };
 
@@ -44,10 +44,11 @@ struct Variant {
   int order = 0;
   std::optional<int> evaluations = {};  // of the generator per step, if constant
   bool remembers = false;               // earlier steps
-  int ghosts = 0;                       // on a part of a lattice; 0: not on parts
-  int work_fields = 0;                  // spin fields of work memory, if stages run one by one
+  int ghosts = 0;       // rows of ghosts around a part of a lattice; 0: only whole lattices
+  int work_fields = 0;  // spin fields of work memory, if stages run one by one
 
-  /// Returns bytes of work memory. by_time_only: the scene's field is prepared without spins.
+  /// Returns bytes of work memory. by_time_only: to prepare the scene's field takes only t, not the
+  /// spins.
   std::int64_t (*work_bytes)(Lattice const& lattice, bool by_time_only, Precision precision) = {};
   /// cayspin::largest_stable_step of the stepper; infinity if no bound is known.
   double (*stable_step)(double field_bound, double damping, bool precession,

@@ -17,7 +17,7 @@
 
 namespace cayspin::simulation {
 
-/// The vectors of a field in host memory.
+/// Returns the vectors of a field in host memory, without a copy.
 template <class HostSpins>
 io::HostVectors host_vectors(HostSpins const& spins) {
   auto const array = spins.array();
@@ -54,7 +54,7 @@ class HostSolver {
   std::variant<SlabDemagOnHost, Own, FieldOnHost<double>, FieldOnHost<float>> solver_;
 };
 
-/// The field computed in the memory space of the spins.
+/// A field that is computed in the memory space of the spins.
 template <class Spins>
 struct SolverInPlace {
   static constexpr int degree = 2;
@@ -88,7 +88,7 @@ class WholeField {
   static constexpr int degree = 2;
   using Moments = std::optional<ScalarField<Real, typename Spins::memory_space>>;
 
-  /// `moments`: of sites, multiplied with each spin; without them all are 1.
+  /// `moments`: of the sites, by which the spins are multiplied; without them all are 1.
   WholeField(Lattice const& lattice, HostSolver solver, Moments moments = {})
       : term_(HostField<Spins, HostSolver>(lattice, std::move(solver))),
         moments_(std::move(moments)) {
