@@ -6,7 +6,7 @@
 
 namespace cayspin::program {
 
-/// Returns true for a terminal that understands cursor movements.
+/// Returns true if the stream is a terminal, which is assumed to understand cursor movements.
 bool is_terminal(std::FILE* stream);
 
 /// Returns true if the locale has block characters.

@@ -36,7 +36,7 @@ double bytes_per_site(Plan const& plan) {
   return static_cast<double>(plan.memory.simulation()) / static_cast<double>(plan.lattice.sites());
 }
 
-/// Returns the work that a step repeats on the requested ranks.
+/// Returns the share of work that a step repeats on the requested ranks; nothing without --ranks.
 std::optional<double> repeated_on(CheckOptions const& options, io::Scene const& scene,
                                   Plan const& plan) {
   if (!options.ranks) return std::nullopt;
@@ -69,7 +69,7 @@ void add_notes(Json& object, io::Scene const& scene) {
 Json run_json(io::Scene const& scene, Plan const& plan, Precision precision,
               std::optional<double> const& repeated) {
   auto const& units = scene.units;
-  // Infinite where none is known, which is printed as null.
+  // If no limit is known, stable_dt is infinite, which JSON prints as null.
   Json object{{"stable_dt", plan.stable_dt * units.time},
               {"dt", plan.times.dt * units.time},
               {"steps", scene.integrator.steps}};
@@ -134,14 +134,15 @@ std::string output_text(io::Scene const& scene, Plan const& plan) {
   return text;
 }
 
-// Checks every number of the start and of the inertia, if that takes only seconds.
+// The numbers of the start and of the inertia are checked up to this many sites, which takes only
+// seconds.
 constexpr std::int64_t most_sites_checked = 10'000'000;
 
 bool is_start_checked(Plan const& plan) {
   return plan.lattice.sites() <= most_sites_checked && fits(plan);
 }
 
-// Returns the spins.
+// Checks the start and the inertia, and returns the spins.
 std::vector<double> check_start(io::Scene const& scene) {
   if (scene.system.kind == io::SystemKind::rigid_body) io::inertia(scene);
   return io::initial_spins(scene);
@@ -192,7 +193,8 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
   print_output(scene, plan);
 }
 
-// The remaining choices depend on the field, and are made when the search starts.
+// Names only what is known beforehand. Other choices depend on the field, and are made when the
+// search starts.
 std::string search_text(io::Scene const& scene) {
   return fmt::format("L-BFGS {}, to max |m x H| < --torque{}",
                      scene.field.exchange ? "preconditioned by exchange" : "without exchange",

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-// Output of `cayspin check` about the steps of a run.
+// Output of `cayspin check` about the steps and stages of a run.
 namespace cayspin::program {
 
 using namespace simulation;
@@ -21,14 +21,14 @@ using namespace simulation;
 void print(std::string_view name, std::string_view text);
 
 inline bool has_stable_dt(Plan const& plan) { return std::isfinite(plan.stable_dt); }
-/// Returns the order of the method, also in substeps around an expensive field.
+/// Returns the order of the method; with an expensive field, that of its combination with substeps.
 int order(io::Scene const& scene, Variant const& variant);
 std::optional<std::int64_t> evaluations(io::Scene const& scene, Variant const& variant);
 
 /// Prints method, time, stable dt, noise and cost.
 void print_steps(io::Scene const& scene, Plan const& plan);
 
-/// Returns a whole number where a double can be one.
+/// Returns a whole number, unless it is so large that the double is not exact.
 Json bytes_json(double bytes);
 
 struct CheckedStage {

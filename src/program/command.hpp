@@ -29,8 +29,8 @@ struct Command {
   std::function<int(Ranks&)> perform;
 };
 
-/// Each adds its command, with description and options, in the source of its name (advise:
-/// trade.cpp).
+/// Each of these functions adds the command of its name, with description and options. It is in the
+/// source file of that name (advise: trade.cpp).
 using AddCommand = Command(CLI::App& program);
 AddCommand add_run, add_relax, add_modes, add_path, add_sweep, add_check, add_new, add_trade,
     add_advise, add_methods, add_info, add_export;
@@ -73,7 +73,8 @@ void add_scene_options(CLI::App& command, Options& options,
       ->type_name("NAME");
 }
 
-/// Adds an option that may be repeated only with an equal value. Throws UsageError for two values.
+/// Adds an option that may be repeated only with an equal value. Throws UsageError for two
+/// different values.
 template <class Value>
 CLI::Option* add_one_value(CLI::App& command, std::string const& name, std::optional<Value>& value,
                            char const* description) {
@@ -116,8 +117,8 @@ inline constexpr std::string_view another_output = "another file for --output";
 void require_not_written(std::filesystem::path const& file, std::filesystem::path const& output,
                          std::string_view accepted = another_output);
 
-/// Returns the file that a scene writes: `output`, or the scene's own. Throws io::SceneError for
-/// neither, and UsageError for an empty name and for a file that the scene reads.
+/// Returns the file that a scene writes: `output`, or the scene's own. Throws io::SceneError if
+/// there is neither, and UsageError for an empty name and for a file that the scene reads.
 std::filesystem::path output_file(io::Scene const& scene,
                                   std::optional<std::filesystem::path> const& output);
 

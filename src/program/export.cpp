@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 struct ExportOptions {
   fs::path file, folder;
   std::optional<io::OvfFormat> format;  // default: the one that keeps the bits of /spins
-  std::string frames = "last";          // or "all", or a number counted from 0
+  std::string frames = "last";          // or "all", or a number from 0; -1: the last
   bool overwrite = false;
 };
 
@@ -58,8 +58,8 @@ bool is_rectangular(io::Lattice const& lattice) {
   return true;
 }
 
-// Returns nodes in the middle of cells of the lattice's spacing. Ignores the start of the scene,
-// which may be one that only the run's own program could give.
+// Returns a mesh with nodes in the middle of the lattice's cells. Ignores the start of the scene,
+// which may be vectors that only the program of that run had in its memory.
 io::OvfMesh mesh_of(io::TrajectoryInfo const& info) {
   auto const scene = io::parse_scene_to_run_or_relax(info.header.scene_text, info.path,
                                                      {"initial={uniform=[0,0,1]}"});

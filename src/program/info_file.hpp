@@ -17,7 +17,7 @@ namespace cayspin::program {
 /// Contents of a file for `cayspin info`: everything but its spins.
 struct InfoFile {
   std::filesystem::path path;
-  std::optional<bool> being_written;  ///< the result of io::is_being_written, obtained before
+  std::optional<bool> being_written;  ///< the result of io::is_being_written before it was read
   std::variant<io::TrajectoryInfo, io::SweepInfo, io::EnsembleInfo, io::Path, io::BandsContents>
       contents;
 };
@@ -25,7 +25,7 @@ struct InfoFile {
 /// Reads a file of any kind, also while a run writes it. Throws std::runtime_error with one line.
 InfoFile read_info_file(std::filesystem::path const& path);
 
-/// Returns its numbers by the names of its attributes and datasets.
+/// Returns the numbers of a file by the names of its attributes and datasets.
 Json as_json(InfoFile const& file);
 
 }  // namespace cayspin::program

@@ -10,8 +10,8 @@
 namespace cayspin::program {
 
 /// Returns the unit of a prefactor in one direction of a path with rates, after a blank; empty in
-/// reduced units. A rate is the prefactor times T^(half the zero modes that its start has more than
-/// the saddle).
+/// reduced units. The rate is prefactor * T^(n / 2) * exp(-barrier / kT), where the state that is
+/// left has n more zero modes than the saddle.
 std::string unit_of_prefactor(io::Path const& path, bool forward);
 
 /// Summarise the file of a path, or of modes or waves.

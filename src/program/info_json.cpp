@@ -42,7 +42,7 @@ void add_cost(Json& object, io::RunCost const& cost) {
   object["step_seconds"] = has_ended ? Json(cost.step_seconds) : Json();
 }
 
-// The rows of numbers that are stored one after another.
+// Returns a table whose rows are stored one after another.
 template <class Value>
 Json in_rows(std::vector<Value> const& values, std::size_t rows) {
   auto table = Json::array();
@@ -125,7 +125,8 @@ void add_contents(Json& object, InfoFile const& file, io::TrajectoryInfo const& 
   object["resolved_scene"] = text_or_null(header.resolved_scene);
 }
 
-// The file does not name the units. Their values may differ from run to run.
+// The file does not name the units, so they are read from the scene. Their values are left out,
+// because they may differ from run to run.
 Json units_of_sweep(InfoFile const& file, io::SweepInfo const& sweep) {
   io::Scene scene;
   scene.path = file.path;

@@ -44,10 +44,11 @@ FileAge age_of(std::filesystem::path const& path) {
 #endif
 }
 
-/// Planned steps of the scene in a file, which a newer version may have written.
+/// Planned steps of the scene in a file. They are unknown if a newer version has written a scene
+/// that this one cannot read.
 struct PlannedSteps {
   std::int64_t steps = 0;    // 0 if unknown
-  bool equal_steps = false;  // steps of the method are those of the run
+  bool equal_steps = false;  // the method takes no steps of its own
 };
 
 PlannedSteps planned_steps(io::TrajectoryInfo const& info) {
@@ -58,7 +59,7 @@ PlannedSteps planned_steps(io::TrajectoryInfo const& info) {
   scene.text = header.resolved_scene.empty() ? header.scene_text : header.resolved_scene;
   try {
     auto stages = io::stages_of(io::with_overrides(scene, {}));
-    if (stages.size() > 1 && info.frames > 0) {  // those before may have ended early
+    if (stages.size() > 1 && info.frames > 0) {  // earlier stages may have ended early
       auto const begin = last_frame(info, stages).begin;
       auto const now = static_cast<std::size_t>(begin.stage);
       stages.at(now).scene.begin = begin;

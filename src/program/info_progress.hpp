@@ -11,13 +11,13 @@
 
 namespace cayspin::program {
 
-/// How far an incomplete run is.
+/// How far an incomplete run has got.
 struct RunProgress {
   std::optional<bool> is_running = {};            ///< unknown where files are not locked
   double idle = 0;                                ///< seconds since the file was last written
   std::optional<io::Sample> last = {};            ///< the last frame or sample
   std::optional<std::int64_t> steps = {};         ///< planned
-  std::optional<double> seconds = {};             ///< so far, of a run without a cost
+  std::optional<double> seconds = {};             ///< so far, if the file has no cost yet
   std::optional<double> updates_per_second = {};  ///< of spins
   std::optional<double> seconds_left = {};
 };
@@ -26,7 +26,7 @@ struct RunProgress {
 /// read.
 RunProgress progress_of(io::TrajectoryInfo const& info, std::optional<bool> being_written);
 
-/// Returns its headings and lines for users.
+/// Returns the progress as headings and lines.
 std::vector<std::pair<std::string, std::string>> progress_lines(io::TrajectoryInfo const& info,
                                                                 std::optional<bool> being_written);
 

@@ -8,8 +8,8 @@
 
 namespace cayspin::program {
 
-/// Scope in which a command uses Kokkos. In the worker of a sweep it is initialised for all
-/// commands, because a process can initialise it only once.
+/// Scope in which a command uses Kokkos. The worker of a sweep has initialised Kokkos for all its
+/// commands, because a process can do so only once.
 class KokkosOfCommand {
  public:
   /// Throws like KokkosSession.

@@ -36,7 +36,7 @@ std::filesystem::path self(char** argv) {
 // the command.
 [[noreturn]] void become_sibling(std::string const& name, char** argv) {
   auto const path = self(argv).parent_path() / name;
-  argv[1] = argv[0];  // name by which it is called, instead of the command
+  argv[1] = argv[0];  // the name of this program, in place of the command
   ::execv(path.c_str(), argv + 1);
   throw UsageError(fmt::format("{}: cannot be started: {} (the build puts it beside cayspin)",
                                path.string(), std::strerror(errno)));
@@ -79,7 +79,7 @@ std::vector<OtherProgram> other_programs() {
        become_script, "view_texture.py"}};
 }
 
-// The heading of --help under which a command stands.
+// Returns the heading of --help under which a command stands.
 std::string group_of(std::string_view command) {
   constexpr std::array of_scenes{"run", "relax", "modes", "path", "sweep"};
   constexpr std::array before{"new", "check", "advise", "trade", "methods"};
@@ -92,7 +92,7 @@ std::string group_of(std::string_view command) {
   return is_in(of_files) ? "Files" : "Paper";
 }
 
-// Names the unknown command; CLI11 would only say that there is none.
+// Throws UsageError that names an unknown command: CLI11 would only say that a command is missing.
 void require_command(CLI::App const& app, std::string_view first) {
   if (first.starts_with('-')) return;
   std::string names;
@@ -107,7 +107,7 @@ void require_command(CLI::App const& app, std::string_view first) {
                                names));
 }
 
-// `cayspin help` and `cayspin help COMMAND` are --help and COMMAND --help.
+// Replaces `help` by `--help`, and `help COMMAND` by `COMMAND --help`.
 std::vector<char*> with_help_as_option(std::span<char* const> arguments) {
   static char help[] = "--help";
   std::vector<char*> plain(arguments.begin(), arguments.end());
@@ -152,7 +152,7 @@ int perform(int count, char** given) {
     return Status::done;
   } catch (...) {
     if (!ranks->many()) throw;
-    // Reported while all ranks exist: launchers stop the others when one has failed.
+    // Reports before this rank ends, because launchers stop all others as soon as one has failed.
     int const status = report(std::current_exception());
     if (!ranks->agreed()) ranks->leave_by(status);
     return status;

@@ -41,7 +41,7 @@ Words rotations(Variant const& variant) {
 std::vector<Variant> listed_variants() {
   std::vector<Variant> listed;
   for (auto const& variant : variants()) {
-    // Has the name of the method on spins.
+    // This row would be the same as that for spins.
     if (variant.of_rigid_bodies && variant.isotropy == io::Isotropy::zero) continue;
     listed.push_back(variant);
   }

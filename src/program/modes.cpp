@@ -92,7 +92,8 @@ std::string as_start(std::filesystem::path const& file) {
                      io::toml_string(std::filesystem::absolute(file).string()));
 }
 
-// Reports errors of the start in a trajectory file for that file, by its typed name.
+// Checks the files of a scene. Errors of a start from a trajectory file name that file as it was
+// typed.
 void check_files(io::Scene const& scene, std::filesystem::path const& file) {
   try {
     io::check_files(scene);
@@ -105,7 +106,8 @@ void check_files(io::Scene const& scene, std::filesystem::path const& file) {
   }
 }
 
-// A trajectory file's scene starts at its last frame, in the last field of a list.
+// Reads the scene. The scene of a trajectory file starts at the last frame, in the last field if it
+// has a list of fields.
 io::Scene scene_of(ModesCommand const& options) {
   if (!is_hdf5(options.scene)) {
     auto const scene =
@@ -181,7 +183,8 @@ class ModesOfScene {
   }
 
  private:
-  // Checks a start that is already an equilibrium, and keeps it.
+  // Finds the equilibrium. With --at-rest, keeps the start, and warns if its torque is above
+  // --torque.
   Minimum equilibrium(SceneField<Spins> const& field) {
     SceneMinimizer<Real, Space> minimizer(spins_);
     MinimizeOptions minimize{.torque = options_.torque / scene_.units.field,
@@ -204,7 +207,7 @@ class ModesOfScene {
     return found;
   }
 
-  // Starts at an equilibrium of the energy.
+  // Finds the equilibrium under [torque], starting at an equilibrium of the energy.
   Minimum equilibrium_with_torques(std::int64_t evaluations) {
     auto found =
         find_rest_with_torques<Real, Space>(exec_, scene_, spins_, options_.search,
@@ -276,7 +279,7 @@ class ModesOfScene {
     double fastest = 0;
     for (std::size_t i = 0; i < found.decays.size(); ++i)
       fastest = std::max(fastest, std::hypot(found.frequencies[i], found.decays[i]));
-    // Zero modes have decays of either sign.
+    // Zero modes have decays of either sign, due to round-off.
     if (auto const growing = std::ranges::count_if(
             found.decays, [&](double decay) { return decay < -1e-7 * fastest; }))
       fmt::print("{} of these modes {}: the decay is negative\n", growing,

@@ -29,7 +29,7 @@ struct PathCommandOptions : DeviceOptions {
   bool quiet = false, json = false;
 };
 
-/// An end of the path.
+/// The option that names the file of an end of the path.
 struct EndOption {
   char const* name;
   std::filesystem::path const& file;
@@ -39,7 +39,7 @@ struct EndOption {
   }
 };
 
-/// Reports errors of the file for the option, by the typed file name.
+/// Calls work(). Errors of the file name the option, and the file as it was typed.
 template <class Work>
 auto for_option(EndOption const& option, Work const& work) {
   try {
@@ -119,7 +119,8 @@ int find_path(PathCommandOptions const& options) {
       find_scene_path(scene, from, to, space, options.precision, search, CAYSPIN_GIT_COMMIT);
   path.from = options.from.string();
   path.to = options.to.string();
-  // Rates take long after the path is found.
+  // An interrupt may also come after the path was found, during the computation of rates, which
+  // takes long.
   if (end == PathEnd::interrupted || interrupt_requested()) {
     fmt::print(stderr, "{}: interrupted; nothing is written\n", scene.path.string());
     return Status::interrupted;

@@ -8,7 +8,7 @@
 
 #include <optional>
 
-// `--json`, as all commands have it.
+// The option --json, which is the same for all commands that have it.
 namespace cayspin::program {
 
 /// Keeps the order of its keys.

@@ -72,7 +72,7 @@ void Progress::show(Step const& step) {
   next_ = step.number + std::max<std::int64_t>(1, static_cast<std::int64_t>(0.1 * rate));
   double const least_pause = listener_ == Listener::program ? 0.2 : terminal_ ? 0.1 : 5;
   if (step.number == first_) {
-    // The first step may take long.
+    // Draws at once, because the first step may take long.
     if (listener_ == Listener::user && steps_ > first_)
       draw(0, fmt::format("step {} of {}", first_, steps_));
     return;

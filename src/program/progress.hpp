@@ -14,7 +14,7 @@ namespace cayspin::program {
 /// file size limit an error like any other.
 void catch_signals();
 
-/// Returns true once one of these signals came.
+/// Returns true once one of these signals has arrived.
 bool interrupt_requested();
 
 /// The reader of a run's progress messages.
@@ -26,8 +26,9 @@ class Progress {
  public:
   Progress(std::int64_t sites, Listener listener);
 
-  /// Call before the first step after `first` of a stage, or of the run. `end`: the last step of
-  /// the run. `equal_steps`: the method's steps are those of the run. `name`: of a stage, or empty.
+  /// Call before a stage, or a run without stages, continues from step `first`. `end`: the last
+  /// step of the run. `equal_steps`: the method takes no steps of its own. `name`: of the stage, or
+  /// empty.
   void begin_stage(std::int64_t first, std::int64_t end, bool equal_steps, std::string name);
   /// Counts the steps of a stage.
   void add(Summary const& summary);
@@ -66,9 +67,9 @@ class TrialProgress {
   TrialProgress(TrialProgress const&) = delete;
   TrialProgress& operator=(TrialProgress const&) = delete;
 
-  /// Call before the first trial: the most that all of them may take.
+  /// Call before the first trial. `most_seconds`: the longest that all trials together may take.
   void announce(double most_seconds);
-  /// Call before each trial: the share of the work done, and the name of the trial.
+  /// Call before each trial. `share`: of the work that is done; `what`: the name of the trial.
   void show(double share, std::string const& what);
   void clear();
 

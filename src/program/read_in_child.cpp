@@ -57,7 +57,8 @@ rlim_t address_space() {
   return pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
 }
 
-// A megabyte may decompress to a gigabyte, but not to a hundred.
+// Returns the processor time that a child may take, by the size of the file: a megabyte may
+// decompress to a gigabyte, but not to a hundred.
 rlim_t most_seconds(std::filesystem::path const& path) {
   std::error_code error;
   auto const bytes = std::filesystem::file_size(path, error);
@@ -106,7 +107,7 @@ std::string answer(std::function<void()> const& reading) {
     return std::string(1, out_of_memory);
   } catch (std::length_error const&) {
     return std::string(1, out_of_memory);
-  } catch (...) {  // the parent will get the exception, too
+  } catch (...) {  // the parent reads the file, too, and gets the exception
   }
   return std::string(1, survived);
 }
@@ -152,7 +153,7 @@ Received receive(int pipe, Clock::time_point deadline) {
   }
 }
 
-// Returns why a child left no answer. A caller that ignores SIGCHLD leaves no status.
+// Returns why a child left no answer. There is no status if the calling program ignores SIGCHLD.
 std::string cause_of(std::optional<int> status, bool is_late) {
   if (is_late) return "reading it takes too long";
   if (!status || !WIFSIGNALED(*status)) return "reading it fails";

@@ -12,7 +12,8 @@ namespace cayspin::program {
 /// happens, and the child's message if `reading` threw. A trial for io::set_trial().
 void try_in_child(std::filesystem::path const& path, std::function<void()> const& reading);
 
-/// Like the above, but kills a child that does not end within `longest`.
+/// Like the above, but with a time limit of `longest` for the child, instead of one by the size of
+/// the file.
 void try_in_child(std::filesystem::path const& path, std::function<void()> const& reading,
                   std::chrono::milliseconds longest);
 

@@ -52,7 +52,8 @@ Restart restart_of(EarlierRun left, io::Stage const& stage, Plan const& plan,
   });
 }
 
-// Returns the typed scene, on which the ranks must agree, after all checks that need nothing else.
+// Reads the scene as typed, and makes all checks that need nothing else. Throws if the ranks were
+// given different scenes.
 io::Scene typed_scene(RunOptions const& options, Ranks& ranks) {
   auto typed = ranks.together([&] {
     auto scene = io::with_shape_of_start(io::read_scene(options.scene, options.overrides));
@@ -69,7 +70,8 @@ io::Scene typed_scene(RunOptions const& options, Ranks& ranks) {
   return typed;
 }
 
-// The first rank chooses for method "auto", for all ranks.
+// Returns the scene with a method in place of "auto": that of the earlier run, or the one that the
+// first rank chooses for all.
 io::Scene with_method(io::Scene const& typed, EarlierRun const* left, RunOptions const& options,
                       std::string const& space, Ranks& ranks) {
   auto const as_before =
@@ -93,7 +95,7 @@ Plan plan_of(io::Stage const& stage, Precision precision) {
                      : make_plan(stage.scene, precision);
 }
 
-// Returns all stages, with plans from the stage in which the run continues.
+// Returns all stages. Those before the one in which the run continues have no plan.
 std::vector<PlannedStage> planned_stages(io::Scene const& scene, EarlierRun* left,
                                          RunOptions const& options, Ranks& ranks) {
   return ranks.together([&] {

@@ -6,17 +6,17 @@
 
 namespace cayspin::program {
 
-/// `cayspin run` of a scene with [ensemble], on one rank. Returns the exit status.
+/// Performs `cayspin run` for a scene with [ensemble], on one rank. Returns the exit status.
 int run_ensemble(io::Scene const& scene, RunOptions const& options);
 
-/// How `cayspin relax` looks for the equilibrium of each replica.
+/// How `cayspin relax` searches for the equilibrium of each replica.
 struct RelaxEnsembleOptions {
   double torque = 1e-6;
   std::int64_t evaluations = 100000;
   bool keep_saddles = false, quiet = false, json = false;
 };
 
-/// `cayspin relax` of such a scene: each replica to its own equilibrium.
+/// Performs `cayspin relax` for such a scene: moves each replica to its own equilibrium.
 int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
                    RelaxEnsembleOptions const& search);
 

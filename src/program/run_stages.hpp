@@ -37,18 +37,19 @@ struct RunOptions : DeviceOptions {
   Listener listener = Listener::user;
 };
 
-/// A stage with its plan, which is empty before the first stage of a restart.
+/// A stage with its plan. Stages before the one in which a restart continues have none.
 struct PlannedStage {
   io::Stage stage;
   std::optional<Plan> plan;
 };
 
-/// Returns true for the start of a run whose first tables have no integrator.
+/// Returns true for a stage without steps: the start of a scene that has an integrator only in its
+/// [[stage]] tables.
 inline bool is_start(io::Stage const& stage) {
   return !stage.relax && !io::has_integrator(stage.scene);
 }
 
-/// Adds the option that names the file to errors.
+/// Calls work(). Puts the option --restart before the message of a UsageError.
 template <class Work>
 auto as_restart(Work const& work) {
   try {
@@ -64,8 +65,9 @@ class RunOfStages {
   using Spins = SpinField<Real, typename Space::memory_space>;
 
  public:
-  /// `typed`: the whole scene, as in the file; `resolved`: with the method chosen by "auto", or
-  /// empty. `plan_of`: returns the plan of a stage that starts elsewhere than planned.
+  /// `typed`: the whole scene, as in the file; `resolved`: the scene with the method that was
+  /// chosen for "auto", or empty. `plan_of`: plans a stage again if it starts at another step than
+  /// planned.
   RunOfStages(io::Scene const& typed, std::string resolved, std::vector<PlannedStage> stages,
               std::function<Plan(io::Stage const&)> plan_of, RunOptions const& options,
               Restart const* restart, Ranks& ranks)
@@ -114,7 +116,8 @@ class RunOfStages {
 
   std::vector<double> start() const {
     auto const own = own_sites(plan().lattice);
-    // An expression that fails at one site must end all ranks, which later wait for each other.
+    // Evaluates these already here, inside together(): an expression that fails at a site of one
+    // rank must end all ranks.
     io::occupied(scene(), own);
     io::frozen(scene(), own);
     if (!restart_) return io::initial_spins(scene(), own);
@@ -198,7 +201,7 @@ class RunOfStages {
     step_ = times.first + summary.steps;
     failure_ = failure ? failure : watch.failure();
     broke_ = failure.has_value();
-    // Replaces the library's own messages, which ignore the scene's units.
+    // Messages of the library itself have times in reduced units.
     if (failure && scene().units.si)
       *failure_ += fmt::format(" (times in units of {:.6g} s)", scene().units.time);
     interrupted_ = watch.interrupted();
@@ -209,7 +212,7 @@ class RunOfStages {
     if (failure_) return;
     bool const has_file = ranks_.any({writer_.file().has_value(), false})[0];
     if (!has_file || scene().output.checkpoint_every.is_never()) return;
-    // If the run has no memory, the last frame is enough.
+    // A method without a memory of steps can continue from the last frame, and needs no checkpoint.
     auto const step = writer_.last_frame()->step;
     if (remembers(scene(), plan()))
       store({step, plan().times.at(step), plan().times.dt, true});
@@ -217,7 +220,8 @@ class RunOfStages {
       std::filesystem::remove(io::checkpoint_beside(path_));
   }
 
-  // If a stage ends early, no frame records that.
+  // If the stage has ended early, plans the later ones again, and stores a checkpoint, because no
+  // frame tells where the next stage starts.
   void enter_next() {
     auto& next = stages_[now_ + 1];
     auto const planned = next.stage.scene.begin;

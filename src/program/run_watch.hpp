@@ -21,8 +21,8 @@ namespace cayspin::program {
 
 using namespace simulation;
 
-/// Observer of a stage of `cayspin run`: writes frames and scalars, stops early, shows progress.
-/// All ranks are called at equal steps.
+/// Observer of a stage of `cayspin run`: writes frames and scalars, stops early, shows progress. It
+/// is due at the same steps on all ranks.
 template <class Real, class Space>
 class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_space>> {
   using Spins = SpinField<Real, typename Space::memory_space>;
@@ -39,7 +39,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
         scene_(scene),
         first_(run.times.first),
         checkpoints_(scene.output.checkpoint_every, first_) {
-    // The previous stage has written the state.
+    // If there is a frame, the previous stage has already written this state.
     is_written_ = writer.last_frame().has_value();
   }
 
@@ -82,7 +82,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   /// Returns why the run failed, if it did.
   std::optional<std::string> const& failure() const { return failure_; }
   bool interrupted() const { return interrupted_; }
-  /// Returns true if it ended without torque, but at a saddle of the energy.
+  /// Returns true if the run ended at a saddle of the energy, where there is no torque.
   bool at_saddle() const { return at_saddle_; }
 
  private:

@@ -92,7 +92,8 @@ class RunWriter {
     exec.fence("cayspin::RunWriter: frame copied");
   }
 
-  // Writes all but the last piece of the frame, and leaves that one in its memory.
+  // Gathers the frame piece by piece, and writes all pieces but the last, which stays in `room` for
+  // write_frame().
   void gather_pieces(Lattice const& local, Real const* own, Real* room) {
     auto const& shape = whole(local).shape;
     io::TrajectoryStorage const storage{output_.compression, output_.chunk};
@@ -116,7 +117,7 @@ class RunWriter {
   std::int64_t cell_sites_;
   OpenFile open_file_;
   std::optional<io::RunOutput> file_;
-  Frame frame_;  // copied from a device
+  Frame frame_;  // on a device, before it is copied to the host
   Kokkos::View<Real* [3], Kokkos::LayoutRight, Kokkos::HostSpace>
       part_;  // to be sent to the first rank
   std::optional<Sample> last_frame_;

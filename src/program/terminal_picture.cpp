@@ -27,7 +27,7 @@ bool has_all_colors() {
   return said == "truecolor" || said == "24bit";
 }
 
-// `ground`: 38 for the foreground, 48 for the background.
+// Returns the escape sequence for a colour. `ground`: 38 for the foreground, 48 for the background.
 std::string escape(int ground, Color const& color) {
   if (has_all_colors())
     return fmt::format("\x1b[{};2;{};{};{}m", ground, color[0], color[1], color[2]);
@@ -61,13 +61,13 @@ class Plane {
     sites_ = static_cast<std::int64_t>(lattice.basis.size());
     cells_ = lattice.shape;
     cells_[2] /= sites_;
-    // If extents are equal, z is the normal.
+    // The normal is the axis with the fewest cells; of equal ones z, then y.
     axes_ = {0, 1, 2};
     for (std::size_t axis : {1, 0})
       if (cells_[axis] < cells_[axes_[2]]) axes_ = {axis == 0 ? 1U : 0U, 2, axis};
     for (std::size_t i = 0; i < 2; ++i)
       lengths_[i] = static_cast<double>(cells_[axes_[i]]) * lattice.spacing[axes_[i]];
-    if (cells_[axes_[0]] == 1) {  // along z or y
+    if (cells_[axes_[0]] == 1) {  // a chain along z or y
       std::swap(axes_[0], axes_[1]);
       std::swap(lengths_[0], lengths_[1]);
     }
@@ -78,7 +78,7 @@ class Plane {
   std::int64_t cells(std::size_t across) const { return cells_[axes_[across]]; }
   char axis(std::size_t which) const { return "xyz"[axes_[which]]; }
 
-  /// Returns the colour at a point, given as fractions of the plane.
+  /// Returns the colour at a point, given as fractions of the plane's width and height.
   Color color(double right, double up) const {
     std::array<std::int64_t, 3> at{};
     at[axes_[0]] = cell(right, 0);

@@ -43,7 +43,7 @@ struct AdviseOptions : TryOptions {
 constexpr double errors_compared[] = {1e-2, 1e-4, 1e-6, 1e-8};
 constexpr double least_error_of_trade = 1e-9;
 
-// Returns the steps of a rung, or of an advice.
+// Describes the steps of a rung or of an advice: a tolerance or dt.
 template <class Run>
 std::string steps_text(Pilot const& pilot, Candidate const& candidate, Run const& run) {
   auto const& units = pilot.scene().units;
@@ -52,7 +52,7 @@ std::string steps_text(Pilot const& pilot, Candidate const& candidate, Run const
              : fmt::format("dt {:.3e}{}", run.dt * units.time, units.si ? " s" : "");
 }
 
-// Returns 1 on devices.
+// Returns the number of threads of a space; 1 on devices.
 int threads_in(std::string const& space) {
   return in_space(space, Precision::double_precision,
                   []<class, class Space>() { return threads_of(Space()); });
@@ -152,8 +152,8 @@ void print_verdicts(Pilot const& pilot, std::vector<Verdict> const& verdicts) {
   }
 }
 
-// Returns a command with the space and threads of the measurement, and with an output file if the
-// scene names none.
+// Returns the command that runs the scene as advised, with the space and threads of the
+// measurement, and with an output file if the scene names none.
 std::string command_of(AdviseOptions const& options, io::Scene const& scene,
                        Resolved const& resolved, Precision precision) {
   std::string command = "cayspin run " + shell_word(options.scene.string());
@@ -235,7 +235,8 @@ io::Scene scene_to_try(std::filesystem::path const& path,
   auto const scene = io::with_shape_of_start(io::read_scene(path, overrides));
   io::require_no_stages(scene, "cayspin trade or advise");
   io::check_files(scene);
-  // With several candidates, the scene's own method is ignored.
+  // Refuses substeps without an expensive field. With one, the scene's own method need not fit,
+  // because candidates replace it.
   if (!scene.integrator.method->automatic && !has_slow_field(scene))
     require_slow_field_fits(scene, find_variant(scene));
   return scene;

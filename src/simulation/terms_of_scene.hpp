@@ -189,8 +189,7 @@ class FieldInPass<Spins>::Terms {
   std::int32_t anisotropies_in_time_ = 0;
   bool precession_;
   std::vector<CellSite> cell_;
-  SceneLatticeTerms
-      seen_;  // lattice terms times gyromagnetic ratio over moment, for cells with one site
+  SceneLatticeTerms seen_;  // lattice terms times gyromagnetic ratio over moment
   std::optional<ScalarField<Real, Memory>> missing_;
   double largest_moment_ = 0;
   Spins field_;

@@ -119,8 +119,7 @@ class Parts {
   // no features at any of 256 places. Returns false if that fails.
   bool bound_the_rest(double begin, double end, std::vector<StepBound>& bounds) {
     constexpr int places = 256, halvings = 12;
-    if (samples_.evaluations() > 2 * search_.most_evaluations)
-      return false;  // earlier spans have used this up
+    if (samples_.evaluations() > 2 * search_.most_evaluations) return false;  // used up before
     double length = end - begin;
     for (auto const& bound : bounds)
       if (bound.max_dt > 0) length = std::min(length, bound.max_dt);

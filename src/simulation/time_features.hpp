@@ -31,7 +31,7 @@ struct TimeFeatures {
   std::int64_t jumps = 0;
   double last_change = 0;  // everything is constant from then on
   std::optional<Shortest> shortest;
-  std::vector<std::pair<std::string, double>> largest;  // length of each vector, with its key
+  std::vector<std::pair<std::string, double>> largest;  // key and largest length of a vector
   std::optional<std::string>
       unresolved;  // the key of a vector that changes too fast to be resolved
 };

@@ -17,8 +17,8 @@ struct Running {
   double share;
 };
 
-/// Progress report of a sweep on standard output: on a terminal a bar for each run in
-/// progress, as far as they fit, and one for all; otherwise a line for each run that ended.
+/// Progress report of a sweep on standard output: a line for each run that has ended; on a terminal
+/// also a bar for each run in progress, as far as they fit, and one for all runs.
 class Display {
  public:
   /// `open`: the runs to do.

@@ -20,11 +20,11 @@ namespace cayspin::program::sweep {
 namespace {
 
 constexpr double most_runs = 1e5;
-// Largest number of sites of all starts that are checked before the first run.
+// Starts are checked before the first run, until they have this many sites in all.
 constexpr std::int64_t most_checked = 20'000'000;
 
-// Returns true if the paths are equal, or one is a table that contains the other. Paths as for
-// `--set`.
+// Returns true if two keys, given as for --set, are equal, or one is a table that contains the
+// other.
 bool overlap(std::string const& a, std::string const& b) {
   auto const path = [](std::string const& assignment) {
     auto key = assignment.substr(0, assignment.find('='));
@@ -61,7 +61,8 @@ std::vector<io::SweptKey> read_keys(SweepOptions const& options) {
   return keys;
 }
 
-// Each run checks the time dependence of its field itself.
+// Does not search fields for features in time, which each run does itself, unless the scene sets
+// refuse_unstable.
 Plan plan_of(io::Stage const& stage, Precision precision) {
   auto const& scene = stage.scene;
   if (stage.relax) return make_plan_to_relax(scene, precision);
@@ -71,7 +72,8 @@ Plan plan_of(io::Stage const& stage, Precision precision) {
   return plan;
 }
 
-// The values of a run reach its scene as overrides, and messages of the scene call them --set.
+// The values of a run are passed to its scene as overrides, so messages call them --set. Replaces
+// that by --over.
 std::string naming_over(std::string message, std::vector<std::string> const& overrides) {
   constexpr std::string_view set = "--set ";
   for (auto const& override : overrides)

@@ -18,7 +18,7 @@ struct SweepOptions : SceneOptions {
   bool overwrite = false, quiet = false;
 };
 
-/// A sweep with only valid scenes.
+/// A sweep whose scenes have all been checked.
 struct Grid {
   io::SweepHeader header;
   std::vector<std::string> texts;  // of the scenes

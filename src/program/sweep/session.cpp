@@ -26,7 +26,7 @@ bool has_ended(io::SweptRun const& run) {
   return run.status == Status::done || run.status == Status::numbers_failed;
 }
 
-// Returns how the sweep differs from that in the file, or nothing.
+// Describes the sweep in the file if it is another one; otherwise empty.
 std::string difference(io::SweepHeader const& now, io::SweepHeader const& before) {
   auto const keys = [](io::SweepHeader const& header) {
     std::string text;
@@ -66,7 +66,7 @@ Session::Session(fs::path file, Grid const& grid, bool overwrite)
 
 void Session::open(bool is_new) {
   if (!is_new) {
-    // Checked again: it may have completed meanwhile.
+    // Reads the file again, because another process may have completed it meanwhile.
     auto const before = io::read_sweep(file_);
     info_.runs = before.runs;
     info_.complete = before.complete;
@@ -115,7 +115,7 @@ void Session::require_replaceable() const {
 
 Session::~Session() { release(); }
 
-// Removes the folder if it is empty.
+// Releases the lock, and removes the folder if it is empty.
 void Session::release() {
   if (lock_ < 0) return;
   std::error_code ignored;
@@ -145,8 +145,8 @@ std::vector<std::int64_t> Session::open_runs() const {
 
 bool Session::is_finished() const { return std::ranges::all_of(info_.runs, has_ended); }
 
-// Returns true if the run's own file is complete and of this sweep. A file with a frame is read
-// even if its run failed.
+// Reads the last frame of a run's own file, even if the run failed. Returns true if the file is
+// complete and of this sweep.
 bool Session::read_run(std::int64_t number, io::SweptRun& run) const {
   auto const path = run_file(number);
   if (!fs::exists(path)) return false;
@@ -173,13 +173,13 @@ void Session::take(std::int64_t number, std::int64_t status, std::string const& 
   io::SweptRun taken;
   bool const whole = [&] {
     if (status != Status::done) return read_run(number, taken);
-    // A worker has just written it.
+    // Reads the file directly, not first in a child process: a worker has just written it.
     io::WithoutTrial const scope;
     return read_run(number, taken);
   }();
   taken.status = status;
   taken.is_new = whole;
-  // The file of this name becomes a group.
+  // In the message, the run's group replaces the name of its file.
   auto const name = run_file(number).string();
   taken.message = message;
   if (auto const place = message.find(name); place != message.npos)
@@ -190,8 +190,8 @@ void Session::take(std::int64_t number, std::int64_t status, std::string const& 
     taken.message = "its file is not that of the scene that was read when the sweep began";
   }
   info_.runs[index(number)] = taken;
-  // Successful runs need not be written at once: one with a complete file is found again without
-  // it.
+  // A successful run need not be recorded at once: if the record is lost, its complete file is
+  // found again.
   if (status != Status::done ||
       std::chrono::steady_clock::now() - written_ > std::chrono::seconds(1))
     write();

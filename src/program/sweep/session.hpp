@@ -12,8 +12,8 @@
 
 namespace cayspin::program::sweep {
 
-/// The file of a sweep and the folder next to it where its runs write, locked against other
-/// processes.
+/// The file of a sweep, and the folder next to it where its runs write their files, locked against
+/// other processes.
 class Session {
  public:
   /// Continues the sweep in the file, or starts one. Throws UsageError when the file has other
@@ -30,13 +30,14 @@ class Session {
   /// Returns the runs that are still to do.
   std::vector<std::int64_t> open_runs() const;
 
-  /// Records the end of a run. Its status is that of wrong usage if it was not the planned one.
+  /// Records the end of a run. Its status becomes wrong_usage if it is done, but its file is not
+  /// that of the planned scene.
   void take(std::int64_t number, std::int64_t status, std::string const& message);
 
   /// Writes the recorded results.
   void write();
-  /// Writes; if all runs have ended, copies them into the file and removes the folder. Returns
-  /// false if interrupted.
+  /// Writes the results; if all runs have ended, copies their files into the sweep's file and
+  /// removes the folder. Returns false if interrupted.
   bool close();
 
  private:

@@ -72,7 +72,7 @@ std::vector<std::string> arguments_of(SweepOptions const& options, Grid const& g
   return arguments;
 }
 
-// Their files are not needed: interrupted runs start again.
+// Stops the runs in progress. Their files are not needed, because interrupted runs start again.
 void stop(std::vector<Job>& jobs) {
   for (auto const& job : jobs) job.worker->stop(SIGTERM);
   auto const deadline = Clock::now() + std::chrono::seconds(2);
@@ -84,7 +84,7 @@ void stop(std::vector<Job>& jobs) {
   jobs.clear();
 }
 
-// Returns false if interrupted.
+// Does all runs that are still to do. Returns false if interrupted.
 bool run_all(SweepOptions const& options, Grid const& grid, Session& session) {
   auto const list = session.open_runs();
   std::deque<std::int64_t> open(list.begin(), list.end());

@@ -28,7 +28,8 @@ std::string status_text(io::SweptRun const& run) {
   }
 }
 
-// Six digits after the point are too many off the sphere, where classical methods may be.
+// Spins of classical methods may leave the sphere and become so long that six digits after the
+// point are too many.
 std::string component_text(double m) {
   return std::abs(m) < 10 ? fmt::format("{:.6f}", m) : fmt::format("{:.3g}", m);
 }

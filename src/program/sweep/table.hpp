@@ -5,7 +5,7 @@
 
 namespace cayspin::program::sweep {
 
-/// Prints a line for each run on standard output: values, end, cost.
+/// Prints a line for each run on standard output: its values, status, last frame and duration.
 void print_table(io::SweepInfo const& sweep);
 
 }  // namespace cayspin::program::sweep

@@ -42,10 +42,10 @@ Pipe open_pipe() {
   return ends;
 }
 
-// Runs after the fork: nothing here allocates.
+// Makes a forked child a worker. Nothing here may allocate memory after the fork.
 [[noreturn]] void become(char* const* words, Pipe const& requests, Pipe const& output,
                          Pipe const& errors, pid_t parent) {
-  // Leaves the terminal's process group; the parent passes an interrupt on once.
+  // Leaves the terminal's process group, so that an interrupt comes only once, from the parent.
   ::setpgid(0, 0);
 #if defined(__linux__)
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -58,8 +58,8 @@ Pipe open_pipe() {
   ::_exit(127);
 }
 
-// Returns false if the other end has closed. A request is its words, each followed by a zero, and
-// one more zero.
+// Reads a request: words, each followed by a zero, and one more zero. Returns false if the other
+// end has closed.
 bool read_request(std::vector<std::string>& words) {
   words.clear();
   std::string word;
@@ -113,7 +113,7 @@ void Worker::begin(std::vector<std::string> const& arguments) {
   std::string request;
   for (auto const& argument : arguments) request += argument + '\0';
   request += '\0';
-  // If the process has ended, the streams say so.
+  // If the process has ended, the write fails; the closed streams tell that later.
   auto const before = std::signal(SIGPIPE, SIG_IGN);
   for (std::size_t sent = 0; sent < request.size();) {
     auto const count = ::write(requests_, request.data() + sent, request.size() - sent);
@@ -147,7 +147,8 @@ void Worker::read(std::size_t which) {
 
 void Worker::read() {
   read(0);
-  // Read after the output, so that it has all that was written before the line that ends a command.
+  // Errors are read after the output, so that they include all that was written before the line
+  // that ends a command.
   read(1);
   auto& output = texts_[0];
   for (auto end = output.find('\n'); end != output.npos; end = output.find('\n')) {

@@ -12,8 +12,8 @@
 
 namespace cayspin::program::sweep {
 
-/// Space and threads of the runs of a worker, and whether other workers run at the same time, so
-/// that none binds its threads to cores.
+/// Space and threads of the runs of a worker. If other workers run at the same time
+/// (is_one_of_many), it does not bind its threads to cores.
 struct WorkerOptions {
   std::string space;
   std::optional<int> threads;
@@ -33,7 +33,7 @@ class Worker {
   /// Starts a command with these arguments; none may be running.
   void begin(std::vector<std::string> const& arguments);
   void add_to(std::vector<pollfd>& polled) const;
-  /// Reads its output so far; does not wait.
+  /// Reads the output so far, without waiting.
   void read();
   /// Returns true once the command has ended, also by a crash of the process.
   bool has_ended() const { return status_.has_value() || has_closed(); }

@@ -18,19 +18,19 @@ namespace {
 
 // Limits of a search: share of the duration of the run, but at least this many seconds.
 constexpr double most_share = 0.1, least_limit = 2;
-// Approximate shares of that limit: for a coarse run, the fine solution, the first trials, and all
-// trials.
+// Approximate shares of that limit: for a coarse run, for the fine solution, and those at which the
+// first trials and all trials end.
 constexpr double coarse_share = 1.0 / 40, fine_share = 0.4, first_share = 0.65, try_share = 0.9;
 
 constexpr double accepted = 0.95;  // share of the requested error, with its uncertainty included
 constexpr double aim = 0.9;        // share of the accepted error
 constexpr double unlikely = 16;    // ratio of expected evaluations to the fewest
 constexpr double hope = 0.8;       // ratio of time to the prediction, at best
-constexpr double doubt = 6;        // the same ratio, if noise may be the reason
+constexpr double doubt = 6;        // ratio of time to the best that noise may explain
 constexpr double contender = 1.7;  // ratio of time to the best, for candidates that are timed again
 constexpr int rounds = 3;          // of repeated timing
 constexpr int tries = 12;          // per candidate
-constexpr int all_finer = 30;      // times finer than the coarsest steps, if those are refused
+constexpr int all_finer = 30;      // how often the coarsest steps are made finer, if refused
 constexpr int refinements = 4;     // of resolved steps that miss the error
 constexpr int horizons = 20;       // number to try, each half of the previous one
 
@@ -60,9 +60,9 @@ class Search {
     std::ranges::stable_sort(prospects_, {}, &Prospect::expected_evaluations);
   }
 
-  /// Tries each likely candidate once, then the one predicted to be the cheapest, until none
-  /// promises an improvement; then repeats this with all candidates. Stops early when time is up,
-  /// but not before one candidate works.
+  /// Tries each likely candidate once, then repeatedly the one predicted to be the cheapest, until
+  /// none promises an improvement; then repeats this with all candidates. Stops early when time is
+  /// up, but not before one candidate works.
   void run() {
     if (prospects_.empty()) return;
     double const least = prospects_.front().expected_evaluations();
@@ -83,8 +83,8 @@ class Search {
     return false;
   }
 
-  /// Returns all advice, cheapest first. A candidate that was not fully tried does not come first
-  /// if others were.
+  /// Returns all advice, cheapest first. Leaves out candidates that are only predicted to be faster
+  /// than the best one whose trial met the error.
   std::vector<Advice> all_advice() const {
     std::vector<Advice> all;
     double const least = least_seconds();
@@ -112,11 +112,12 @@ class Search {
 
   void add(Candidate const& candidate) {
     if (!pilot_.fits(candidate)) return;
-    // Adaptive steps may meet features that this part of the run does not have.
+    // Only adaptive steps can resolve features that come after this part of the run.
     if (!candidate.method->adaptive && !is_representative_) return;
     auto coarsest = coarsest_steps(pilot_, candidate, horizon_.time, horizon_.own_steps);
     if (pilot_.scene().integrator.refuse_unstable && !candidate.method->adaptive) {
-      // It takes long to compute, and is the usual reason for a refusal.
+      // Starts at the stable dt, since a larger one is the usual reason for a refusal. Only then,
+      // because it takes long to compute.
       double const stable = pilot_.plan(candidate, horizon_.time, coarsest).stable_dt;
       if (!(stable > 0)) return;
       coarsest.count =
@@ -183,7 +184,8 @@ class Search {
         return;
   }
 
-  // Returns nothing if no other candidate may be cheaper than the best that meets the error.
+  // Returns the candidate predicted to be the cheapest; null if none may be cheaper than the best
+  // that meets the error.
   Prospect* most_promising() {
     Prospect* promising = nullptr;
     double least = least_seconds() / hope;
@@ -206,7 +208,7 @@ class Search {
     if (prospect.tries().size() >= tries || prospect.is_round_off(error_)) prospect.drop();
   }
 
-  // Repeats timings that noise may have slowed down. Returns true if there was one.
+  // Repeats timings that noise may have lengthened. Returns true if there were any.
   bool time_doubtful() {
     bool any = false;
     double const most = doubt * least_seconds();
@@ -223,7 +225,7 @@ class Search {
     return any;
   }
 
-  // Alternates between candidates, so that noise affects all equally.
+  // Times the best candidates again, in turns, so that noise affects all equally.
   void time_again() {
     for (int round = 0; round < rounds; ++round) {
       double const most = (round == 0 ? doubt : contender) * least_seconds();
@@ -296,9 +298,10 @@ Known fine_solution(Pilot const& pilot, Horizon& horizon, double error, double s
   throw NumbersFailed("there is no solution to compare with: " + horizon.why_shorter);
 }
 
-// Checks the steps of the actual run where no trial has: an error that was extrapolated may be far
-// off, and if a field depends on t, the error depends on where the steps are, and a scene's frames
-// may shorten them. The steps are shortened until they meet the error.
+// Tries the steps of the actual run, if no trial has shown their error: an extrapolated error may
+// be far off, and in a field that depends on t, the error depends on where the steps are, and the
+// scene's frames may have shortened them. Shortens the steps until they meet the error; returns
+// false if they do not.
 bool holds(Pilot const& pilot, Horizon const& horizon, Known const& fine, double error,
            Advice& advice) {
   bool const adaptive = advice.candidate.method->adaptive;
@@ -336,7 +339,7 @@ Advised advise(Pilot const& pilot, AdviceRequest const& request) {
   Search search(pilot, horizon, fine, request, clock, limit);
   search.run();
   Advised advised;
-  // A trial of steps that were extrapolated could take any time.
+  // Trials of steps that were only extrapolated could take any time.
   double const part = horizon.time / pilot.end();
   auto const is_too_long = [&](Advice const& one) {
     return !one.measured && one.seconds * part > limit;

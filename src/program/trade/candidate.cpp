@@ -53,10 +53,10 @@ bool is_possible(io::Scene const& scene, Candidate const& candidate) {
   }
 }
 
-// Returns the candidates requested by the rows of the list of methods.
+// Returns the candidates in double precision that the rows of the list of methods ask for.
 std::vector<Candidate> in_double(io::Scene const& scene) {
-  // H includes a multiple of the spin itself from exchange, which a constant sigma removes. The
-  // rest turns neighbours equally.
+  // Exchange adds a multiple of the spin itself to H, which does not turn the spin. A constant
+  // sigma removes it, and only the sum of the neighbours remains.
   double const couplings = sum_of_couplings(scene);
   std::vector<Candidate> all;
   for (auto const* const method : io::methods()) {

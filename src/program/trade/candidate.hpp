@@ -45,8 +45,8 @@ struct Try {
 /// given. Some evaluate an expensive field once a step, others in each stage.
 std::vector<Candidate> candidates(io::Scene const& scene, std::optional<Precision> precision = {});
 
-/// Returns the scene up to `horizon` with a candidate; adaptive methods are observed after equal
-/// intervals.
+/// Returns the scene up to `horizon` with a candidate. Adaptive methods are observed after equal
+/// intervals, of which there are `intervals`.
 io::Scene with(io::Scene scene, Candidate const& candidate, double horizon, std::int64_t intervals,
                Steps const& steps);
 

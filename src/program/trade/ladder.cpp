@@ -9,7 +9,7 @@ namespace {
 
 constexpr double finer_by = 1.5;  // ratio of steps between rungs
 
-// At least four, so that there is some motion to observe.
+// Returns a whole number of steps, at least four, so that there is some motion to observe.
 std::int64_t whole(double steps) {
   return static_cast<std::int64_t>(std::max<double>(4, std::ceil(steps)));
 }
@@ -18,8 +18,8 @@ double amount(Rung const& rung, bool of_evaluations) {
   return of_evaluations ? static_cast<double>(rung.evaluations) : rung.seconds;
 }
 
-// Returns the cost of a rung at an error; lower, by logarithmic interpolation, if the previous rung
-// just misses the error.
+// Returns the cost to reach an error that this rung meets: that of the rung or, if the previous
+// rung misses the error, a lower one by logarithmic interpolation between both.
 double interpolated(Rung const* before, Rung const& rung, double error, bool of_evaluations) {
   double const last = amount(rung, of_evaluations);
   if (!before || !(before->error > error) || !(rung.error > 0)) return last;
@@ -48,7 +48,8 @@ double least(Ladder const& ladder, double error, bool of_evaluations, Ladder* ar
 Steps coarsest_steps(Pilot const& pilot, Candidate const& candidate, double horizon,
                      std::int64_t own_steps) {
   if (candidate.method->adaptive) return {0, 0.1};
-  // Fewer than an explicit adaptive method takes at its coarsest, but stable.
+  // Fewer steps than an explicit adaptive method takes at a coarse tolerance, but enough to be
+  // stable.
   auto const parts = static_cast<double>(4 * std::max<std::int64_t>(1, candidate.substeps));
   double const few = candidate.method->stiff ? 0 : static_cast<double>(own_steps) / parts;
   auto plain = candidate;

@@ -11,10 +11,10 @@ namespace cayspin::program::trade {
 /// A run of a ladder.
 struct Rung : Try {
   double dt = 0;          // of methods with constant steps
-  bool on_front = false;  // no other run is both faster and more accurate
+  bool on_front = false;  // no other run is faster and at least as accurate
 };
 
-/// Errors and costs of a candidate, starting with its coarsest steps.
+/// Errors and costs of a candidate with finer and finer steps.
 struct Ladder {
   Candidate candidate;
   std::vector<Rung> rungs;
@@ -31,22 +31,24 @@ struct LadderLimits {
   double share = 0;  // share of all ladders done
 };
 
-/// Returns the coarsest possible steps for a candidate's first rung, and those of the next rung.
+/// Return the coarsest possible steps of a candidate, for its first rung, and those of the rung
+/// after `steps`.
 Steps coarsest_steps(Pilot const& pilot, Candidate const& candidate, double horizon,
                      std::int64_t own_steps);
 Steps finer(Candidate const& candidate, Steps const& steps);
 
-/// `others`: the ladders so far.
+/// Runs a candidate with finer and finer steps, until a limit is reached. `others`: the ladders so
+/// far.
 Ladder climb(Pilot const& pilot, Candidate const& candidate, Reference const& reference,
              std::vector<Ladder> const& others, LadderLimits const& limits = {});
 
 /// Marks the Pareto front of all rungs, by error and seconds.
 void mark_front(std::vector<Ladder>& ladders);
 
-/// Returns the time that a ladder's candidate takes to an error, interpolated logarithmically
-/// between rungs; infinite if it does not reach the error.
+/// Returns the time in which a ladder's candidate reaches an error, interpolated logarithmically
+/// between rungs; infinite if it does not.
 double seconds_to(Ladder const& ladder, double error);
-/// Returns the ladder with only the rungs that give this time: two, one or none.
+/// Returns the ladder with only the rungs that determine this time: two, one or none.
 Ladder around(Ladder const& ladder, double error);
 double evaluations_to(Ladder const& ladder, double error);
 

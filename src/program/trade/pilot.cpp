@@ -64,7 +64,7 @@ Outcome run_on(io::Scene const& scene, Plan const& plan, Stretch const& stretch,
   Simulation<Real, Space> simulation(scene, plan.lattice, plan.times, stretch.start);
   Outcome outcome;
   std::optional<Guard> guard;
-  constexpr double margin = 8;  // for steps other than these
+  constexpr double margin = 8;  // stricter, because steps in a run may differ
   if (guarded) guard.emplace(scene, std::numeric_limits<Real>::epsilon() / margin);
   KeepStates<Real, Space> keep(stretch.looks.steps, simulation.generator, guard, outcome);
   auto const method = open_method(scene, plan, &simulation);
@@ -159,7 +159,8 @@ Outcome Pilot::run(Candidate const& candidate, double horizon, Steps const& step
 Outcome Pilot::run(Candidate const& candidate, Stretch const& stretch, Steps const& steps,
                    Repeats const& repeats) const {
   auto const scene = with(scene_, candidate, stretch.length, stretch.looks.intervals, steps);
-  // No run needs the stable dt with a sigma, which takes long to compute.
+  // Plans without the sigma, because the stable dt with it takes long to compute, and no run here
+  // needs that.
   auto planned = scene;
   if (candidate.isotropy == io::Isotropy::constant)
     planned.integrator.isotropy = io::Isotropy::zero;

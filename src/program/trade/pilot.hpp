@@ -22,7 +22,7 @@ struct Stretch {
   double begin, length;
   std::vector<double> const& start;  // (sites, 3)
   Looks looks;
-  bool guarded = false;  // true: it fails where `cayspin run` stops
+  bool guarded = false;  // true: the run fails if the guard of `cayspin run` would stop it
 };
 
 /// Number of repetitions of a run to measure its time; the shortest counts.
@@ -43,7 +43,8 @@ double distance(std::vector<double> const& a, std::vector<double> const& b);
 /// Returns the largest distance at any stored step; infinite if a state is not finite.
 double distance(Outcome const& a, Outcome const& b);
 
-/// Runner of one scene with different methods, in one execution space, inside a KokkosSession.
+/// Runs one scene with different methods, in one execution space. Exists only inside a
+/// KokkosSession.
 class Pilot {
  public:
   /// `error`: the smallest requested. Throws io::SceneError for a scene without steps or with a
@@ -54,7 +55,8 @@ class Pilot {
   std::vector<double> const& start() const { return start_; }
   double end() const;
   TimeFeatures const& features() const { return *features_; }
-  /// Returns the longest constant step: the scene's max_dt, or the shortest feature of its field.
+  /// Returns the longest constant step: the scene's max_dt or, if that is shorter, the shortest
+  /// feature of its field.
   double longest_step() const;
   /// Returns true if fields that depend on t show all their features up to `horizon`.
   bool is_representative(double horizon) const;
@@ -70,7 +72,7 @@ class Pilot {
   Plan plan(Candidate const& candidate, double horizon, Steps const& steps) const;
 
  private:
-  /// Returns the bytes of a run, and of the stored states of two.
+  /// Returns the bytes of a run, and of all states that are stored at the same time.
   std::int64_t bytes(Candidate const& candidate) const;
 
   io::Scene scene_;

@@ -7,7 +7,7 @@
 namespace cayspin::program::trade {
 namespace {
 
-constexpr double near = 4;  // ratio of error to requested error above which orders may be exceeded
+constexpr double near = 4;  // ratio of error to requested error below which orders may be exceeded
 constexpr double most_finer = 5;  // ratio of cost to that of the finest trial
 constexpr double close = 0.94;    // ratio of costs whose difference does not matter
 
@@ -31,7 +31,8 @@ void Prospect::add(Try one, double unknown) {
   double const now = resolution(one.steps);
   auto const finer = std::ranges::upper_bound(
       tries_, now, {}, [this](Try const& other) { return resolution(other.steps); });
-  // Below the known accuracy, extrapolates by the order.
+  // If the error is near the uncertainty of the solution, extrapolates it by the order, within that
+  // uncertainty.
   if (finer != tries_.begin() && one.error < 5 * unknown) {
     auto const& coarser = *std::prev(finer);
     double const by_order = coarser.error * std::pow(now / resolution(coarser.steps), -order_);
@@ -63,8 +64,8 @@ double Prospect::seen_order() const {
   return std::isfinite(seen) ? seen : order_;
 }
 
-// Interpolates by a power law. Where steps become stable, errors drop abruptly: bisects until that
-// is near.
+// Interpolates by a power law. Errors drop abruptly at steps that become stable: then bisects,
+// until the drop is close.
 double Prospect::between(Try const& failing, Try const& passing, double error) const {
   double const from = resolution(failing.steps), to = resolution(passing.steps);
   double const slope = std::log(failing.error / passing.error) / std::log(to / from);
@@ -107,7 +108,7 @@ Steps Prospect::next(double error) const {
   if (tries_.empty()) return first_;
   double const most = resolution(tries_.back().steps) * std::pow(most_finer, 1 / cost_order_);
   auto steps = steps_of(std::min(resolution(needed(error)), most));
-  for (auto const& one : tries_)  // rounded to one that failed
+  for (auto const& one : tries_)  // rounded to steps that were tried
     if (one.steps.count == steps.count && one.steps.tolerance == steps.tolerance)
       steps = steps_of(1.01 * resolution(steps) + 1e-6);
   return steps;

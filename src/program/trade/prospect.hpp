@@ -11,8 +11,8 @@ namespace cayspin::program::trade {
 /// tolerance.
 class Prospect {
  public:
-  /// `order`, `cost_order`: exponents of error and cost in the resolution. `evaluations`: expected
-  /// number until something has been tried.
+  /// `order`, `cost_order`: the error falls as resolution^-order, and the cost grows as
+  /// resolution^cost_order. `evaluations`: their expected number, before any trial.
   Prospect(Candidate const& candidate, Steps const& coarsest, Steps const& first, double order,
            double cost_order, double evaluations)
       : candidate_(candidate),
@@ -34,10 +34,10 @@ class Prospect {
   /// Adds the duration of a run with these steps.
   void add_time(Steps const& steps, double seconds);
 
-  /// Returns the coarsest trial from which on all have at most this error; nullptr if there is
-  /// none.
+  /// Returns the coarsest trial such that it and all finer ones have at most this error; nullptr if
+  /// there is none.
   Try const* passing(double error) const;
-  /// Returns the predicted steps for this error. They may not be allowed.
+  /// Returns the predicted steps for this error, which allows() may refuse.
   Steps needed(double error) const;
   /// Returns the predicted time, from the shortest time per evaluation of all trials.
   double seconds_of(Steps const& steps) const;
@@ -46,7 +46,7 @@ class Prospect {
   Steps next(double error) const;
   /// Returns true if the passing trial takes about as long as the predicted steps.
   bool is_settled(double error, double goal) const;
-  /// Returns true if finer steps change the result no less.
+  /// Returns true if finer steps no longer reduce the error, because of round-off.
   bool is_round_off(double error) const;
   bool allows(Steps const& steps) const;
 

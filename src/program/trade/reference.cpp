@@ -18,7 +18,7 @@ constexpr int most_halvings = 20;
 constexpr int most_fewer = 4;   // halvings at once
 constexpr int most_short = 10;  // steps of a run that is never too long
 
-// Methods that compute the reference.
+// Returns a method that computes the reference.
 Candidate by(char const* method) { return {{.method = io::find_method(method)}}; }
 
 Looks looks_of(Candidate const& candidate, Steps const& steps,
@@ -101,12 +101,14 @@ Try FineSolution::measure(Candidate const& candidate, Steps const& steps, bool g
     measured.error =
         std::max(measured.error,
                  distance(outcome.states[i], at(looks.steps[i], adaptive ? parts : steps.count)));
-  // Storing many states takes time, on large lattices most of an adaptive run: timed separately.
+  // Storing many states takes time, on large lattices most of the time of an adaptive run, which is
+  // therefore timed separately.
   if (adaptive) measured.seconds = pilot_->run(candidate, horizon_, steps, repeats).seconds();
   return measured;
 }
 
-// Continues from the last stored time before that step.
+// Returns the state after `step` of `steps` steps to the horizon: the stored one, or one continued
+// from the last stored time before.
 std::vector<double> FineSolution::at(std::int64_t step, std::int64_t steps) const {
   auto const of = [&](std::int64_t time) {
     return static_cast<double>(time) / static_cast<double>(parts);
@@ -143,7 +145,7 @@ Candidate fine_tsit5() {
 
 Horizon horizon_within(Pilot const& pilot, double seconds) {
   Horizon longest;
-  // Increases the horizon, so that nothing runs much longer than allowed.
+  // Starts with a short horizon and increases it, so that nothing runs much longer than allowed.
   for (int halvings = most_halvings;;) {
     double const time = std::ldexp(pilot.end(), -halvings);
     auto const tried = pilot.run(fine_tsit5(), time, {0, 1e-2});

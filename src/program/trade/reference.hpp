@@ -10,17 +10,17 @@
 
 namespace cayspin::program::trade {
 
-/// Returns the times, in units of 1/1024 horizon, at which runs are compared: a dozen, and those in
-/// which an applied field jumps or has its shortest feature.
+/// Returns the times, in units of 1/1024 horizon, at which runs are compared: a dozen, and those
+/// just after a field jumps or has its shortest feature.
 std::vector<std::int64_t> times_of_looks(TimeFeatures const& features, double horizon);
 
 /// A solution by an adaptive method up to a horizon, with which runs are compared.
 ///
 /// Runs are compared after their first step, and after the first steps that end at or after one of
 /// times_of_looks, so that the error covers the whole motion. Motion that decays does so early,
-/// hence half of the times are in the first quarter: at four equal times any stable step would
-/// pass. Steps need not end at these times, which would exclude coarse ones. The solution is
-/// continued to where they end.
+/// hence half of the times are in the first quarter: at four equally spaced times, any stable step
+/// would pass. Steps need not end exactly at these times, since that would exclude coarse ones; the
+/// solution is continued to where they end.
 class FineSolution {
  public:
   static constexpr std::int64_t parts = 1024;  // of the horizon
@@ -36,12 +36,13 @@ class FineSolution {
     return distance(solution_, other.solution_);
   }
 
-  /// Continues the solution from now on by constant steps of this method, if there are steps whose
-  /// error at the horizon is within `error`; as long ones as possible. They make short
-  /// continuations cheaper than the tolerance does.
+  /// From now on continues the solution by constant steps of this method, as long as possible, if
+  /// there are steps whose error is at most `error` at all times at which they can be compared.
+  /// They make short continuations cheaper than the tolerance does.
   void continue_by(Candidate const& method, double error);
 
-  /// Measures a candidate's run to the horizon. `guarded`: it fails where `cayspin run` stops.
+  /// Measures a candidate's run to the horizon. `guarded`: the run fails if the guard of `cayspin
+  /// run` would stop it.
   Try measure(Candidate const& candidate, Steps const& steps, bool guarded,
               Repeats const& repeats) const;
 
@@ -56,13 +57,13 @@ class FineSolution {
   std::int64_t equal_steps_ = 0;  // of continuations, to the horizon; 0: they use the tolerance
 };
 
-/// The first part of a scene's run, and results of a coarse run of it.
+/// The first part of a scene's run, and the results of a coarse run over that part.
 struct Horizon {
   double time = 0;
   std::int64_t own_steps =
       0;               // of tsit5 at a tolerance of 0.01: a measure of how much there is to resolve
   double seconds = 0;  // duration of that run
-  std::string why_shorter = {};  // empty if it is the scene's end
+  std::string why_shorter = {};  // empty if `time` is the scene's end
 
   void halve(std::string why);
 };
@@ -70,8 +71,8 @@ struct Horizon {
 /// Returns tsit5 in a form whose error follows its tolerance.
 Candidate fine_tsit5();
 
-/// Returns the longest halving of the end that a coarse run covers in `seconds`, or in ten steps;
-/// the twentieth if none does.
+/// Halves the time up to the scene's end until a coarse run covers it in `seconds`, or in ten
+/// steps; at most twenty times.
 Horizon horizon_within(Pilot const& pilot, double seconds);
 
 /// A converged solution of a scene, up to its end or as far as it converges.

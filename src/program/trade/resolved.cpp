@@ -13,7 +13,7 @@
 namespace cayspin::program::trade {
 namespace {
 
-// Nothing is due beyond the last step.
+// Limits a period of output to the number of steps: nothing is due beyond the last one.
 std::int64_t within(io::Integrator const& integrator, std::int64_t every) {
   return std::clamp<std::int64_t>(integrator.steps, 1, every);
 }
@@ -51,7 +51,8 @@ std::string integrator_table(io::Scene const& scene, Advice const& advice, doubl
   return fmt::format("integrator={{{}}}", keys);
 }
 
-// Returns the keys of [output] that the scene has: `steps_of` converts numbers of steps.
+// Adds overrides of those periods of [output] that the scene sets. `steps_of` converts them to
+// steps of the new method.
 template <class StepsOf>
 void add_output_keys(io::Scene const& scene, std::vector<std::string>& overrides,
                      StepsOf const& steps_of) {
@@ -106,7 +107,7 @@ std::optional<io::Scene> with_method_of(io::Scene const& scene, std::string cons
     return io::parse_scene(text, scene.path, {}, scene.given);
   };
   auto const typed = parsed(typed_before), resolved = parsed(resolved_before);
-  // Output periods, in steps of the scene, are scaled to steps of the chosen method.
+  // Output periods are in steps of the scene. They are scaled to steps of the chosen method.
   double const ratio = typed.integrator.dt / resolved.integrator.dt;
   auto const steps = [&](std::int64_t of_scene) {
     return std::llround(static_cast<double>(of_scene) * ratio);

@@ -9,8 +9,8 @@
 
 namespace cayspin::program::trade {
 
-/// A scene with the advised method. Frames and samples keep their times: a whole number of steps
-/// lies between two of them, so dt may be shorter than advised.
+/// The keys of a scene with the advised method. Frames and samples keep their times: the steps
+/// between two of them are a whole number, so dt may be shorter than advised.
 struct Resolved {
   double
       dt;  // as in the scene; for adaptive methods the interval between observations of the spins

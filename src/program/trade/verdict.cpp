@@ -9,7 +9,8 @@ namespace {
 constexpr std::size_t best_ladders = 3;
 constexpr int turns = 3;
 
-// Returns ladders, cheapest first, each with only the rungs that decide.
+// Returns the cheapest few ladders, each with only the rungs that determine its time, cheapest
+// first.
 std::vector<Ladder> cheapest(std::vector<Ladder> const& ladders, double error) {
   std::vector<Ladder> all;
   for (auto const& ladder : ladders) all.push_back(around(ladder, error));
