@@ -42,8 +42,8 @@ std::filesystem::path self(char** argv) {
                                path.string(), std::strerror(errno)));
 }
 
-// Replaces this process by a Python script in share/cayspin/python, relative to this program's
-// folder.
+// Replaces this process by a Python script in ../share/cayspin/python, relative to the folder of
+// this program.
 [[noreturn]] void become_script(std::string const& name, char** argv) {
   auto const program = self(argv);
   auto path = (program.parent_path().parent_path() / "share/cayspin/python" / name).string();

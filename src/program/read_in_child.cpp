@@ -87,7 +87,7 @@ void limit_resources(std::filesystem::path const& path) {
 #endif
   lower_limit(RLIMIT_CPU, most_seconds(path), 5);
   lower_limit(RLIMIT_CORE, 0);
-  ::prctl(PR_SET_DUMPABLE, 0);  // no core dump by a collecting program either
+  ::prctl(PR_SET_DUMPABLE, 0);  // no core dump by a program that collects them, either
 }
 
 void send(int pipe, std::string const& text) {

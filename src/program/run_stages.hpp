@@ -59,7 +59,7 @@ auto as_restart(Work const& work) {
   }
 }
 
-/// A run: one stage after another, from the first that has a plan, into one file.
+/// Runs one stage after another, beginning with the first that has a plan, into one file.
 template <class Real, class Space>
 class RunOfStages {
   using Spins = SpinField<Real, typename Space::memory_space>;
@@ -335,7 +335,7 @@ class RunOfStages {
   std::size_t now_ = 0, first_ = 0;  // indices of stages
   std::int64_t step_ = 0, frames_ = 0;
   std::int64_t shift_ = 0;     // cells by which the lattice has followed
-  std::vector<double> start_;  // of the stage
+  std::vector<double> start_;  // initial spins of the stage
   Progress progress_;
   RunWriter<Real, Space> writer_;
   Summary total_;

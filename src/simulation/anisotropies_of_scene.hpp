@@ -5,7 +5,7 @@
 
 #include <cayspin/field/cubic_anisotropy.hpp>
 
-// Site-dependent anisotropies. For compile_field_in_pass.hpp.
+// Site-dependent anisotropies of FieldInPass. Included by compile_field_in_pass.hpp.
 namespace cayspin::simulation {
 
 template <class Spins>

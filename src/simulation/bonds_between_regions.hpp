@@ -14,7 +14,7 @@
 #include <set>
 #include <vector>
 
-// Bonds between regions. For compile_field_in_pass.hpp.
+// Bonds between regions, for FieldInPass. Included by compile_field_in_pass.hpp.
 namespace cayspin::simulation {
 
 // Half a sweep multiplies the error of the spins at a face by at most r / (1 - r), where r is the

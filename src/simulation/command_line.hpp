@@ -16,10 +16,11 @@
 #include <stdexcept>
 #include <string>
 
-// Shared code of the programs' mains.
+// Code that the main functions of the programs share.
 namespace cayspin::simulation {
 
-/// Returns an exit status if the command line only asked for help. Throws UsageError.
+/// Returns an exit status if the command line only asked for help or the version. Throws
+/// UsageError.
 inline std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);

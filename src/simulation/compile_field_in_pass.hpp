@@ -155,8 +155,8 @@ SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::evaluate_with(
     Exec const& exec, SceneFieldNow<Real> const& usual, Spins const& spins, double t,
     FieldFor purpose, bool adds_applied) const {
   Kokkos::Profiling::ScopedRegion const region("cayspin::FieldInPass");
-  // Bonds reach further than the ghosts that the previous stage has updated. H on ghost sites is
-  // never used: each stage's result there is replaced before it is read.
+  // Bonds may reach further than the ghosts that the previous stage has updated. H on ghost sites
+  // is never used: each stage's result there is replaced before it is read.
   cayspin::detail::update_ghosts(exec, terms_->lattice_, spins);
   EvaluateInPass<Real> kernel{.terms = terms_->at(exec, usual, spins, t, purpose),
                               .spins = spins.array(),

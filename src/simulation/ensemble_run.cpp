@@ -243,10 +243,10 @@ std::vector<io::Scalars> EnsembleRun::scalars() {
   std::vector<io::Scalars> all;
   if (columns_) {
     if (samples_.empty()) samples_ = columns_->samples();
-    for (auto const& sample : samples_) all.push_back(as_scalars(sample, {}));  // in its units
+    for (auto const& sample : samples_) all.push_back(as_scalars(sample, {}));  // in scene units
     return all;
   }
-  for (auto const& run : runs_) all.push_back(as_scalars(run->sample(), {}));  // in its units
+  for (auto const& run : runs_) all.push_back(as_scalars(run->sample(), {}));  // in scene units
   return all;
 }
 

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
-// Site-dependent exchange and DMI. For compile_field_in_pass.hpp.
+// Site-dependent exchange and DMI of FieldInPass. Included by compile_field_in_pass.hpp.
 namespace cayspin::simulation {
 
 template <class Spins>

@@ -11,7 +11,8 @@
 #include <functional>
 #include <vector>
 
-// Moments and vacancies, and how fast spins turn in H. For compile_field_in_pass.hpp.
+// Moments and vacancies of FieldInPass, and how fast its spins turn in H. Included by
+// compile_field_in_pass.hpp.
 namespace cayspin::simulation {
 
 template <class Spins>

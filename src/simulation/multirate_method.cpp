@@ -115,7 +115,7 @@ bool is_multirate(io::Demagnetization const& demag, io::Scene const& scene) {
 }  // namespace
 
 int order_of_multirate(io::Scene const& scene, Variant const& variant) {
-  constexpr double small = 0.015;  // above, order 3 widens lines by less than 1 %
+  constexpr double small = 0.015;  // above it, order 3 widens resonance lines by less than 1 %
   return variant.order >= (scene.system.damping < small ? 4 : 5) ? 4 : 3;
 }
 
@@ -127,7 +127,7 @@ bool has_slow_field(io::Scene const& scene) {
 
 std::string without_multirate(io::Scene const& scene) {
   if (!scene.field.demag) return "field.slab_demag.multirate=false";
-  // `demag = true` has no keys.
+  // A scene with `demag = true` has no table to which a key could be added.
   auto const key = "field." + scene.field.demag->key;
   bool const is_table = std::ranges::any_of(
       scene.places, [&](auto const& place) { return place.first.starts_with(key + '.'); });

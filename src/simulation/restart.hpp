@@ -54,7 +54,7 @@ struct EarlierRun {
   bool is_ensemble = false;
 };
 
-/// The state from which a run of a scene, or of a stage, continues with the bits of an
+/// The state from which a run of a scene, or of a stage, continues with the same bits as an
 /// uninterrupted run.
 class Restart {
  public:

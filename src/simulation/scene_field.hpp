@@ -81,7 +81,8 @@ class SceneField {
     return !stored_ && !slow_ && (!pass_ || pass_->rows_need_only_time());
   }
 
-  /// Prepares dH/dt for given rates of spins, with the applied field's rate instead of the field.
+  /// Prepares dH/dt for given rates of spins, with the applied field's rate of change in place of
+  /// the field.
   template <class Exec>
   SceneFieldNow<Real> prepare_rate(Exec const& exec, Spins const& rates, double t,
                                    double dt) const {

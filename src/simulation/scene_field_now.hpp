@@ -113,7 +113,7 @@ struct SceneFieldNow {
   cayspin::SiteArray<Real, 1> energies = {};  // of all terms, if one pass computes them
   FieldAlongRows<Real> along_rows = {};
 
-  // The row passed to begin_row.
+  // Set by begin_row, for its row.
   cayspin::detail::RowInput<Real> row = {};  // H found so far
   std::ptrdiff_t compiled_sites = 0;         // sites whose packs are neither the first nor the last
   bool adds_row = false, adds_more = false;

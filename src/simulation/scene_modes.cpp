@@ -207,7 +207,7 @@ std::int64_t sites_of_a_cell(io::Lattice const& lattice) {
   return lattice.boundary[2] == io::BoundaryKind::periodic ? count * sites : count;
 }
 
-// Returns how many cells the terms of a scene reach along an axis, at least.
+// Returns a lower bound of how many cells the terms of a scene reach along an axis.
 std::int64_t reach_along(io::Scene const& scene, std::size_t axis) {
   auto const& field = scene.field;
   std::int64_t reach = field.exchange || field.has_dmi() || !field.exchange_between.empty() ||
@@ -263,7 +263,7 @@ void require_bands(io::Scene const& scene, std::vector<std::array<double, 3>> co
 std::int64_t memory_of_bands(io::Scene const& scene) {
   auto const of_a_cell = sites_of_a_cell(scene.lattice);
   auto const matrix = 4 * of_a_cell * of_a_cell * static_cast<std::int64_t>(sizeof(double));
-  constexpr std::int64_t matrices = 12;  // of the eigenvalues, which are complex
+  constexpr std::int64_t matrices = 12;  // for the complex eigenvalues
   return matrix * (io::sites(scene) / of_a_cell + matrices);
 }
 

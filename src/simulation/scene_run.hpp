@@ -156,8 +156,8 @@ class SceneRun {
 
   /// Moves the spins to an equilibrium of the current field. Time and steps do not change.
   /// Multistep methods restart. The result is in the scene's units. Throws UsageError for invalid
-  /// settings, io::SceneError for rigid bodies and temperatures, NumbersFailed for a field that is
-  /// not finite, and any exception of a field of the program.
+  /// settings, io::SceneError for rigid bodies, torques and temperatures, NumbersFailed for a field
+  /// that is not finite, and any exception of a field of the program.
   Minimum relax(RelaxSettings const& settings = {});
 
   /// Returns the normal modes about the spins, which must be at equilibrium, in the current field.

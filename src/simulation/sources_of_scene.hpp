@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-// The sources of a scene's applied field. For compile_field_in_pass.hpp.
+// The sources of a scene's applied field, for FieldInPass. Included by compile_field_in_pass.hpp.
 namespace cayspin::simulation {
 
 // Sums the profiles of sources with equal time factors.

@@ -72,8 +72,8 @@ template <class Real>
 struct AddedTerms {
   PassTerms<Real> terms;
   MissingNeighbors<Real> missing;  // without data: none
-  double scale = 1;                // of -dE/dm
-  double gyromagnetic = 1;         // of applied fields
+  double scale = 1;                // factor of -dE/dm
+  double gyromagnetic = 1;         // factor of applied fields
 
   bool any() const { return count() > 0; }
 

@@ -28,8 +28,8 @@
 #include <variant>
 #include <vector>
 
-// The terms of FieldInPass for a scene; further headers define the functions that add them. For
-// compile_field_in_pass.hpp, which includes them all.
+// The terms of FieldInPass for a scene. Further headers define the functions that add them;
+// compile_field_in_pass.hpp includes them all.
 namespace cayspin::simulation {
 
 // Returns the largest magnitude over all parts. Parts compare the bits of doubles as integers,
@@ -144,12 +144,12 @@ class FieldInPass<Spins>::Terms {
     double lambda = 1;
     bool needs_site_term = false;  // site-dependent, or dependent on the angle
     std::optional<ScalarField<Real, Memory>> damping_like, field_like;  // site-dependent; or empty
-    std::optional<SiteField<Real, 3, Memory>> polarizations;            // instead of one; or empty
+    std::optional<SiteField<Real, 3, Memory>> polarizations;            // site-dependent; or empty
   };
 
   struct Source {
     SiteField<Real, 3, Memory> profile;
-    AppliedField time;  // its x component
+    AppliedField time;  // the factor is its x component
     double largest;     // largest |profile|
   };
 
@@ -255,7 +255,7 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
   add_crystal_axes(scene, box);
   add_sources(scene, box);
 
-  // Round-off of a site's energy is proportional to this.
+  // Sums none_.magnitude, to which the round-off of a site's energy is proportional.
   auto const uniform = io::without_numbers_of_sites(scene.field);
   io::for_each_lattice_term(uniform, [&](auto const& term) {
     if (!term) return;

@@ -80,7 +80,8 @@ class Parts {
     }
   }
 
-  /// Appends the bounds of a time span without jumps. Returns false if it changes too often.
+  /// Appends the bounds of a time span without jumps. Returns false if the vectors change too
+  /// often.
   bool divide(double a, double b, std::vector<StepBound>& bounds) {
     std::vector<std::pair<double, double>> open{{a, b}};
     while (!open.empty()) {

@@ -31,10 +31,11 @@ class TimeSamples {
   bool changes_unusually(std::size_t i, std::size_t component) const;
   /// Returns the time from which on no component changes.
   double last_change() const;
-  /// Returns first and last + 1 of the samples between two times.
+  /// Returns the number of the first sample between two times, and the number after the last one.
   std::pair<std::size_t, std::size_t> within(double begin, double end) const;
 
-  /// Returns all components at t, and stores them. Finite also where t is a removable singularity.
+  /// Returns all components at t, and stores them. If a vector is not finite at t, it has the value
+  /// very close to t or, if that is not finite either, 0.
   std::vector<double> const& evaluate(double t);
   double value(double t, std::size_t component) { return evaluate(t)[component]; }
   std::int64_t evaluations() const { return evaluations_; }
@@ -63,7 +64,7 @@ class TimeSamples {
   std::vector<double> times_;
   std::vector<std::vector<double>> values_;  // [component][sample]
   std::vector<double> ranges_, now_, largest_;
-  std::vector<double> later_;  // sequences of t and all components
+  std::vector<double> later_;  // records of t and all components
   std::int64_t evaluations_ = 0;
 };
 

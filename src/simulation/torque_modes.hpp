@@ -23,7 +23,8 @@ struct TorqueMotion {
   std::function<bool()> is_interrupted;
 };
 
-/// Most sites of a scene with torques: the matrix has 2 x 2 numbers for each pair of them.
+/// Largest number of sites of a scene with torques: the matrix has 2 x 2 numbers for each pair of
+/// sites.
 constexpr std::int64_t most_sites_with_torques = 1024;
 
 struct RestWithTorques {

@@ -8,7 +8,7 @@
 #include <array>
 #include <optional>
 
-// The torques of a scene's currents. For compile_field_in_pass.hpp.
+// The torques of a scene's currents, for FieldInPass. Included by compile_field_in_pass.hpp.
 namespace cayspin::simulation {
 
 template <class Spins>

@@ -33,9 +33,9 @@ struct StateHessian : TangentBasis {
 };
 
 /// Returns the prefactors of harmonic transition state theory, in the units of the scene.
-/// `unstable` is the approximate curvature of the saddle. Throws NumbersFailed for zero modes that
-/// are neither translations nor rotations of all spins, for a saddle on a plateau, and for states
-/// with other negative curvatures.
+/// `saddle_curvature`: the approximate curvature along the unstable mode of the saddle. Throws
+/// NumbersFailed for zero modes that are neither translations nor rotations of all spins, for a
+/// saddle on a plateau, and for states with other negative curvatures.
 io::RatesOfPath rates_between(io::Scene const& scene, StateHessian const& start,
                               StateHessian const& saddle, StateHessian const& end,
                               double saddle_curvature);

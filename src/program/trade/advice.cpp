@@ -31,7 +31,7 @@ constexpr double contender = 1.7;  // ratio of time to the best, for candidates 
 constexpr int rounds = 3;          // of repeated timing
 constexpr int tries = 12;          // per candidate
 constexpr int all_finer = 30;      // how often the coarsest steps are made finer, if refused
-constexpr int refinements = 4;     // of resolved steps that miss the error
+constexpr int refinements = 4;     // how often final steps that miss the error are shortened
 constexpr int horizons = 20;       // number to try, each half of the previous one
 
 constexpr Repeats quick{1, 2e-3};
@@ -132,7 +132,7 @@ class Search {
     double const order =
         candidate.substeps > 0 ? order_with_multirate(scene, variant) : variant.order;
     bool const adaptive = candidate.method->adaptive;
-    // An adaptive method's error is close to its tolerance, and its cost depends little on it.
+    // The error of an adaptive method is close to its tolerance, on which its cost depends little.
     auto first = coarsest;
     if (adaptive) first.tolerance = std::min(coarsest.tolerance, 30 * goal_);
     constexpr double of_iterations = 20, error_of_own_steps = 1e-2;

@@ -28,7 +28,7 @@ struct Stretch {
 /// Number of repetitions of a run to measure its time; the shortest counts.
 struct Repeats {
   int least = 1;
-  double seconds = 0;  // total, for runs that take less
+  double seconds = 0;  // runs are repeated until they take this long in all
 };
 
 /// Result of a run without files.

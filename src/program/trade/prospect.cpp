@@ -9,7 +9,7 @@ namespace {
 
 constexpr double near = 4;  // ratio of error to requested error below which orders may be exceeded
 constexpr double most_finer = 5;  // ratio of cost to that of the finest trial
-constexpr double close = 0.94;    // ratio of costs whose difference does not matter
+constexpr double close = 0.94;    // ratio of two costs above which they count as equal
 
 }  // namespace
 

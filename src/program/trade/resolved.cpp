@@ -66,7 +66,7 @@ void add_output_keys(io::Scene const& scene, std::vector<std::string>& overrides
 Resolved resolve(io::Scene const& scene, Advice const& advice) {
   auto const& integrator = scene.integrator;
   auto const together = steps_between_looks(scene, advice.candidate.method->adaptive);
-  double const time = integrator.dt * static_cast<double>(together);  // reduced
+  double const time = integrator.dt * static_cast<double>(together);  // in reduced units
   auto const looks = integrator.steps / together;
   std::int64_t parts = 1;
   if (!advice.candidate.method->adaptive) {

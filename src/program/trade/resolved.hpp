@@ -21,8 +21,8 @@ struct Resolved {
 Resolved resolve(io::Scene const& scene, Advice const& advice);
 
 /// Returns a scene of method "auto" with the method advised for its error, in one precision; any
-/// other scene unchanged. Inside a KokkosSession. Throws NumbersFailed when no method meets the
-/// error.
+/// other scene unchanged. Call inside a KokkosSession. Throws NumbersFailed when no method meets
+/// the error.
 io::Scene with_method(io::Scene const& scene, std::string const& space, Precision precision,
                       TrialProgress* progress = nullptr);
 
