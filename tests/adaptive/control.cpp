@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Steps chosen by the tolerance: the resulting error, and the behaviour at jumps of a field, on
-// failure and at the end of a run.
+// Steps whose dt is chosen from a tolerance: the resulting error, and the behaviour when a field
+// jumps, on failure, and at the end of a run.
 #include "../backends/equal_bits.hpp"
 #include "../order/chain.hpp"
 #include "../support/backends.hpp"
@@ -42,8 +42,8 @@ template <class Type>
 struct AdaptiveOn : ::testing::Test {};
 TYPED_TEST_SUITE(AdaptiveOn, Backends, BackendName);
 
-// Equal dt give equal bits; frames are at times between ends of steps. A device reproduces the bits
-// of its previous run.
+// Serial and the threaded space choose equal dt, and so have equal bits, also at frames within a
+// step. A device is compared with a second run of its own.
 TYPED_TEST(AdaptiveOn, HasTheBitsOfSerial) {
   using Field = typename TypeParam::Spins;
   using Exec = typename TypeParam::Exec;
@@ -82,8 +82,9 @@ TEST(AdaptiveTolerance, HoldsAcrossAFieldSwitchedOnInMidStep) {
   }
 }
 
-// A spin at equilibrium has long steps when its field is switched on, and then turns by so much
-// that all solutions are near half a turn.
+// Without a field, steps become long. In the step in which the field is switched on, the rotation
+// is so large that the Cayley map makes nearly half a turn of any estimate: the embedded solutions
+// agree although both are wrong.
 TEST(AdaptiveTolerance, HoldsWhereAFieldIsSwitchedOnAtRest) {
   double const tolerance = 1e-4;
   auto const start = [] {
@@ -129,7 +130,7 @@ TYPED_TEST(EveryAdaptive, NumbersThatAreNotFiniteAreRefusedAndTheSpinsKept) {
   EXPECT_NE(copy_to_host(spins), start);
 }
 
-// The leftovers of failed attempts are not taken for the previous step.
+// What failed attempts leave behind is not mistaken for the previous step.
 TYPED_TEST(EveryAdaptive, AfterAFailureStepsBeginAnew) {
   auto spins = chain_start();
   FieldThatJumps const failing{0.5, {1, 0, 1}, {std::nan(""), 0, 1}};
@@ -156,7 +157,7 @@ TYPED_TEST(EveryAdaptive, AskingOftenDoesNotChangeTheSteps) {
   EXPECT_EQ(copy_to_host(seldom), copy_to_host(often));
 }
 
-/// An observer due at a few known steps, and sometimes on demand.
+/// An observer due at certain step numbers, and unpredictably at every n-th call of due().
 struct LooksNowAndThen {
   int calls_to_a_sudden_one;
   std::map<std::int64_t, std::vector<double>> seen = {};
@@ -292,7 +293,7 @@ TYPED_TEST(EveryAdaptive, WhatCannotBeIsRefused) {
                std::invalid_argument);
 }
 
-// Rates whose square overflows, and times at which t + dt rounds to t.
+// For 1e30, t + dt rounds to t; for 1e200, the squares of the rates overflow, too.
 TEST(AdaptiveFailure, FieldsTooStrongForTimeAreRefused) {
   for (double const field : {1e30, 1e200}) {
     auto spins = chain_start();
@@ -344,7 +345,7 @@ TEST(AdaptiveAtRest, NothingMovesAndStepsGrow) {
   Tsit5 stepper(spins, {.tolerance = 1e-6});
   stepper.step(Space(), LandauLifshitz(EffectiveField(Zeeman{{0, 0, 1}}), 0.1), spins, 0, 1e3);
   EXPECT_EQ(copy_to_host(spins), start);
-  // Devices fuse different products and sums: there the error is round-off, not zero.
+  // Devices fuse other products and sums than hosts, so their error is round-off instead of zero.
   EXPECT_LT(stepper.accepted_steps(), detail::is_host_execution<Space> ? 20 : 30);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The spins within a step: their order, and that they are continuous at both ends, on a coupled
-// chain whose torques do not commute.
+// Dense output, the spins within a step: its order, and that spins and their rates are continuous
+// at both ends of the step. The spins are a coupled chain whose torques do not commute.
 #include "../order/chain.hpp"
 #include "../support/backends.hpp"
 
@@ -25,7 +25,8 @@ class WithinAStep {
     return spins;
   }
 
-  /// Expects the order from the distance to the solution, for the longest step and its halves.
+  /// Expects the distance to the solution to have this order, from steps of `longest`, 1/2 and 1/4
+  /// of it.
   void expect_order(char const* name, int dense_order, double longest, double tolerance) const {
     for (double const s : {0.35, 0.8}) {
       SCOPED_TRACE(s);
@@ -38,7 +39,7 @@ class WithinAStep {
     }
   }
 
-  /// Expects spins and their rates to equal those at the step's ends.
+  /// Expects the spins near both ends of a step to join the spins there with the right rates.
   void expect_joined(char const* name, double dt, double tolerance) const {
     double const near = 1e-5;
     auto const start = chain_start();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Orders of the embedded tableaux with constant steps: of the steps and, by order conditions, of
-// the dense output and of the error estimate.
+// Orders of the embedded tableaux: that of the steps, from the convergence with constant steps;
+// those of the dense output and of the error estimate, from order conditions.
 #include "../order/chain.hpp"
 #include "../support/order_conditions.hpp"
 
@@ -13,7 +13,7 @@ class Embedded : public ChainOrder {
  protected:
   Embedded() { ladder = {12, 24, 48, 96}; }
 
-  /// Expects adaptive steps of constant length to equal those of the tableau.
+  /// Expects adaptive steps of constant length to equal those of the plain stepper.
   template <class Adaptive, class Plain>
   void expect_same_steps(char const* what, int evaluations) const {
     double const dt = end_time / 32;

@@ -14,7 +14,7 @@ namespace cayspin::test {
 
 using Threaded = Kokkos::DefaultHostExecutionSpace;
 
-/// Typed tests on host spaces.
+/// Fixture of typed tests with fields in host memory.
 template <class Real>
 struct InHostMemory : ::testing::Test {
   using Field = SpinField<Real, Kokkos::HostSpace>;
@@ -28,8 +28,8 @@ inline std::string name_of(Lattice const& lattice) {
   return name;
 }
 
-/// Lattices with odd extents, rows shorter and longer than a pack and than a task, small ones for
-/// the calling thread and larger ones, open and periodic.
+/// Lattices with irregular extents, open and periodic: rows shorter and longer than a pack and than
+/// a task; few sites, for the calling thread only, and many.
 inline std::vector<Lattice> odd_lattices() {
   std::vector<Lattice> lattices;
   std::array<std::int64_t, 3> const shapes[] = {
@@ -78,7 +78,7 @@ inline void expect_equal_bits(double a, double b, std::string const& where) {
   EXPECT_EQ(std::bit_cast<std::uint64_t>(a), std::bit_cast<std::uint64_t>(b)) << where;
 }
 
-/// The state after some steps and its scalars, on one execution space.
+/// The spins after four steps on an execution space, and their scalars.
 template <class Exec, class Stepper, class Generator>
 struct Outcome {
   using Field = typename Stepper::spins_type;
@@ -122,7 +122,7 @@ void expect_same_on_host_spaces_of(Choose const& choose, std::vector<Lattice> co
   }
 }
 
-/// Compares Serial and the threaded space, step by step and scalar by scalar.
+/// Compares spins and scalars after four steps on Serial and the threaded space, bit by bit.
 template <class... Steppers, class Choose>
 void expect_same_on_host_spaces(Choose const& choose,
                                 std::vector<Lattice> const& lattices = odd_lattices()) {

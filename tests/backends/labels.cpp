@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Events seen by profilers: every kernel, allocation and fence has the library's prefix, and a step
-// neither allocates nor copies nor waits.
+// Events seen by profilers: every kernel and allocation has the library's prefix, and a step
+// neither allocates, copies nor fences.
 #include "../support/landau_lifshitz.hpp"
 
 #include <cayspin_paper/analytic_sigma.hpp>
@@ -73,7 +73,8 @@ Slab const slab{.lattice = Lattice::cubic(9, 7, 5),
                 .applied = {0.1, 0.2, 0.3},
                 .damping = 0.1};
 
-/// Expects ten steps of the kernels `stages`, after as many steps for initial allocations.
+/// Expects each of ten steps to launch the kernels `stages` and do nothing else. An earlier step
+/// has made any initial allocations.
 template <class Stepper>
 void expect_quiet_step(std::string const& name, std::vector<std::string> const& stages) {
   Exec const exec;
@@ -137,7 +138,7 @@ TEST(Labels, Integrate) {
               Every(3, Record(slab.field(), samples)));
   });
   EXPECT_EQ(samples.size(), 3u);
-  // Two batches of three steps, or a kernel for each stage.
+  // Six steps in two batches, or with a kernel for each stage; and three samples.
   bool const batches = detail::runs_on_calling_thread<Exec>(spins.sites());
   EXPECT_EQ(seen.kernels.size(), (batches ? 2u : 6u * 4) + 3);
   expect_prefix(seen.kernels);
@@ -164,7 +165,8 @@ TEST(Labels, IterationsAndEnergies) {
   EXPECT_EQ(seen.regions.front(), "cayspin::ImplicitLieEuler");
 }
 
-/// Expects a stepper's allocations to have its name and the stated size.
+/// Expects a stepper to allocate so many fields, labelled with its name, of the size that it
+/// states.
 template <class Stepper, class... Options>
 void expect_work_memory(std::string const& name, std::size_t fields, Options const&... options) {
   Field const spins("spins", slab.lattice);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Strips that wait only for their neighbours: every step sees the results of the steps before it,
-// with any number of threads.
+// Strips that wait only for their neighbours: every step sees the results of the previous one, with
+// any number of threads.
 #include <cayspin/detail/strip_crew.hpp>
 
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::int64_t steps = 300;
 
-/// Each step adds the neighbours' numbers of the previous step, double buffered. The numbers are
-/// not atomic: only the crew orders access to them.
+/// One number for each strip. A step adds up a strip's number and its neighbours' of the previous
+/// step (double buffered). The numbers are not atomic: only the crew orders access to them.
 struct Neighbours {
   std::vector<std::uint64_t> numbers[2];
 
@@ -42,8 +42,8 @@ std::vector<std::uint64_t> expected(std::int32_t strips) {
   return neighbours.numbers[steps % 2];
 }
 
-/// Runs so many threads, each of which starts strips one after the other. `late`: one starts late,
-/// and one strip is slow at some steps.
+/// Runs so many threads, each of which calls work() for its strips one after the other. `late`: one
+/// thread starts late, and one strip is slow at some steps.
 std::vector<std::uint64_t> by_crew(std::int32_t strips, int threads, bool late) {
   Neighbours neighbours(strips);
   std::vector<StripProgress> progress(static_cast<std::size_t>(strips) + 1);
@@ -75,7 +75,8 @@ TEST(StripCrew, OutlastsLateThreads) {
   for (int const threads : {2, 5}) EXPECT_EQ(by_crew(5, threads, true), expected(5));
 }
 
-// A single thread starts with each strip in turn, and must do those of others first.
+// A single thread calls work() for each strip in turn; while in the first call, it has to do steps
+// of all other strips.
 TEST(StripCrew, NeedsNoSecondThread) { EXPECT_EQ(by_crew(9, 1, false), expected(9)); }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A sweep of all stages through the lattice writes the bits of one kernel per stage.
+// A sweep, which takes all stages through the lattice together, gives the bits of one kernel per
+// stage.
 #include "sweeping.hpp"
 
 using namespace cayspin;
@@ -106,7 +107,7 @@ TYPED_TEST(Sweep, ChosenAndPredictedBySize) {
   expect_memory<Compensated<Rkmk4<Field>>>(3, 5);
 }
 
-// Wide lattices of few rows, where the buffers of twelve stages would exceed all fields of passes.
+// On wide lattices of few rows, the buffers of twelve stages would exceed all fields of passes.
 TYPED_TEST(Sweep, IsLeftWhereItsBuffersExceedFields) {
   using Field = typename TestFixture::Field;
   auto const expect_bounded = [](std::size_t (*work_bytes)(Lattice const&, PredictedRun const&)) {
@@ -125,7 +126,7 @@ TYPED_TEST(Sweep, IsLeftWhereItsBuffersExceedFields) {
   expect_bounded(&Rkmk<Field, tableau::DormandPrince8>::work_bytes);
 }
 
-// Steps that batch refuses would read memory that a sweep does not have.
+// batch() would read memory that a sweeping stepper does not have, so it refuses.
 TYPED_TEST(Sweep, RefusesBatches) {
   typename TestFixture::Field spins("spins", Lattice::cubic(8, 8, 8));
   Rkmk4 stepper(spins);

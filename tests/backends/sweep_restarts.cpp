@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The memory of a step survives switches between sweeps and passes, also when another stepper
-// continues: bits are those of uninterrupted passes.
+// What a stepper remembers between steps survives switches between sweeps and passes, also when
+// another stepper continues from its checkpoint: the bits are those of uninterrupted passes.
 #include "sweeping.hpp"
 
 #include <cayspin/integrate.hpp>
@@ -48,8 +48,8 @@ class Draws {
   std::mt19937_64 engine_;
 };
 
-/// Takes steps under one generator, then under the other. `cut`: step at which a second stepper
-/// continues; -1: never.
+/// Takes `change` steps under the first generator and the rest under the second. `cut`: step at
+/// which a second stepper continues; -1: never.
 template <class Stepper, class First, class Second>
 auto end_of(First const& first, Second const& second, typename Stepper::spins_type const& start,
             std::int64_t change, std::int64_t cut, std::array<Path, 2> const& paths) {

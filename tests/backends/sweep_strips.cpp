@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A sweep among many threads: how much is computed twice, whether all threads have work, and that a
-// slow thread changes no result.
+// A sweep divided among many threads: little is computed twice, all threads have work, and a slow
+// thread does not change the result.
 #include "equal_bits.hpp"
 
 #include <cayspin/detail/sweep_plan.hpp>
@@ -19,7 +19,7 @@ template <class Real>
 using SweepStrips = InHostMemory<Real>;
 TYPED_TEST_SUITE(SweepStrips, Precisions, PrecisionName);
 
-/// A field of zero.
+/// Base of the fields below, which are all zero.
 struct NoField {
   static constexpr int degree = 1;
 
@@ -40,7 +40,7 @@ struct CountedCalls : NoField {
   }
 };
 
-/// Returns the ratio of evaluations in a swept step to those that the step needs.
+/// Returns the ratio of the evaluations in a swept step to those that the step needs.
 template <class Stepper>
 double repeated(Lattice const& lattice) {
   using Field = typename Stepper::spins_type;

@@ -23,7 +23,7 @@ inline std::vector<Lattice> swept_lattices() {
   return lattices;
 }
 
-/// Smaller ones, for tests of methods with many stages.
+/// The smaller ones of these, for tests of methods with many stages.
 inline std::vector<Lattice> smaller_swept_lattices() {
   auto lattices = swept_lattices();
   std::erase_if(lattices, [](Lattice const& lattice) { return lattice.sites() > 60000; });
@@ -35,7 +35,7 @@ inline bool can_sweep(Lattice const& lattice, int stages) {
   return lattice.boundary[1] == Boundary::open || rows == 1 || rows >= stages;
 }
 
-/// Every term, and a rotating field.
+/// Exchange, anisotropy and a rotating field.
 inline auto turning(Slab const& slab) {
   return LandauLifshitz(EffectiveField(Exchange(slab.lattice, slab.exchange),
                                        UniaxialAnisotropy(slab.anisotropy, slab.axis),
@@ -63,7 +63,7 @@ void expect_passes_under_a_nonlocal_field(double dt, Options const&... options) 
   expect_equal_bits(copy_to_host(one), copy_to_host(other), "nonlocal");
 }
 
-/// Expects large lattices of n^3 sites to be swept, and memory to be as predicted.
+/// Expects 8^3 sites to be passed and n^3 sites to be swept, with as much memory as predicted.
 template <class Stepper, class... Options>
 void expect_chosen_and_predicted(std::int64_t n, Options const&... options) {
   int const threads = Threaded().concurrency();

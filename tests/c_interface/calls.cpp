@@ -57,7 +57,7 @@ TYPED_TEST(CInterface, StepsAndLendsSpins) {
 TYPED_TEST(CInterface, TakesSpinsOfItsOwnStrides) {
   auto* const simulation = this->simulation.get();
   ASSERT_EQ(cayspin_step(simulation, 3), CAYSPIN_OK);
-  // Components one after another, backwards along x, of any length.
+  // All x components come first, then y and z; sites are in reverse order, and spins of any length.
   TypeParam const numbers[] = {0, 3, 2, 0, 0, 4};
   cayspin_array const mine{&numbers[1], this->precision, {1, 1, 2, 3}, {0, 0, -1, 2}};
   ASSERT_EQ(cayspin_set_spins(simulation, &mine), CAYSPIN_OK) << cayspin_last_error();
@@ -72,8 +72,8 @@ TYPED_TEST(CInterface, TakesSpinsOfItsOwnStrides) {
   EXPECT_NEAR(energy, -0.8, 2 * this->epsilon);
 }
 
-// Borrowed memory is used in place, also after steps: an even number of them ends in the original
-// memory. On hosts without a copy.
+// On hosts, spins are lent without a copy. After an even number of steps, which swap two arrays,
+// they are in the original memory. Lent memory may be the input of set_spins.
 TYPED_TEST(CInterface, LendsAndTakesBack) {
   auto* const simulation = this->simulation.get();
   cayspin_array first{}, second{}, later{};

@@ -147,7 +147,7 @@ TEST(CInterfaceErrors, WrongSpins) {
     }
   refuses({numbers, CAYSPIN_DOUBLE, {2, 1, 1, 3}, {3, 3, 3, 1}}, "(2, 1, 1, 3)");
   refuses({numbers, static_cast<cayspin_precision>(0), {1, 1, 2, 3}, {6, 6, 3, 1}}, "precision 0");
-  // The message starts with the caller's argument, and names no line of a text.
+  // The message starts with the caller's argument, and names no line of a scene.
   auto const refuses_second = [&] {
     refuses({numbers, CAYSPIN_DOUBLE, {1, 1, 2, 3}, {6, 6, 3, 1}},
             "spins: the spin of site (1, 0, 0)");
@@ -204,7 +204,8 @@ TEST(CInterfaceErrors, RunsAndFiles) {
   std::filesystem::remove_all(folder);
 }
 
-// Classical Euler doubles lengths: the guard reports it, and the state before is kept.
+// With this dt, classical Euler makes spins longer by 1e300 in each step until they overflow: the
+// guard reports it, and the last good state is kept.
 TEST(CInterfaceErrors, NumbersThatFail) {
   auto text = scene_text();
   text.replace(text.find("rkmk4"), 5, "classical_euler");
@@ -232,7 +233,7 @@ TEST(CInterfaceErrors, NumbersThatFail) {
   EXPECT_EQ(energy, -2);  // along the field, where nothing turns
 }
 
-// Like the texts of strerror: each thread has its own message.
+// Each thread has its own message, like errno.
 TEST(CInterfaceErrors, BelongToTheirThread) {
   expect_failure(cayspin_step(nullptr, 1), CAYSPIN_WRONG_USAGE, "simulation is NULL");
   std::string there = "unset";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A locale with a decimal comma does not change numbers, files and messages.
+// A locale with a decimal comma does not change numbers, files or messages.
 #include "../program/program_test.hpp"
 #include "../support/decimal_comma.hpp"
 #include "../support/file_bytes.hpp"

@@ -45,14 +45,14 @@ std::vector<double> spins_of(cayspin_simulation* simulation) {
   return numbers;
 }
 
-/// One thread's scene and its file.
+/// The file of a thread, the scene that writes it, and the scene that starts from it.
 struct Course {
   cayspin_precision precision;
   std::string file, scene, from_file;
-  std::array<std::vector<double>, 2> expected = {};  // of a round without another thread
+  std::array<std::vector<double>, 2> expected = {};  // of a round without the other thread
 
-  /// Returns the spins at the end of a run that writes the file, and those of a scene that starts
-  /// from it; they are equal except for the rounding of a normalisation.
+  /// Returns the spins at the end of a run that writes the file, and the initial spins of the scene
+  /// that starts from it. They differ only by the rounding of a normalisation.
   std::array<std::vector<double>, 2> round() const {
     auto const simulation = open(scene, precision);
     EXPECT_EQ(cayspin_run(simulation.get(), file.c_str(), 1), CAYSPIN_OK) << cayspin_last_error();

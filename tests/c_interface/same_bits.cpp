@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Programs in C and Fortran give the bits of the program's run.
+// The C interface, and example programs in C and Fortran, give the bits of `cayspin run`.
 #include "../program/program_test.hpp"
 #include "c_interface_test.hpp"
 

@@ -4,8 +4,8 @@
 Scenes of `relax` have no steps and are left out.
 
 Every combination that `REFERENCE methods` lists is run in both precisions on every scene. All other
-combinations of the same words are run once for spins and once for rigid bodies: there both builds
-have to refuse with the same sentence. Exit status 1 when anything differs.
+combinations of the same words are run once for spins and once for rigid bodies. Most of them are
+refused, and both builds have to do so with the same sentence. Exit status 1 if anything differs.
 """
 
 import argparse
@@ -59,7 +59,7 @@ class Case:
 
 
 def words(cell):
-    """The words of a cell of the table, without remarks in brackets; "-" is none."""
+    """The words in a cell of the table, without remarks in brackets; "-" means no word."""
     found = [re.sub(r" *\(.*\)", "", word).strip() for word in cell.split(",")]
     return NONE if found == ["-"] else found
 
@@ -119,7 +119,7 @@ def scene_text(scene, combination, steps):
     if combination.adaptive:
         integrator.setdefault("tolerance", 1e-5)
     elif integrator.pop("tolerance", None):
-        integrator["dt"] /= 20  # that of an adaptive method is the time between frames
+        integrator["dt"] /= 20  # with an adaptive method, dt is the time between frames
     if combination.isotropy == "constant":
         integrator["isotropy"] = {"constant": 5e10 if in_si else 0.3}
     elif combination.isotropy:

@@ -60,7 +60,7 @@ static_assert(!detail::SeriesOf<LandauLifshitz<EffectiveField<Zeeman>>>::is_loca
 static_assert(detail::SeriesOf<Orthogonal<RigidBody>>::is_local);
 static_assert(detail::energy_terms<Orthogonal<Llg<double>>> == 2);
 
-// The precession is a bool.
+// LandauLifshitz takes its precession only as a bool.
 using Applied = EffectiveField<Zeeman>;
 static_assert(std::is_constructible_v<LandauLifshitz<Applied>, Applied, double, bool> &&
               !std::is_constructible_v<LandauLifshitz<Applied>, Applied, double, double>);
@@ -87,7 +87,7 @@ static_assert(!Stepper<F64> && !Stepper<int>);
 static_assert(evaluations_per_step<Rkmk4<F64>>() == 4 && evaluations_per_step<LieHeun<F64>>() == 2);
 static_assert(!evaluations_per_step<ImplicitMidpoint<F64>>() && !evaluations_per_step<Adaptive>());
 
-// Options next to a number are named.
+// Options that follow numbers have to be named: a bare bool or number is refused.
 template <class Options>
 concept OptionsOfStableStep =
     requires(Options options) { largest_stable_step<Rkmk4<F64>>(1.0, 0.1, options); };
@@ -101,14 +101,15 @@ static_assert(!Observer<Zeeman> && !Observer<int>);
 static_assert(detail::changes_spins<Every<Every<Normalize>>> && detail::changes_spins<Control> &&
               !detail::changes_spins<Every<Record<Zeeman>>>);
 
-// Types are deduced, with and without spins.
+// The template arguments of HostField are deduced from spins, or from a lattice and the solver.
 using OnHost = SlabDemagOnHost;
 static_assert(std::is_same_v<decltype(HostField(std::declval<Spins<float>>(), OnHost({0, 0, 1}))),
                              HostField<Spins<float>, OnHost>>);
 static_assert(std::is_same_v<decltype(HostField(Lattice(), OnHost({0, 0, 1}))),
                              HostField<SpinField<double>, OnHost>>);
 
-/// Numbers of any type times vectors of any value type, and both neighbours without `template`.
+/// Uses numbers of any type times vectors of any value type, and next and previous without the
+/// keyword `template`.
 struct Operators {
   template <class Stencil>
   KOKKOS_FUNCTION auto field(Stencil const& stencil) const {

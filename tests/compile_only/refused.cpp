@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// One mistake for each CAYSPIN_TEST_MISTAKE, or all for -1; the compiler must answer with the
-// library's sentences. CMakeLists.txt takes the name of a mistake from its #if, and the sentence, a
-// regular expression, from the next line.
+// Mistake number CAYSPIN_TEST_MISTAKE, or all of them for -1; the compiler has to answer with
+// sentences of the library. CMakeLists.txt takes the name of a mistake from its #if, and the
+// sentence, a regular expression, from the next line.
 #include <cayspin/cayspin.hpp>
 #include <cayspin/field/field_of_moments.hpp>
 #include <cayspin/field/slow_field.hpp>

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Builds the target refused_at_once, which must fail with each of SENTENCES as an error, as often as
-# it is listed.
+# Builds the target refused_at_once, which must fail with each of SENTENCES as an error, at least as
+# often as the sentence is listed.
 execute_process(
   COMMAND ${CMAKE_COMMAND} --build ${BUILD} --config ${CONFIG} --target refused_at_once
   RESULT_VARIABLE status OUTPUT_VARIABLE log ERROR_VARIABLE log)

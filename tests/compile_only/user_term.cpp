@@ -6,8 +6,8 @@
 namespace cayspin::test {
 
 #if !defined(__CUDA_ARCH__) && !defined(__HIP_DEVICE_COMPILE__) && !defined(__SYCL_DEVICE_ONLY__)
-// Host loops use whole registers even if the default execution space, which Kokkos' own choice of a
-// pack follows, is a device.
+// Host loops use whole registers even if the default execution space is a device; Kokkos' own
+// choice of a pack depends on that space.
 #if defined(KOKKOS_ARCH_AVX512XEON)
 static_assert(sizeof(detail::Pack<double>) == 64 && sizeof(detail::Pack<float>) == 64);
 #elif defined(KOKKOS_ARCH_AVX2)
@@ -42,7 +42,7 @@ struct Growing {
   }
 };
 
-/// A generator with only its A.
+/// A generator that defines only its A.
 struct Spinning {
   template <class Stencil>
   KOKKOS_FUNCTION auto operator()(Stencil const& stencil) const {

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# compilers.sh KOKKOS_SOURCE BUILD_FOLDER [THREADS] runs test_contracted with g++ and clang, for
-# AVX2 and AVX-512, each contracting within expressions and across them. Builds Kokkos for each.
-# Status 1 if a combination fails, 77 if none fails and one cannot be tried here.
+# compilers.sh KOKKOS_SOURCE BUILD_FOLDER [THREADS] runs test_contracted with g++, contracting
+# across expressions, and with clang, contracting across and only within them, for AVX2 and AVX-512.
+# Builds Kokkos for each. Status 1 if a combination fails, 77 if none fails but one cannot be tried
+# here.
 set -uo pipefail
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 kokkos=$1 build=$2 threads=${3:-2}
@@ -56,7 +57,7 @@ if [ ! -f "$kokkos/CMakeLists.txt" ]; then
 fi
 mkdir -p "$build"
 gcc=$(first_of g++) clang=$(first_of clang++ clang++-{22..14})
-# Haswell and Skylake have 256 and 512 bits. g++ treats `on` as `off`.
+# Vectors of Haswell and Skylake have 256 and 512 bits. g++ treats `on` as `off`.
 for pair in "HSW fma" "SKX avx512dq"; do
   read -r architecture flag <<<"$pair"
   combination "$gcc" g++ "$architecture" "$flag" fast

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Reports lines of include/ and src/ that the tests execute, per file and in total. Usage: bash
-# tests/coverage/coverage.sh [--report]
-# --report: of the last run, without a new one. A line of a template counts once, and as executed
-# when any of its instances executes it. A line that no test instantiates is not compiled and not
-# counted.
+# Reports lines of include/ and src/ that the tests execute, per file and in total. Usage:
+# bash tests/coverage/coverage.sh [--report]
+# --report: report the last run, without a new one. A line of a template counts once, and as
+# executed if any of its instances executes it. A line that no test instantiates is not compiled and
+# not counted.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)

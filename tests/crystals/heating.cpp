@@ -33,8 +33,8 @@ class Crystals {
     std::int64_t steps_per_look, settling, looks;
     std::uint64_t seed;
   };
-  /// Calls look(crystal, energy, sum of spins) for each crystal, after an equal number of samples
-  /// for equilibration.
+  /// Calls look(crystal, energy, sum of spins) for each crystal, `looks` times with steps_per_look
+  /// steps in between; before that, `settling` such intervals are for equilibration.
   template <class Exec, class Look>
   void heat(Exec const& exec, Run const& run, Look const& look) const {
     double const damping = 1;
@@ -94,8 +94,9 @@ template <class Backend>
 class HeatedCrystal : public ::testing::Test {};
 TYPED_TEST_SUITE(HeatedCrystal, Backends, BackendName);
 
-// The series in K = 1 / T: a path of n bonds between both ends of the bond adds the n-th power of
-// coth K - 1 / K. There is the bond itself, and there are 12 and 222 paths of 3 and 5 bonds.
+// The high-temperature series in K = 1 / T: each path of n bonds between the two ends of a bond
+// adds (coth K - 1 / K)^n to the bond's energy. There is one path of one bond, the bond itself;
+// there are 12 of 3 bonds, and 222 of 5.
 TYPED_TEST(HeatedCrystal, HasTheEnergyOfTheHighTemperatureSeries) {
   Crystals<typename TypeParam::Spins> const crystals(16);
   double const temperature = 8, of_bond = 1 / std::tanh(1 / temperature) - temperature;
@@ -116,8 +117,8 @@ TYPED_TEST(HeatedCrystal, HasTheEnergyOfTheHighTemperatureSeries) {
   EXPECT_NEAR(mean, expected, 4 * error);
 }
 
-/// Binder's cumulant at both ends of a temperature range: sums over the crystals, reweighted from
-/// the temperature in between.
+/// Binder's cumulant at both ends of a temperature range, from sums for each crystal that are
+/// reweighted from the temperature in the middle.
 class Cumulants {
  public:
   static constexpr double width = 0.02;
@@ -149,7 +150,8 @@ class Cumulants {
 
   std::size_t crystals() const { return sums_.size(); }
 
-  /// Leaves out one of the crystals, if it exists.
+  /// Returns the cumulants without crystal `left_out`; of all crystals if there is none of this
+  /// number.
   Ends without(std::size_t left_out) const {
     Ends ends{};
     for (std::size_t end = 0; end < 2; ++end) {
@@ -169,7 +171,7 @@ class Cumulants {
 /// Returns where the cumulants of 8^3 and 16^3 cells cross, and the standard error.
 std::pair<double, double> crossing(double temperature, double dt, std::int64_t steps_per_look,
                                    std::int64_t looks, std::uint64_t seed) {
-  // Rows of whole packs are fastest.
+  // Rows of 8 doubles and of 16 floats consist of whole packs, which is fastest.
   auto const small = Cumulants::found<double>(8, temperature, dt, steps_per_look, looks, seed);
   auto const large = Cumulants::found<float>(16, temperature, dt, steps_per_look, looks, seed + 1);
   auto const at = [&](std::size_t of_small, std::size_t of_large) {
@@ -192,8 +194,8 @@ std::pair<double, double> crossing(double temperature, double dt, std::int64_t s
   return {all, std::sqrt(variance)};
 }
 
-// ctest -C long -L long
-// A step heats the crystal by the square of its length: the crossing is lower by about 22 dt^2.
+// Run by ctest -C long -L long. Steps heat the crystal in proportion to dt^2, which lowers the
+// crossing by about 22 dt^2.
 TEST(HeisenbergCrystal, DISABLED_BinderCumulantsCrossAtTheCriticalTemperature) {
   auto const [fine, its_error] = crossing(2.036, 0.03, 40, 2000, 100);
   auto const [coarse, error_of_coarse] = crossing(1.979, 0.06, 20, 600, 200);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Spin waves of crystals with known frequencies. If all sublattices have equal amplitude, cones of
-// any opening turn rigidly, so that these are exact beyond small amplitudes.
+// Spin waves of crystals with known frequencies. If all sublattices have the same amplitude, cones
+// of any opening turn rigidly, so the frequencies are exact for large amplitudes, too.
 #include "../support/antiferromagnet.hpp"
 #include "../support/evaluate.hpp"
 
@@ -63,7 +63,8 @@ class Magnons : public ::testing::Test {
           amplitude.push_back(a);
           start.insert(start.end(), {a.real(), a.imag(), site == down ? -z : z});
         }
-    // A quarter of a radian a step in the largest field, and a turn that shows the wave.
+    // The wave turns by 2.3 radians, if it does so within 20 units of time. A field of 10, more
+    // than any here, turns a spin by 0.25 radians in a step.
     double const end = std::min(2.3 / std::abs(frequency), 20.0);
     int const steps = static_cast<int>(std::ceil(end * 10 / 0.25));
     auto const numbers = run(lattice, field, start, end, steps);
@@ -77,7 +78,7 @@ class Magnons : public ::testing::Test {
 };
 TYPED_TEST_SUITE(Magnons, Backends, BackendName);
 
-/// Returns bonds of one site with the nearest sites of another, by their offsets.
+/// Returns bonds between two sites of the basis, one for each offset of cells.
 std::vector<Coupling> bonds(std::array<int, 2> between,
                             std::vector<std::array<int, 3>> const& offsets, double exchange,
                             std::array<double, 3> const& D = {}) {
@@ -133,7 +134,7 @@ TYPED_TEST(Magnons, OfAHoneycomb) {
     for (double const branch : {1.0, -1.0}) {
       double const a = 2 * pi * static_cast<double>(mode[0]) / 18,
                    b = 2 * pi * static_cast<double>(mode[1]) / 12;
-      auto const f = 1.0 + std::polar(1.0, -a) + std::polar(1.0, -b);  // in phases of cells
+      auto const f = 1.0 + std::polar(1.0, -a) + std::polar(1.0, -b);  // with phases of cells
       this->expect_turns(
           crystal, cells, field,
           [&](Cells const& cell, int site) {
@@ -145,8 +146,9 @@ TYPED_TEST(Magnons, OfAHoneycomb) {
     }
 }
 
-// At the corner K of its zone a sublattice moves by itself; D between second neighbours, along z
-// and with the sense of the hexagons, splits the two by 6 sqrt(3) D.
+// At the corner K of the Brillouin zone, a sublattice can precess with the other one at rest. D
+// between second neighbours, along z and in the sense of the hexagons, splits the two frequencies
+// by 6 sqrt(3) D.
 TYPED_TEST(Magnons, OfAHoneycombWithAGap) {
   Cells const cells{12, 12, 1};
   constexpr double D = 0.04;
@@ -174,8 +176,8 @@ TYPED_TEST(Magnons, OfAHoneycombWithAGap) {
   EXPECT_NEAR(std::abs(found[0] - found[1]), 6 * std::sqrt(3.0) * D * std::cos(opening), 1e-14);
 }
 
-// The flat band of a kagome lattice: 6 J, at any k; here with the three sites a third of a turn
-// apart.
+// The flat band of a kagome lattice: 6 J, at any k; here with phases that differ by a third of a
+// turn between the three sites.
 TYPED_TEST(Magnons, OfAKagome) {
   Cells const cells{9, 8, 1};
   auto const crystal = Crystal::kagome();
@@ -195,7 +197,8 @@ TYPED_TEST(Magnons, OfAKagome) {
 }
 
 // omega = sqrt((h + K)^2 - (h gamma)^2) at small openings, with h = 8 |J| and gamma = cos(kx / 2)
-// cos(ky / 2) cos(kz / 2): to the right about the spins up, to the left about those down.
+// cos(ky / 2) cos(kz / 2). It is positive if spins up have the larger amplitude, and negative if
+// spins down do.
 TYPED_TEST(Magnons, OfAnAntiferromagnet) {
   Cells const cells{24, 6, 5};
   constexpr double J = -0.75, h = 8 * -J, K = 0.5;
@@ -212,7 +215,7 @@ TYPED_TEST(Magnons, OfAnAntiferromagnet) {
     auto const cone = AntiferromagneticCone::of(h, K, gamma, opening);
     EXPECT_NEAR(AntiferromagneticCone::of(h, K, gamma, 1e-6).frequency,
                 AntiferromagneticCone::of_small_opening(h, K, gamma), 1e-11);
-    for (int const moving : {0, 1})  // more than the other
+    for (int const moving : {0, 1})  // the sublattice of larger amplitude
       this->expect_turns(
           crystal, cells, field,
           [&](Cells const& cell, int site) {

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Compiles layouts.cpp and fails where a struct that kernels take has another size for the device
-than for the host: then kernels find nothing in its place. nvcc 12.9 and 13 do so to structs with
-[[no_unique_address]] members."""
+"""Compiles layouts.cpp and fails if a struct that kernels take has another size on the device than
+on the host: kernels would look for its members in wrong places. nvcc 12.9 and 13 have such sizes
+for structs with [[no_unique_address]] members."""
 
 import pathlib
 import re
@@ -13,7 +13,7 @@ from device_kernels import compile_entry, device_command, output_of, parser_of
 
 
 def sizes_on_host(words, directory, output):
-    """By the mangled name of the struct: the size, and a symbol that has the name."""
+    """Returns {mangled name of a struct: (its size, a symbol that contains the name)}."""
     words = list(words)
     words[words.index("-o") + 1] = output
     output_of(words, directory)
@@ -32,7 +32,7 @@ def sizes_on_device(words, directory, output):
 
 
 def main():
-    arguments = parser_of(__doc__).parse_args()  # the output without its ending
+    arguments = parser_of(__doc__).parse_args()  # output: a path without its ending
     directory, words = compile_entry(arguments)
     host = sizes_on_host(words, directory, f"{arguments.output}.o")
     device = sizes_on_device(words, directory, f"{arguments.output}.ptx")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The model of a GPU follows from its counts, and the kernels reach the required share of it. The
-report of a run on a GPU is made, here from results of a host."""
+"""Tests the model of the kernels' times on a GPU, and that the kernels reach the required share of
+the bandwidth by it. Tests the report of a run on a GPU, with made-up results."""
 
 import json
 import pathlib
@@ -14,7 +14,7 @@ import gpu_report  # noqa: E402
 import model_gpu  # noqa: E402
 
 H100 = model_gpu.CARDS["H100"]
-# Geometric Euler in double, counted in a loop that divided and branched.
+# Geometric Euler in double, as it was when its loop divided and branched.
 BRANCHING = model_gpu.Kernel("f64_LieEuler_0 577 126 21 388 3 39 45")
 
 
@@ -42,7 +42,8 @@ class Model(unittest.TestCase):
         times = model_gpu.seconds(kernel, H100, 256)
         self.assertEqual(kernel.warps, 36)
         self.assertAlmostEqual(times["memory"] * 1e12, 48 / 3.35, places=6)
-        # 160 for a site and 80 for a thread, of 8 sites, on 4 schedulers of 32 lanes
+        # 160 instructions for a site and 80 for a thread, which has 8 sites; 4 schedulers of 32
+        # lanes
         self.assertAlmostEqual(times["issue"] * 1e12, 170 / 128 / 132 / 1.755e-3, places=6)
         self.assertAlmostEqual(times["arithmetic"] * 1e12, 80 / 64 / 132 / 1.755e-3, places=6)
 
@@ -83,7 +84,8 @@ class Report(unittest.TestCase):
         text, complete = self.report(0.0262, "100% tests passed, 0 tests failed out of 3\n")
         self.assertTrue(complete)
         self.assertIn("measured on NVIDIA H200; copy of the memory 4.000 TB/s, 0.83 of", text)
-        # 13.1 ps by the second cache; 48 bytes at the rate of the copy take 12 ps
+        # The model says 13.1 ps, limited by the second cache; 48 bytes at the rate of the copy take
+        # 12 ps.
         self.assertIn("| f64/Euler/256 | 26.2 | 13.1 | 2.00 | 0.46 |", text)
         self.assertIn("a table", text)
 

@@ -1,4 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// As with -DCAYSPIN_MPI_DEVICE_MEMORY=ON: messages do not pass through the host.
+// The example as with -DCAYSPIN_MPI_DEVICE_MEMORY=ON: messages do not pass through the host.
 #define CAYSPIN_MPI_DEVICE_MEMORY
 #include "../../examples/ranks/main.cpp"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Compiles the device code of a source and prints the registers that its kernels take; fails when
-a kernel of cayspin spills any, or keeps arrays in a stack frame, both of which is memory."""
+"""Compiles the device code of a source and prints the registers that its kernels take; fails if
+a kernel of cayspin spills registers or keeps arrays in a stack frame, both of which use memory."""
 
 import sys
 

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Counts the instructions of the main kernels on a GPU, from their machine code, and compares them
-with the recorded ones, to 2 %. Nothing is run.
+"""Counts the instructions of the main kernels on a GPU, from their machine code, and compares the
+counts with recorded ones, to 2 %. Nothing is run.
 
-A thread walks over a few sites. The loop over them is what is counted by kind, once for each site;
-the rest of a kernel runs once for each thread. No instruction of the loop is left out. "integer" is
-what is no arithmetic of the method, no load, no store and no load of a constant: addresses, ends of
-the lattice, branches. In double precision it may not exceed the arithmetic."""
+A thread walks over a few sites. The instructions of this loop, which run once for each site, are
+counted by kind; the rest of a kernel, which runs once for each thread, counts only in "total".
+Every instruction of the loop has a kind. "integer" is any that is neither arithmetic of the method,
+nor a load, a store or a load of a constant: addressing, ends of the lattice, branches. In double
+precision there may not be more of these than of arithmetic."""
 
 import collections
 import pathlib
@@ -57,7 +58,7 @@ def kind(text):
 
 
 def instructions(lines):
-    """[(labels before it, text)] of a kernel."""
+    """Returns [(labels before an instruction, its text)] of a kernel."""
     found, labels = [], set()
     for line in lines:
         if match := re.match(r"(\.L\w+):", line):

@@ -39,8 +39,9 @@ inline void print(OutcomeCounts const& tried) {
   }
 }
 
-/// Returns the bytes after one of: bits flipped, bytes replaced, the end cut off, a block zeroed,
-/// two blocks swapped, a block repeated elsewhere. Half of the damage is in the first 4 KiB.
+/// Returns the bytes with damage of one kind: bits flipped, bytes replaced, the end cut off, a
+/// block zeroed, two blocks swapped, or a block repeated elsewhere. More than half of the places
+/// are in the first 4 KiB.
 inline std::string damaged(std::string bytes, Chance& chance) {
   auto const place = [&] {
     return chance.below(chance.below(2) ? bytes.size() : std::min<std::size_t>(bytes.size(), 4096));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Random damage of HDF5 files: each reading ends with a one-line error or with what was written.
-// CAYSPIN_DAMAGED_FILES and CAYSPIN_SEED: their number and the seed.
+// Random damage to HDF5 files: each reading ends with a one-line error or returns what was written.
+// Files without checksums may give other values. CAYSPIN_DAMAGED_FILES and CAYSPIN_SEED: number of
+// files, and the seed.
 #include "damaged_bytes.hpp"
 #include "inertia_file.hpp"
 #include "io/scene.hpp"
@@ -128,7 +129,7 @@ class Damage : public TrajectoryTest {
     }
   }
 
-  // Files like those of `run`, in several layouts.
+  // Writes a file like those of `run`, with a given layout.
   std::filesystem::path trajectory(std::string const& name, std::string const& precision,
                                    TrajectoryStorage const& storage, int frames,
                                    std::int64_t cell_sites = 1) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The program on damaged files: it reads the original content, or refuses them with one line.
-// CAYSPIN_DAMAGED_RUNS and CAYSPIN_SEED: their number and the seed.
+// CAYSPIN_DAMAGED_RUNS and CAYSPIN_SEED: number of files, and the seed.
 #include "damaged_bytes.hpp"
 #include "inertia_file.hpp"
 #include "program/program_test.hpp"
@@ -42,12 +42,12 @@ class DamagedRuns : public ProgramTest {
                 more);
   }
 
-  /// Expects status 0, or another status with one line. An endless loop ends with a signal.
+  /// Starts the program; a signal ends an endless loop, after 20 s of processor time.
   Outcome started(Arguments const& arguments) const {
     return start(arguments, {.seconds_limit = 20});
   }
 
-  // A command that reads damaged.h5, or also damaged.checkpoint.h5.
+  // A command that reads damaged.h5, perhaps with damaged.checkpoint.h5.
   struct Use {
     char const* name;
     Arguments arguments;

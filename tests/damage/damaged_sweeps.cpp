@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A sweep reads a damaged file of a run: it refuses the file with one line, or copies it
-// completely. CAYSPIN_DAMAGED_SWEEPS and CAYSPIN_SEED: their number and the seed.
+// A sweep that reads a damaged file of a run refuses it with one line, or copies it completely.
+// CAYSPIN_DAMAGED_SWEEPS and CAYSPIN_SEED: number of files, and the seed.
 #include "damaged_bytes.hpp"
 #include "hdf5/real_dataset.hpp"
 #include "io/sweep.hpp"

@@ -11,13 +11,13 @@
 
 namespace {
 
-// Moments before the kill; -1: no kill. Before a write is one moment, each page that ends in it
-// another.
+// Moments before the kill; -1: no kill. A write has one moment before it, and one at the end of
+// each page within it.
 long moments_left = -1;
 
 }  // namespace
 
-// Intercepts HDF5's writes. A kill can stop the system between two pages, not within one.
+// Intercepts HDF5's writes. A kill can interrupt a write between two pages, not within one.
 extern "C" ssize_t pwrite(int file, void const* data, size_t bytes, off_t offset) {
   constexpr size_t page = 4096;
   if (moments_left >= 0) {
@@ -109,10 +109,11 @@ TEST_F(Killed, FromTheCreationToTheEnd) { kill_at_every_write(course(0, 4), stri
 
 TEST_F(Killed, InACrystal) { kill_at_every_write(course(0, 4, 2), stride(5)); }
 
-// Index blocks are added here, and in other layouts nodes are split.
+// At these frames HDF5 adds blocks to its indices or, in other layouts, splits their nodes.
 TEST_F(Killed, AfterSomeFrames) { kill_at_every_write(course(60, 70), stride(15)); }
 
-// The scalars' chunks of 512 are full: samples at frame 256, frames at 512.
+// Chunks of 512 scalars become full: those of samples, two for each frame, at frame 256, and those
+// of frames at frame 512.
 TEST_F(Killed, AtTheEndOfAChunkOfSamples) { kill_at_every_write(course(254, 258), stride(9)); }
 TEST_F(Killed, AtTheEndOfAChunkOfFrames) { kill_at_every_write(course(510, 514), stride(19)); }
 

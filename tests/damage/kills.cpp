@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // `cayspin run`, killed at random times, without disk space, or with its file cut. CAYSPIN_KILLS
-// and CAYSPIN_SEED: the number of each kind, and the seed.
+// and CAYSPIN_SEED: number of runs of each kind, and the seed.
 #include "damaged_bytes.hpp"
 #include "program/program_test.hpp"
 
@@ -59,7 +59,8 @@ class Kills : public ProgramTest {
     }
   }
 
-  // Expects every step that was seen to be there with its spins, and the run to be continued.
+  // Expects the file to have every step that was seen, with its spins, and the run to continue from
+  // it.
   void expect_nothing_lost(std::string const& name, io::TrajectoryInfo const& seen) {
     auto const path = in_folder(name);
     if (!fs::exists(path)) {
@@ -78,7 +79,7 @@ class Kills : public ProgramTest {
     EXPECT_GE(file.frames, seen.frames);
     auto const last = file.frames == 0 ? -1 : file.frame_steps.back();
     EXPECT_GE(last, last_seen - last_seen % 4 - (last_seen % 4 == 0 ? 4 : 0)) << keep(path);
-    // SIGTERM may add a frame at its step.
+    // SIGTERM may add a last frame at any step.
     for (std::size_t frame = 0; frame + 1 < file.frame_steps.size(); ++frame)
       EXPECT_EQ(file.frame_steps[frame], 4 * static_cast<std::int64_t>(frame));
     frames_ += file.frames;
@@ -109,14 +110,14 @@ class Kills : public ProgramTest {
     return " kept as " + kept.string();
   }
 
-  // Reads the files of a test with another build of HDF5.
+  // Reads the files of a test with h5py, which has another build of HDF5.
   void expect_h5py_opens_all() const {
     auto const command = std::string(CAYSPIN_PYTHON) + " -B " + CAYSPIN_OPEN_ALL + " " +
                          folder_.string() + "/run_*.h5";
     EXPECT_EQ(std::system(command.c_str()), 0);
   }
 
-  // Returns the time to a run's first frame: a build with checks is many times slower.
+  // Returns the time to a run's first sample, which is many times longer in a build with checks.
   std::chrono::microseconds time_to_first_frame() {
     auto const name = "first.h5";
     auto const begun = std::chrono::steady_clock::now();
@@ -162,7 +163,7 @@ TEST_F(Kills, SigkillLosesNoFrameThatWasSeen) {
   print_summary("SIGKILL");
 }
 
-// After `cayspin info` the file is complete without its journal.
+// `cayspin info` has added what was in a journal to its file, and removed the journal.
 TEST_F(Kills, SigkillWithSyncLosesNoFrameThatWasSeen) {
   kill_with(SIGKILL, kills_, {"--set", "output.sync=true"});
   for (auto const& entry : fs::directory_iterator(folder_))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A run in stages, killed at random times, continues in its stage with the bits of an uninterrupted
-// run. CAYSPIN_KILLS and CAYSPIN_SEED: their number and the seed.
+// run. CAYSPIN_KILLS and CAYSPIN_SEED: number of kills / 4, and the seed.
 #include "damaged_bytes.hpp"
 #include "program/program_test.hpp"
 
@@ -97,7 +97,7 @@ TEST_F(KillsOfStages, GoOnToTheSameBits) {
     EXPECT_EQ(last_spins("on.h5"), spins) << "killed in stage " << killed.frame_stages.back();
     EXPECT_EQ(on.frame_steps.back(), whole.frame_steps.back());
     EXPECT_EQ(on.frame_times.back(), whole.frame_times.back());
-    // Half of the kills are of runs that continue a killed one.
+    // With probability 1/2, the next run to be killed continues this one.
     from = chance.below(2) == 0 ? file : std::string();
   }
   std::cout << "killed in stage:";

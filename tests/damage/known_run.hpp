@@ -8,18 +8,18 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// A run with known numbers, and its start.
+/// A run with known numbers: those of a frame or sample follow from its step.
 struct KnownRun {
   TrajectoryHeader header = small_header();
   TrajectoryStorage storage = {};
   std::int64_t first_step = 0;
   std::int64_t frames = 0;
   int samples = 0;       // for each frame
-  int last_samples = 0;  // after the last frame, where there are some for each
+  int last_samples = 0;  // after the last frame; only if `samples` > 0
   bool replaces = false;
 };
 
-/// Counts that were reported as written.
+/// What a writer has reported so far as written.
 struct Told {
   bool created = false, finished = false;
   std::int64_t frames = 0, samples = 0;
@@ -75,7 +75,7 @@ inline bool equal(Scalars const& a, Scalars const& b) {
          a.magnetization == b.magnetization;
 }
 
-/// Returns the spins in the order of a reader.
+/// Returns the spins as a reader returns them: in double.
 inline std::vector<double> read_back_at(TrajectoryHeader const& header, std::int64_t step) {
   if (header.precision != "single") return spins_at<double>(header, step);
   auto const given = spins_at<float>(header, step);

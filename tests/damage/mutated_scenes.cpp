@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Shipped scenes with tokens deleted, swapped or replaced: each is read, or refused with one line.
-// CAYSPIN_MUTATED_SCENES and CAYSPIN_SEED: their number and the seed.
+// CAYSPIN_MUTATED_SCENES and CAYSPIN_SEED: number of scenes, and the seed.
 #include "damaged_bytes.hpp"
 #include "io/expression.hpp"
 #include "io/scene.hpp"

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Opens trajectory files with h5py and reads every dataset of those that have frames.
+"""Opens trajectory files with h5py; reads the first and the last frame, and the scalars.
 
-A kill may leave the last frame half written, which the library sees."""
+A kill may leave the last frame half written. The library detects that; here, the last frame of a
+file that is not complete is not read."""
 
 import sys
 

@@ -15,7 +15,7 @@ void put(std::string& content, std::size_t offset, char const* bytes, std::size_
   content.replace(offset, count, bytes, count);
 }
 
-// Events of a file; those up to its last sync are certain.
+// A file of which a power cut may leave only part. Its events up to the last sync are certain.
 class CutFile {
  public:
   void add(DiskEvent const& event) {

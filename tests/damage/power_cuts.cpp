@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Files with sync, after a power cut at a random moment: data written since the last
-// synchronisation are there in part, in any order. CAYSPIN_POWER_CUTS and CAYSPIN_SEED: their
-// number and the seed.
+// Files with sync, after a power cut at a random moment: of the data written since the last
+// synchronisation, any part is there, in any order. CAYSPIN_POWER_CUTS and CAYSPIN_SEED: number of
+// cuts, and the seed.
 #include "damaged_bytes.hpp"
 #include "hdf5/guarded_reading.hpp"
 #include "known_run.hpp"
@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 struct Recording {
   KnownRun run = {};
   std::vector<DiskEvent> events = {};
-  std::vector<Told> told = {};  // by the numbers noted
-  std::size_t first_cut = 0;    // before it there is an older file to write
+  std::vector<Told> told = {};  // indexed by the numbers given to note_told
+  std::size_t first_cut = 0;    // events before it write an older file
 
   Told told_before(std::size_t cut) const {
     for (auto i = cut; i-- > 0;)
@@ -82,7 +82,7 @@ class PowerCuts : public testing::Test {
     }
   }
 
-  // Continues the run in its file.
+  // Continues the run from its last frame, in a file that replaces this one.
   void expect_to_go_on(KnownRun run) const {
     auto const info = read_info(path());
     if (info.frames == 0 || info.header.shape != run.header.shape) return;
@@ -149,8 +149,8 @@ TrajectoryHeader header_of(std::array<std::int64_t, 3> const& shape, char const*
   return header;
 }
 
-// Frames that share a chunk, that fill several, compressed ones; beyond the first blocks of HDF5's
-// index; more samples than a chunk holds; a file that replaces another.
+// Frames that share a chunk, that fill several, compressed ones; frames beyond the first blocks of
+// HDF5's index; more samples than a chunk holds; a file that replaces another; cells of two sites.
 TEST_F(PowerCuts, LoseAtMostTheFrameBeingWritten) {
   std::vector<KnownRun> const runs{
       {.header = header_of({4, 3, 2}, "double"), .frames = 12, .samples = 3},
@@ -175,7 +175,7 @@ TEST_F(PowerCuts, LoseAtMostTheFrameBeingWritten) {
             << " cut again while completed\n";
 }
 
-// Enumerates all choices.
+// Makes all possible sequences of choices, one between two calls of advance().
 class AllChoices {
  public:
   std::size_t operator()(std::size_t end) {
@@ -197,7 +197,7 @@ class AllChoices {
   std::size_t next_ = 0;
 };
 
-// In the order of the writes, if few choices are open.
+// With the writes in their order, tries all choices if they are few.
 TEST_F(PowerCuts, LoseNothingWhateverOfFewWritesIsThere) {
   auto const recording = record(
       {.header = header_of({2, 1, 1}, "double"), .frames = 2, .samples = 1, .replaces = true});
@@ -205,7 +205,7 @@ TEST_F(PowerCuts, LoseNothingWhateverOfFewWritesIsThere) {
   double const most = std::getenv("CAYSPIN_POWER_CUTS") ? 4096 : 32;
   long histories = 0, cuts = 0;
   for (auto cut = recording.first_cut; cut <= recording.events.size() && !HasFailure(); ++cut) {
-    double count = 1;  // with all names there
+    double count = 1;  // if all names are there
     auto const counted = [&](std::size_t end) {
       count *= static_cast<double>(end);
       return end - 1;

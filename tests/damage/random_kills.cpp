@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Writers of files in memory, killed at random times. CAYSPIN_RANDOM_KILLS and CAYSPIN_SEED: their
-// number and the seed.
+// Writers of files in a memory file system, killed at random times. CAYSPIN_RANDOM_KILLS and
+// CAYSPIN_SEED: number of kills, and the seed.
 #include "damaged_bytes.hpp"
 #include "hdf5/guarded_reading.hpp"
 #include "known_run.hpp"
@@ -25,7 +25,7 @@ using cayspin::test::Chance;
 using cayspin::test::number_from;
 namespace fs = std::filesystem;
 
-// Reports of a process, which survive it.
+// What a process has reported; it survives the process.
 struct Reported {
   std::atomic<bool> begun, created, finished;
   std::atomic<std::int64_t> frames, samples;
@@ -83,7 +83,7 @@ class RandomKills : public testing::Test {
     return course;
   }
 
-  // Continues from the last frame of a file that a kill has left, like a restart.
+  // In one of four cases, lets the run start from the last frame of a file that a kill has left.
   void restart_from_last(Course& course) {
     if (!last_ || chance_.below(4) != 0) return;
     auto const info = read_info(*last_);
@@ -130,7 +130,7 @@ class RandomKills : public testing::Test {
     }
   }
 
-  // Reads with another build of HDF5.
+  // Reads all files with h5py, which has another build of HDF5, and removes them.
   void expect_h5py_opens_all() {
     auto const command = std::string(CAYSPIN_PYTHON) + " -B " + CAYSPIN_OPEN_ALL + " " +
                          folder_.string() + "/*.h5 > " + (folder_ / "opened").string();

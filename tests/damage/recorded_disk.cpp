@@ -93,7 +93,7 @@ std::vector<DiskEvent> stop_recording() {
 
 }  // namespace cayspin::test
 
-// Intercepts calls of the library.
+// Intercepts the system calls of the library and of HDF5.
 namespace test = cayspin::test;
 using test::DiskEvent;
 

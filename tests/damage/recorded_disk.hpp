@@ -11,11 +11,11 @@
 
 namespace cayspin::test {
 
-/// An operation of a program on a file of a folder, in order. Files are numbered.
+/// An operation on a file of the recorded folder, or a number that was told. Files are numbered.
 struct DiskEvent {
   enum Kind { write, resize, sync, create, rename, unlink, sync_folder, told } kind;
   std::size_t file = 0;
-  std::uint64_t offset = 0;  // of a write; otherwise the file's size
+  std::uint64_t offset = 0;  // of a write; the number told; otherwise the file's size
   std::string bytes = {};
   std::string name = {}, new_name = {};
 };
@@ -25,7 +25,7 @@ using DiskState = std::map<std::string, std::string>;
 
 /// Records the calls of this process from here on, for files in `folder`, which holds `state`.
 void record_disk(std::filesystem::path const& folder, DiskState const& state = {});
-/// Records a number whose meaning the caller knows. Returns how many events precede a cut after it.
+/// Records the event `told` with this number. Returns the number of events up to and with it.
 std::size_t note_told(std::uint64_t number);
 std::vector<DiskEvent> stop_recording();
 
@@ -33,7 +33,8 @@ std::vector<DiskEvent> stop_recording();
 using Choose = std::function<std::size_t(std::size_t end)>;
 
 /// Returns what a power cut before event number `cut` may leave. Synchronised data are there. For
-/// each other sector of a write, size and name, `choose` decides whether it is there.
+/// each other sector of a write, file size and name, `choose` decides whether it is there;
+/// `choose_order` decides the order in which these writes reach the disk.
 DiskState after_power_cut(std::vector<DiskEvent> const& events, std::size_t cut,
                           Choose const& choose, Choose const& choose_order);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The demagnetising field as devices compute it, against that of the host: also on host spaces,
-// where FFTW emulates the device's transforms.
+// The demagnetising field as devices compute it, against that of the host. This runs on host
+// spaces, too, where FFTW replaces the device's transforms.
 #include "films.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ template <class Backend>
 class DemagnetizingFieldOnDevices : public ::testing::Test {};
 TYPED_TEST_SUITE(DemagnetizingFieldOnDevices, Backends, BackendName);
 
-// All wave numbers along x at once, two at a time, and one by one.
+// With memory for all wave numbers along x at once, for two at a time, and for one at a time.
 TYPED_TEST(DemagnetizingFieldOnDevices, IsThatOfTheHost) {
   using Real = typename TypeParam::Real;
   using Exec = typename TypeParam::Exec;
@@ -53,7 +53,7 @@ TYPED_TEST(DemagnetizingFieldOnDevices, IsThatOfTheHost) {
   }
 }
 
-// One spelling works for hosts and devices; a device copies no spins.
+// One spelling works for hosts and for devices, which copy no spins to the host.
 TYPED_TEST(DemagnetizingFieldOnDevices, IsATerm) {
   Film const& film = films.front();
   auto const directions = random_directions(film.lattice().sites(), 3);

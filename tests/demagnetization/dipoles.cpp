@@ -29,7 +29,8 @@ struct Evaluated {
   using Spins = SpinField<Real, Kokkos::HostSpace>;
   Spins spins, field;
 
-  // Moments with lengths other than 1. A second evaluation uses the memory left by the first one.
+  // Gives the moments lengths other than 1. The second evaluation uses work memory left by the
+  // first.
   Evaluated(Sample const& sample, DipolarOptions const& options,
             std::vector<double> const& directions)
       : spins(spins_of<Spins>(sample.lattice(), directions)), field("field", sample.lattice()) {
@@ -48,7 +49,7 @@ struct Evaluated {
   static Vec3<double> in_double(Vec3<Real> const& v) { return {v.x, v.y, v.z}; }
 };
 
-/// Errors of the field, relative to the largest one.
+/// Returns the largest error of the field, relative to the largest field.
 template <class Real, class Sum>
 double largest_error(Evaluated<Real> const& found, Sum const& expected) {
   double error = 0, largest = 0;
@@ -85,7 +86,7 @@ TYPED_TEST(DipolarFields, OfOpenCrystalsAreSumsOverPairs) {
   }
 }
 
-// The nearest image and some more on each side; half a period away two images are the nearest.
+// Sums images less than images + 1/2 periods away; those at exactly this distance count half.
 TYPED_TEST(DipolarFields, SumSomeImages) {
   using Real = TypeParam;
   for (auto const& sample : {open_crystals[2], open_crystals[4], open_crystals[6]})
@@ -129,7 +130,7 @@ TYPED_TEST(DipolarFields, SumSomeImages) {
     }
 }
 
-// A period of twice as many cells, with repeated spins, gives equal fields.
+// A crystal of two periods along each axis with images, with repeated spins, has equal fields.
 TYPED_TEST(DipolarFields, OfPeriodicCrystalsAreThoseOfLargerOnes) {
   using Real = TypeParam;
   for (auto const& sample : open_crystals)
@@ -168,7 +169,7 @@ TYPED_TEST(DipolarFields, OfPeriodicCrystalsAreThoseOfLargerOnes) {
     }
 }
 
-// E = -m.H/2 then has the derivative -H.
+// The matrix from spins to fields is symmetric, so that E = -m.H/2 has the derivative -H.
 TYPED_TEST(DipolarFields, AreSymmetric) {
   using Real = TypeParam;
   for (auto const& sample : open_crystals)

@@ -91,7 +91,7 @@ std::vector<double> along_z(Lattice const& lattice) {
   return directions;
 }
 
-// A third of each cell's own field, plus that of all others, is that of the whole cube.
+// The mean field in a uniformly magnetised cube is -1/3, however many cells it is divided into.
 TYPED_TEST(DemagnetizingFields, OfAUniformCubeHaveItsMean) {
   using Real = TypeParam;
   auto const lattice = Lattice::cubic(20, 20, 20);
@@ -124,7 +124,7 @@ TEST(DemagnetizingField, OfWhatItCannotTake) {
   EXPECT_THROW(of_film(other, other, 0), std::invalid_argument);
 }
 
-// Printed for same_bits.cmake, which compares numbers of threads.
+// Printed for same_bits.cmake, which compares them between numbers of threads.
 TYPED_TEST(DemagnetizingFields, HaveBitsToCompare) {
   using Real = TypeParam;
   std::uint64_t hash = 0;

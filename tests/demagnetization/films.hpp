@@ -35,8 +35,8 @@ inline std::vector<Film> const films = {
     {{2, 3, 1}, {1, 1, 1}, {1, 2, 1}},
 };
 
-/// Returns the field of spins along `directions`, on the host. The second evaluation uses work
-/// memory left by the first one.
+/// Returns the field of spins along `directions`, on the host. It is evaluated twice: the second
+/// time with work memory left by the first.
 template <class Real>
 SpinField<Real, Kokkos::HostSpace> field_on_host(Lattice const& lattice,
                                                  std::vector<double> const& directions,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The demagnetising field of infinite lattices along one or two axes, against closed forms and
-// against itself on several periods.
+// against the field of a lattice of several periods.
 #include "../support/wrong_call.hpp"
 #include "films.hpp"
 
@@ -23,7 +23,7 @@ class InfiniteImages : public ::testing::Test {};
 using Precisions = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(InfiniteImages, Precisions);
 
-/// Errors of the sums over images, and of the transforms.
+/// Bound on errors: that of the sums over images, and that of the transforms.
 template <class Real>
 constexpr double limit = 1e-10 + 80 * std::numeric_limits<Real>::epsilon();
 
@@ -119,7 +119,7 @@ TYPED_TEST(InfiniteImages, OfStripesAreTheirFourierSeries) {
   }
 }
 
-// Repeated spins have an equal field on several periods.
+// A lattice of several periods, with repeated spins, has the field of one period.
 TYPED_TEST(InfiniteImages, AreThoseOfSeveralPeriods) {
   using Real = TypeParam;
   struct Case {

@@ -35,7 +35,7 @@ TEST(LatticeSums, CubicCrystalsHaveLorentzsField) {
       auto const h = of_uniform(crystal, cells, {.periodic_images = {all, all, all}}, m);
       auto const off = h - sites / 3 * m;
       EXPECT_LT(std::sqrt(dot(off, off)), 1e-12);
-      // A sphere has no field left, and a film N = 1 along its normal.
+      // Demagnetising factors: a sphere has no field left, and a film has N = 1 along its normal.
       double const third = 1. / 3;
       DipolarOptions const sphere{.periodic_images = {all, all, all},
                                   .demagnetizing_factors = {third, third, third}};
@@ -88,7 +88,8 @@ TEST(LatticeSums, LongOpenChainsComeCloseToPeriodicOnes) {
   }
 }
 
-// Far away a dipole equals a cell of DemagnetizingField: equal units at any spacing.
+// Far away, the field of a dipole equals that of a cell in DemagnetizingField: both have the same
+// unit, at any spacing.
 TEST(LatticeSums, DipolesHaveTheUnitOfCells) {
   Lattice const lattice{.shape = {40, 1, 1}, .spacing = {0.7, 0.5, 0.6}};
   SpinField<double, Kokkos::HostSpace> spins("spins", lattice), points("points", lattice),
@@ -102,7 +103,7 @@ TEST(LatticeSums, DipolesHaveTheUnitOfCells) {
   EXPECT_NEAR(points.get(39).z / cells.get(39).z, 1, 1e-3);
 }
 
-// By iteration, for different moments.
+// Finds the eigenvalue by power iteration, with different moments in a cell.
 TEST(DipolarBound, IsAboveTheLargestEigenvalueAndNotFarAbove) {
   for (auto sample : open_crystals)
     for (auto const& images : {Images{}, {all, all, 0}, {all, all, all}}) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The demagnetising tensor of cells with edges of more than 1000 : 1, against 160 digits.
+// The demagnetising tensor of cells whose longest edge is more than 1000 times the shortest,
+// against values computed with 160 digits.
 #include <cayspin/demagnetization/tensor.hpp>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The demagnetising tensor against a table from 160 digits, and its general properties.
+// The demagnetising tensor against a table computed with 160 digits, and its general properties.
 #include <cayspin/demagnetization/tensor.hpp>
 
 #include <gtest/gtest.h>
@@ -53,13 +53,13 @@ double largest_difference(Entries const& a, Entries const& b) {
 
 double longest(Lengths const& cell) { return std::max({cell[0], cell[1], cell[2]}); }
 
-/// Returns the distance in longest edges.
+/// Returns the distance, in units of the cell's longest edge.
 double distance(TensorEntry const& one) {
   return std::hypot(one.position[0], one.position[1], one.position[2]) / longest(one.cell);
 }
 
-/// Returns the largest error for positions from `begin` to `end` longest edges, in largest entries
-/// there.
+/// Returns the largest error at distances from `begin` to `end` longest edges, relative to the
+/// largest entry of the tensor in question.
 double error_between(double begin, double end) {
   double worst = 0;
   for (TensorEntry const& one : tensor_table)
@@ -72,14 +72,14 @@ double error_between(double begin, double end) {
 
 TEST(DemagnetizingTensor, IsThatOfTheTableNearby) { EXPECT_LE(error_between(0, 4), 1e-11); }
 
-// With an order lower by 2, each of these series exceeds the bound.
+// Each of these series would exceed the bound if its order were lower by 2.
 TEST(DemagnetizingTensor, IsThatOfTheTableFarAway) {
   EXPECT_LE(error_between(4, 8), 1e-12);
   EXPECT_LE(error_between(8, 50), 1e-12);
   EXPECT_LE(error_between(50, 1e6), 1e-12);
 }
 
-// Relative to 1, the trace of the cell's own tensor.
+// Absolute errors: the trace of the cell's own tensor is 1.
 TEST(DemagnetizingTensor, IsThatOfTheTableToRoundOffBesideTheCell) {
   for (TensorEntry const& one : tensor_table) {
     if (distance(one) > 1.5) continue;
@@ -144,7 +144,7 @@ TEST(DemagnetizingTensor, DoesNotDependOnTheUnit) {
   }
 }
 
-// Two blocks of 4 x 3 x 2 cells are two larger cells.
+// Two blocks of 4 x 3 x 2 cells have the tensor of two larger cells.
 TEST(DemagnetizingTensor, SumsToThatOfABlock) {
   constexpr Lengths cell{1, 1.5, 0.4}, block{4, 4.5, 0.8};
   for (Lengths const& position : {Lengths{0, 0, 0}, Lengths{4, 0, 0}, Lengths{-3, 7, 5},

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Writes demagnetizing_tensors.json: python3 tensor_table.py > ../data/demagnetizing_tensors.json,
-and with the argument `slender` slender_demagnetizing_tensors.json.
+or, with the argument `slender`, slender_demagnetizing_tensors.json.
 
 Each entry is a second difference of the functions of Newell, Williams and Dunlop, J. Geophys. Res.
 98, 9551 (1993), eqs. 27 and 32, at 160 digits, rounded to a double. Needs mpmath.
@@ -14,19 +14,19 @@ from mpmath import asinh, atan, mp, mpf, pi, sqrt
 
 mp.dps = 160
 
-# A cube, films, needles, and cells of three edges.
+# A cube, films, needles, and cells with three different edges.
 CELLS = [(1.0, 1.0, 1.0), (1.0, 1.0, 0.1), (1.0, 1.0, 0.01), (1.0, 0.001, 1.0), (10.0, 1.0, 1.0),
          (1.0, 1.0, 1000.0), (3.90625, 2.5, 3.0), (1.0, 0.3, 0.007)]
 
-# Edges of more than 1000 : 1.
+# The longest edge is at least 1000 times the shortest.
 SLENDER_CELLS = [(1.0, 1.0, 1e-4), (1.0, 1e-4, 1e-4), (1.0, 0.7, 1e-6), (1e-6, 1.0, 1e-6),
                  (1.0, 1e-3, 1e-6), (1.0, 1.0, 1e-9), (1e-9, 1e-9, 1.0), (1e-5, 1.0, 1e-9)]
 
-# In cells along each axis.
+# Positions, in cells along each axis.
 STEPS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (1, 0, 1), (0, 1, 1), (1, 1, 1),
          (-2, 1, -3), (0, 15, 0), (60, -30, 0), (1000, 0, 0)]
 
-# In longest edges, with directions of any length.
+# Positions: distances in longest edges, and directions of any length.
 AXES = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
 DIAGONALS = [(1, 1, 1), (-1, 1, 0), (1, 0, -1), (0, 1, 1)]
 DISTANCES = [(1.7, [(1, -2, 5)]), (3.9999, [AXES[0], DIAGONALS[0]]), (4.0001, AXES + DIAGONALS),

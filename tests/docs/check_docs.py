@@ -116,7 +116,7 @@ def wrong_commands(root, lines):
 
 
 def other_first_program(root, pages):
-    """The README's first program is one that is compiled and runs."""
+    """Checks that the README's first program is that of an example, which is compiled and run."""
     example = "examples/01_switching_slab.cpp"
     if not os.path.exists(os.path.join(root, example)):
         return

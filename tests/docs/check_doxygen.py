@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Runs Doxygen: no warnings, and a docstring for every public class and free function.
+"""Runs Doxygen; fails on a warning, or on a public class or free function without a docstring.
 
 Usage: check_doxygen.py DOXYGEN ROOT OUTPUT_DIR
 """
