@@ -80,7 +80,7 @@ class Page:
         return anchors
 
     def sentences(self):
-        """(line number of the paragraph, sentence) of the prose, code and links as one word each."""
+        """(line number of the paragraph, sentence) of prose; code is one word, a link its text."""
         blocks, previous = [], "blank"
         for number, (line, kind) in enumerate(zip(self.lines, self.kinds), 1):
             if kind == "prose":
@@ -99,5 +99,5 @@ class Page:
 
 
 def length(sentence):
-    """Words of a sentence: what holds a letter or a digit."""
+    """Number of words of a sentence that hold a letter or a digit."""
     return sum(1 for word in sentence.split() if re.search(r"\w", word))

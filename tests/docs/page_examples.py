@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Runs the examples of the README, the guide and three pages of the reference, each in its folder.
+"""Runs the examples of the README, the guide and three pages of the reference, each in a folder.
 
 Usage: page_examples.py PROGRAM, with the package cayspin on PYTHONPATH
 Blocks of `cayspin` and `python3` commands are run, and a block of output after them is compared.
-In a block of `console` the lines after `$ ` are run, may fail, and have to print the others, where
-`...` is any text.
+In a block of `console`, lines that begin with `$ ` are run and may fail; they have to print the
+other lines, where `...` stands for any text.
 Blocks of Python are run as one script after the commands: `print(...)  # text` has to print the
-text, and a block of output after one is compared. Scenes are checked, and saved by the name in the
-sentence before, or as scene.toml; keys alone are set in the scene before. Other pages name a
-program of examples/ that is built and tested; blocks of C++ in a tutorial are parts of those that
-it names.
+text, and blocks of output after Python have to be printed, too. Scenes are checked, and saved by
+the name in the sentence before, or as scene.toml; keys without [system] are set in that scene.
+A page without any of these has to name a program of examples/ that is built and tested. Blocks of
+C++ in a tutorial have to be parts of the programs that it names.
 """
 import collections
 import glob
@@ -34,7 +34,7 @@ REFERENCE = ("conventions", "field_terms", "methods")
 
 
 def pages():
-    """Pages of pictures are those of gallery_test.py."""
+    """The pages to run. Pages of pictures are left to gallery_test.py."""
     guide = sorted(map(pathlib.Path, glob.glob(str(ROOT / "docs/guide/*.md"))))
     return [ROOT / "README.md"] + [
         page for page in guide if page.name != "what_a_scene_can_hold.md"] + [
@@ -42,7 +42,7 @@ def pages():
 
 
 def commands_of(block):
-    """The commands of a block, or none where one needs more than a built program, as a browser."""
+    """The commands of a block; none if any needs more than built programs, such as a browser."""
     commands = block.replace("\\\n", " ").splitlines()
     runs_here = all(command.startswith(("cayspin ", "python3 ")) and
                     not command.startswith("cayspin view ") for command in commands)

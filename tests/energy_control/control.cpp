@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Lagged energy control: its effect on one state, the drift that it removes, unchanged orders and
-// lengths, bits, and refusals.
+// Lagged energy control: its effect on one state; it removes drift and keeps orders and lengths;
+// equal bits on host spaces; what it refuses.
 #include "../backends/equal_bits.hpp"
 #include "../support/backends.hpp"
 #include "../support/evaluate.hpp"
@@ -44,7 +44,8 @@ struct Drift {
   }
 };
 
-/// Over a time of 200 with 80 evaluations per unit time; period 0: no control.
+/// Returns the drift over `time`, with 80 evaluations per unit time. `period`: steps between
+/// controls; 0: no control.
 template <class Stepper>
 Drift<Generator> drift(std::int64_t period, double time = 200) {
   using Field = typename Stepper::spins_type;
@@ -105,7 +106,7 @@ TEST(EnergyControl, TakesDriftAway) {
   expect_less_drift<ProjectedRk4<Spins>>("projected rk4", "RK4 + renormalise");
 }
 
-// The energy of spins in single precision is held to the accuracy of these numbers.
+// In single precision, the energy is held only as accurately as the spins can be stored.
 TEST(EnergyControl, TakesDriftAwayInSinglePrecision) {
   using Stepper = Rkmk4<SpinField<float, Space::memory_space>>;
   auto const without = drift<Stepper>(0), with = drift<Stepper>(1);
@@ -139,7 +140,8 @@ struct OneCall : ::testing::Test {
 };
 TYPED_TEST_SUITE(OneCall, Precisions, PrecisionName);
 
-/// Makes the control turn spins towards an energy `higher` than theirs.
+/// Returns the spins after the control has turned them towards an energy that is greater by
+/// `higher`.
 template <class Source, class Field>
 Field turned(Source const& source, Field const& start, double higher,
              EnergyControlOptions options = {}, double dt = 10) {
@@ -152,7 +154,8 @@ Field turned(Source const& source, Field const& start, double higher,
   return spins;
 }
 
-// m + kappa A_o + O(kappa^2): against the rotation written out for each spin.
+// Compares with the Cayley map of kappa m x A, with one kappa for all spins, written out for each
+// spin: m + kappa A_o + O(kappa^2).
 template <class Source, class Field>
 void expect_turn(Source const& source, Field const& start) {
   using Real = typename Field::value_type;

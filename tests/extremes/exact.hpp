@@ -10,17 +10,17 @@
 
 namespace cayspin::extremes {
 
-/// Components of the start normal to and along the field.
+/// Components of the initial spin, across and along the field.
 inline constexpr double across = 0.6, along = 0.8;
 
-/// Returns the angle of the exact solution, in radians, between 0 and `time`.
+/// Returns the angle by which the exact solution turns from 0 to `time`, in radians.
 inline long double exact_angle(Setting const& setting, bool body, long double time) {
   if (setting.switched_on_at > 0) time = std::fmax(time - setting.switched_on_at, 0.0L);
   return (body ? -along : 1.0L) * setting.field * time;
 }
 
-/// One spin in a constant field: the azimuth grows as field t, and tan(theta / 2) falls as
-/// exp(-damping field t).
+/// Returns the exact solution for one spin in a constant field: the azimuth grows as field t, and
+/// tan(theta / 2) falls as exp(-damping field t).
 inline Vec3<double> exact_end(Setting const& setting, bool body, long double time) {
   if (setting.along_field) return {0, 0, 1};
   long double const angle =

@@ -20,7 +20,7 @@ namespace cayspin::extremes {
 namespace {
 
 using enum Fate;
-using Expected = std::pair<char const*, Fate>;  // in a situation
+using Expected = std::pair<char const*, Fate>;  // a situation, and the fate of its runs
 
 std::string page() {
   std::ifstream file(CAYSPIN_PAGE);
@@ -184,7 +184,7 @@ TEST(Extremes, ErrorsAreBounded) {
       bool const fine = situation == "on within a step";
       EXPECT_LE(run.outcome.error * epsilon(run), 30 * (fine ? 1e-5 : 1e-4));
     });
-  // The field jumps in the middle of a step: half a step's turn, at most.
+  // The field jumps in the middle of a step: the error is at most the turn of one step.
   for_each_run("Fields: on within a step", [](Table::Run const& run) {
     if (run.outcome.fate != bounded || run.integrator->of_rigid_bodies) return;
     EXPECT_LE(run.outcome.error * epsilon(run), 1. / 128);
@@ -210,7 +210,7 @@ TEST(Extremes, FaultsAreDetectedAtOnce) {
   });
 }
 
-// Minutes: ctest -C long -L long
+// Takes minutes; run by ctest -C long -L long.
 TEST(Extremes, LongestRunsKeepTheirPromise) {
   auto const table = table_of_longest_runs();
   for (auto const& run : table.runs()) EXPECT_TRUE(table.is_kept(run)) << description(run);

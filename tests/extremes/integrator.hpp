@@ -16,9 +16,10 @@ struct Integrator : MethodChoice {
   bool of_rigid_bodies = false;
   bool relaxes = false;  // minimises instead of using a method
 
-  /// Returns the method with its isotropy, and with its chart.
+  /// Returns the method's name, with its isotropy and whether it is tangent, compensated, or for
+  /// bodies.
   std::string name() const;
-  /// Returns generator and rotation, if the method accepts some.
+  /// Returns generator and rotation; empty if the method has no choice of them.
   std::string variant() const;
 };
 

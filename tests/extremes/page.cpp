@@ -25,7 +25,7 @@ single precision. Brackets hold generators and rotations where not all behave al
 behave as zero does.
 )";
 
-// Methods fast enough to take the many steps in minutes.
+// Methods that take 1e8 steps in minutes.
 std::vector<Integrator> simplest() {
   std::vector<Integrator> few;
   for (auto const& one : with_equal_steps())
@@ -33,7 +33,7 @@ std::vector<Integrator> simplest() {
   return few;
 }
 
-// Those whose scenes are not refused.
+// Methods with constant steps whose scenes with this setting are not refused.
 std::vector<Integrator> those_that_take(Setting const& setting) {
   Situation const situation{"", setting, setting};
   std::vector<Integrator> some;

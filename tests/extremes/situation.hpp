@@ -22,7 +22,7 @@ enum class Fate {
 std::string to_string(Fate fate);
 
 /// Uniform spins at an angle to a field of strength `field` along z; rigid bodies have the inverse
-/// inertia field diag(1, 1, 2), which also turns them about z.
+/// inertia field * diag(1, 1, 2), which also turns them about z.
 struct Setting {
   double field = 1, damping = 0, dt = 1. / 128;  // a power of two, exact in any precision
   std::int64_t steps = 6;
@@ -31,7 +31,7 @@ struct Setting {
   double switched_on_at = 0;            // > 0: the field is 0 before this time
   double start_length = 1;              // of the first spin, after the program's own normalisation
   std::int64_t fault_at = -1;           // step after which a spin is made NaN
-  std::int64_t normalized = 0;          // steps between Newton steps; 0: none
+  std::int64_t normalized = 0;          // steps between Newton steps to |m| = 1; 0: none
   double tolerance = 1e-4, min_dt = 0;  // of adaptive methods, which are observed every dt
   std::optional<double> temperature = {};  // empty: no [thermal]
   std::optional<double> multirate = {};    // strength of a slab's field as a SlowField
@@ -40,8 +40,8 @@ struct Setting {
   std::string initial = {};            // instead of spins at an angle
 };
 
-/// Reference for the end of a run.
-/// one_spin: a lattice of one site. no_noise: each bit of the run without [thermal].
+/// Reference for the end of a run. solution: the exact one. one_spin: the run of a lattice of one
+/// site. no_noise: the run without [thermal], to the bit. start: the initial spins.
 enum class Against { nothing, solution, one_spin, no_noise, start };
 
 /// A column of a table.
@@ -56,7 +56,7 @@ struct Situation {
 struct Section {
   std::string title;
   std::string promise;                  // an empty line and one paragraph
-  std::vector<Fate> kept, broken = {};  // fates of methods that conserve |m|, and of classical_*
+  std::vector<Fate> kept, broken = {};  // allowed if a method conserves |m|, and if not
   std::vector<Situation> situations = {};
 
   /// Adds a situation with this setting in both precisions.
@@ -64,7 +64,7 @@ struct Section {
            std::int64_t detected_by = 6) {
     situations.push_back({std::move(name), setting, setting, against, detected_by});
   }
-  /// Adds spins without a field of normal numbers in a precision.
+  /// Adds the situation `denormal`: a field below the smallest normal number, in each precision.
   void add_denormal();
 };
 
@@ -73,7 +73,7 @@ std::vector<Section> sections();
 /// Situations for adaptive methods.
 Section adaptive_steps();
 
-/// Situations for constant and adaptive steps.
+/// Situations for methods with constant steps that accept such scenes.
 Section temperatures();
 Section expensive_fields();
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Situations for methods that do not accept all scenes or steps.
+// Situations for only some methods: with adaptive steps, or that accept a temperature or an
+// expensive field.
 #include "situation.hpp"
 
 namespace cayspin::extremes {

@@ -27,7 +27,8 @@ class Table {
   std::vector<Run> const& runs() const { return runs_; }
   /// Returns true if the run keeps the section's promise.
   bool is_kept(Run const& run) const;
-  /// Returns the promise, and one row for all integrators with equal results.
+  /// Returns the title, the promise, and a table with one row for all integrators with equal
+  /// results.
   std::string to_markdown() const;
 
  private:

@@ -25,7 +25,7 @@ template <class Real>
 constexpr auto plan_precision =
     sizeof(Real) == 8 ? Precision::double_precision : Precision::single_precision;
 
-/// The guard of a run, and changes made to the run.
+/// Observer that guards a run, and makes the setting's changes to it: Newton steps, or a NaN.
 template <class Spins>
 class Look : public RunObserver<HostSpace, Spins> {
   using Real = typename Spins::value_type;
@@ -39,7 +39,7 @@ class Look : public RunObserver<HostSpace, Spins> {
     if (is_thermal(scene)) noise_.emplace(scene, generator, spins);
   }
 
-  // Long runs are checked in between.
+  // Runs of 1000 steps and more are looked at only now and then.
   bool due(Step const& step) const override {
     std::int64_t const every = setting_.normalized ? setting_.normalized : 1000;
     return setting_.steps < 1000 || step.last || step.number % every == 0;
@@ -91,7 +91,7 @@ std::pair<double, double> distances(Spins const& spins, Vec3<double> const& exac
   return {off, error};
 }
 
-/// A scene in one precision, before and after its run.
+/// A run of a scene in one precision.
 template <class Real>
 struct Run {
   using Spins = typename Simulation<Real, HostSpace>::Spins;
@@ -151,7 +151,7 @@ Outcome try_out(Integrator const& integrator, Situation const& situation, Settin
                                    ? setting.normalized
                                    : std::max(setting.steps * setting.substeps, run.own_steps);
   auto const steps = static_cast<double>(counted);
-  // Round-off, and the uncertainty of an angle that large.
+  // Round-off of the steps, and of the angle, which may be large.
   double const angle = std::fabs(static_cast<double>(exact_angle(setting, body, time)));
   double const tolerance = std::fmin(eps * (8 * (steps + 1) + 4 * angle), 1e-4);
   bool exact = situation.against == Against::solution && error <= tolerance;

@@ -19,7 +19,7 @@ struct Outcome {
 /// Runs the scene of a situation like `cayspin run`, but without a trajectory file.
 Outcome try_out(Integrator const& integrator, Situation const& situation, Precision precision);
 
-/// Relaxes it, like `cayspin relax`.
+/// Relaxes the scene of a situation, like `cayspin relax`.
 Outcome try_to_relax(Integrator const& integrator, Situation const& situation, Precision precision);
 
 }  // namespace cayspin::extremes

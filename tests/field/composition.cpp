@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Sums, precision of the energy, and refusals of terms.
+// Sums of field terms, the precision of their energies, and what terms refuse.
 #include "../support/wrong_call.hpp"
 #include "terms.hpp"
 
@@ -39,7 +39,7 @@ TYPED_TEST(Fields, NoTermsNoField) {
   EXPECT_EQ(energy(this->exec, EffectiveField<>(), spins).value, 0);
 }
 
-/// Functor that uses a field like steppers that need only A x m.
+/// A term with the field that is used by steppers that need only A x m.
 template <class Prepared>
 struct TurningField {
   Prepared field_of;
@@ -73,7 +73,7 @@ TYPED_TEST(Fields, WhatTurnsSpinsDiffersByAMultipleOfThem) {
   }
 }
 
-// Half a million equal shares: a sum in float would stop growing at the fifth digit.
+// Half a million equal shares: a sum in float would have large rounding errors.
 TYPED_TEST(Fields, EnergiesAreSummedInDouble) {
   using Real = typename TypeParam::Real;
   auto const lattice = Lattice::square(8200, 64);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Every term with uniform coefficients: H = -dE/dm, and both against formulas by hand.
+// Every term with uniform coefficients: H = -dE/dm, and both H and E equal formulas written by
+// hand.
 #include "gradient.hpp"
 
 #include "../support/mean_field.hpp"
@@ -48,7 +49,7 @@ TYPED_TEST(Terms, LocalTerms) {
   auto const& lattice = lattices[0];
   this->check("anisotropy", lattice, UniaxialAnisotropy(1.7, {1, -2, 2}),
               anisotropy_by_hand(1.7, {1, -2, 2}));
-  // Along coordinate axes H has a separate formula.
+  // Axes along a coordinate have separate code for H.
   for (Vec3<double> const& axis : {Vec3<double>{2, 0, 0}, {0, -2, 0}, {0, 0, 2}})
     this->check("anisotropy along a coordinate", lattice, UniaxialAnisotropy(1.7, axis),
                 anisotropy_by_hand(1.7, axis));

@@ -11,16 +11,17 @@ inline std::vector<Lattice> const lattices{
     {{9, 3, 2}, {0.5, 0.8, 1.25}, {Boundary::periodic, Boundary::open, Boundary::periodic}},
     {{2, 1, 19}, {0.7, 1, 0.9}, {Boundary::periodic, Boundary::periodic, Boundary::open}}};
 
-/// Check of H = -dE/dm of a term by differences of its total energy, and both against formulas by
-/// hand.
+/// Checks H = -dE/dm of a term by differences of its total energy, and both H and E against
+/// formulas written by hand.
 template <class Backend>
 class GradientTest : public ::testing::Test {
  protected:
   using Real = typename Backend::Real;
   using Spins = typename Backend::Spins;
 
-  /// `term`: a field term or EffectiveField. Lengths are arbitrary: E and H hold for all vectors.
-  /// `precision`: epsilon of the energy, limited by a field or bonds stored in float.
+  /// `term`: a field term or EffectiveField. Spins change their lengths here: E and H are defined
+  /// for all vectors. `precision`: epsilon of the energy, limited by a field or bonds stored in
+  /// float.
   template <class Term>
   static void check(std::string const& what, Lattice const& lattice, Term const& term,
                     ByHand const& by_hand, double t = 0, double precision = epsilon<double>) {
@@ -33,7 +34,7 @@ class GradientTest : public ::testing::Test {
     exec.fence();
     auto const field = numbers_of(result);
     Energy const total = energy(exec, term, spins, t);
-    // All coefficients are below 8; exchange adds six differences, each divided by 1/4.
+    // All coefficients are below 8; exchange adds six differences, each divided by at least 1/4.
     double const field_size = 64, energy_size = total.magnitude + 1;
     EXPECT_NEAR(total.value, by_hand.energy(m), 16 * precision * energy_size) << what;
 

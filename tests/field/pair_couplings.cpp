@@ -21,7 +21,7 @@ template <class Backend>
 class Pairs : public GradientTest<Backend> {};
 TYPED_TEST_SUITE(Pairs, Backends, BackendName);
 
-/// A bond of a crystal in a lattice.
+/// A bond between two sites of a lattice.
 struct Pair {
   std::int64_t from, to;
   Coupling coupling;
@@ -125,7 +125,7 @@ TYPED_TEST(Pairs, OfNeighboursAreTheExchange) {
   add_along_axes(bonds, 0, 1.5);
   typename TypeParam::Exec const exec;
   auto const spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 3));
-  // Up to a multiple of the spin.
+  // Torques are compared because the fields may differ by a multiple of the spin.
   auto const torque = [&](auto const& term) {
     Spins const field("field", lattice);
     evaluate_field(exec, term, spins, 0, field);
@@ -144,7 +144,7 @@ TYPED_TEST(Pairs, OfNeighboursAreTheExchange) {
     EXPECT_NEAR(pairs[i], exchange[i], 32 * epsilon<typename TypeParam::Real>);
 }
 
-/// The couplings spin by spin, not by rows.
+/// A term that has no code for rows: couplings are evaluated site by site.
 template <class Term>
 struct BySite {
   Term term;
@@ -210,14 +210,14 @@ TYPED_TEST(Pairs, ThatCannotBe) {
     EXPECT_THROW(Term(lattice, {bond}), std::invalid_argument);
   EXPECT_THROW(Term(Lattice::chain(0, 1, Boundary::periodic), {Coupling::of({0, 0}, {1, 0, 0}, 1)}),
                std::invalid_argument);
-  // isotropy::Analytic would omit the biquadratic part.
+  // isotropy::Analytic would omit the derivative of biquadratic bonds.
   auto spins = spins_of<typename TypeParam::Spins>(Lattice::chain(4), random_directions(4, 3));
   LieEuler<typename TypeParam::Spins, isotropy::Analytic> stepper(spins);
   LandauLifshitz const generator(Term(spins.lattice(), {Coupling{{0, 0}, {1, 0, 0}, {}, 0.5}}),
                                  0.1);
   typename TypeParam::Exec const exec;
   EXPECT_THROW(stepper.step(exec, generator, spins, 0, 0.1), std::invalid_argument);
-  // Series4 would, too, for either part.
+  // Series4 would, too, also within a sum of terms and an orthogonal generator.
   Series4<typename TypeParam::Spins> series(spins);
   EXPECT_THROW(series.step(exec, generator, spins, 0, 0.1), std::invalid_argument);
   EXPECT_THROW(series.step(exec,
@@ -230,8 +230,8 @@ TYPED_TEST(Pairs, ThatCannotBe) {
   EXPECT_NO_THROW(series.step(exec, linear, spins, 0, 0.1));
 }
 
-// The curvature at equilibrium includes biquadratic bonds: without them a saddle, with them a
-// minimum.
+// The curvature at equilibrium includes biquadratic bonds: without them this state is a saddle,
+// with them a minimum.
 TYPED_TEST(Pairs, MinimumWithBiquadraticBonds) {
   using Term = PairCouplings<typename TypeParam::MemorySpace>;
   auto const lattice = Lattice::chain(12, 1, Boundary::periodic);

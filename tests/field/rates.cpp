@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// FieldRate and LinearField of terms: dH/dt at a spin along its rate, by differences.
+// FieldRate and LinearField of terms: the rate of H while a spin moves at a given rate, against
+// differences.
 #include "terms.hpp"
 
 #include <cayspin_paper/analytic_sigma.hpp>
@@ -11,8 +12,8 @@ template <class Backend>
 class FieldRates : public ::testing::Test {};
 TYPED_TEST_SUITE(FieldRates, Backends, BackendName);
 
-/// Evaluates a prepared term like steppers do, for given spins and with rates in the stencil's
-/// array.
+/// A term whose field is the rate of the field of `term`, evaluated as in steppers: spins are in an
+/// array, and their rates in the stencil's array.
 template <class Term, class Real>
 struct RateOfField {
   Term term;
@@ -25,7 +26,7 @@ struct RateOfField {
   }
 };
 
-/// H of a local term is a polynomial of degree 3 in the spin.
+/// H of a local term is a polynomial of degree 3 in the spin, so these differences are exact.
 template <class Backend, class Term>
 void expect_rates(Term const& term) {
   using Real = typename Backend::Real;
@@ -55,7 +56,7 @@ TYPED_TEST(FieldRates, AreDerivativesOfTheField) {
                                          UniaxialAnisotropy(0.7, {1, 1, 1}), Zeeman{{1, 2, 3}}));
 }
 
-// A step of zero length also needs the rate of an applied field.
+// Even a step of zero length needs the rate of an applied field.
 TYPED_TEST(FieldRates, OverNoTimeLeaveSpinsAsTheyAre) {
   using Spins = typename TypeParam::Spins;
   auto spins = spins_of<Spins>(Lattice::chain(5), random_directions(5, 3));

@@ -77,8 +77,8 @@ TYPED_TEST(SiteDependent, AnisotropyOfConstantAxisOrBoth) {
               anisotropy_by_hand(std::vector(k.size(), 1.75), e));
 }
 
-// Exactly, so that they stay in equilibrium: with one constant, and with random ones including
-// zeros, at every place of a pack at which a row can end.
+// The field is exactly 0, so that uniform states stay in equilibrium: with one constant, and with
+// random ones including zeros, for rows that end at any place of a pack.
 TYPED_TEST(SiteDependent, UniformStatesHaveNoExchange) {
   using Spins = typename TypeParam::Spins;
   for (std::int64_t nx = 1; nx <= 34; ++nx)
@@ -97,7 +97,7 @@ TYPED_TEST(SiteDependent, UniformStatesHaveNoExchange) {
     }
 }
 
-// A term that is not symmetric over a bond, or not -dE/dm, gains or loses energy at any dt.
+// With a term that is not symmetric over a bond, or not -dE/dm, energy changes however small dt is.
 TEST(SiteDependentCoefficients, ConserveEnergyToTheMethodsOrder) {
   Space const exec;
   Lattice const lattice{
@@ -118,7 +118,7 @@ TEST(SiteDependentCoefficients, ConserveEnergyToTheMethodsOrder) {
   expect_order("order of the energy error", fitted_order(dts, errors), 5, 0.4);
 }
 
-// Spins without exchange, with different dampings, against runs with one damping.
+// Compares spins without exchange, and with different dampings, with runs of one damping.
 TYPED_TEST(SiteDependent, DampingActsSiteBySite) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::cubic(19, 3, 2);
@@ -141,7 +141,7 @@ TYPED_TEST(SiteDependent, DampingActsSiteBySite) {
   }
 }
 
-// With sigma from the derivatives of the fields and of the generator.
+// With a sigma that uses the derivatives of fields and of the generator.
 TYPED_TEST(SiteDependent, EqualCoefficientsStepAlike) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::cubic(9, 3, 2, 0.8, Boundary::periodic);

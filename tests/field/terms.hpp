@@ -13,7 +13,7 @@ namespace cayspin::test {
 
 inline Vec3<double> unit(Vec3<double> const& v) { return normalized(v, "a test's vector"); }
 
-/// Field and energy of a term, by hand, on the host: H of all sites from the numbers (sites, 3).
+/// Field and energy of a term, by hand, on the host: H of a site, and E, from numbers (sites, 3).
 struct ByHand {
   std::function<Vec3<double>(std::vector<double> const&, std::int64_t site)> field;
   std::function<double(std::vector<double> const&)> energy;
@@ -73,7 +73,7 @@ ByHand each_bond(std::vector<AnyBond> const& bonds, Field const& field, Energy c
           }};
 }
 
-/// `constant`: of each bond.
+/// `constant`: returns the constant of a bond.
 inline ByHand exchange_by_hand(Lattice const& lattice,
                                std::function<double(Bond const&)> const& constant) {
   return each_bond(

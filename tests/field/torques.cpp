@@ -73,7 +73,7 @@ TYPED_TEST(Torques, ZhangLiIsItsFormula) {
                     if (bond.from == site) gradient += rate * (at(numbers, bond.to) - m);
                     if (bond.to == site) gradient -= rate * (at(numbers, bond.from) - m);
                   }
-                  // Projected normal to m: chords of a sphere are not in its tangent plane.
+                  // Projected onto the tangent plane, in which the chords of a sphere do not lie.
                   auto const across = gradient - dot(gradient, m) * m;
                   return xi * cross(m, across) - across;
                 });
@@ -104,9 +104,8 @@ std::vector<double> helix(std::int64_t sites, double per_site, double phase, dou
   return numbers;
 }
 
-// A helix of angle q per site turns by -w (1 + damping xi) in time and leaves its plane by
-// m_z' = (xi - damping) w (1 - m_z^2), with w = u sin(q) / spacing of the lattice for u q /
-// spacing.
+// A helix of angle q per site turns at the rate -w (1 + damping xi) and leaves its plane with m_z'
+// = (xi - damping) w (1 - m_z^2). Here w = u sin(q) / spacing; in the continuum, u q / spacing.
 TYPED_TEST(Torques, AHelixUnderZhangLi) {
   double const bound = 1e-9 + 200 * epsilon<typename TypeParam::Real>;
   double const spacing = 0.5, u = 0.7, time = 2;
@@ -121,7 +120,7 @@ TYPED_TEST(Torques, AHelixUnderZhangLi) {
     Vec3<double> const velocity{axis == 0 ? u : 3, axis == 1 ? u : 3, axis == 2 ? u : 3};
     for (double const damping : {0.0, 0.1})
       for (double const xi : {0.0, 0.3}) {
-        // In its plane it turns rigidly, so a step is exact.
+        // If damping = xi, the helix turns rigidly in its plane, so that a step is exact.
         int const steps = damping == xi ? 2 : 400;
         auto const found = this->moved(lattice, ZhangLi(lattice, velocity, xi), damping,
                                        helix(n, q, 0, 0), time, steps);

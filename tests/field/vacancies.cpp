@@ -100,7 +100,7 @@ class Vacancies : public GradientTest<Backend> {
 };
 TYPED_TEST_SUITE(Vacancies, Backends, BackendName);
 
-// To the bit: the spins outside a box of vacancies do not affect it.
+// Spins outside the box, beyond the vacant sites, do not affect it, to the bit.
 TYPED_TEST(Vacancies, CutAClusterOff) {
   using Spins = typename TypeParam::Spins;
   this->template expect_cut_off<Rkmk4<Spins>>(every_term);

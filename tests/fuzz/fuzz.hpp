@@ -24,7 +24,7 @@ void refuse_or_read(Reading const& reading) {
   }
 }
 
-/// Returns a file in memory with these bytes, replaced at each call.
+/// Writes these bytes to a file in memory, replaced at each call, and returns its path.
 inline std::filesystem::path file_with(std::uint8_t const* data, std::size_t bytes,
                                        char const* extension) {
   static auto const path = "/dev/shm/cayspin_fuzz_" + std::to_string(::getpid()) + extension;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The text of a scene: expressions are evaluated, small lattices started.
+// The text of a scene. Expressions are evaluated; small lattices get their initial spins.
 #include "io/scene.hpp"
 
 #include "fuzz.hpp"

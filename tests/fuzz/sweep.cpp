@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The file of a sweep, with each reading tried in a child.
+// The file of a sweep. Each reading is tried in a child process.
 #include "io/sweep.hpp"
 
 #include "../support/reads_in_child.hpp"

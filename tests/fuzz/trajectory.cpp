@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A trajectory file, with each reading tried in a child, so that HDF5's own faults stay there.
+// A trajectory file. Each reading is tried in a child process, so that faults of HDF5 stay there.
 #include "io/trajectory.hpp"
 
 #include "../support/reads_in_child.hpp"

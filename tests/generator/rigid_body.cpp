@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int64_t bodies = 21;
 
-// Row by row, as a matrix.
+// Returns b m, from the full matrix of b.
 Vec3<double> times(SymmetricTensor const& b, Vec3<double> const& m) {
   double const matrix[3][3] = {{b[0], b[3], b[4]}, {b[3], b[1], b[5]}, {b[4], b[5], b[2]}};
   double const in[3] = {m.x, m.y, m.z};
@@ -22,7 +22,7 @@ Vec3<double> times(SymmetricTensor const& b, Vec3<double> const& m) {
   return {out[0], out[1], out[2]};
 }
 
-// Exact in float, too.
+// Returns a tensor whose numbers are exact in float, too.
 SymmetricTensor body_tensor(std::int64_t body) {
   double const b = static_cast<double>(body);
   return {1 + b / 16, 2 - b / 32, 0.5 + b / 8, 0.25 - b / 64, -0.125 + b / 128, 0.375 - b / 16};
@@ -58,7 +58,8 @@ class RigidBodies : public ::testing::Test {
                 64 * epsilon<double> * bodies);
   }
 
-  /// Stores the first numbers of each body's tensor: all six, or the three of a diagonal.
+  /// Returns an ensemble with the first numbers of each body's tensor: all six, or the diagonal's
+  /// three.
   template <int Components = 6, class TensorOf>
   static auto ensemble(TensorOf const& tensor_of) {
     std::vector<double> numbers;
@@ -72,7 +73,7 @@ class RigidBodies : public ::testing::Test {
     return RigidBodyEnsemble(field);
   }
 
-  /// Expects both to turn the bodies with equal bits.
+  /// Expects a step of the two generators to end with equal bits.
   template <class One, class Other>
   void expect_same_step(One const& one, Other const& other) const {
     auto const after = [&](auto const& generator) {

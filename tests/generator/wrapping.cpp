@@ -8,7 +8,7 @@
 namespace cayspin::test {
 namespace {
 
-/// Twice the A of another generator.
+/// A generator with twice the A of another one.
 template <class Inner>
 class Doubled : public Forwarding<Doubled<Inner>, Inner> {
  public:
@@ -39,8 +39,8 @@ class Wrapping : public ::testing::Test {
   Lattice lattice = Lattice::square(13, 4);
   Spins spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 17));
 
-  /// Expects a step of the wrapped generator to equal one of twice the length; the field's time
-  /// advances as fast.
+  /// Expects a step of the wrapped generator to equal one of the plain generator of twice the
+  /// length.
   template <class Field>
   void expect_doubled(Field const& field) const {
     LandauLifshitz const generator(field, 0.2);

@@ -41,7 +41,8 @@ class GuardIn : public ::testing::Test {
 using Precisions = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(GuardIn, Precisions);
 
-// 64 epsilon at the start, 64 epsilon per step later, up to a million steps; never 0.01.
+// The limit is 64 epsilon at the start. Later it is 64 epsilon for each step, as if there had been
+// at least a million, but at most 0.01.
 TYPED_TEST(GuardIn, LengthsMayBeOffByRoundOff) {
   double const of_a_step = 64 * std::numeric_limits<TypeParam>::epsilon();
   this->expect_limit_of_length(0, of_a_step);
@@ -63,7 +64,7 @@ TYPED_TEST(GuardIn, EnergiesMayRiseByRoundOff) {
   EXPECT_NE(failure->find("from 0 at step 2"), std::string::npos) << *failure;
 }
 
-// The limit follows the current magnitude, and rises are measured from the first energy.
+// The limit follows the current magnitude, and each rise is measured from the energy before.
 TYPED_TEST(GuardIn, SmallRisesDoNotAddUp) {
   double const rise = 60 * std::numeric_limits<TypeParam>::epsilon();
   double energy = 1;
@@ -72,7 +73,8 @@ TYPED_TEST(GuardIn, SmallRisesDoNotAddUp) {
   EXPECT_TRUE(this->damped.judge(at(20), {energy, 0.5}, 0));
 }
 
-// Steps by a tolerance have that accuracy, and at equilibrium their energy fluctuates by it.
+// Steps chosen by a tolerance are as accurate as it says; at equilibrium, their energy fluctuates
+// by it.
 TYPED_TEST(GuardIn, EnergiesMayRiseByTheToleranceOfTheSteps) {
   double const rise = 5 * 0.0078125;
   Guard guard(scene(0.5, "tsit5", "tolerance = 0.0078125\n"),

@@ -70,7 +70,7 @@ class HostDevice {
   int concurrency() const;
   std::uint32_t impl_instance_id() const noexcept;
   void print_configuration(std::ostream& out, bool verbose = false) const;
-  /// In lower case the name for --space.
+  /// In lower case, this is the name for --space.
   static char const* name() { return "Host_Device"; }
 
   static void impl_static_fence(std::string const& name);
@@ -85,7 +85,7 @@ class HostDevice {
   std::shared_ptr<HostDeviceQueue> queue_;
 };
 
-/// Permits access to the device's memory while one exists, for kernels and copies.
+/// While one of these exists, the device's memory can be accessed: for kernels and copies.
 class HostDeviceAccess {
  public:
   HostDeviceAccess();
@@ -110,7 +110,8 @@ void copy_in_order(Exec const& exec, void* to, void const* from, std::size_t byt
   }
 }
 
-/// Calls run(body, begin, end) for blocks of 0 .. count - 1, on host threads if that is faster.
+/// Calls run(body, begin, end) for blocks of 0 .. count - 1 on host threads; at once if there are
+/// at most two blocks.
 void run_blocks(std::int64_t count, std::int64_t block, void const* body,
                 void (*run)(void const* body, std::int64_t begin, std::int64_t end));
 

@@ -99,7 +99,7 @@ class ParallelFor<Functor, MDRangePolicy<Traits...>, cayspin::test::HostDevice> 
   Tiles const tiles_;
 };
 
-/// Results only in host memory, as in every reduction to a number: available on return.
+/// Takes results only in host memory, as every reduction to a number has: they are there on return.
 template <class FunctorReducer, class... Traits>
 class ParallelReduce<FunctorReducer, RangePolicy<Traits...>, cayspin::test::HostDevice> {
  public:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Ranges of one, two and three dimensions on the emulated device: each index once, after the fence.
+// Ranges of one, two and three dimensions on the emulated device: each index is visited once, and
+// not before the fence.
 #include "../support/backends.hpp"
 
 using namespace cayspin::test;

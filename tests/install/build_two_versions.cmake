@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# A copy of cayspin with another version number, which counts the sites of a lattice differently.
+# Copies cayspin, with another version in its namespace and a negative number of sites in a lattice,
+# and builds a program that uses both versions.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK})
 file(COPY ${CAYSPIN_SOURCE}/include DESTINATION ${WORK}/other)

@@ -40,7 +40,8 @@ if(libraries)
     message(FATAL_ERROR "${program} does not take ${libraries}; it misses: ${missing}")
   endif()
 endif()
-# Besides the flags of Kokkos: none, and the one for equal bits.
+# To the flags of Kokkos, cayspin.pc adds none, and cayspin_same_bits.pc only the one for equal
+# bits.
 ask(flags cayspin --cflags)
 ask(with_same_bits cayspin_same_bits --cflags)
 list(REMOVE_ITEM with_same_bits -ffp-contract=off)

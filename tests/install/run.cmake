@@ -11,8 +11,8 @@ function(configure_and_build source build)
   run(${CMAKE_COMMAND} --build ${build})
 endfunction()
 
-# configure_warns(<TRUE|FALSE> <source> <build> <option>...) configures without a build type, and
-# stops the script unless the warning about optimisation is there, or is not.
+# configure_warns(<TRUE|FALSE> <source> <build> <option>...) configures with these options, and
+# stops the script unless there is a warning about optimisation (TRUE) or none (FALSE).
 function(configure_warns expected source build)
   execute_process(
     COMMAND ${CMAKE_COMMAND} --fresh -G ${GENERATOR} -S ${source} -B ${build}
@@ -29,7 +29,8 @@ function(configure_warns expected source build)
   endif()
 endfunction()
 
-# warns_without_optimisation(<source> <build> <option>...)
+# warns_without_optimisation(<source> <build> <option>...): checks that there is a warning without a
+# build type, and none with a build type or with -O2.
 function(warns_without_optimisation)
   unset(ENV{CXXFLAGS})
   configure_warns(TRUE ${ARGN})

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Prints what the main kernels execute, by kind of instruction, for each pack of four spins and
-step: in the loop over the packs of a row, and outside it (ends of rows, rows, tasks). Counted by
-callgrind, not guessed from the code. The program is test_instructions."""
+"""Prints what the main kernels execute, by kind of instruction, for each step and pack of spins
+(four in double, eight in single precision): in the loop over the packs of a row, and outside it
+(ends of rows, rows, tasks). Counted by callgrind, not guessed from the code. The program is
+test_instructions."""
 
 import argparse
 import collections
@@ -79,7 +80,7 @@ def disassembly(program):
 
 
 def load_offset(counted, functions):
-    """How much further the program lies in memory than in its file: what most functions say."""
+    """Returns address in memory - address in the file, as found for most functions."""
     offsets = collections.Counter(entries[name] - functions[name] for _, entries in counted
                                   for name in entries if name in functions)
     if not offsets:
@@ -98,7 +99,8 @@ def table(name, executed, texts, offset):
         sys.exit(f"{name}: {unknown} of {sum(executed.values())} instructions are not the program's")
     for address, count in executed.items():
         text = texts.get(address - offset, "")
-        # Code that every pack executes is the loop; a few packs leave it for another path.
+        # Instructions that at least half of the packs execute are the loop's; a few packs take
+        # another path.
         of_loop = count if count >= packs / 2 else 0
         inside[kind_of(text)] += of_loop
         outside[kind_of(text)] += count - of_loop

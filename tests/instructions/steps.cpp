@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Steps of the main methods, for callgrind: one dump for each, of what its kernels executed.
+// Steps of the main methods and a sample, for callgrind: one dump for each, of what its kernels
+// executed.
 #include "here.hpp"
 
 #include <cayspin/field/effective_field.hpp>

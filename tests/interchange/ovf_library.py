@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""OVF files that cayspin writes and reads, held to the library of the Spirit project."""
+"""OVF files that cayspin writes and reads, checked with the OVF library of the Spirit project."""
 
 import numpy as np
 from interchange_test import SHAPE, SPACING, InterchangeTest, main

@@ -12,7 +12,7 @@ from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
 
 class VtkLibrary(InterchangeTest):
     def frames(self, name, *options):
-        """The HDF5 file of a run, and the grid that VTK has of each frame."""
+        """Yields (HDF5 file, spins, grid that VTK reads) for each frame, in both precisions."""
         for precision in ("double", "single"):
             file = self.run_scene(f"{name}_{precision}.h5", "--precision", precision, "--set",
                                   "output.xdmf=true", *options)
@@ -48,7 +48,8 @@ class VtkLibrary(InterchangeTest):
             np.testing.assert_allclose(points, positions.reshape(-1, 3), rtol=1e-7)
             vectors = grid.GetPointData().GetArray("m")
             np.testing.assert_array_equal(vtk_to_numpy(vectors), expected.reshape(-1, 3))
-            # Cell (4, 2, 1), site 1, of edges 0.5 along x and 1.0 along y.
+            # Site 1 of cell (4, 2, 1), which is at (1/3, 1/3) in the cell. The lattice's spacing is
+            # 0.5 along x, 1 along y and 2 along z.
             place = (0.5 * (4 + 1 / 3 + (2 + 1 / 3) / 2), np.sqrt(0.75) * (2 + 1 / 3), 2.0)
             site = grid.FindPoint(place)
             np.testing.assert_allclose(grid.GetPoint(site), place, rtol=1e-6)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// How the threads of a device find their sites and the numbers of these.
+// How the threads of a device find their sites and these sites' numbers, and how they divide.
 #include <cayspin/detail/device_site.hpp>
 #include <cayspin/detail/device_tiles.hpp>
 #include <cayspin/detail/quotient.hpp>
@@ -45,7 +45,7 @@ std::size_t number_of(std::array<std::int32_t, 3> const& shape, std::int32_t x, 
   return static_cast<std::size_t>((std::int64_t(z) * shape[1] + y) * shape[0] + x);
 }
 
-/// Returns how often each of nx * ny * nz sites is visited, for rows inside.
+/// Returns how often the threads of `rows` visit each site of the shape.
 std::vector<int> visits(std::array<std::int32_t, 3> const& shape, RowRange const& rows) {
   std::vector<int> count(number_of(shape, 0, 0, shape[2]));
   detail::DeviceTiles const tiles(shape[0], rows);
@@ -71,7 +71,7 @@ TEST(DeviceTiles, EachSiteOfARangeOnce) {
                                         {{31, 9, 6}, {8, 9, 5, 6}},
                                         {{257, 130, 67}, {0, 130, 0, 67}},  // walks of 4
                                         {{257, 130, 150},
-                                         {3, 129, 2, 147}}})  // and of 8, which do not fill up
+                                         {3, 129, 2, 147}}})  // and of 8, not all complete
   {
     auto const count = visits(shape, rows);
     for (std::int32_t z = 0; z < shape[2]; ++z)
@@ -85,7 +85,7 @@ TEST(DeviceTiles, EachSiteOfARangeOnce) {
   }
 }
 
-/// Returns the offset of a site's neighbour, by definition.
+/// Returns the offset of a site's neighbour, by definition; of the site itself at an open end.
 std::int64_t beside(RowLayout const& layout, std::array<std::int32_t, 3> at, int axis, int step) {
   auto const along = static_cast<std::size_t>(axis);
   std::int32_t const extent = std::array{layout.nx, layout.ny, layout.nz}[along];
@@ -156,7 +156,7 @@ RowLayout large_layout(std::int32_t nz) {
 }
 
 TEST(DeviceSites, LongIndicesWhereNumbersNeedThem) {
-  std::int32_t const most = (1 << 11) - 2;  // one more plane would wrap, and a step leaves a plane
+  std::int32_t const most = (1 << 11) - 2;  // a step is one plane, and 2^11 planes would wrap
   using Short = detail::DeviceLayout<std::int32_t>;
   auto const fits = large_layout(most), beyond = large_layout(most + 1);
   EXPECT_TRUE(Short::reaches(fits, 1));
@@ -195,7 +195,7 @@ TEST(DeviceTiles, ManyThreadsOfALongChain) {
   EXPECT_EQ(met, 8);
 }
 
-/// Returns only the upper bits of 1 / b, as a device gives them.
+/// Returns 1 / b with only so many bits, as a device approximates it.
 template <class Real, class Bits>
 Real rough_inverse(Real b, int bits) {
   Bits const dropped = (Bits(1) << (std::numeric_limits<Real>::digits - 1 - bits)) - 1;

@@ -45,7 +45,8 @@ std::vector<double> numbers_of_replica(std::vector<double> const& all, std::int6
   return {all.begin() + replica * count, all.begin() + (replica + 1) * count};
 }
 
-// Fields with neighbours along all axes, at a distance, with values per site, and that depend on t.
+// Fields that need neighbours along all axes or at a distance, have values per site, or depend on
+// t.
 struct Turning {
   template <class Spins>
   static auto generator(Lattice const& lattice) {

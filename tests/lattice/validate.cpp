@@ -36,7 +36,7 @@ TEST(LatticeValidate, NamesWhatIsWrong) {
     }
 }
 
-// Planes along z are the sites of a cell in turn.
+// Planes along z belong to the sites of a cell in turn.
 TEST(LatticeValidate, CellsAreWhole) {
   auto const of_cell = [](std::int64_t planes, std::int64_t cell_sites) {
     Lattice lattice = Lattice::cubic(2, 2, planes);

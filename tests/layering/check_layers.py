@@ -6,8 +6,8 @@ import re
 import sys
 import tempfile
 
-# Lowest layer first. A header may include headers of its own layer and of the layers above it in this
-# list. The first matching pattern decides, relative to include/cayspin; "folder/" is all below it.
+# Lowest layer first. A header may include headers of its own layer and of the layers listed before
+# it. The first matching pattern decides, relative to include/cayspin; "folder/" is all below it.
 LIBRARY = [
     ("numbers", ["vec3.hpp", "units.hpp", "detail/backend.hpp", "detail/pack.hpp", "detail/unrolled.hpp"]),
     ("lattice", ["lattice.hpp", "lattice/", "part.hpp", "row_layout.hpp", "crystal.hpp", "coupling.hpp", "shells.hpp"]),
@@ -150,7 +150,7 @@ class Tree:
                     self.problems.append(f"{self.name(path)}: {word} is physics, not of detail/")
 
     def check_versioned_namespace(self):
-        """Two versions of the library in one program keep apart by it."""
+        """The namespace keeps two versions of the library in one program apart."""
         version = VERSION.search((self.root / "CMakeLists.txt").read_text(encoding="utf-8"))
         expected = f"cayspin::inline v{version[1]}_{version[2]}"
         for name in self.includes:
@@ -159,7 +159,7 @@ class Tree:
                 self.problems.append(f"{name}: not all of it is in {expected}")
 
     def check_members_without_address(self):
-        """Plain ones have another size in device code: see detail/backend.hpp."""
+        """Without the macro they have another size in device code: see detail/backend.hpp."""
         for name in self.includes:
             text = (self.root / name).read_text(encoding="utf-8")
             if "[[no_unique_address]]" in text and not name.endswith("/detail/backend.hpp"):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Checks that files which are compiled as one define no name twice in their anonymous namespaces:
-check_names.py ROOT, or check_names.py --self-test. The fuzzers compile the readers so, which the
-ordinary tests do not build."""
+check_names.py ROOT, or check_names.py --self-test. The fuzzers, which
+ordinary tests do not build, compile the readers in this way."""
 
 import pathlib
 import re
@@ -21,8 +21,8 @@ FUNCTION = re.compile(r"^[A-Za-z][\w:<>,\s&*]*?[ &*](\w+)\(([^)]*)\)[^;{]*\{", r
 
 
 def names(text):
-    """The names, each with what has to differ: nothing, or the arguments of an overload. Aliases
-    may be repeated, but not with another meaning."""
+    """Returns (name, kind, meaning) of each name. The kind of a function is the types of its
+    arguments, so that overloads differ. Aliases may be repeated, with one meaning."""
     found = []
     for block in ANONYMOUS.findall(text):
         for name, meaning in ALIAS.findall(block):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Draws the layers of check_layers.py and their includes as docs/images/architecture.svg.
 
-Usage: draw_layers.py ROOT [--check]    --check: fails where the picture is not that of today
+Usage: draw_layers.py ROOT [--check]    --check: fails if the picture is out of date
 A layer stands one row above the highest layer that it includes. An arrow that follows from others is
 left out.
 """

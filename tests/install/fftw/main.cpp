@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-// A cube along z has H = -m/3.
+// A cube magnetised along z has H = -m/3.
 int main() {
   using Spins = cayspin::SpinField<double, Kokkos::HostSpace>;
   Kokkos::ScopeGuard const kokkos;

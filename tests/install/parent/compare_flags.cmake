@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# cayspin::cayspin adds include folders to the flags of Kokkos, and nothing else.
+# To the flags of Kokkos, cayspin::cayspin adds only include folders, and cayspin::same_bits also
+# -ffp-contract=off.
 file(READ ${COMMANDS} entries)
 
-# flags_of(<result> <target>): flags of its command, without folders and file names
+# flags_of(<result> <target>): flags of the target's compile command, without folders and file names
 function(flags_of result target)
   string(JSON count LENGTH "${entries}")
   math(EXPR last "${count} - 1")
