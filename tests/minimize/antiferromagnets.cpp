@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Antiferromagnetic neighbours take no more evaluations than ferromagnetic ones.
+// Minimising takes few evaluations for antiferromagnetic exchange, too.
 #include "films.hpp"
 
 #include <numbers>
@@ -80,8 +80,8 @@ struct Layers {
   }
 };
 
-// One axis with another sign than the others. An odd ring of layers cannot alternate: its spins
-// turn from layer to layer by a little less than pi.
+// Along one axis, exchange has another sign than along the others. An odd ring of layers cannot
+// alternate: its spins turn from layer to layer by a little less than pi.
 TYPED_TEST(Antiferromagnets, OfSomeAxes) {
   for (auto const& [in_plane, between] : {std::pair{40.0, -30.0}, {-40.0, 30.0}})
     for (std::int64_t const layers : {10, 11})

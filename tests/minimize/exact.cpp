@@ -11,7 +11,8 @@ namespace {
 template <class Backend>
 class Exact : public MinimizerTest<Backend> {
  protected:
-  /// A free spiral turns about an axis by d with tan d = D dx / A from site to site.
+  /// Expects a free spiral, which turns by `angle` about `about` from site to site: tan(angle) = D
+  /// dx / A.
   template <class Dmi>
   void expect_spiral(Lattice const& lattice, Dmi const& dmi, double angle, double a,
                      Vec3<double> const& about) const {
@@ -55,7 +56,7 @@ TYPED_TEST(Exact, StonerWohlfarth) {
   }
 }
 
-// m_z = tanh(x / sqrt(A / K)), of energy 2 sqrt(A K) per area, to second order in the spacing.
+// m_z = tanh(x / sqrt(A / K)); the energy per area is 2 sqrt(A K), to second order in the spacing.
 TYPED_TEST(Exact, BlochWall) {
   double const a = 1, k = 1;
   double error[2];

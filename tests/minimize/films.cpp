@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The number of evaluations hardly depends on the exchange, and the state is the film's.
+// The number of evaluations hardly depends on the exchange, and the result is the film's
+// equilibrium.
 #include "films.hpp"
 
 namespace cayspin::test {
@@ -23,7 +24,7 @@ class Films : public MinimizerTest<Backend> {
 TYPED_TEST_SUITE(Films, Backends, BackendName);
 
 TYPED_TEST(Films, TakeSeventyEvaluations) {
-  double const easy = -0.05 * width * width;  // along the easy axis
+  double const easy = -0.05 * width * width;  // energy along the easy axis
   // Round-off leaves saddles slowly in single precision.
   int const most = TestFixture::is_double ? 70 : 105;
   for (double const exchange : {2.0, 50.0, 1000.0}) {
@@ -39,7 +40,7 @@ TYPED_TEST(Films, TakeSeventyEvaluations) {
       // The torque from code that the minimiser does not use.
       LandauLifshitz const generator(film(this->spins.lattice(), exchange), 0);
       EXPECT_LT(largest_rate(this->exec, generator, this->spins), 1.1e-6);
-      // Weak exchange keeps a wall.
+      // With weak exchange, a vortex ends with walls.
       if (exchange > 2 || i > 0)
         EXPECT_NEAR(found.energy.value, easy, 1e-9 * width * width) << exchange << " " << i;
       else
@@ -48,7 +49,7 @@ TYPED_TEST(Films, TakeSeventyEvaluations) {
   }
 }
 
-// Long waves vanish before walls form, whose vortices would move by a cell per iteration.
+// Long waves vanish before walls form: vortices in walls would move by a cell in each iteration.
 TYPED_TEST(Films, TakeFewEvaluationsFarWiderThanAWall) {
   auto const lattice = Lattice::square(96, 96);
   for (unsigned const seed : {1U, 2U, 3U, 4U, 5U}) {

@@ -83,7 +83,8 @@ TYPED_TEST(Saddles, NotWhereTheEnergyIsFlat) {
   }
 }
 
-/// H = -4 c m_i^3: E = c sum of m_i^4, which is not quadratic. Corners of a cube are its minima.
+/// H = -4 c m_i^3: E = c sum of m_i^4, which is not quadratic. Minima point to the corners of a
+/// cube.
 struct CubicAnisotropy {
   double constant;
   template <class Stencil>
@@ -124,8 +125,8 @@ std::vector<double> alternating(Lattice const& lattice, bool alternates, double 
   return numbers;
 }
 
-// An antiferromagnet above its spin flop: round-off keeps the torque near the saddle above the
-// bound.
+// An antiferromagnet in a field above its spin flop: near the saddle, round-off keeps the torque
+// above the bound.
 TYPED_TEST(Saddles, WhereTheTorqueStaysAboveTheBound) {
   Lattice const ring{{8, 1, 1}, {1, 1, 1}, {Boundary::periodic, Boundary::open, Boundary::open}};
   EffectiveField const field(Exchange(ring, -1), UniaxialAnisotropy(0.1, {0, 0, 1}),

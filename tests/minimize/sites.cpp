@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Vacant sites do not change, site-dependent coefficients work like uniform ones, and wrong calls.
+// Vacant sites do not change, site-dependent coefficients work like uniform ones, and wrong calls
+// are refused.
 #include "../support/coefficients.hpp"
 #include "../support/wrong_call.hpp"
 #include "films.hpp"

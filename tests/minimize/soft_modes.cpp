@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A skyrmion that slides: its energy depends on its position by 3e-9 of itself.
+// A skyrmion that slides: its energy depends on its position by a few parts in 1e9.
 #include "films.hpp"
 
 #include <numbers>

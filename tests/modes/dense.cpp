@@ -11,7 +11,8 @@
 namespace cayspin::test {
 namespace {
 
-/// Matrices of a field that is at most cubic in the spins, in tangent planes with two axes each.
+/// The Hessian of the energy, in two axes of each site's tangent plane, and the matrix `turning`:
+/// the rate of a displacement v is turning * hessian * v. The field is at most cubic in the spins.
 struct Dense {
   Eigen::MatrixXd hessian, turning;
   double largest = 0;
@@ -43,7 +44,7 @@ struct Dense {
     hessian.setZero(2 * sites, 2 * sites);
     turning.setZero(2 * sites, 2 * sites);
     for (std::int64_t j = 0; j < 2 * sites; ++j) {
-      // The combination of differences at two distances that is exact.
+      // This combination of differences at two distances is exact for a cubic field.
       for (auto const& [distance, weight] : {std::pair{1.0, -1.0 / 3}, {0.5, 4.0 / 3}})
         for (double const side : {-1.0, 1.0}) {
           auto moved = m;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Known rates of one spin: Kittel's, with damping of any strength, and at a saddle.
+// Known modes: those of one spin, with damping of any strength and at a saddle, and of a chain.
 #include "modes.hpp"
 
 #include <complex>
@@ -37,7 +37,7 @@ TYPED_TEST(MacrospinModes, AreThoseOfKittelWithDamping) {
   }
 }
 
-// Overdamped spins: each direction has a different decay.
+// Without precession, each direction has a different decay.
 TYPED_TEST(MacrospinModes, DecayWithoutPrecession) {
   EffectiveField const field(SlabDemag({1, 0, 0}, 0.7), Zeeman{{0, 0, 0.4}});
   auto const m = this->uniform(Lattice::chain(1), {0, 0, 1});
@@ -48,7 +48,8 @@ TYPED_TEST(MacrospinModes, DecayWithoutPrecession) {
   EXPECT_EQ(found.modes[0].frequency, 0);
 }
 
-// Against a field that does not hold it the motion grows: dm/dt = b of either sign.
+// At a saddle there are two motions without oscillation: one grows, and one decays at an equal
+// rate.
 TYPED_TEST(MacrospinModes, GrowAtASaddle) {
   double const h = 0.2, k = 0.9;
   EffectiveField const field(UniaxialAnisotropy(k, {0, 0, 1}), Zeeman{{h, 0, 0}});
@@ -65,8 +66,8 @@ TYPED_TEST(MacrospinModes, GrowAtASaddle) {
   EXPECT_NEAR(curvatures.curvatures[1].value, h, this->accurate);
 }
 
-// The longest vector has length 1, and its largest component is real and positive; the axes of the
-// ellipse have the ratio of the roots of both curvatures.
+// The longest vector has length 1, and its largest component is real and positive; the ratio of the
+// axes of the ellipse is the root of the ratio of the curvatures.
 TYPED_TEST(MacrospinModes, HaveShapesOfLengthOne) {
   EffectiveField const field(SlabDemag({1, 0, 0}, 0.7), Zeeman{{0, 0, 0.4}});
   auto const m = this->uniform(Lattice::chain(3), {0, 0, 1});
@@ -96,8 +97,8 @@ TYPED_TEST(MacrospinModes, RefuseWhatCannotBe) {
                std::invalid_argument);
 }
 
-// An isotropic open chain has w = 2 A sin(pi p / n) twice for p and n - p, and zero modes that
-// drift: its total spin turns freely, and a turn of its axis grows in proportion to time.
+// An isotropic open chain has w = 2 A sin(pi p / n), equal for p and n - p, and zero modes that
+// drift: the chain turns freely, and the angle of a turn may grow in proportion to time.
 TYPED_TEST(MacrospinModes, AreWavesInAnIsotropicAntiferromagnet) {
   for (std::int64_t const n : {6, 8, 16}) {
     auto const lattice = Lattice::chain(n);

@@ -61,7 +61,7 @@ TYPED_TEST(WaveModes, AreNotReciprocalWithDmi) {
   this->expect_frequencies(normal_modes(this->exec, LandauLifshitz(field, 0.0), m), all, 0);
 }
 
-// w = (4 J + K)^2 - (4 J cos k)^2, split by the field along the axis.
+// w = sqrt((2 J + K)^2 - (2 J cos k)^2), split into w + h and |w - h| by the field along the axis.
 TYPED_TEST(WaveModes, OfAnAntiferromagnetInAField) {
   double const j = 1, anisotropy = 0.1, h = 0.07;
   auto const lattice = Lattice::chain(20, 1, Boundary::periodic);
@@ -80,7 +80,7 @@ TYPED_TEST(WaveModes, OfAnAntiferromagnetInAField) {
   this->expect_frequencies(normal_modes(this->exec, LandauLifshitz(field, 0.0), m), all, 0);
 }
 
-// Spins in an easy plane turn together without a force: a rate of zero, and waves.
+// Spins in an easy plane turn together without a force, at a rate of zero; other modes are waves.
 TYPED_TEST(WaveModes, HaveAZeroModeInAnEasyPlane) {
   double const a = 0.8, hard = 0.5;
   auto const lattice = Lattice::chain(16, 1, Boundary::periodic);

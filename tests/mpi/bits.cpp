@@ -17,7 +17,7 @@
 namespace cayspin::test {
 namespace {
 
-/// A rotating field.
+/// An equation with a rotating field.
 struct Turning {
   static auto generator_on(Lattice const& lattice) {
     return LandauLifshitz(
@@ -28,7 +28,7 @@ struct Turning {
         0.1);
   }
 };
-/// A field that does not depend on t.
+/// An equation with a field that does not depend on t.
 struct Still {
   static auto generator_on(Lattice const& lattice) {
     return LandauLifshitz(
@@ -37,7 +37,7 @@ struct Still {
         0.1);
   }
 };
-/// A field that needs all spins, on all ranks.
+/// An equation with a field that needs all spins, on all ranks.
 struct OfAllSpins {
   static auto generator_on(Lattice const& lattice) {
     return LandauLifshitz(EffectiveField(Exchange(lattice, 0.4), MeanField(0.7)), 0.1);
@@ -50,8 +50,8 @@ class EqualBits : public ::testing::Test {
   using Spins = typename Backend::Spins;
   using Real = typename Backend::Real;
 
-  /// `make`: returns a stepper for spins. Lattices that it refuses are skipped. `one_in`: steppers
-  /// that communicate often take one lattice in so many.
+  /// `make`: returns a stepper for spins. Lattices that it refuses are skipped. `one_in`: takes
+  /// only one lattice in so many, for steppers that communicate often.
   template <class Motion = Turning, class Make>
   void expect_equal_bits(int depth, Make const& make, int steps = 3, std::size_t one_in = 1) {
     int compared = 0;

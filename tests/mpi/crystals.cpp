@@ -14,7 +14,7 @@
 namespace cayspin::program::test {
 namespace {
 
-/// A scene whose spins are coupled by all kinds of bonds at once.
+/// Returns a scene with these parts, which takes 12 steps.
 std::string scene_of(std::string const& lattice_and_field, std::string const& integrator,
                      std::string const& damping = "0.1") {
   return fmt::format(R"toml([system]
@@ -47,7 +47,7 @@ applied = ["0.5*cos(7*t)", "0.1", "0.4"])toml";
 
 class CrystalsOnRanks : public OnRanks {
  protected:
-  /// Compares runs in parts with one on one rank.
+  /// Expects runs that are divided in these ways, (ranks, --ranks), to equal a run on one rank.
   void expect_bits_of_one(std::string const& text,
                           std::vector<std::pair<int, std::string>> const& divisions,
                           Arguments const& more = {}) const {
@@ -221,7 +221,7 @@ TEST_F(CrystalsOnRanks, StepByEveryKindOfMethod) {
         "implicit_midpoint", "projected_rk5"}) {
     SCOPED_TRACE(method);
     auto const integrator = fmt::format("method = \"{}\"\ndt = 0.02", method);
-    // rkmk8 has 13 stages: its parts have as many rows.
+    // rkmk8 has 13 stages: its parts have at least as many planes.
     expect_bits_of_one(scene_of(bcc, integrator), {{2, "1,2"}},
                        {"--set", "lattice.shape=[4,5,14]"});
   }

@@ -40,7 +40,8 @@ class DemagnetizingFieldOnRanks : public ::testing::Test {
     return {numbers.begin(), numbers.end()};
   }
 
-  /// work(lattice, spins): returns numbers, those of sites first, (sites, 3).
+  /// work(body, spins): returns numbers: first those of sites, (sites, 3), then any that all ranks
+  /// share.
   template <class Work>
   void expect_equal_bits(Boundary boundary, int depth, Work const& work) {
     int compared = 0;
@@ -84,7 +85,7 @@ TYPED_TEST(DemagnetizingFieldOnRanks, HasEqualBits) {
   });
 }
 
-// The memory of a part grows only with its own rows and wave numbers.
+// Ranks share the memory of one rank; several of them need one spectrum more.
 TEST(DemagnetizingFieldOfParts, SharesItsMemory) {
   auto const lattice = Lattice::cubic(31, 16, 16);
   auto const of_one = DemagnetizingField<double>::work_bytes(lattice);
