@@ -40,13 +40,14 @@ TYPED_TEST_SUITE(Paths, Backends, BackendName);
 
 std::vector<double> const up{0, 0, 1}, down{0, 0, -1};
 
-// E = -K m_z^2 / 2 + k m_y^2 / 2 - h.m, in the plane of x and z.
+// E = -easy m_z^2 / 2 + hard m_y^2 / 2 - h.m; paths lie in the plane of x and z.
 auto macrospin(double easy, double hard, Vec3<double> const& applied) {
   return EffectiveField(UniaxialAnisotropy(easy, {0, 0, 1}), UniaxialAnisotropy(-hard, {0, 1, 0}),
                         Zeeman{applied});
 }
 
-// Henkelman and Jonsson's tangent: at a maximum the larger difference belongs to the higher side.
+// Henkelman and Jonsson's tangent: at a maximum, the larger difference of energies is the weight of
+// the side with the higher neighbour.
 TEST(PathDirection, WeighsBothSidesOfAPeak) {
   using Weights = std::array<double, 2>;
   EXPECT_EQ(detail::weights_of_direction(1, 3, 2), (Weights{1, 2}));
@@ -81,7 +82,7 @@ TYPED_TEST(Paths, OfAMacrospinAlongAField) {
               this->exact());
 }
 
-// Against a strong field the barrier is a sixtieth of the energy between the ends.
+// Against a strong field, the barrier is a thirtieth of the energy between the ends.
 TYPED_TEST(Paths, OfAMacrospinWithALowBarrier) {
   double const easy = 1.3, applied = 0.9;
   auto const found = this->find(macrospin(easy, 0.7, {0, 0, applied}), Lattice::chain(1), down, up,
@@ -90,7 +91,7 @@ TYPED_TEST(Paths, OfAMacrospinWithALowBarrier) {
   EXPECT_NEAR(found.barrier_forward(), 0.5 * easy * std::pow(1 - applied / easy, 2), this->exact());
 }
 
-// The extrema of Stoner and Wohlfarth's energy at any angle are the roots of a line.
+// The extrema of Stoner and Wohlfarth's energy, at any angle, are found by Newton's method.
 TYPED_TEST(Paths, OfAMacrospinAtAnAngleToAField) {
   double const easy = 1, applied = 0.3;
   for (double const angle : {0.2, 0.7, 1.2}) {
@@ -112,7 +113,7 @@ TYPED_TEST(Paths, OfAMacrospinAtAnAngleToAField) {
   }
 }
 
-// The great circle at the start is the worst path here.
+// The initial great circle is the worst path here.
 TYPED_TEST(Paths, LeaveAHardAxis) {
   EffectiveField const field(UniaxialAnisotropy(1, {0, 0, 1}), UniaxialAnisotropy(-0.7, {1, 0, 0}));
   auto const found = this->find(field, Lattice::chain(1), up, down, this->options());
@@ -134,8 +135,8 @@ TYPED_TEST(Paths, HaveTwoSaddles) {
       this->find(field, lattice, {0, 0, 1, 0, 0, 1}, {0, 0, -1, 0, 0, -1}, this->options());
   ASSERT_EQ(found.end, PathEnd::converged);
   ASSERT_EQ(found.saddles.size(), 2U);
-  // One spin at an angle to the z axis, and the other one with it by the coupling: found by a
-  // search.
+  // At each saddle, one spin is near the plane, and the other is tilted by the coupling; both
+  // angles are found by Newton's method.
   auto const energy = [&](double a, double b) {
     return -0.5 * std::pow(std::cos(a), 2) - 0.85 * std::pow(std::cos(b), 2) -
            coupling * (std::cos(a - b) - 1);
@@ -157,7 +158,8 @@ TYPED_TEST(Paths, HaveTwoSaddles) {
   for (auto const& known : found.saddles) EXPECT_EQ(found.energy[known.image], known.energy);
 }
 
-// Its wall may be anywhere: 2 sqrt(A K) of a continuum in units of these, on 5 sites a wall.
+// The wall may be anywhere. It is 5 sites wide, so its energy is nearly the continuum's, 2 sqrt(A
+// K).
 TYPED_TEST(Paths, OfAWallThroughAChain) {
   auto const lattice = Lattice::chain(100);
   EffectiveField const field(Exchange(lattice, 10), UniaxialAnisotropy(0.4, {0, 0, 1}),
@@ -209,7 +211,7 @@ TYPED_TEST(Paths, OfASkyrmionThatCollapses) {
                                   state.uniform, {.torque = this->is_double ? 1e-6 : 1e-3});
     ASSERT_EQ(found.end, PathEnd::converged);
     double const tolerance = this->is_double ? 1e-6 : 1e-2;
-    // The exchange of parallel spins is zero here.
+    // Unlike in the reference, the exchange energy of parallel spins is zero here.
     EXPECT_NEAR(found.saddle().energy, -5811.52452552 + 2 * 256 * 10, tolerance);
     EXPECT_NEAR(found.barrier_forward(), 38.16697354, tolerance);
     EXPECT_NEAR(found.barrier_backward(), 49.38834616, tolerance);
@@ -219,7 +221,7 @@ TYPED_TEST(Paths, OfASkyrmionThatCollapses) {
   }
 }
 
-// The start is relaxed before; the number of evaluations does not depend on the lattice.
+// The first image is relaxed beforehand; the number of evaluations does not depend on the lattice.
 TYPED_TEST(Paths, TakeFewEvaluations) {
   double const torque = this->is_double ? 1e-6 : 1e-3;
   for (std::int64_t const n : {16, 48}) {

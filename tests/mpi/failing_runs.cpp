@@ -71,7 +71,7 @@ TEST_F(OnRanks, SayOnceThatOneHasTooLittleMemory) {
     for (int rank = 0; rank < 2; ++rank) {
       auto const run = launch(1, run_of(scene, "out.h5"));
       both.insert(both.end(), run.begin(), run.begin() + 2);
-      // A field is 131 MB, and no program can have 300.
+      // A rank's field is 131 MB, and a limit of 300 MB is too low for any run with it.
       if (rank == poor)
         both.insert(both.end(), {"sh", "-c", "ulimit -v 300000; exec \"$0\" \"$@\""});
       both.insert(both.end(), run.begin() + 2, run.end());

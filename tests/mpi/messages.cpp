@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Ghosts equal the neighbours' sites: by messages in place, and by packed ones as on devices.
+// Ghosts equal the neighbours' sites, after messages in place and after packed ones, as on devices.
 #include <cayspin/detail/ghosts.hpp>
 #include <cayspin/mpi/domain.hpp>
 #include <cayspin/spin_field.hpp>
@@ -21,7 +21,7 @@ Real number_of(Lattice const& whole, std::array<std::int64_t, 3> site, int c) {
 template <class Real, int Components>
 using HostField = SiteField<Real, Components, Kokkos::HostSpace>;
 
-/// Calls work(site here, number of the component at it) for all sites, ghosts included.
+/// Calls work(site, component, number) for all sites here, including ghosts.
 template <class Real, int Components, class Work>
 void for_all(HostField<Real, Components> const& field, Work const& work) {
   auto const& layout = field.layout();

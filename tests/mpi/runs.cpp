@@ -18,7 +18,7 @@ TEST_F(OnRanks, WriteTheSameFile) {
   for (std::string const precision : {"double", "single"}) {
     Arguments const in_precision{"--precision", precision};
     ASSERT_EQ(start(run_of(scene, "one.h5", in_precision)).status, 0);
-    // In chunks, the first rank takes a frame in pieces of whole chunks.
+    // If there are chunks, the first rank receives a frame in pieces of whole chunks.
     for (auto const& [ranks, threads, cut, chunk] :
          {std::tuple{1, "2", "", "13"}, std::tuple{2, "1", "", "13"},
           std::tuple{2, "2", "2,1", "1"}, std::tuple{3, "1", "", "2"},
@@ -103,7 +103,7 @@ TEST_F(OnRanks, RunEveryShippedScene) {
     auto const short_run = text.find("\nend =") != std::string::npos ? "" : "x";
     Arguments more;
     if (*short_run) more = {"--set", "integrator.steps=40"};
-    // Its stages wait for those of the other ranks, which is slow if ranks share a core.
+    // A crystal's stages wait for those of the other ranks, which is slow if ranks share a core.
     if (contains(text, "crystal ="))
       more = {"--set", contains(text, "\"SI\"") ? "integrator.end=2e-14" : "integrator.end=5"};
     if (contains(text, "\ndemag =")) more = {"--set", "integrator.end=2e-11"};
@@ -171,7 +171,8 @@ TEST_F(OnRanks, GoOnFromFilesOfOtherRanks) {
         "method = \"tsit5\"\ntolerance = 1e-5"}) {
     SCOPED_TRACE(method);
     auto const scene = write("scene.toml", film("[5, 8, 13]", method));
-    // An adaptive method ends at the last of its steps: compared with runs divided equally.
+    // An adaptive method shortens its last steps to end with a run, so runs are compared that end
+    // at equal times.
     auto const in_parts = [&](std::array<int, 3> const& ranks, std::string const& name) {
       std::string before;
       for (int part = 0; part < 3; ++part) {

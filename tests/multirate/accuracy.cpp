@@ -75,7 +75,7 @@ TEST(SlowField, UnequalStepsKeepTheOrder) {
   expect_order_of_unequal_steps<4>();
 }
 
-/// Without the second pass: the expensive field only through its last two values.
+/// Takes steps without the second pass: the expensive field is only extrapolated from two values.
 template <class Generator>
 void extrapolate(MultirateLongRange<Spins> const& slow, Generator const& generator, Spins& spins,
                  double dt, int steps, int substeps) {
@@ -95,7 +95,7 @@ void extrapolate(MultirateLongRange<Spins> const& slow, Generator const& generat
   }
 }
 
-/// Returns the energy after each of `count` samples.
+/// Returns the energy at the start and after each of `count` calls of go_on(spins).
 template <class Advance, class Generator>
 std::vector<double> energies(Generator const& generator, Spins const& start, int count,
                              Advance const& go_on) {
@@ -108,7 +108,8 @@ std::vector<double> energies(Generator const& generator, Spins const& start, int
   return found;
 }
 
-// Four times the largest stable step of RK4: one pass gains energy, two lose it at every sample.
+// With 4 times the largest stable step of RK4, one pass gains energy; two lose it from sample to
+// sample.
 TEST(SlowField, SecondPassKeepsTheEnergyLaw) {
   Lattice const film{{24, 8, 1}, {1, 1, 1}, {Boundary::open, Boundary::open, Boundary::open}};
   Spins const start = make_spins(film, [](auto i, auto j, auto) {
@@ -142,7 +143,8 @@ TEST(SlowField, SecondPassKeepsTheEnergyLaw) {
   EXPECT_GT(one_pass.back(), two_passes.front());
   EXPECT_GT(rk4.back(), rk4.front());
 
-  // Follows RK4 with steps as long as its substeps, with 1 evaluation instead of 20.
+  // It follows RK4 with steps as long as its substeps, with 1 evaluation of the field instead of
+  // 20.
   Spins spins = copy_of(start);
   stepper.reset();
   advance(stepper, generator, spins, dt, 20);

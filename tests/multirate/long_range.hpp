@@ -27,7 +27,8 @@ struct LongRange {
       auto const m = spins.get(i);
       return Vector{double(m.x), 0.6 * double(m.y), 0.2 * double(m.z)};
     };
-    // Sums over the sites before and after, each from that of its neighbour.
+    // Sums over the sites before a site, and over those after it: each is found from the sum of the
+    // site next to it.
     std::vector<Vector> before(static_cast<std::size_t>(sites), Vector{0, 0, 0});
     for (std::int64_t i = 1; i < sites; ++i) before[i] = decay * (before[i - 1] + at(i - 1));
     Vector after{0, 0, 0};
@@ -55,7 +56,7 @@ struct Turning {
   }
 };
 
-/// Every kind of term with an expensive one.
+/// Returns an equation with terms of every kind, one of which is expensive.
 template <class SlowTerm>
 auto with_multirate(Lattice const& lattice, double exchange, SlowTerm const& slow, double damping,
                     double amplitude = 0) {

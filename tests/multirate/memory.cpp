@@ -53,7 +53,8 @@ TEST(SlowField, StartsAnew) {
   stepper.reset();
   EXPECT_EQ(again(), fresh);
 
-  // A step that grows too much or changes sign is a start; one of length 0 does nothing.
+  // A step that is much longer than the last or changes sign starts anew; one of length 0 does
+  // nothing.
   Spins spins = copy_of(start);
   auto const evaluations_of = [&](double dt) {
     auto const before = stepper.slow_evaluations_done();
@@ -143,7 +144,7 @@ TEST(SlowField, SameBitsOnHostSpaces) {
 }
 #endif
 
-/// A library term that is not computed on the host: its own field in kernels.
+/// A term of the library whose field is computed in kernels, not on the host.
 TEST(SlowField, TakesAnyTermOfKnownDegree) {
   Spins spins = random_spins(small_block, 5);
   SlabDemag const slab{Vector{1, 2, 0}, 0.7};
@@ -172,7 +173,7 @@ struct Failing : LongRange {
   }
 };
 
-// In the first step, at its end, and at the end of the third.
+// The field fails in the first step, at its end, and at the end of the third step.
 TEST(SlowField, LeavesTheSpinsOfAStepThatFails) {
   Spins const start = random_spins(small_block, 5);
   for (double const from : {0.07, 0.1, 0.25}) {

@@ -107,7 +107,7 @@ TEST(MultirateModes, KeepTheirLinewidths) {
     double const now = error_of_linewidths<4, Spins>(damping, dt);
     expect_below("order 4, damping " + std::to_string(damping), now, 0.0005);
   }
-  // The contribution of order 3 to damping .008.
+  // Order 3 changes a damping of .008 by more than 1 %.
   EXPECT_GT((error_of_linewidths<3, Spins>(0.008, dt)), 0.01);
   using Floats = SpinField<float, Space::memory_space>;
   expect_below("order 4, floats", error_of_linewidths<4, Floats>(0.008, dt), 5e-3);
@@ -115,7 +115,7 @@ TEST(MultirateModes, KeepTheirLinewidths) {
 }
 
 /// Returns the largest growth of an angle among spins with w dt from 0 to 12, over the second half
-/// of the steps, when the start has decayed.
+/// of the steps, when what depends on the start has decayed.
 template <int Order>
 double growth(double damping, double dt_times_d, Elliptical const& shape, int steps) {
   constexpr std::int64_t count = 241;
@@ -144,7 +144,7 @@ double growth(double damping, double dt_times_d, Elliptical const& shape, int st
   std::vector<double> const end = angles_now();
   double worst = 0;
   for (std::size_t i = 0; i < half.size(); ++i) {
-    // An elliptical mode's angle goes up and down.
+    // The angle of an elliptical mode goes up and down by this factor.
     double const w = fields.at(static_cast<std::int64_t>(i));
     double const ellipse = std::sqrt((w + dt_times_d) / w);
     worst = std::max(worst, end[i] / (half[i] * ellipse));

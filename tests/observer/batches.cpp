@@ -10,7 +10,7 @@
 namespace cayspin::test {
 namespace {
 
-/// Observer that stores the spins' numbers at the steps of its calls, every seventh from the third.
+/// Observer that stores the spins at steps 3, 10, 17, ... and at the last one.
 template <class Spins>
 struct Keep {
   std::vector<std::pair<std::int64_t, std::vector<double>>>* kept;

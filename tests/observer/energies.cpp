@@ -16,8 +16,8 @@ class TermEnergy : public ::testing::Test {
   Spins const spins = spins_of<Spins>(lattice, {1, 0, 0, 0, 0.6, 0.8, 0, 0, -1});
   static constexpr double tolerance = 64 * epsilon<typename Backend::Real>;
 
-  /// As a term, in a sum, in a generator, and from a sample. `magnitude`: the sum over sites of
-  /// absolute energies.
+  /// Expects this energy of a term by itself, in a sum, in a generator, and from a sample.
+  /// `magnitude`: the sum over sites of absolute energies.
   template <class Term>
   void expect_energy(char const* name, Term const& term, double value, double magnitude,
                      double t = 0) {
@@ -61,7 +61,7 @@ TYPED_TEST(TermEnergy, IsThatOfThePage) {
   this->expect_energy("InterfacialDmi", InterfacialDmi(lattice, 0.7, {0, 0, 1}), -1.12, 1.12);
   // -K / 2 mz^2
   this->expect_energy("UniaxialAnisotropy", UniaxialAnisotropy(2, {0, 0, 3}), -1.64, 1.64);
-  // -1/2 (0.4 * 0 + 1.2 * 0.64 + 0.3)
+  // -K / 2 mz^2: -1/2 (0.4 * 0 + 1.2 * 0.64 + 0.3 * 1)
   this->expect_energy("SiteDependentUniaxialAnisotropy",
                       SiteDependentUniaxialAnisotropy(constants, Vec3<double>{0, 0, 1}), -0.534,
                       0.534);

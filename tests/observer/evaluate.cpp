@@ -7,7 +7,7 @@
 namespace cayspin::test {
 namespace {
 
-/// A term without neighbours whose H changes with t.
+/// An applied field that changes with t.
 Vec3<double> turning(double t) { return {0, 0.5 * t, 1}; }
 
 template <class Backend>
@@ -41,7 +41,7 @@ TYPED_TEST(Evaluations, FieldAndGeneratorByHand) {
     expect_near(at(h, site), expected, this->bound);
     expect_near(at(a, site), expected + 0.3 * cross(m, expected), this->bound);
   }
-  // A single term, and the generator's torque against the largest one.
+  // Also a single term, and the largest torque.
   evaluate_field(this->exec, anisotropy, this->spins, 0, this->output);
   this->exec.fence();
   expect_near(at(numbers_of(this->output), 5), {0, 0, 0.7 * at(this->m, 5).z}, this->bound);

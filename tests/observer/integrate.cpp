@@ -11,7 +11,8 @@
 
 namespace cayspin::test {
 
-/// A generator that counts the evaluations of its A, on one site in host memory.
+/// A generator that counts the evaluations of its A, on one site in host memory, and stores their
+/// times.
 struct CountingGenerator {
   std::int64_t* evaluations;
   std::vector<double>* times;
@@ -33,7 +34,7 @@ struct CountingGenerator {
 
 namespace {
 
-/// A stepper that does nothing but has memory; not copyable.
+/// A stepper that only stores the times and lengths of its steps; not copyable.
 template <class Spins>
 struct Remembering {
   using spins_type = Spins;
@@ -160,7 +161,8 @@ TYPED_TEST(Integrate, ObserversAfterOneThatStopsAreTold) {
   for (auto const& step : this->seen) EXPECT_FALSE(step.stops);
 }
 
-// Like integrate; only temporaries are moved into it.
+// Like integrate, Every refers to observers that have names, and moves only temporaries into
+// itself.
 TYPED_TEST(Integrate, EveryRefersToObserversWithNames) {
   using Spins = typename TypeParam::Spins;
   copy_from_host(random_directions(3, 9), this->spins);
@@ -181,7 +183,7 @@ TYPED_TEST(Integrate, EveryRefersToObserversWithNames) {
   static_assert(detail::changes_spins<Every<Control&>>);
   static_assert(detail::changes_spins<std::reference_wrapper<Control>>);
   static_assert(detail::changes_spins<Every<std::reference_wrapper<Control>>>);
-  // A reference also asks its due().
+  // The due() of an observer in a std::reference_wrapper is asked, too.
   EnergyControl seldom(this->spins, conserving, {.period = 3});
   integrate(this->exec, stepper, conserving, this->spins, {0, 0.1, 4}, std::ref(seldom));
   EXPECT_EQ(seldom.evaluations_done(), 2);
@@ -252,7 +254,8 @@ template <class Real>
 class CountedEvaluations : public ::testing::Test {};
 TYPED_TEST_SUITE(CountedEvaluations, Precisions, PrecisionName);
 
-// One row of one site is one call: counted by the generator, at the stages' own times.
+// On one site, each evaluation is one call, which the generator counts; stages have their own
+// times.
 TYPED_TEST(CountedEvaluations, AreWhatTheGeneratorSees) {
   using Spins = SpinField<TypeParam, Kokkos::HostSpace>;
   expect_counted<LieEuler<Spins>, Spins>({0});

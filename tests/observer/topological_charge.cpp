@@ -51,7 +51,8 @@ std::vector<double> negative(std::vector<double> m) {
   return m;
 }
 
-/// Returns half the solid angle of a triangle by its corners (L'Huilier's theorem), with its sign.
+/// Returns half the solid angle of the triangle with these corners (L'Huilier's theorem), with its
+/// sign.
 double half_angle(Vec3<double> const& a, Vec3<double> const& b, Vec3<double> const& c) {
   auto const side = [](Vec3<double> const& u, Vec3<double> const& v) {
     auto const n = cross(u, v);
@@ -109,7 +110,7 @@ TYPED_TEST(TopologicalCharge, UniformSpinsHaveNone) {
   }
 }
 
-// In the plane at the border, which runs once around the equator.
+// Spins at the border lie in the plane and turn once around the equator, half of the sphere's area.
 TYPED_TEST(TopologicalCharge, AVortexHasHalf) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = film(33, 30, Boundary::open);
@@ -177,7 +178,7 @@ TYPED_TEST(TopologicalCharge, TheNumbersOfThePackage) {
   EXPECT_NEAR(charge(Boundary::open, Boundary::periodic), -0.8933656985875352, bound);
 }
 
-// Lengths do not matter, also those that single precision rounds.
+// Lengths do not matter, even if single precision rounds them.
 TYPED_TEST(TopologicalCharge, SpinsOfAnyLength) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = film(23, 17, Boundary::periodic);
@@ -186,7 +187,7 @@ TYPED_TEST(TopologicalCharge, SpinsOfAnyLength) {
   EXPECT_NEAR(topological_charge(this->exec, spins_of<Spins>(lattice, m)), -1, 1e-12);
 }
 
-// The quotient of their angle is 0 / 0 except for round-off.
+// In the formula for their angle, the quotient is 0 / 0 except for round-off.
 TYPED_TEST(TopologicalCharge, AntiparallelSpinsEncloseNothing) {
   using Spins = typename TypeParam::Spins;
   for (auto const boundary : {Boundary::open, Boundary::periodic}) {

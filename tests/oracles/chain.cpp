@@ -32,7 +32,8 @@ struct Placement {
   }
 };
 
-// 5 and 19 cut packs of every width, 16 fills them; 2 and 1 wrap around to themselves.
+// Extents of 5 and 19 end inside packs of every width, 16 fills them; 2 and 1 have equal
+// neighbours.
 std::vector<Placement> const placements{{0, {1, 1, 1}},  {0, {1, 3, 2}},  {1, {1, 1, 1}},
                                         {1, {5, 1, 3}},  {1, {16, 1, 1}}, {2, {1, 1, 1}},
                                         {2, {19, 2, 1}}, {2, {2, 1, 1}}};

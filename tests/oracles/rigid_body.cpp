@@ -36,7 +36,7 @@ TYPED_TEST_SUITE(RigidBodyOracles, OracleBackends, BackendName);
 // Nineteen equal bodies: whole packs, a partial one, and every lane.
 constexpr std::int64_t bodies = 19;
 
-/// Calls the methods that only rigid bodies have, and those of all generators.
+/// Like with_method, but also with the methods that only rigid bodies have.
 template <class Spins, class With>
 auto with_body_method(std::string const& method, RigidBody const& body, double constant,
                       Spins const& like, With const& with) {

@@ -20,7 +20,7 @@ namespace cayspin::test {
 template <class Real>
 inline constexpr double step_tolerance = 1e-13 / epsilon<double> * epsilon<Real>;
 
-/// Compares two ways to write one sigma.
+/// Compares the results of two ways to compute one sigma.
 inline void expect_same(std::vector<double> const& a, std::vector<double> const& b, double bound,
                         std::string const& where) {
   ASSERT_EQ(a.size(), b.size());
@@ -95,7 +95,7 @@ auto with_method(std::string const& method, Generator const& generator, double c
   throw std::invalid_argument("no stepper for " + method);
 }
 
-/// Takes one step with it.
+/// Takes one step of the method that the oracles call `method`.
 template <class Exec, class Spins, class Generator>
 std::vector<double> one_step(std::string const& method, Generator const& generator, double constant,
                              Start const& start) {

@@ -29,11 +29,11 @@ Field chain_start() {
 class ChainOrder : public ::testing::TestWithParam<double> {
  protected:
   Slab const slab = coupled_chain(GetParam());
-  // Over-damped motions are shorter.
+  // Strongly damped motions end sooner.
   double const end_time = std::min(1.0, 1 / GetParam());
   Spins const reference = run<Rkmk4<Spins>>(slab.natural(), chain_start(), end_time / 4000, 4000);
 
-  /// Steps at which round-off does not show in the errors.
+  /// Numbers of steps for which round-off does not show in the errors.
   std::array<int, 4> ladder = {40, 80, 160, 320};
   double order_tolerance = 0.15;
 
@@ -56,7 +56,7 @@ class ChainOrder : public ::testing::TestWithParam<double> {
   }
 };
 
-/// Expects the largest stable dt of a mode of rate 1 over the number of stages, at each damping.
+/// Expects largest stable steps of a mode of rate 1: {damping, dt / number of stages}.
 template <class Stepper>
 void expect_stable_per_stage(std::vector<std::pair<double, double>> const& limits,
                              double tolerance) {

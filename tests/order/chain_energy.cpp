@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Orders of the energy of an undamped coupled chain, over T = 10 and fixed step sizes. They differ
-// from those of a single sphere.
+// from those on a single sphere (rigid_body.cpp).
 #include "chain.hpp"
 
 #include <cayspin_paper/analytic_sigma.hpp>
@@ -48,7 +48,7 @@ TEST(ChainEnergyOrder, OrderTwo) {
   expect_energy<LieAdamsBashforth2<Spins>>("ab2, orthogonal", slab.orthogonal(), fine, 2);
 }
 
-// Measured between the orders 4 and 5 of two terms of opposite sign.
+// Two terms of the error have orders 4 and 5 and opposite signs; an order in between is measured.
 TEST(ChainEnergyOrder, Rkmk4) {
   expect_energy<Rkmk4<Spins>>("default", slab.natural(), coarse, 4.9, 0.2);
   expect_energy<Rkmk4<Spins>>("orthogonal", slab.orthogonal(), coarse, 4.2, 0.2);

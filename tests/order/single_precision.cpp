@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Orders in single precision, for step sizes whose errors are above round-off; and in double with a
-// field that depends on time.
+// Orders with a field that depends on time: in double, and in single precision for step sizes whose
+// errors are above round-off.
 #include "../support/evaluate.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
@@ -53,8 +53,8 @@ TEST(TimeDependentField, KeepsTheOrder) {
   expect_slope<ProjectedRk4<Spins>>("projected rk4", 4, ladder);
 }
 
-/// Returns the largest local error along A_o of one step, over dt^2, which a correct sigma makes
-/// vanish.
+/// Returns the largest error along A_o of one step, divided by dt^2; with a correct sigma it
+/// vanishes for small dt.
 template <class Isotropy>
 double local_error_along_generator(double dt) {
   constexpr double t = 0.4;

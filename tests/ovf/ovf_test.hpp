@@ -44,14 +44,14 @@ std::string bytes(std::vector<Real> const& numbers) {
   return result;
 }
 
-/// Returns `text` with its only occurrence of `from` replaced.
+/// Returns `text` with the first occurrence of `from` replaced; it must have one.
 inline std::string replaced(std::string text, std::string const& from, std::string const& to) {
   auto const at = text.find(from);
   if (at == std::string::npos) throw std::runtime_error("not in the file: " + from);
   return text.replace(at, from.size(), to);
 }
 
-/// Two nodes, in the format of the OOMMF user guide.
+/// Returns a header for two nodes, in the format of the OOMMF user guide.
 inline std::string small_header() {
   return R"(# OOMMF OVF 2.0
 # Segment count: 1

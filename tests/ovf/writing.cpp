@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns a field whose nodes, spacings and origins differ along every axis, and numbers that need
-/// all digits.
+/// Returns a field whose nodes, spacings and origins differ along every axis, and whose numbers
+/// need all digits.
 OvfField asymmetric_field() {
   OvfField field;
   field.title = "m of a test";
@@ -145,7 +145,7 @@ TEST_F(OvfTest, ValuesHaveToBeThoseOfTheMesh) {
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
-// They would end the line, and the rest would be read as a separate record.
+// Line breaks would end the line, and the rest would be read as a separate record.
 TEST_F(OvfTest, LineBreaksInUnitsAreBlanks) {
   auto field = asymmetric_field();
   field.mesh.unit = "nm\n# xnodes: 1";
