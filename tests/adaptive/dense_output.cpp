@@ -25,8 +25,8 @@ class WithinAStep {
     return spins;
   }
 
-  /// Expects the distance to the solution to have this order, from steps of `longest`, 1/2 and 1/4
-  /// of it.
+  /// Expects an error of order dense_order + 1 in a step, from steps of `longest`, 1/2 and 1/4 of
+  /// it.
   void expect_order(char const* name, int dense_order, double longest, double tolerance) const {
     for (double const s : {0.35, 0.8}) {
       SCOPED_TRACE(s);
@@ -39,7 +39,8 @@ class WithinAStep {
     }
   }
 
-  /// Expects the spins near both ends of a step to join the spins there with the right rates.
+  /// Expects the spins near each end of a step to move towards those at this end at the right
+  /// rates.
   void expect_joined(char const* name, double dt, double tolerance) const {
     double const near = 1e-5;
     auto const start = chain_start();

@@ -9,7 +9,7 @@
 
 namespace cayspin::test {
 
-/// Lattices with odd extents, also with long rows, which a sweep cuts into many blocks.
+/// The lattices of odd_lattices(), and some with long rows, which a sweep cuts into many blocks.
 inline std::vector<Lattice> swept_lattices() {
   auto lattices = odd_lattices();
   std::array<std::int64_t, 3> const wide[] = {{2003, 41, 3}, {3001, 53, 1}, {1003, 17, 13}};

@@ -204,8 +204,8 @@ TEST(CInterfaceErrors, RunsAndFiles) {
   std::filesystem::remove_all(folder);
 }
 
-// With this dt, classical Euler makes spins longer by 1e300 in each step until they overflow: the
-// guard reports it, and the last good state is kept.
+// With this dt, classical Euler makes spins 1e300 times longer in each step until they overflow:
+// the guard reports it, and the last good state is kept.
 TEST(CInterfaceErrors, NumbersThatFail) {
   auto text = scene_text();
   text.replace(text.find("rkmk4"), 5, "classical_euler");

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# compilers.sh KOKKOS_SOURCE BUILD_FOLDER [THREADS] runs test_contracted with g++, contracting
-# across expressions, and with clang, contracting across and only within them, for AVX2 and AVX-512.
-# Builds Kokkos for each. Status 1 if a combination fails, 77 if none fails but one cannot be tried
-# here.
+# compilers.sh KOKKOS_SOURCE BUILD_FOLDER [THREADS] runs test_contracted with g++ and clang, for
+# AVX2 and AVX-512. Both contract across expressions; clang is also tested contracting only within
+# them. Builds Kokkos for each. Status 1 if a combination fails, 77 if none fails but one cannot be
+# tried here.
 set -uo pipefail
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 kokkos=$1 build=$2 threads=${3:-2}

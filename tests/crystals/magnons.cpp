@@ -63,8 +63,8 @@ class Magnons : public ::testing::Test {
           amplitude.push_back(a);
           start.insert(start.end(), {a.real(), a.imag(), site == down ? -z : z});
         }
-    // The wave turns by 2.3 radians, if it does so within 20 units of time. A field of 10, more
-    // than any here, turns a spin by 0.25 radians in a step.
+    // The wave turns by 2.3 radians, if it does so within 20 units of time. A field of 10, the
+    // largest here, turns a spin by 0.25 radians in a step.
     double const end = std::min(2.3 / std::abs(frequency), 20.0);
     int const steps = static_cast<int>(std::ceil(end * 10 / 0.25));
     auto const numbers = run(lattice, field, start, end, steps);

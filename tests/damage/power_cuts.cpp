@@ -175,7 +175,7 @@ TEST_F(PowerCuts, LoseAtMostTheFrameBeingWritten) {
             << " cut again while completed\n";
 }
 
-// Makes all possible sequences of choices, one between two calls of advance().
+// Makes every possible sequence of choices in turn: advance() goes on to the next one.
 class AllChoices {
  public:
   std::size_t operator()(std::size_t end) {

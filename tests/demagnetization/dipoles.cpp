@@ -86,7 +86,7 @@ TYPED_TEST(DipolarFields, OfOpenCrystalsAreSumsOverPairs) {
   }
 }
 
-// Sums images less than images + 1/2 periods away; those at exactly this distance count half.
+// Sums images less than periodic_images + 1/2 periods away; those at just this distance count half.
 TYPED_TEST(DipolarFields, SumSomeImages) {
   using Real = TypeParam;
   for (auto const& sample : {open_crystals[2], open_crystals[4], open_crystals[6]})
@@ -130,7 +130,7 @@ TYPED_TEST(DipolarFields, SumSomeImages) {
     }
 }
 
-// A crystal of two periods along each axis with images, with repeated spins, has equal fields.
+// The field does not change if two periods with repeated spins become the lattice.
 TYPED_TEST(DipolarFields, OfPeriodicCrystalsAreThoseOfLargerOnes) {
   using Real = TypeParam;
   for (auto const& sample : open_crystals)

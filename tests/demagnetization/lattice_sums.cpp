@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The field of dipoles in uniform crystals against lattice sums, and the bound on its eigenvalues.
+// The field of dipoles in uniformly magnetised crystals against lattice sums, and the bound on its
+// eigenvalues.
 #include "crystals.hpp"
 
 #include <cayspin/demagnetization/demagnetizing_field.hpp>

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Runs the examples of the README, the guide and three pages of the reference, each in a folder.
+"""Runs the examples of the README, the guide and three reference pages, each page in a folder.
 
 Usage: page_examples.py PROGRAM, with the package cayspin on PYTHONPATH
 Blocks of `cayspin` and `python3` commands are run, and a block of output after them is compared.

@@ -56,7 +56,7 @@ struct Situation {
 struct Section {
   std::string title;
   std::string promise;                  // an empty line and one paragraph
-  std::vector<Fate> kept, broken = {};  // allowed if a method conserves |m|, and if not
+  std::vector<Fate> kept, broken = {};  // allowed for methods that keep |m|, and for others
   std::vector<Situation> situations = {};
 
   /// Adds a situation with this setting in both precisions.

@@ -71,7 +71,7 @@ TEST(DeviceTiles, EachSiteOfARangeOnce) {
                                         {{31, 9, 6}, {8, 9, 5, 6}},
                                         {{257, 130, 67}, {0, 130, 0, 67}},  // walks of 4
                                         {{257, 130, 150},
-                                         {3, 129, 2, 147}}})  // and of 8, not all complete
+                                         {3, 129, 2, 147}}})  // walks of 8, not all complete
   {
     auto const count = visits(shape, rows);
     for (std::int32_t z = 0; z < shape[2]; ++z)

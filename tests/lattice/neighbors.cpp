@@ -156,7 +156,7 @@ TYPED_TEST(Neighbors, LongRows) {
   EXPECT_EQ(detail::tasks_per_row(RowLayout::of<float>(Lattice::chain(3 * task + 13))), 3);
 }
 
-// Each site is visited with its own index; writing past the caches changes nothing.
+// Each site is visited with its own index, also with streaming stores.
 TYPED_TEST(Neighbors, SitesKnowTheirPlace) {
   typename TypeParam::Exec const exec;
   for (std::int64_t const nx : {1, 7, 8, 9, 16, 17, 40, 9000}) {

@@ -25,7 +25,7 @@ TYPED_TEST_SUITE(Films, Backends, BackendName);
 
 TYPED_TEST(Films, TakeSeventyEvaluations) {
   double const easy = -0.05 * width * width;  // energy along the easy axis
-  // Round-off leaves saddles slowly in single precision.
+  // In single precision, round-off slows down the search's way out of saddles.
   int const most = TestFixture::is_double ? 70 : 105;
   for (double const exchange : {2.0, 50.0, 1000.0}) {
     std::vector<std::vector<double>> starts{vortex(width)};
@@ -49,7 +49,8 @@ TYPED_TEST(Films, TakeSeventyEvaluations) {
   }
 }
 
-// Long waves vanish before walls form: vortices in walls would move by a cell in each iteration.
+// Long waves have to vanish before walls form: vortices in walls move by only a cell in an
+// iteration.
 TYPED_TEST(Films, TakeFewEvaluationsFarWiderThanAWall) {
   auto const lattice = Lattice::square(96, 96);
   for (unsigned const seed : {1U, 2U, 3U, 4U, 5U}) {

@@ -21,7 +21,7 @@ TYPED_TEST(Sites, VacantOnesStay) {
   FieldWithVacancies const field(
       EffectiveField(Exchange(lattice, 20), UniaxialAnisotropy(0.4, {1, 1, 0})),
       numbers_on<Spins>(lattice, [&](std::int64_t site) { return vacant(site) ? 0 : 1; }));
-  // Round-off ends about a third of such runs in single precision between 3e-4 and 3e-3.
+  // In single precision, round-off ends about a third of such runs at torques from 3e-4 to 3e-3.
   double const torque = TestFixture::is_double ? 1e-4 : 4e-3;
   auto const found = minimize(this->exec, field, spins, {.torque = torque});
   EXPECT_EQ(found.end, MinimizeEnd::converged);

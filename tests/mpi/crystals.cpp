@@ -14,7 +14,7 @@
 namespace cayspin::program::test {
 namespace {
 
-/// Returns a scene with these parts, which takes 12 steps.
+/// Returns a scene made of these parts, with 12 steps.
 std::string scene_of(std::string const& lattice_and_field, std::string const& integrator,
                      std::string const& damping = "0.1") {
   return fmt::format(R"toml([system]

@@ -28,7 +28,7 @@ inline std::vector<mpi::Division> divisions(Lattice const& lattice, int depth) {
   return found;
 }
 
-/// Returns lattices with odd and small extents, each boundary open and periodic.
+/// Returns lattices with irregular and small extents, each boundary open and periodic.
 inline std::vector<Lattice> lattices() {
   std::vector<Lattice> all;
   std::array<std::int64_t, 3> const shapes[] = {

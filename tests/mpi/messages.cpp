@@ -33,7 +33,7 @@ void for_all(HostField<Real, Components> const& field, Work const& work) {
           work({x, y, z}, c, array.data[c * array.stride + layout.row_offset(y, z) + x]);
 }
 
-/// Sets own numbers by their place, ghosts to -1.
+/// Sets the part's own numbers to number_of() their place, and ghosts to -1.
 template <class Real, int Components>
 void fill(Domain const& domain, HostField<Real, Components> const& field) {
   auto const& local = domain.local();

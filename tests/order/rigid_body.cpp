@@ -79,8 +79,8 @@ struct Orders {
 };
 
 constexpr double tolerance = 0.15, scattered = 0.4;
-/// Returns four step sizes, a factor sqrt(2) apart: coarser for higher orders, to stay above
-/// round-off; finer for A than for A_o, which turns less in a step.
+/// Returns four numbers of steps, a factor sqrt(2) apart: fewer for higher orders, to stay above
+/// round-off; more for A than for A_o, which turns less in a step.
 std::vector<int> ladder(int order, bool orthogonal) {
   int const first = order == 1 ? 512 : (order == 2 ? 256 : 64) / (orthogonal ? 2 : 1);
   std::vector<int> steps;
