@@ -130,7 +130,7 @@ TYPED_TEST(EveryAdaptive, NumbersThatAreNotFiniteAreRefusedAndTheSpinsKept) {
   EXPECT_NE(copy_to_host(spins), start);
 }
 
-// What failed attempts leave behind is not mistaken for the previous step.
+// Leftovers of failed attempts are not mistaken for the previous step.
 TYPED_TEST(EveryAdaptive, AfterAFailureStepsBeginAnew) {
   auto spins = chain_start();
   FieldThatJumps const failing{0.5, {1, 0, 1}, {std::nan(""), 0, 1}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Events seen by profilers: every kernel and allocation has the library's prefix, and a step
-// neither allocates, copies nor fences.
+// Events seen by profilers: every kernel and allocation has the library's prefix, and a step does
+// not allocate, copy or fence.
 #include "../support/landau_lifshitz.hpp"
 
 #include <cayspin_paper/analytic_sigma.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What a stepper remembers between steps survives switches between sweeps and passes, also when
+// A stepper's memory of earlier steps survives switches between sweeps and passes, also when
 // another stepper continues from its checkpoint: the bits are those of uninterrupted passes.
 #include "sweeping.hpp"
 

@@ -19,7 +19,7 @@ struct KnownRun {
   bool replaces = false;
 };
 
-/// What a writer has reported so far as written.
+/// The reports of a writer: frames and samples that it has written.
 struct Told {
   bool created = false, finished = false;
   std::int64_t frames = 0, samples = 0;

@@ -25,7 +25,7 @@ using cayspin::test::Chance;
 using cayspin::test::number_from;
 namespace fs = std::filesystem;
 
-// What a process has reported; it survives the process.
+// The reports of a process, in memory that survives it.
 struct Reported {
   std::atomic<bool> begun, created, finished;
   std::atomic<std::int64_t> frames, samples;
