@@ -37,7 +37,7 @@ class Torques : public ::testing::Test {
     EXPECT_EQ(energy(exec, EffectiveField(term), spins).magnitude, 0);
   }
 
-  /// Returns the spins after a time.
+  /// Returns the spins after `time`.
   template <class Term>
   std::vector<double> moved(Lattice const& lattice, Term const& term, double damping,
                             std::vector<double> const& start, double time, int steps) const {

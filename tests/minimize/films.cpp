@@ -37,7 +37,7 @@ TYPED_TEST(Films, TakeSeventyEvaluations) {
       EXPECT_LT(found.torque, 1e-6) << exchange << " " << i;
       EXPECT_LE(found.evaluations, most) << exchange << " " << i;
       EXPECT_LT(norm_defect(this->exec, this->spins), 4 * epsilon<typename TypeParam::Real>);
-      // The torque from code that the minimiser does not use.
+      // Checks the torque with code that the minimiser does not use.
       LandauLifshitz const generator(film(this->spins.lattice(), exchange), 0);
       EXPECT_LT(largest_rate(this->exec, generator, this->spins), 1.1e-6);
       // With weak exchange, a vortex ends with walls.

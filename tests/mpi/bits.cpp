@@ -172,7 +172,7 @@ TYPED_TEST(EqualBits, Implicit) {
   using Spins = typename TypeParam::Spins;
   this->expect_equal_bits(
       1, [](Spins const& spins) { return ImplicitMidpoint<Spins>(spins); }, 2, 2);
-  // Only Newton's method.
+  // Newton's method without fixed-point iterations before it.
   ImplicitOptions options;
   options.fixed_point = 0;
   this->expect_equal_bits(

@@ -127,7 +127,7 @@ TYPED_TEST(TopologicalCharge, AVortexHasHalf) {
     }
 }
 
-// Rows around whole packs, and rows that threads share.
+// Rows a little shorter and longer than whole packs, and rows that threads share.
 TYPED_TEST(TopologicalCharge, AgainstPlainLoops) {
   using Spins = typename TypeParam::Spins;
   std::vector<Lattice> lattices{film(1, 1, Boundary::periodic), film(7, 1, Boundary::periodic),
