@@ -6,10 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 
-// All differences between compilers, processors and devices are named here; other headers test
-// these names. Host spaces are in execution.hpp.
+// Names for the differences between compilers, processors and devices. Other headers test these
+// names, and execution.hpp deals with the host spaces.
 
-// This compiler pass generates device code.
+// Defined in compiler passes that generate device code.
 #if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__) || defined(__SYCL_DEVICE_ONLY__)
 #define CAYSPIN_DETAIL_DEVICE_PASS
 #endif
@@ -31,14 +31,14 @@
 #define CAYSPIN_DETAIL_REGISTER_BYTES 16
 #endif
 
-// GNU's vector intrinsics on integers. nvcc does not parse them.
+// Intrinsics on GNU vectors of integers, which nvcc does not parse.
 #if defined(CAYSPIN_DETAIL_AVX512) && !defined(__CUDACC__)
 #define CAYSPIN_DETAIL_AVX512_OF_INTEGERS
 #elif defined(CAYSPIN_DETAIL_AVX2) && !defined(__CUDACC__)
 #define CAYSPIN_DETAIL_AVX2_OF_INTEGERS
 #endif
 
-// Instructions of x86 besides packs.
+// x86 instructions other than those of packs.
 #if defined(__x86_64__) && !defined(CAYSPIN_DETAIL_DEVICE_PASS)
 #define CAYSPIN_DETAIL_X86
 #endif
@@ -53,7 +53,7 @@
 #define CAYSPIN_DETAIL_FMA
 #endif
 
-// The maximum of two packs returns the second one where either is NaN.
+// The maximum of two packs returns the second operand where either is NaN.
 #if defined(__AVX2__)
 #define CAYSPIN_DETAIL_MAXIMUM_IS_SECOND
 #endif
@@ -65,7 +65,8 @@
 #endif
 
 // A member without an address of its own. nvcc 13.0 lays out a class with such a member differently
-// in device and host code, and device code then reads the wrong place: with CUDA it has an address.
+// in device and host code, so that device code reads the wrong place. With CUDA the attribute is
+// therefore left out.
 #if defined(KOKKOS_ENABLE_CUDA)
 #define CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS
 #else
@@ -94,10 +95,10 @@ namespace cayspin::inline v0_2::detail {
 
 inline constexpr std::int64_t cache_line_bytes = 64, page_bytes = 4096;
 
-/// Threads of a device that share a tile of rows; on most devices the size of a Kokkos block.
+/// Number of device threads that share a tile of rows: on most devices, the size of a Kokkos block.
 inline constexpr std::uint32_t threads_of_tile = 128;
 
-// 1 / number to at least 18 bits, where a division is slow.
+// Returns 1 / number to at least 18 bits. Defined only where a division is slow.
 #if defined(__CUDA_ARCH__)
 #define CAYSPIN_DETAIL_ROUGH_INVERSE
 __device__ __forceinline__ double rough_inverse(double number) {

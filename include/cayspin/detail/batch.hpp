@@ -9,7 +9,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Several host loops over a small lattice, run one after another, `count` times.
+/// Functor that runs host loops over a small lattice one after another, `count` times.
 template <class... Loops>
 struct RepeatLoops {
   std::tuple<Loops...> loops;

@@ -5,7 +5,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Swaps the memory of two fields.
+/// Functor that swaps the numbers of two fields.
 template <class Array, class Output>
 struct ExchangeNumbers {
   Array a, b;
@@ -19,10 +19,10 @@ struct ExchangeNumbers {
   }
 };
 
-/// Guard that restores the memory of the spins. Steps may swap it with memory of `worker`, for
-/// example a stepper. On destruction, also after an exception, the spins are in their original
-/// memory again, so that copies of the field and arrays from it see them, and the worker's own data
-/// are in the other memory. Costs one pass if the memory was swapped. Waits.
+/// Guard that returns the spins to their original memory. Steps may swap this memory with memory of
+/// `worker`, for example a stepper. The destructor, which also runs after an exception, then swaps
+/// the numbers back, so that copies of the field and arrays obtained from it see the spins. This
+/// takes one pass over the sites, and waits. If nothing was swapped, it does nothing.
 ///
 /// `worker.visit_exchanged(visit)` calls visit(field) for each field that may be swapped.
 template <class Exec, class Worker, class Spins>

@@ -8,8 +8,8 @@
 namespace cayspin::inline v0_2::detail {
 
 /// Sites of one colour of a checkerboard, as many as Value has lanes, two apart in one row: x, x +
-/// 2, ... Loads stay between the neighbour before the first lane and the neighbour after the last
-/// one. They read these sites and sites of the other colour.
+/// 2, ... In their row, loads reach from the neighbour before the first lane to the neighbour after
+/// the last one, so that no further sites of this colour are read.
 template <class Value, bool AtEdge>
 class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
   using Base = SitesOfRow<Value, AtEdge, 2>;
@@ -52,7 +52,7 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
     store_every_other(value.z, to + 2 * array.stride, count());
   }
 
-  /// As Site::Place.
+  /// See Site::Place.
   struct Place {
     std::ptrdiff_t stride;
   };
@@ -94,7 +94,7 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t to_last() const {
     return row_.nx - 1 - static_cast<std::int32_t>(x_);
   }
-  /// Returns true if whole packs stay within the row's memory.
+  /// Returns true if two whole packs from the first lane on stay within the row's memory.
   KOKKOS_FORCEINLINE_FUNCTION bool has_room() const { return x_ + 2 * lanes <= row_.pitch; }
 
   template <class Real>

@@ -11,9 +11,10 @@
 #include <limits>
 #include <type_traits>
 
-// Addresses of the sites of a device thread. Most integer work of a device kernel is addressing, so
-// addresses take few 32-bit operations: one place in memory for each row of the stencil, chosen
-// without a branch at the ends, and one multiply-add for each number.
+// Addresses of the sites of a device thread. Most of the integer work of a device kernel is
+// addressing, so it is kept short, with 32-bit integers where they suffice: one offset for each
+// site of the stencil, found without a branch at the ends of the lattice, and one multiply-add for
+// each component.
 namespace cayspin::inline v0_2::detail {
 
 /// Pointers to the three components of a field.
@@ -28,12 +29,12 @@ struct ComponentPointers {
       : component{array.data, array.data + array.stride, array.data + 2 * array.stride} {}
 };
 
-/// A layout as kernels see it. Index counts the numbers of one component.
+/// The RowLayout of device kernels. Index is an integer that can count the numbers of a component.
 template <class Index>
 struct DeviceLayout {
-  std::int32_t last[3];  // index along each axis, in a replica
-  Index step[3];         // to the next site along each axis
-  Index wrap[3];         // added by a step past an end: leads to the other end, or back
+  std::int32_t last[3];  // last index along each axis, in a replica
+  Index step[3];         // distance of the next site along each axis
+  Index wrap[3];         // takes a step past an end to the other end, or back to the site
   bool periodic_x, has_replicas;
 
   explicit DeviceLayout(RowLayout const& layout)
@@ -50,7 +51,8 @@ struct DeviceLayout {
     return has_replicas ? z % (last[2] + 1) : z;
   }
 
-  /// Returns true if Index can count all numbers of a component, one more plane, and all threads.
+  /// Returns true if Index can count the numbers of a component and of one more plane, and can
+  /// count all threads.
   static bool reaches(RowLayout const& layout, std::int64_t threads) {
     std::int64_t const numbers = (layout.nz + std::int64_t(1)) * layout.plane;
     return std::max(numbers, threads) <= std::numeric_limits<Index>::max();
@@ -146,7 +148,7 @@ class DeviceSite {
   }
 
  private:
-  /// Returns the place of the neighbour; at an open end that of the site itself.
+  /// Returns the offset of the neighbour, or of the site itself at an open end.
   template <int Axis, int Direction>
   KOKKOS_FORCEINLINE_FUNCTION Index beside() const {
     Index const step = Axis == 0 ? 1 : layout_.step[Axis];

@@ -12,7 +12,7 @@
 
 // Assigns sites to the threads of a device. Each group of threads_of_tile threads shares a tile of
 // rows, and each thread walks along z. So most neighbours along y and z come from the cache of the
-// multiprocessor, and one address serves several sites.
+// multiprocessor, and x and y are found once for all sites of a thread.
 namespace cayspin::inline v0_2::detail {
 
 /// Division of numbers below 2^31 by a positive divisor that is known at launch: a product and a
@@ -36,7 +36,7 @@ class QuickDivision {
 class DeviceTiles {
  public:
   /// Tiles for the first `nx` places of these rows. On lattices that fill a large device many
-  /// times, threads walk farther.
+  /// times, threads walk farther: through up to eight planes.
   DeviceTiles(std::int32_t nx, RowRange const& rows)
       : nx_(nx),
         y_begin_(rows.y_begin),
@@ -85,7 +85,7 @@ class DeviceTiles {
   }
 
   std::int32_t nx_, y_begin_, y_end_, z_begin_, z_end_;
-  std::int32_t walk_;    // sites per thread
+  std::int32_t walk_;    // most sites per thread
   std::int32_t x_bits_;  // a tile is 2^x_bits_ sites wide
   std::uint32_t per_row_, per_plane_, planes_;
   QuickDivision by_row_, by_plane_;

@@ -8,10 +8,10 @@
 #include <cstddef>
 #include <cstdint>
 
-// Spins at any distance along x, y and z.
+// Loads of spins at a distance along x, y and z, up to the extents of the lattice.
 namespace cayspin::inline v0_2::detail {
 
-/// A field as read from sites that are not adjacent. Past an open end it is the zero vector.
+/// A field whose spins are read from sites at a distance. Past an open end it is the zero vector.
 template <class Real>
 struct DistantSites {
   SiteArray<Real, 3> array;
@@ -28,7 +28,7 @@ struct DistantSites {
         pitch(layout.pitch),
         plane(layout.plane) {}
 
-  /// Loads sites that all exist.
+  /// Loads spins at an offset, where all lanes must be sites of the lattice.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> inside(std::ptrdiff_t offset) const {
     return load_at<Value>(array.data + offset);
@@ -43,7 +43,7 @@ struct DistantSites {
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t plane_of_replica(std::int32_t z) const {
     return has_replicas ? z % extent[2] : z;
   }
-  /// Returns the first site of the row at distance dy, dz (at most the extents) from a row; null
+  /// Returns the first site of row (y + dy, z + dz), where dy and dz are at most the extents; null
   /// past an open end.
   KOKKOS_FORCEINLINE_FUNCTION Real const* row(std::int32_t y, std::int32_t z, std::int32_t dy,
                                               std::int32_t dz) const {
@@ -54,7 +54,8 @@ struct DistantSites {
     return array.data + (first + there) * plane + y * pitch;
   }
 
-  /// Loads sites x, x + 1, ... of a row, wrapping at its ends; x is at most an extent outside.
+  /// Loads sites x, x + 1, ... of a row. Past its ends the row repeats, or is zero if they are
+  /// open; x may be up to an extent outside.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> along(Real const* row, std::int32_t x) const {
     constexpr std::int32_t lanes = lanes_of<Value>;
@@ -80,8 +81,8 @@ struct DistantSites {
     return before ? i + extent[axis] : i - extent[axis];
   }
 
-  /// Loads a pack that crosses an end of the row: some lanes from here, the others from where the
-  /// row continues. Memory past the row is read and ignored.
+  /// Loads a pack that crosses an end of the row: lanes past the end come from the other end, or
+  /// are zero at an open end. Memory past the row is read, but its contents are ignored.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> across_end(Real const* row, std::int32_t x) const {
     using Scalar = scalar_t<Value>;
@@ -98,7 +99,7 @@ struct DistantSites {
   KOKKOS_FORCEINLINE_FUNCTION Value lane_by_lane(Real const* row, std::int32_t x) const {
     using Scalar = scalar_t<Value>;
     auto const at = [&](std::int32_t lane) {
-      // Lanes past the end of the row belong to no site.
+      // A lane so far past the end belongs to no site, so it may have any number.
       std::int32_t i = x + lane;
       i = wrapped(i < 2 * extent[0] ? i : extent[0] - 1, 0);
       return i < 0 ? Scalar(0) : static_cast<Scalar>(row[i]);

@@ -6,10 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 
-// Packs of numbers with stride two.
+// Loads and stores of packs whose numbers are two apart in memory.
 namespace cayspin::inline v0_2::detail {
 
-/// Returns from[Odd], from[Odd + 2], ...; loads two whole packs.
+/// Returns from[Odd], from[Odd + 2], ...; may load two whole packs.
 template <int Odd, class Value, class Real>
 KOKKOS_FORCEINLINE_FUNCTION Value load_every_other(Real const* from) {
   if constexpr (std::is_same_v<scalar_t<Value>, Real>) {
@@ -41,8 +41,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value load_every_other(Real const* from) {
   return Value([from](auto lane) { return static_cast<scalar_t<Value>>(from[2 * lane() + Odd]); });
 }
 
-/// Returns from[0], from[2], ... for lanes with an index in first .. last, and loads nothing else.
-/// The other lanes are unspecified.
+/// Returns from[0], from[2], ... in lanes whose index into `from` is in first .. last, and loads
+/// nothing else. The other lanes are unspecified.
 template <class Value, class Real>
 KOKKOS_FORCEINLINE_FUNCTION Value load_every_other_of(Real const* from, std::int32_t first,
                                                       std::int32_t last) {
@@ -71,9 +71,9 @@ KOKKOS_FORCEINLINE_FUNCTION Value load_every_other_of(Real const* from, std::int
   return load<Value>(numbers);
 }
 
-/// Writes to[0], to[2], ... from the first `count` lanes and touches nothing else. The masked
-/// stores end with the last of these, because a longer store would delay later loads of the memory
-/// after it.
+/// Writes the first `count` lanes to to[0], to[2], ... and nothing else. The masked stores begin
+/// one number before `to` so that they end with the last lane: if they reached further, they would
+/// delay later loads of the memory there.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION void store_every_other(Value const& value, scalar_t<Value>* to,
                                                    std::int32_t count) {

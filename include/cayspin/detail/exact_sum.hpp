@@ -11,12 +11,13 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// A sum of doubles without round-off until it is read, so that its bits do not depend on the order
-/// of the summands. A fixed-point number of overlapping 32-bit digits, as in R. Neal, "Fast exact
-/// summation using small and large superaccumulators" (2015). To add two sums, add their words.
+/// A sum of doubles that is exact until it is rounded, so that its bits do not depend on the order
+/// of the summands. It is a fixed-point number of 32-bit digits in 64-bit words, as in R. Neal,
+/// "Fast exact summation using small and large superaccumulators" (2015). To add two sums, add
+/// their words.
 class ExactSum {
  public:
-  /// The digits, followed by counts of NaN, infinite and minus infinite summands.
+  /// The words are the digits, followed by how many summands are NaN, infinity and minus infinity.
   static constexpr int digits = 68, words = digits + 3;
 
   CAYSPIN_DETAIL_NOINLINE void add(double number) {
@@ -37,7 +38,8 @@ class ExactSum {
     if (--until_carry_ == 0) carry();
   }
 
-  /// Brings all digits but the last into 0 .. 2^32 - 1. Sums of up to 2^30 words then fit a word.
+  /// Brings all digits but the last into 0 .. 2^32 - 1. The sum of up to 2^30 such digits then fits
+  /// into a word.
   void carry() {
     for (int i = 0; i + 1 < digits; ++i) {
       word_[i + 1] += word_[i] >> digit_bits;
@@ -82,8 +84,8 @@ class ExactSum {
 
   std::uint64_t digit(int i) const { return i < 0 ? 0 : static_cast<std::uint64_t>(word_[i]); }
 
-  // Rounds a sum >= 0 after carry(): its first 64 bits, the last of which is set if any bit
-  // follows.
+  // Rounds a sum >= 0 after carry(). Converts its leading 64 bits, the lowest of which is also set
+  // if any lower bit of the sum is set.
   double rounded_magnitude() const {
     int top = digits - 1;
     while (top > 0 && word_[top] == 0) --top;
@@ -95,7 +97,7 @@ class ExactSum {
     bool more = (third & digit_mask) != 0;
     for (int i = top - 3; i >= 0 && !more; --i) more = word_[i] != 0;
     if (more) bits |= 1;
-    constexpr int smallest = -1074;  // exponent of the first bit of the first digit
+    constexpr int smallest = -1074;  // exponent of the lowest bit of digit 0
     return std::ldexp(static_cast<double>(bits), smallest + (top - 1) * digit_bits - shift);
   }
 

@@ -13,12 +13,14 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Host spaces run over rows with packs; the threads of device spaces take single sites.
+/// True for host spaces, whose kernels run along rows in packs. On device spaces a kernel call is
+/// for a single site.
 template <class Exec>
 inline constexpr bool is_host_execution =
     std::is_same_v<typename Exec::memory_space, Kokkos::HostSpace>;
 
-/// Host kernels of at most this many sites run on the calling thread: waking others costs more.
+/// Host kernels over at most this many sites run on the calling thread, since waking other threads
+/// would take longer.
 inline constexpr std::int64_t calling_thread_sites = 2048;
 
 /// True for host spaces that finish a kernel before the launch returns.
@@ -41,7 +43,7 @@ bool runs_on_calling_thread(std::int64_t sites) {
   return is_synchronous<Exec> && sites <= calling_thread_sites;
 }
 
-/// Reports kernels on the calling thread to Kokkos' tools.
+/// The space that stands for the calling thread. Kokkos' tools see its kernels there.
 #if defined(KOKKOS_ENABLE_SERIAL)
 using CallingThread = Kokkos::Serial;
 #else
@@ -81,8 +83,8 @@ CAYSPIN_DETAIL_NOINLINE void run_tasks(Exec const& exec, std::string const& labe
   Kokkos::parallel_for(label, Kokkos::RangePolicy<Exec, TaskIndex>(exec, 0, count), task);
 }
 
-/// Calls body(0) .. body(count - 1) on the threads of a host space. Small kernels run on the
-/// calling thread if the space finishes a kernel before the launch returns.
+/// Calls body(0) .. body(count - 1) on the threads of a host space. Kernels over few `sites` run on
+/// the calling thread if the space finishes a kernel before the launch returns.
 template <class Exec, class Body>
 void for_each_task(Exec const& exec, std::string const& label, std::int64_t count,
                    std::int64_t sites, Body const& body) {

@@ -13,7 +13,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Rows are cut into pieces of this many sites, so that threads can share a long row.
+/// Long rows are cut into pieces of at least this many sites, so that threads can share a row.
 inline constexpr std::int32_t sites_per_task = 4096;
 
 inline std::int32_t tasks_per_row(RowLayout const& layout) {
@@ -53,7 +53,7 @@ class RowBlocks {
   std::int64_t count() const { return std::int64_t(rows_.nz()) * parts_of_plane_ * parts_of_row_; }
 
   RowBlock operator()(std::int64_t task) const {
-    if (parts_of_row_ == 1 && parts_of_plane_ == 1)  // a division takes as long as some packs
+    if (parts_of_row_ == 1 && parts_of_plane_ == 1)  // saves divisions, which are slow
       return {static_cast<std::int32_t>(rows_.z_begin + task), rows_.y_begin, rows_.y_end, 0,
               packs_};
     auto const cut = [](std::int32_t extent, std::int64_t part, std::int32_t parts) {
@@ -135,8 +135,8 @@ struct OnDeviceSite {
   }
 };
 
-/// Calls functor(site) for all sites of these rows. functor is a plain struct with a call operator
-/// templated on the Site. All steppers use this parallel loop.
+/// Calls functor(site) for all sites of these rows, in parallel. functor is a plain struct with a
+/// call operator templated on the Site.
 template <class Real, class Exec, class Functor>
 void for_each_site(Exec const& exec, std::string const& label, RowLayout const& layout,
                    Functor const& functor, RowRange const& rows) {

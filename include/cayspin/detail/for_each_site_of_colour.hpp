@@ -12,10 +12,10 @@
 // Loops over the sites of one colour of a checkerboard: those where x + y + z has one parity. The
 // functor changes them in place and reads their neighbours, which all have the other colour.
 //
-// A host pack also loads the sites between its own, in its row and in the neighbour rows, so no
-// other task may write these at the same time. Therefore rows with even y + z run first, then rows
-// with odd y + z: no task writes to a neighbour row, and in its own row a pack writes only its own
-// sites.
+// From neighbour rows, a pack on the host also loads the sites between those it needs, and no other
+// task may write these at the same time. Therefore rows with even y + z run first, then rows with
+// odd y + z: no task then writes to the neighbour rows of another. In its own row a pack loads no
+// sites that other packs write.
 namespace cayspin::inline v0_2::detail {
 
 /// Rows with one parity of y + z, or all rows.
@@ -25,8 +25,8 @@ template <class Value, bool AtEdge>
 using PackOfColour =
     std::conditional_t<lanes_of<Value> == 1, Site<Value>, ColourSite<Value, AtEdge>>;
 
-/// True if the functor accepts two sites. Two independent sites keep the processor busy when each
-/// is a long chain of dependent operations.
+/// True if the functor accepts two sites. Two independent sites keep the processor busy when the
+/// work on each is a long chain of dependent operations.
 template <class Functor>
 inline constexpr bool takes_pairs = requires { requires Functor::takes_pairs; };
 
@@ -74,8 +74,8 @@ struct ColourRowLoop {
   using Edge = PackOfColour<Value, true>;
   static constexpr std::int32_t pack_sites = 2 * lanes_of<Value>;
 
-  /// Packs waiting for a partner share one instance of the functor: kernels are large and slow to
-  /// compile.
+  /// Packs that the inner loop left, which wait for a partner if the functor takes pairs. All are
+  /// served by one instance of the kernel, because kernels are large and slow to compile.
   struct Waiting {
     struct Place {
       Row row;
@@ -104,11 +104,11 @@ ColourRowLoop<Real, Functor> colour_row_loop(Functor const& functor, RowLayout c
   return {functor, layout, RowBlocks(layout, (pack_count<Real>(layout) + 1) / 2, layout.own)};
 }
 
-/// Device loop body over half of each row.
+/// Device loop body for every other site of each row.
 template <class Real, class Functor>
 struct OnDeviceSiteOfColour {
   Functor functor;
-  std::int32_t parity;  // of the colour in the layout
+  std::int32_t parity;  // RowLayout::parity
 
   template <class Index>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(DeviceLayout<Index> const& layout, std::int32_t half,
@@ -119,8 +119,9 @@ struct OnDeviceSiteOfColour {
   }
 };
 
-/// Calls functor(site) for the part's own sites with x + y + z, counted in the whole lattice, of
-/// parity functor.colour.
+/// Calls functor(site) for the sites of this part, without ghosts, whose x + y + z has the parity
+/// functor.colour, counted in the whole lattice. On hosts it calls functor(site, site) if the
+/// functor takes pairs.
 template <class Real, class Exec, class Functor>
 void for_each_site_of_colour(Exec const& exec, std::string const& label, RowLayout const& layout,
                              Functor const& functor) {

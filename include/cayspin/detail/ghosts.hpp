@@ -22,7 +22,8 @@ FieldNumbers field_numbers(Field const& field) {
           layout.nz,          !is_host_execution<typename Field::memory_space::execution_space>};
 }
 
-/// Updates the ghosts of fields after the work on `exec`; waits. Does nothing on a whole lattice.
+/// Waits for the work on `exec`, updates the ghosts of the fields, and waits until this is done.
+/// Does nothing on a whole lattice.
 template <class Exec, class... Fields>
 void update_ghosts(Exec const& exec, Lattice const& lattice, Fields const&... fields) {
   if (lattice.part == nullptr) [[likely]]
@@ -44,8 +45,8 @@ CAYSPIN_DETAIL_NOINLINE inline void require_one_replica(char const* who, Lattice
     throw std::invalid_argument(std::string(who) + ": does not work on replicas of a lattice");
 }
 
-/// Throws std::invalid_argument for a part of a lattice with fewer ghosts than `needed`, or for any
-/// part if `needed` is 0.
+/// Throws std::invalid_argument for a part of a lattice that has fewer ghosts than `needed` at an
+/// inner end, or for any part if `needed` is 0.
 CAYSPIN_DETAIL_NOINLINE inline void require_ghosts(std::string const& who, Lattice const& lattice,
                                                    int needed) {
   if (lattice.part != nullptr && needed == 0)

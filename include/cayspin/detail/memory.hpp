@@ -13,8 +13,8 @@
 #include <unistd.h>
 #endif
 
-// Loads and stores of packs, and what depends on the operating system: huge pages and the size of
-// the last cache.
+// Loads and stores of packs, and what depends on the operating system: huge pages and the sizes of
+// the caches.
 namespace cayspin::inline v0_2::detail {
 
 template <class Value, class Real>
@@ -34,7 +34,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value load(Real const* from) {
   }
 }
 
-// Reductions of float fields use packs of double: half a register of floats, converted at once.
+// Reductions of float fields use packs of double: half a register of floats, converted by one
+// instruction.
 #if defined(CAYSPIN_DETAIL_AVX512)
 template <>
 KOKKOS_FORCEINLINE_FUNCTION Pack<double> load<Pack<double>, float>(float const* from) {
@@ -60,8 +61,8 @@ KOKKOS_FORCEINLINE_FUNCTION void store(Value const& value, scalar_t<Value>* to) 
   }
 }
 
-/// Returns its argument, hiding its origin from the compiler, which then computes an address where
-/// it is used rather than keep more addresses than there are registers.
+/// Returns its argument, but hides from the compiler how it was computed. The compiler then
+/// computes addresses where they are used, rather than keep more of them than there are registers.
 template <class Word>
 KOKKOS_FORCEINLINE_FUNCTION Word opaque(Word word) {
 #if defined(CAYSPIN_DETAIL_GNU) && defined(CAYSPIN_DETAIL_X86)
@@ -70,7 +71,8 @@ KOKKOS_FORCEINLINE_FUNCTION Word opaque(Word word) {
   return word;
 }
 
-/// Writes past the caches. `to` is aligned to the pack.
+/// Writes a pack to memory, bypassing the caches where the processor can. `to` must be aligned to
+/// the size of the pack.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION void store_streaming(Value const& value, scalar_t<Value>* to) {
 #if defined(CAYSPIN_DETAIL_AVX512)
@@ -100,18 +102,19 @@ KOKKOS_FORCEINLINE_FUNCTION void prefetch([[maybe_unused]] void const* address) 
 #endif
 }
 
-/// Orders this thread's streaming stores before its later work.
+/// Orders this thread's streaming stores before its later stores.
 inline void streaming_fence() {
 #if defined(CAYSPIN_DETAIL_X86)
   _mm_sfence();
 #endif
 }
 
-/// A common size of the last cache, used when the system reports none.
+/// A common size of the last-level cache, assumed when the system reports none.
 inline constexpr std::size_t usual_cache_bytes = std::size_t(32) << 20;
 
-/// Returns the bytes of the last cache that one process can expect to keep: all of a small cache, a
-/// third of a large one that many cores share.
+/// Returns how many bytes of the last-level cache one process can expect to use: all of a cache of
+/// up to usual_cache_bytes; of a larger one, which many cores share, a third, but not less than
+/// usual_cache_bytes.
 inline std::size_t last_level_cache_bytes() {
 #if defined(__linux__) && defined(_SC_LEVEL3_CACHE_SIZE)
   static std::size_t const bytes = [] {
@@ -126,7 +129,7 @@ inline std::size_t last_level_cache_bytes() {
 #endif
 }
 
-/// Returns the bytes that one thread can expect of its core's cache.
+/// Returns the size of the level-2 cache, which each core has for itself.
 inline std::size_t core_cache_bytes() {
   static constexpr std::size_t usual = std::size_t(1) << 20;
 #if defined(__linux__) && defined(_SC_LEVEL2_CACHE_SIZE)
@@ -140,8 +143,8 @@ inline std::size_t core_cache_bytes() {
 #endif
 }
 
-/// Returns true if a method with so many bytes of working set should bypass the caches when
-/// storing.
+/// Returns true if a method with a working set of so many bytes should bypass the caches when it
+/// stores.
 template <class Exec>
 bool exceeds_caches(std::size_t bytes) {
   if constexpr (std::is_same_v<typename Exec::memory_space, Kokkos::HostSpace>)

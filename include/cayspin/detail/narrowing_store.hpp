@@ -4,7 +4,7 @@
 #include <cayspin/detail/memory.hpp>
 #include <cayspin/detail/site.hpp>
 
-// Reductions of float fields compute in double and store float.
+// Reductions of float fields compute in double, and store their results as float.
 namespace cayspin::inline v0_2::detail {
 
 template <class Value, class Real>

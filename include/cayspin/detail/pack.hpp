@@ -17,10 +17,10 @@
 #endif
 
 // A Pack is the value type of one iteration of a host loop: a register of Kokkos' SIMD types where
-// the configured architecture has one (backend.hpp), otherwise one number. Device loops use plain
-// numbers, and device passes of the compiler see only those. No kernel has a pack in its name or
-// arguments, so all passes agree on them. The operations here accept packs and numbers, so that
-// kernels are written once.
+// the configured architecture has one (backend.hpp), otherwise one number. Device loops use single
+// numbers, and device passes of the compiler know no other packs. So that all passes agree on the
+// types of kernels, no kernel has a pack in its template arguments or parameters. The operations
+// here accept packs and numbers, so that kernels are written once.
 namespace cayspin::inline v0_2::detail {
 
 #if defined(CAYSPIN_DETAIL_SIMD_ABI)
@@ -63,11 +63,12 @@ using scalar_t = typename ValueTraits<Value>::scalar;
 template <class Value>
 inline constexpr int lanes_of = ValueTraits<Value>::lanes;
 
-/// Selects a formula site by site, as on devices: evaluating only one is cheaper there.
+/// True if a value is that of a single site, as on devices. Code may then branch to evaluate only
+/// one of several formulas, which is cheaper.
 template <class Value>
 inline constexpr bool one_at_a_time = lanes_of<Value> == 1;
 
-/// Returns a * b + c, rounded once wherever the hardware can.
+/// Returns a * b + c, rounded only once where the hardware can do so.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value multiply_add(Value const& a, Value const& b, Value const& c) {
   if constexpr (std::is_floating_point_v<Value>) {
@@ -81,8 +82,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value multiply_add(Value const& a, Value const& b, V
   }
 }
 
-/// Returns a * b - c, rounded once wherever the hardware can. (Kokkos' packs negate by subtracting
-/// from zero, which the compiler cannot fold into the product.)
+/// Returns a * b - c, rounded only once where the hardware can do so. (Kokkos' packs negate by
+/// subtracting from zero, which the compiler cannot fold into the product.)
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value multiply_subtract(Value const& a, Value const& b,
                                                     Value const& c) {
@@ -106,8 +107,9 @@ KOKKOS_FORCEINLINE_FUNCTION Value multiply_subtract(Value const& a, Value const&
   return multiply_add(a, b, Value(-c));
 }
 
-/// Conditions use only < and ==: in Kokkos 4.7 the > and >= of 512-bit double packs compare the
-/// wrong way round, and != is false for NaN.
+/// Returns `yes` in lanes where the condition holds, and `no` in the others. Form conditions only
+/// with < and ==: in Kokkos 4.7 the > and >= of 512-bit double packs compare the wrong way round,
+/// and != is false for NaN.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value select(typename ValueTraits<Value>::mask const& condition,
                                          Value const& yes, Value const& no) {
@@ -118,7 +120,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value select(typename ValueTraits<Value>::mask const
   }
 }
 
-/// (Kokkos' pack of 512 bits takes a root through an intrinsic that g++ 12 calls uninitialised.)
+/// (For packs of 512 bits, Kokkos' own root uses an intrinsic in which g++ 12 reports an
+/// uninitialised variable.)
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value square_root(Value const& a) {
 #if defined(CAYSPIN_DETAIL_AVX512)
@@ -131,8 +134,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value square_root(Value const& a) {
   return Kokkos::sqrt(a);
 }
 
-/// Returns the nearest whole number, for |a| below half the largest exact one; beyond that, a
-/// nearby one.
+/// Returns the whole number nearest to a, if |a| is below 2^51 for double and 2^22 for float;
+/// beyond that, a number nearby.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value nearest(Value const& a) {
   Value const shift(sizeof(scalar_t<Value>) == sizeof(double)
@@ -141,7 +144,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value nearest(Value const& a) {
   return (a + shift) - shift;
 }
 
-/// Returns the maximum, and `a` where it is NaN.
+/// Returns the maximum, and `a` where either is NaN.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value maximum(Value const& a, Value const& b) {
 #if defined(CAYSPIN_DETAIL_MAXIMUM_IS_SECOND)
@@ -179,7 +182,7 @@ KOKKOS_FORCEINLINE_FUNCTION bool holds_everywhere(Mask const& mask) {
     return Kokkos::Experimental::all_of(mask);
 }
 
-/// Returns 0, 1, 2, ... over the lanes.
+/// Returns 0, 1, 2, ... in the lanes.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value lane_numbers() {
   if constexpr (std::is_floating_point_v<Value>) {

@@ -9,7 +9,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-// Integers side by side in registers, by vector extensions of GCC and Clang.
+// Integers side by side in a register, by the vector extension of GCC and Clang.
 template <class Number, int Lanes>
 struct LanesOf {
   typedef Number type __attribute__((vector_size(sizeof(Number) * Lanes)));
@@ -40,8 +40,8 @@ struct PhiloxKeys {
 
 /// Philox4x32-10 of J. Salmon, M. Moraes, R. Dror and D. Shaw, "Parallel random numbers: as easy as
 /// 1, 2, 3" (2011): four random words for each counter of four words, under a key of two words.
-/// Several counters side by side. The words are the lower halves of the numbers; the upper halves
-/// are ignored.
+/// There are several counters side by side. Each 32-bit word is the lower half of a 64-bit number,
+/// whose upper half is ignored.
 template <int Lanes>
 struct Philox {
   using Words = typename LanesOf<std::uint64_t, Lanes>::type;
@@ -62,7 +62,7 @@ struct Philox {
     word[3] = (numbers ^ numbers) + (draw >> 32U);
   }
 
-  /// Sets the counter (number, draw) in each lane, for lanes with keys of their own.
+  /// Sets the counter (number, draw) in every lane, for lanes that have different keys.
   KOKKOS_FORCEINLINE_FUNCTION static Philox with_equal_counters(std::uint64_t number,
                                                                 std::uint64_t draw) {
     Philox equal(number, draw);
@@ -72,7 +72,7 @@ struct Philox {
     return equal;
   }
 
-  /// `key`: two numbers, or two Words with a key for each lane.
+  /// `key`: two numbers for all lanes, or two Words with a key for each lane.
   template <class Key>
   KOKKOS_FORCEINLINE_FUNCTION void round(Key const (&key)[2]) {
     Words const a = product(word[0], 0xD2511F53), b = product(word[2], 0xCD9E8D57);
@@ -83,7 +83,7 @@ struct Philox {
   }
 
  private:
-  // g++ does not find the processor's instruction for each of these.
+  // Intrinsics, because g++ does not find the single instruction that does each of these.
 
   /// Multiplies the lower halves.
   KOKKOS_FORCEINLINE_FUNCTION static Words product(Words const& a, std::uint64_t b) {
@@ -116,8 +116,8 @@ struct Philox {
   }
 };
 
-/// Turns counters into random words. Several generators run in step, because each is a long chain
-/// of dependent operations.
+/// Turns counters into random words. Several generators are interleaved, because each is a long
+/// chain of dependent operations.
 template <int Lanes, class... Others>
 KOKKOS_FORCEINLINE_FUNCTION void encrypt(PhiloxKeys const& keys, Philox<Lanes>& random,
                                          Others&... others) {
@@ -127,7 +127,7 @@ KOKKOS_FORCEINLINE_FUNCTION void encrypt(PhiloxKeys const& keys, Philox<Lanes>& 
   }
 }
 
-/// Turns one counter into random words under the keys first_key, first_key + 1, .. of the lanes.
+/// Turns counters into random words, with keys first_key, first_key + 1, .. in the lanes.
 template <int Lanes>
 KOKKOS_FORCEINLINE_FUNCTION void encrypt_with_keys(std::uint64_t first_key, Philox<Lanes>& random) {
   using Words = typename Philox<Lanes>::Words;

@@ -7,7 +7,8 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Returns a / b to less than a unit in the last place, from 1 / b to 18 bits or more.
+/// Returns a / b with an error of less than one unit in the last place. `inverse` is 1 / b to at
+/// least 18 bits.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value refined_quotient(Value const& a, Value const& b, Value inverse) {
   Value const error = Kokkos::fma(-b, inverse, Value(1));
@@ -16,8 +17,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value refined_quotient(Value const& a, Value const& 
   return Kokkos::fma(Kokkos::fma(-b, quotient, a), inverse, quotient);
 }
 
-/// Returns a / b for a normal b. nvcc tests every division for operands near the ends of their
-/// range, and calls a function for those.
+/// Returns a / b for a normal b. On CUDA this is faster than an ordinary division, which tests for
+/// operands near the ends of their range and calls a function for those.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value quotient(Value const& a, Value const& b) {
 #if defined(CAYSPIN_DETAIL_ROUGH_INVERSE)

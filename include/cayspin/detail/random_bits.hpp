@@ -12,14 +12,15 @@ namespace cayspin::inline v0_2::detail {
 
 class RandomBitsOfColumns;
 
-/// 16 random bits for each numbered place, by Philox with 64 places to eight counters. A place gets
-/// equal bits whether drawn singly or in a register. Devices draw for one place at a time.
+/// 16 random bits for each place (a number), by Philox: eight counters serve 64 places. A place
+/// gets the same bits whether it is drawn alone or with others in a register. Devices draw for one
+/// place at a time.
 template <bool OnHost>
 class RandomBits {
   friend class RandomBitsOfColumns;
 
  public:
-  /// Places side by side in a register start at a multiple of their count.
+  /// The most places side by side in a register. They must start at a multiple of their count.
   static constexpr std::uint64_t most_lanes = 16;
 
   RandomBits() = default;
@@ -41,7 +42,7 @@ class RandomBits {
 
  private:
   // Place p of 64 uses half p / 32 of word p / 16 % 2 * 2 + p % 2 of counter p % 16 / 2. With two
-  // words in each number, words lie in memory in the order of places.
+  // words packed into each 64-bit number, the words are then in memory in the order of the places.
   static constexpr int lanes = host_lanes<double>, counters = 8;
   static constexpr std::uint64_t places = 64, drawn_at_once = 2 * places;
 
@@ -57,7 +58,7 @@ class RandomBits {
   KOKKOS_FORCEINLINE_FUNCTION static typename Philox<Lanes>::Words bits_of(
       std::uint64_t place, Philox<Lanes> const& random) {
     using Words = typename Philox<Lanes>::Words;
-    // Constant indices: an array on the stack of a device is slow.
+    // Indices are constant, because an array that a device keeps on its stack is slow.
     auto const& word = random.word;
     Words const even = place % 32 < 16 ? word[0] : word[2];
     Words const odd = place % 32 < 16 ? word[1] : word[3];
@@ -89,7 +90,7 @@ class RandomBits {
   KOKKOS_FORCEINLINE_FUNCTION static auto widened(std::uint32_t const* from) {
     using Numbers = typename LanesOf<Number, Lanes>::type;
 #if defined(CAYSPIN_DETAIL_AVX512_OF_INTEGERS)
-    if constexpr (sizeof(Number) == 8 && Lanes == 8)  // g++ takes five instructions for it
+    if constexpr (sizeof(Number) == 8 && Lanes == 8)  // g++ would take five instructions
       return reinterpret_cast<Numbers>(_mm512_maskz_cvtepu32_epi64(
           0xff, _mm256_loadu_si256(reinterpret_cast<__m256i const*>(from))));
 #endif
@@ -98,7 +99,7 @@ class RandomBits {
     return __builtin_convertvector(found, Numbers);
   }
 
-  // The last draw, cached because the registers of a row follow one another.
+  // The bits drawn last, kept because the next register of a row mostly needs some of them.
   struct Last {
     std::uint64_t block = ~std::uint64_t{0};
     alignas(64) std::uint32_t drawn[std::size_t{drawn_at_once}] = {};
@@ -110,8 +111,8 @@ class RandomBits {
   mutable std::conditional_t<OnHost, Last, Nothing> last_;
 };
 
-/// One number for each lattice: adjacent lanes get what RandomBits of seed + column, seed + column
-/// + 1, .. gives for the same place.
+/// Random bits for lattices that are stored side by side, one lattice per column: for the same
+/// place, column c gets the bits of a RandomBits with seed + c.
 class RandomBitsOfColumns {
  public:
   RandomBitsOfColumns() = default;
@@ -149,7 +150,7 @@ class RandomBitsOfColumns {
   std::uint64_t seed_ = 0, draw_ = 0;
 };
 
-/// The bits of replica r are those of seed + r.
+/// Random bits for replicas: replica r gets the bits of a RandomBits with seed + r.
 template <bool OnHost>
 class RandomBitsOfReplica {
  public:

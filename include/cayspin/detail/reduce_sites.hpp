@@ -15,13 +15,15 @@
 #include <optional>
 #include <string>
 
-// Sums and maxima over sites, in double. On host spaces a row is summed in a fixed order, first its
-// ends and then the packs between them, the lanes of a pack in a fixed tree; rows are added without
-// round-off. So the bits do not depend on the host space, the number of threads or the division of
-// a lattice into parts. Devices sum with twice the digits, in their own order.
+// Sums and maxima over sites, in double. On host spaces each row, or piece of a long row, is summed
+// in a fixed order: first the packs at its ends, then those between them, and at last the lanes of
+// the sum in a fixed tree. The sums of rows are added without round-off. So the bits do not depend
+// on the host space, the number of threads or the division of a lattice into parts. Devices sum
+// with twice the digits, in their own order.
 namespace cayspin::inline v0_2::detail {
 
-// Number of `Count` values that are summed; for the others the maximum is found.
+// `sums`: how many of `Count` values are summed, from the first on. Of the others the maximum is
+// found.
 struct Sum {
   template <int Count>
   static constexpr int sums = Count;
@@ -61,7 +63,7 @@ KOKKOS_FORCEINLINE_FUNCTION double combine_lanes(Value const& value) {
   }
 }
 
-/// Functor that accumulates functor(site, Count values) over sites.
+/// Functor that accumulates over sites the Count values that functor(site, values) writes.
 template <class Combine, int Count, class Functor, class Value>
 struct Collect {
   Functor const& functor;
@@ -81,8 +83,8 @@ struct Collect {
   }
 };
 
-/// Calls functor(site) for the packs of part task % per_row of row task / per_row, counted without
-/// ghosts: first those at the ends of the row, then the others in order.
+/// Calls functor(site) for the packs of piece task % per_row of row task / per_row, with rows
+/// counted without ghosts: first for those at the ends of the row, then for the others in order.
 template <class Value, class Functor>
 void for_each_pack_ends_first(RowLayout const& layout, std::int64_t task, std::int32_t per_row,
                               Functor& functor) {
@@ -102,7 +104,8 @@ void for_each_pack_ends_first(RowLayout const& layout, std::int64_t task, std::i
     functor(Site<Value>(row, pack * lanes));
 }
 
-/// A sum as two doubles, with twice the digits: Knuth's sum of two numbers and its error.
+/// A sum of twice the digits, as two doubles. Knuth's formula gives the rounding error of each
+/// addition.
 struct DoubledSum {
   double value = 0, error = 0;
 
@@ -200,8 +203,8 @@ struct ReduceBlock {
   }
 };
 
-/// Functor that reduces on devices, by Kokkos, in the device's order, which does not change between
-/// calls.
+/// Functor for Kokkos' reduction on devices. The order of the sum is the device's, and the same in
+/// each call.
 template <class Combine, int Count, class Functor>
 struct ReduceOnDevice {
   static constexpr int sums = Combine::template sums<Count>, maxima = Count - sums;
@@ -231,12 +234,12 @@ struct ReduceOnDevice {
   }
 };
 
-/// Exceeds the number of threads of any host.
+/// The most blocks of a reduction on hosts; exceeds the number of threads of any host.
 inline constexpr std::int64_t most_blocks = 1024;
 
-/// Combines what functor(site, values) writes to values[0 .. Count) over all sites of all parts of
-/// the lattice; waits. On host spaces it allocates nothing and may run in several instances at
-/// once. Throws std::invalid_argument when there are no sites.
+/// Returns the sums and maxima, over all sites of all parts of the lattice, of what functor(site,
+/// values) writes to values[0 .. Count); waits. On host spaces it allocates nothing, and may run in
+/// several instances of the space at once. Throws std::invalid_argument when there are no sites.
 template <class Combine, int Count, class Exec, class Functor>
 std::array<double, std::size_t{Count}> reduce_sites(Exec const& exec, std::string const& label,
                                                     RowLayout const& layout,
@@ -266,7 +269,7 @@ std::array<double, std::size_t{Count}> reduce_sites(Exec const& exec, std::strin
   return total.values();
 }
 
-/// Functor that returns the largest of the numbers of all sites.
+/// Functor with which reduce_sites<Maximum, 1> finds the largest number of any site.
 template <class Real>
 struct LargestOfSites {
   SiteArray<Real, 1> numbers;

@@ -7,17 +7,17 @@
 #include <cstddef>
 #include <cstdint>
 
-// Terms with many neighbours are faster to sum for all sites of a row than spin by spin. The host
-// loop of a stage lets them do so for each piece of a row before it works on that piece. The object
-// that such a term's prepare_for_rows returns, or a sum of such objects, has
+// H of a term with many neighbours is faster to compute for all sites of a row together than site
+// by site. Before the host loop of a stage works on a piece of a row, it lets such terms do so for
+// that piece. The object that such a term's prepare_for_rows returns, or a sum of such objects, has
 //   static constexpr int row_fields                       how many fields it keeps
 //   void begin_row(row, begin, end, RowFields<Real>)      computes H of sites begin .. end - 1
-// where `row` has the spins of the stage and their neighbours. If a term has
+// where `row` has the spins of the stage and their neighbours. A term may have
 //   bool rows_need_only_time(exec, spins)
-// and it is true, the term reads no other spins, and a sweep need not store them in a field. A
-// generator may evaluate the packs at the ends of rows itself, so that a stage's arithmetic is
-// compiled once, for the packs between them:
-//   void find_row_ends(row, begin, end, fields, turning_alone) const    after begin_row
+// If this returns true, prepare_for_rows needs t but not the spins, so that a sweep need not store
+// the spins of a stage in a field. A generator may evaluate the packs at the ends of rows itself,
+// so that a stage's arithmetic is compiled only once, for the packs between them:
+//   void find_row_ends(row, begin, end, fields, turning_alone) const    called after begin_row
 namespace cayspin::inline v0_2::detail {
 
 /// A row of spins and its neighbour rows along y and z.
@@ -30,11 +30,11 @@ struct RowOfSpins {
 /// Sites per piece: few enough for the first-level cache.
 inline constexpr std::int32_t sites_per_piece = 256;
 
-/// Fields of a piece: component c of site i is data[c * stride + i] in the first field.
+/// Fields of a piece: in the first field, component c of site begin + i is data[c * stride + i].
 template <class Real>
 struct RowFields {
   static constexpr std::ptrdiff_t stride =
-      sites_per_piece + 8;  // avoids a stride of equal cache sets
+      sites_per_piece + 8;  // not 256, which would put the components into equal cache sets
   Real* data = nullptr;
 
   template <class Value>

@@ -31,7 +31,8 @@ struct RowOutput {
   bool streaming = false;
 };
 
-/// Indices of rows along y. On a periodic axis they repeat with its extent.
+/// Indices along an axis: of rows along y, or of planes along z. On a periodic axis they repeat
+/// with its extent.
 struct Axis {
   std::int32_t extent = 1;
   bool wraps = false;
@@ -40,7 +41,7 @@ struct Axis {
   KOKKOS_FUNCTION Axis(RowLayout const& layout, int axis)
       : extent(axis == 1 ? layout.ny : layout.nz), wraps(layout.periodic[axis] && extent > 1) {}
 
-  /// Returns the neighbours of i; at an open end i itself.
+  /// Return the neighbour of i, or i itself at an open end.
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t previous(std::int32_t i) const {
     return i > 0 || wraps ? i - 1 : i;
   }
@@ -60,8 +61,8 @@ struct Axis {
 
 /// Indices of planes along z, which end or repeat within each replica.
 struct PlaneAxis : Axis {
-  std::int32_t replica = 1;     // planes of one
-  bool wraps_replicas = false;  // if there are several
+  std::int32_t replica = 1;     // planes per replica
+  bool wraps_replicas = false;  // true if there are several, each periodic
 
   PlaneAxis() = default;
   KOKKOS_FUNCTION explicit PlaneAxis(RowLayout const& layout)
@@ -86,11 +87,11 @@ struct PlaneAxis : Axis {
   }
 };
 
-/// The rows of one plane. Rows in [first, last) start at `middle`; `low` holds the rows before
-/// them, and `high` the rows after.
+/// The rows of one plane, in up to three pieces of memory. Rows first .. last - 1 start at
+/// `middle`, rows from `last` on start at `high`, and rows before `first` end at `low`.
 template <class Real>
 struct PlaneRows {
-  Real *low = nullptr, *middle = nullptr, *high = nullptr;  // rows `first`, `first`, `last`
+  Real *low = nullptr, *middle = nullptr, *high = nullptr;
   std::int32_t first = 0, last = 0;
   std::ptrdiff_t pitch = 0, stride = 0;
 
@@ -106,7 +107,7 @@ struct PlaneRows {
   }
 };
 
-/// Returns plane z of a field. `low` and `high` lead to these rows one period away.
+/// Returns plane z of a field. `low` and `high` continue its rows periodically.
 template <class Real>
 CAYSPIN_DETAIL_NOINLINE KOKKOS_FUNCTION PlaneRows<Real> plane_rows(SiteArray<Real, 3> const& array,
                                                                    RowLayout const& layout,

@@ -71,8 +71,8 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
     }
   }
 
-  /// Offset of the three components of these sites from the start of a row with this stride. One
-  /// place serves all rows of a stencil.
+  /// Offsets of the three components of these sites from the start of their row. One Place serves
+  /// all rows of a stencil, since their components have equal strides.
   struct Place {
     std::ptrdiff_t x, y, z;
   };
@@ -169,7 +169,7 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
             Value(scalar_type(end[strides[1]]))};
   }
 
-  /// Loads the numbers at x of a row.
+  /// Loads the vectors of these sites from a row.
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load_at(Real const* row, std::ptrdiff_t stride) const {
     Real const* const from = opaque(row + x_);

@@ -29,7 +29,7 @@ struct Row {
     step(1, layout.plane_of_replica(z), layout.replica_planes, layout.plane, layout.periodic[2]);
   }
 
-  /// For neighbour rows only: along x the answer depends on the site.
+  /// Returns true if there is a neighbour row along y or z. (Along x, it depends on the site.)
   template <int Axis, int Direction>
   KOKKOS_FORCEINLINE_FUNCTION bool has_neighbor() const {
     return to_neighbor[Axis - 1][Direction] != 0;
@@ -74,7 +74,7 @@ class SitesOfRow {
     else
       return true;
   }
-  /// Returns `found`, a neighbour along x, or `missing` on a lane at an open end.
+  /// Returns `found`, the neighbours along x, but `missing` in a lane at an open end.
   template <int Direction>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> unless_past_end(Vec3<Value> const& found,
                                                           Vec3<Value> const& missing) const {
@@ -92,7 +92,7 @@ class SitesOfRow {
     if constexpr (Spacing == 1) return Direction == 0 ? way == 0 : way < lanes;
     return way >= 0 && way < Spacing * lanes && way % Spacing == 0;
   }
-  /// Returns the lane at the end of the row, if these sites include it.
+  /// Returns the mask of the lane at the end of the row, if these sites include that end.
   template <int Direction>
   KOKKOS_FORCEINLINE_FUNCTION auto is_end() const {
     return lane_numbers<Value>() == Value(static_cast<scalar_type>(to_end<Direction>() / Spacing));

@@ -20,18 +20,19 @@ struct alignas(cache_line_bytes) StripProgress {
   std::atomic<std::int64_t> state = 0;
 };
 
-/// Crew of threads that do `steps` steps of each strip. Step n of a strip starts when its
+/// Crew of threads that do `steps` steps of each strip. Step n of a strip may start when its
 /// neighbours have done n - apart steps. The first strip and the last are neighbours, too. Any
 /// number of threads may work, in any order: a thread that waits for long takes over steps of other
-/// strips. `progress` has one entry more than there are strips, and is 0 before and after.
+/// strips. `progress` has one entry more than there are strips. All entries must be 0 before, and
+/// are 0 afterwards.
 struct StripCrew {
   StripProgress* progress;
   std::int32_t strips;
   std::int64_t steps;
   std::int32_t apart;
 
-  /// Calls run(strip, step). Each strip must call this once, from any thread. Returns when strip
-  /// `own` is done.
+  /// Calls run(strip, step) until all steps of strip `own` are done. Must be called once for each
+  /// strip, from any thread.
   template <class Run>
   void work(std::int32_t own, Run const& run) const {
     int waited = 0;
@@ -49,7 +50,8 @@ struct StripCrew {
   }
 
  private:
-  /// Some microseconds: helping moves a strip into another core's cache.
+  /// Pauses before a thread helps others, some microseconds in all: helping moves a strip into
+  /// another core's cache.
   static constexpr int patience = 256;
 
   std::int64_t done(std::int32_t strip) const {
@@ -78,7 +80,7 @@ struct StripCrew {
     return false;
   }
 
-  // The last thread to leave clears the progress for next time, when all others have left.
+  // The last to leave clears the progress for the next use.
   void leave() const {
     if (progress[strips].state.fetch_add(1, std::memory_order_acq_rel) + 1 < strips) return;
     for (std::int32_t i = 0; i <= strips; ++i)

@@ -10,12 +10,14 @@
 #include <cstdint>
 
 // Divides the lattice of a sweep among threads, and each part into blocks of rows whose buffers fit
-// the cache. Seams hold the rows that two blocks share. In a lattice of one plane, stages follow
-// each other by rows instead (row_sweep.hpp).
+// the cache. Seams keep the last rows of a block for the next one, which reads them. In a lattice
+// of one plane that is not cut into strips, stages follow each other by rows instead
+// (row_sweep.hpp).
 namespace cayspin::inline v0_2::detail {
 
-/// The planes or rows of one part. At an end inside the lattice, at ghosts or at a periodic end,
-/// each earlier stage works on one more plane or row, which the next part computes, too.
+/// The planes or rows of one part. Unless the part ends at an open end of the lattice, each stage
+/// works on one plane or row more than the stage after it. The part beyond that end computes these
+/// planes or rows, too.
 template <class AlongAxis>
 struct SweepRange {
   std::int32_t begin, end, stages;
@@ -37,8 +39,8 @@ struct SweepBuffer {
 };
 
 /// The division of a lattice into independent parts, along z and y. A part may be cut into strips
-/// along y, one for each of several threads. These pass through the planes together and read each
-/// other's rows at the seams.
+/// along y, one for each of several threads. These pass through the planes together, and read rows
+/// of the strips beside their own.
 struct SweepPlan {
   static constexpr int most_stages = 13;
 
@@ -47,17 +49,18 @@ struct SweepPlan {
   std::int32_t parts_y = 1, parts_z = 1, strips = 1;
   std::int32_t lag = 1;  // planes between a stage and the one before it
   bool by_rows = false;
-  std::int32_t block =
-      1;  // least rows per block, which has less than twice as many. By rows: rows per tick
+  // A strip that has enough rows has at least so many in each block, and less than twice as many.
+  // If stages follow by rows: rows per tick.
+  std::int32_t block = 1;
   std::int32_t ring_rows = 0, seam_planes = 0;
-  std::ptrdiff_t pitch = 0,
-                 row = 0;  // strides of a buffer: from component to component, from row to row
+  // Strides of a buffer: from component to component, from row to row.
+  std::ptrdiff_t pitch = 0, row = 0;
   std::ptrdiff_t strip_size = 0, seams_size = 0;  // numbers in a strip's memory, in a part's seams
   SweepBuffer buffer[3 * most_stages];
 
   std::int64_t parts() const { return std::int64_t(parts_y) * parts_z; }
   std::int64_t tasks() const { return parts() * strips; }
-  /// Returns the size of a part: its strips, then its seams.
+  /// Returns how many numbers the memory of a part has: its strips, then its seams.
   std::ptrdiff_t part_size() const { return strips * strip_size + seams_size; }
   /// Returns how many numbers all buffers hold.
   std::size_t size() const { return static_cast<std::size_t>(parts() * part_size()); }
@@ -78,7 +81,8 @@ struct SweepPlan {
   /// Returns the number of blocks of each strip of a part with so many rows.
   std::int32_t blocks(std::int32_t rows) const { return std::max(1, rows / strips / block); }
 
-  /// Makes a plan for so many threads, with blocks of rows whose buffers take `cache` bytes.
+  /// Makes a plan for so many threads. Blocks have as many rows as possible while their buffers
+  /// take at most `cache` bytes, but at least 2 * stages rows.
   template <class Real, class Buffers>
   static SweepPlan of(RowLayout const& layout, int threads, std::size_t cache) {
     static_assert(Buffers::stages <= most_stages);
@@ -91,7 +95,7 @@ struct SweepPlan {
     plan.pitch = (lines % 2 == 0 ? lines + 1 : lines) * line;
     plan.row = 3 * plan.pitch;
     auto const planes_in_use = [&](std::int32_t apart) {
-      std::int32_t planes = apart * plan.stages + 2;  // of the state
+      std::int32_t planes = apart * plan.stages + 2;  // of the spins at the start of the step
       for (int b = 0; b < plan.buffers; ++b) planes += Buffers::planes(b, apart);
       return planes;
     };
@@ -111,9 +115,10 @@ struct SweepPlan {
 
  private:
   /// A strip reads rows of its neighbours at its own plane, so a lag of 1 would do. With 2,
-  /// neighbours may be a plane apart, and rarely wait for each other.
+  /// neighbours may be one plane apart, so that they rarely wait for each other.
   static constexpr std::int32_t lag_of_strips = 2;
-  /// Cost of one synchronisation between two strips, in sites that could be stepped instead.
+  /// Cost of one synchronisation between two strips: the number of sites that could be stepped in
+  /// that time.
   static constexpr double meeting = 100;
 
   template <class AlongAxis>
@@ -125,12 +130,14 @@ struct SweepPlan {
     return {bound(part), bound(part + 1), stages, axis};
   }
 
-  // Finds the fastest division among at most `threads` threads. Parts need no strips where they
-  // repeat little work. Planes are cut first, because such parts are far apart in memory.
+  // Finds the fastest division among at most `threads` threads. Strips are not considered if there
+  // can be a part for each thread and parts repeat little work. Of divisions that take equal times,
+  // that with the most parts along z is chosen, because such parts are far apart in memory.
   void cut(int threads, std::int32_t block_of_parts, std::int32_t block_of_strips) {
     std::int32_t const ny = layout.own.ny(), nz = layout.own.nz();
-    // Returns the cost of the largest of so many parts, with the work repeated at shared ends: half
-    // of stages - 1, and half as much again, since it moves memory, too.
+    // Returns the cost of the largest of so many parts, in planes or rows. At each shared end, the
+    // stages repeat (stages - 1) / 2 of them on average; half as much again is added, since these
+    // also move memory.
     auto const largest = [&](std::int32_t extent, std::int32_t parts) {
       return (extent + parts - 1) / parts + 0.75 * std::min(parts - 1, 2) * (stages - 1);
     };
@@ -162,7 +169,7 @@ struct SweepPlan {
     }
   }
 
-  // `to_spare`: rows that the cache holds besides those in use, row by row.
+  // `to_spare`: rows that fit in the cache besides those in use when stages follow by rows.
   template <class Buffers>
   void allot_rows(std::int32_t to_spare, std::ptrdiff_t line) {
     by_rows = true;
@@ -194,7 +201,7 @@ struct SweepPlan {
       of_stage.producer = Buffers::producer(b);
       of_stage.planes = std::min(Buffers::planes(b, lag), most_planes);
       if (of_stage.planes == 0) continue;
-      of_stage.seam_rows = Buffers::planes(b, 1) - 1;  // blocks follow each other row by row
+      of_stage.seam_rows = Buffers::planes(b, 1) - 1;  // there stages are one row apart
       of_stage.ring = size;
       size += of_stage.planes * ring_rows * row;
       if (blocks(rows) == 1) continue;
@@ -206,8 +213,9 @@ struct SweepPlan {
   }
 };
 
-/// Functor that fills the buffers, so that padding numbers neither trap nor are denormal. One task
-/// per strip: a strip's thread touches its memory first.
+/// Functor that fills the buffers with zeros, because arbitrary numbers in the padding could trap
+/// or be denormal. There is one task per strip, so that each thread is the first to touch the
+/// memory of its strip.
 template <class Real>
 struct FillSweepBuffers {
   Real* data;
@@ -239,9 +247,10 @@ struct SweepPart {
         blocks(whole.blocks(y.end - y.begin)),
         steps_per_block(z.end + whole.lag * (whole.stages - 1) - z.low(0)) {}
 
-  /// Returns the steps of a strip: through all planes for each block, each stage at its own plane.
+  /// Returns the number of steps of a strip. Each block takes one pass through the planes; in a
+  /// step, each stage works on its own plane.
   std::int64_t steps() const { return std::int64_t(blocks) * steps_per_block; }
-  /// Starts a step and its block, and returns the plane of stage 0.
+  /// Moves to a step, and to the block that it belongs to. Returns the plane of stage 0.
   std::int32_t begin_step(std::int64_t step) {
     block_ = static_cast<std::int32_t>(step / steps_per_block);
     for (std::int32_t i = 0; i < 3; ++i) bounds_[i] = bound(strip - 1 + i);
@@ -267,13 +276,14 @@ struct SweepPart {
     std::int32_t const first = low(stage);
     bool const ends_at_seam = ends_block() && block_ + 1 < blocks;
     std::int32_t const last = high(stage) - (ends_at_seam ? buffer.seam_rows : 0);
-    // Planes of the previous block are not overwritten while a neighbour still reads them.
+    // Continues in the ring where the previous block ended, so that planes of that block are not
+    // overwritten while a neighbour still reads them.
     std::int32_t const turn = (from_begin + block_ * steps_per_block) % buffer.planes;
     Real* const ring =
         memory + strip * plan.strip_size + buffer.ring + turn * plan.ring_rows * plan.row;
     Real *before = ring, *after = ring;  // not read at the ends of a part
     if (!begins_block()) {
-      // Only the first strip of a block starts earlier at some stages.
+      // In the first strip of a block, the first row depends on the stage.
       bool const is_second = strip == 1;
       std::int32_t const begin = is_second ? low_of_first(stage) : bounds_[0];
       before = ring - plan.strip_size + (first - begin) * plan.row;

@@ -7,7 +7,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// True if registers of such numbers look up a table of sixteen in one or two instructions.
+/// True if one or two instructions look up a register of such Numbers in a table of sixteen.
 template <class Numbers>
 #if defined(CAYSPIN_DETAIL_AVX512_OF_INTEGERS)
 inline constexpr bool has_table_of_sixteen = sizeof(Numbers) == 64;

@@ -12,9 +12,10 @@
 #include <cstdint>
 #include <type_traits>
 
-// The list of arrays of a Runge-Kutta stage, as whole fields, planes of them, or rows: a pass
-// converts fields to rows, a sweep the planes of its buffers. Add a new array here and in the
-// kernel that uses it.
+// The arrays of a Runge-Kutta stage, as whole fields, planes or rows. A pass locates them in
+// fields, a sweep in planes of fields and buffers; the kernel gets rows or, on devices, sites of
+// fields. A new array must be added to the functions here, to FieldsOfStep (memory.hpp) and
+// PlaneOfStep (sweep.hpp), and to the kernel.
 namespace cayspin::inline v0_2::detail {
 
 /// Kind selects the type of the arrays: WholeFields, Planes or Rows.
@@ -25,7 +26,7 @@ struct StageArrays {
 
   typename Kind::Input start;                        // spins at the start of the step
   typename Kind::Spins level;                        // spins of this stage
-  typename Kind::Input increments[most_increments];  // of earlier stages, or spins
+  typename Kind::Input increments[most_increments];  // of earlier stages, or spins in their place
   typename Kind::Input sum_before;                   // sum of weighted increments so far
   typename Kind::Output sum;
   typename Kind::Output increment;                    // of this stage
@@ -34,7 +35,7 @@ struct StageArrays {
   typename Kind::Output carried[most_carried];        // left by this step
 };
 
-/// Returns the arrays of the stage that Flow describes, on the host. `step` locates each of them.
+/// Sets the arrays of the stage that Flow describes, on the host. `step` locates each of them.
 template <class Flow, class Kind, class Step>
 void find_arrays(Step const& step, StageArrays<Kind, Flow::stages>& arrays) {
   constexpr int stage = Flow::stage;
@@ -65,7 +66,8 @@ void find_arrays(Step const& step, StageArrays<Kind, Flow::stages>& arrays) {
   }
 }
 
-/// Converts the arrays to another kind: `to` converts an input, the stage's spins, or an output.
+/// Converts the arrays to another kind. `to` has a function each for inputs, the stage's spins and
+/// outputs.
 template <class Flow, class From, class Convert, class Arrays>
 KOKKOS_FORCEINLINE_FUNCTION void convert(StageArrays<From, Flow::stages> const& from,
                                          Convert const& to, Arrays& arrays) {
@@ -106,7 +108,7 @@ struct WholeFields {
   using Output = OutputArray<Real, 3>;
 };
 
-/// Plane z of each field, wherever its rows are.
+/// One plane of each field, in the field itself or in a buffer.
 template <class Real>
 struct Planes {
   using Input = PlaneRows<Real>;
@@ -127,7 +129,7 @@ struct Rows {
   using Output = RowOutput<Real>;
 };
 
-/// Conversion of fields to their planes z.
+/// Converts each field to its plane z.
 template <class Real>
 struct ToPlane {
   RowLayout const& layout;
@@ -147,7 +149,7 @@ struct ToPlane {
   }
 };
 
-/// Conversion of planes to their rows `row`.
+/// Converts each plane to its row `row`.
 template <class Real>
 struct ToRow {
   Axis y;
@@ -173,8 +175,8 @@ struct ToRow {
   }
 };
 
-/// Functor that prefetches what is read from memory next, `ahead` numbers further. Of the neighbour
-/// planes, the next one comes first.
+/// Functor that prefetches the numbers at `ahead` of a row. Of a stencil it prefetches the row in
+/// the next plane, because the others have been read before.
 template <class Real>
 struct Prefetch {
   std::ptrdiff_t ahead;
@@ -188,7 +190,7 @@ struct Prefetch {
   }
 };
 
-/// Returns how many of the increments before number j a stage reads.
+/// Returns how many of the increments 0 .. j - 1 a stage reads.
 template <class Flow>
 constexpr int increments_read(int j) {
   int count = 0;
@@ -196,8 +198,8 @@ constexpr int increments_read(int j) {
   return count;
 }
 
-/// The members of StageArrays that Flow uses, for device threads. Unused ones are left out, because
-/// a launch is fast for kernels of at most 512 bytes.
+/// The StageArrays of device threads. Members that Flow does not use are empty, because kernels of
+/// at most 512 bytes are launched faster.
 template <class Flow, class Real>
 struct DeviceArrays {
   struct None {};

@@ -3,12 +3,12 @@
 
 #include <cayspin/stage/update_compensated.hpp>
 
-// The arrays that the stages of an explicit Runge-Kutta step read and write. The tableau and the
-// update decide, at compile time.
+// Which arrays the stages of an explicit Runge-Kutta step read and write. This follows from the
+// tableau and the update, at compile time.
 namespace cayspin::inline v0_2::detail {
 
-/// True if every stage uses only the increment before it, as in the classical Runge-Kutta methods
-/// (a chain).
+/// Returns true for a chain: every stage uses only the increment of the stage before it, as in the
+/// classical Runge-Kutta methods.
 template <class Tableau>
 constexpr bool is_chain() {
   for (int i = 0; i < Tableau::stages; ++i)
@@ -17,12 +17,13 @@ constexpr bool is_chain() {
   return true;
 }
 
-/// True if the last stage is at the end of the step, so that its generator is the next step's
-/// first.
+/// True if the last stage evaluates the generator at the end of the step, so that the next step
+/// need not evaluate it in its first stage.
 template <class Tableau>
 inline constexpr bool is_first_same_as_last = requires { Tableau::first_same_as_last; };
 
-/// Returns true if the error estimate at the end of such a step needs increment `source`.
+/// Returns true if the error estimate at the end of such a step needs the increment of stage
+/// `source`.
 template <class Tableau>
 constexpr bool estimates_with(int source) {
   if constexpr (is_first_same_as_last<Tableau>) return Tableau::error[source] != 0;
@@ -43,14 +44,15 @@ constexpr bool has_second_rotation(int row) {
   return false;
 }
 
-/// A chain that needs its increments as arguments stores two arrays: the last increment, and the
-/// weighted sum, which every second stage updates. No other choice moves less memory.
+/// True for chains whose increments are functions of the previous increment. They store two arrays:
+/// the last increment, and the weighted sum, which every second stage updates. No other choice
+/// moves less memory.
 template <class Tableau, class Update>
 inline constexpr bool keeps_sum = Tableau::stages > 2 &&
                                   is_chain<Tableau>() && Update::increment_needs_argument;
 
-/// Some chains store only spins: they recompute each increment from the spins of the stage after
-/// it.
+/// Returns true for chains that store only spins. Their last stage recomputes each increment from
+/// the spins of the stage after it.
 template <class Tableau, class Update>
 constexpr bool recovers_increments() {
   if constexpr (requires { Update::recovers_increments(Tableau::stages); })
@@ -58,8 +60,8 @@ constexpr bool recovers_increments() {
   return false;
 }
 
-/// Returns true if stage `stage` reads the increment of stage `source`. The last stage also ends
-/// the step.
+/// Returns true if stage `stage` reads the increment of stage `source`: for its own increment, for
+/// the spins of the next stage or, in the last stage, for the end of the step.
 template <class Tableau, class Update>
 constexpr bool reads_increment(int stage, int source) {
   if (source >= stage || recovers_increments<Tableau, Update>()) return false;
@@ -88,14 +90,14 @@ constexpr bool reads_sum(int stage) {
          (stage % 2 == 1 || stage + 1 == Tableau::stages);
 }
 
-/// Number of fields of spins that the stages write.
+/// Returns the number of fields for the spins of stages.
 template <class Tableau, class Update>
 constexpr int level_fields() {
   if (recovers_increments<Tableau, Update>()) return Tableau::stages - 1;
   return Tableau::stages < 3 ? 1 : 2;
 }
 
-/// Number of fields of three numbers per site that a method needs besides the spins.
+/// Returns the number of fields, of three numbers per site, that a method needs besides the spins.
 template <class Tableau, class Update>
 constexpr int work_fields() {
   int const levels = level_fields<Tableau, Update>() + carried_fields<Update>();
@@ -106,7 +108,7 @@ constexpr int work_fields() {
   return levels + increments;
 }
 
-/// The arrays that stage `Stage` reads and writes besides its own spins.
+/// The arrays that stage `Stage` reads besides its own spins, and writes besides the next spins.
 template <class Tableau, class Update, int Stage>
 struct StageDataFlow {
   static constexpr int stages = Tableau::stages;

@@ -21,7 +21,7 @@ KOKKOS_FUNCTION constexpr bool is_first(int j) {
   return true;
 }
 
-/// Returns the sum of Weights::at(j) * v[j] over those j < Count with a weight.
+/// Returns the sum of Weights::at(j) * v[j] over those j < Count whose weight is not 0.
 template <class Weights, int Count, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> weighted_sum(Vec3<Value> const* v) {
   Vec3<Value> sum{Value(0), Value(0), Value(0)};
@@ -53,8 +53,9 @@ struct SecondWeights {
   KOKKOS_FUNCTION static constexpr double at(int j) { return second_weight<Tableau>(Row, j); }
 };
 
-/// Weights that express sum b[i] increment[i] of a chain in the coordinates of the spins after
-/// them.
+/// Weights that express sum b[j] increment[j] of a chain by the coordinates of spins: increment j
+/// is the coordinates of stage j + 1 divided by a[j + 1][j]. The last increment itself has weight
+/// `last`.
 template <class Tableau>
 struct ChartWeights {
   static constexpr double last = Tableau::b[Tableau::stages - 1];
@@ -67,7 +68,7 @@ struct ChartWeights {
 template <class Update>
 inline constexpr bool needs_turning_alone = requires { requires Update::needs_turning_alone; };
 
-/// Formula of isotropy::Energy for a method, specialised next to the methods that have one.
+/// Formula of isotropy::Energy for a method. The methods that have one specialise this.
 template <class Tableau, class Update>
 struct EnergyCorrection {
   static_assert(std::is_same_v<Tableau, void>,
@@ -93,7 +94,7 @@ struct RungeKuttaStage {
   Isotropy isotropy;
   Real dt;
 
-  /// `rows`: StageArrays.
+  /// `rows`: StageArrays or DeviceArrays.
   template <class Site, class Arrays>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Arrays const& rows) const {
     using Value = typename Site::value_type;
@@ -122,7 +123,7 @@ struct RungeKuttaStage {
     }
 
     if constexpr (last) {
-      // Nested, because g++ copies named values through memory.
+      // Calls are nested, because g++ would copy named values through memory.
       if constexpr (Flow::carried > 0)
         store_compensated(site, rows, f, completed(site, total(site, rows, f), m0), m0);
       else
@@ -148,7 +149,7 @@ struct RungeKuttaStage {
       return (m);  // by reference: g++ would copy a value through memory
   }
 
-  // Returns A, or only the part that turns the spin if the update needs no more.
+  // Returns A; or, if the update needs no more, only the part that turns the spin.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION auto stage_generator(Stencil const& stencil) const {
     using Vector = typename Stencil::vector_type;
@@ -171,7 +172,8 @@ struct RungeKuttaStage {
     return Value(static_cast<scalar_t<Value>>(b));
   }
 
-  // Moves a spin by the tableau's second rotation, if any, to the next stage or the end.
+  // Moves a spin by the tableau's second rotation, if any, to the next stage or the end of the
+  // step.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> turned_again(Vec3<Value> const* f,
                                                               Vec3<Value> const& m) {
@@ -218,8 +220,8 @@ struct RungeKuttaStage {
     }
   }
 
-  // Returns the next stage's spins; at the end, those of the step, with increment j from the spins
-  // after stage j.
+  // Returns the spins of the next stage. In the last stage it returns those at the end of the step,
+  // with each increment recovered from the spins of the stage after it.
   template <class Site, class Arrays, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> on_chart(Site const& site, Arrays const& rows,
                                                    Vec3<Value> const& a, Vec3<Value> const& m,
@@ -239,7 +241,8 @@ struct RungeKuttaStage {
     }
   }
 
-  // Returns the stored sum plus this increment, and the previous one if an even stage left it out.
+  // Returns the stored sum plus this stage's increment. An odd stage also adds the increment of the
+  // stage before it, which stored no sum.
   template <class Site, class Arrays, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> sum_up_to_here(Site const& site, Arrays const& rows,
                                                          Vec3<Value> const* f) const {

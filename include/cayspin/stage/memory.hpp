@@ -14,8 +14,8 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Work memory of a Runge-Kutta step: fields for passes, or the buffers of a sweep; and what one
-/// step leaves for the next, which survives a switch between the two.
+/// Work memory of a Runge-Kutta step: fields for passes, or the buffers of a sweep. It also has the
+/// fields that a step leaves for the next one, which survive a switch between passes and sweeps.
 template <class Spins, class Tableau, class Update>
 class StageMemory {
  public:
@@ -122,7 +122,7 @@ class StageMemory {
   using Carried = SiteField<Real, 3, typename Spins::memory_space>;
   static constexpr bool on_host = is_host_execution<DefaultExec>;
 
-  /// Places of the arrays of a stage in fields. Stores bypass the caches if the fields exceed them.
+  /// Locates the arrays of a stage in fields. Stores bypass the caches if the fields exceed them.
   struct FieldsOfStep {
     StageMemory const& memory;
     Spins const& first;
@@ -163,7 +163,7 @@ class StageMemory {
     auto carried(std::size_t i) const { return memory.carried_[i].output(false); }
   };
 
-  // Frees all memory but the fields that steps leave.
+  // Frees all memory except the fields that a step leaves for the next.
   void free_work_memory() {
     levels_ = {};
     increments_ = {};
@@ -173,7 +173,7 @@ class StageMemory {
   }
 
   std::array<Spins, std::size_t{level_count}> levels_;  // only the first in a sweep
-  std::array<Spins, std::size_t{stages}> increments_;   // all equal if keeps_sum
+  std::array<Spins, std::size_t{stages}> increments_;   // all the same field if keeps_sum
   Spins sum_;
   std::array<Carried, carried_fields<Update>()> carried_;
   Buffers buffers_;

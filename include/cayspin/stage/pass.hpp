@@ -11,8 +11,8 @@
 #include <string>
 #include <type_traits>
 
-// A Runge-Kutta stage over the whole lattice: on hosts a pack of spins at a time along rows, on
-// devices one site per thread.
+// A Runge-Kutta stage over the whole lattice: on hosts pack by pack along rows, on devices site by
+// site.
 namespace cayspin::inline v0_2::detail {
 
 template <class Kernel>
@@ -25,7 +25,7 @@ struct StagePlanes {
 
   StageArrays<Planes<Real>, Flow::stages> arrays;
   Axis y;
-  bool from_memory = false;  // not from a cache
+  bool from_memory = false;  // true if they are not expected in the core's cache
 
   KOKKOS_FORCEINLINE_FUNCTION RowArrays rows(std::int32_t at) const {
     RowArrays rows;
@@ -49,9 +49,9 @@ CAYSPIN_DETAIL_NOINLINE StagePlanes<Flow, Real> planes_of_fields(
   return planes;
 }
 
-/// Runs the kernel on sites begin .. end - 1 of a row, whole packs. Packs at the ends of the row
-/// have a separate loop, so that the others need no tests; the loop is skipped where the generator
-/// has evaluated the ends.
+/// Runs the kernel on sites begin .. end - 1 of a row, in whole packs. Packs at the ends of the row
+/// have a separate loop, so that the others need no tests. If the generator has already evaluated
+/// the ends (find_row_ends), one loop without tests runs on all packs.
 template <class Kernel>
 KOKKOS_FORCEINLINE_FUNCTION void run_along(Kernel const& kernel, PlanesOf<Kernel> const& planes,
                                            typename Kernel::RowArrays const& rows, Row const& row,
@@ -97,8 +97,7 @@ CAYSPIN_DETAIL_NOINLINE void run_stage(Kernel const& kernel, PlanesOf<Kernel> co
         if constexpr (FindsRowEnds<decltype(kernel.generator), Real>)
           kernel.generator.find_row_ends({row, rows.level}, x, after, memory.all(),
                                          Kernel::turning_alone);
-        // Passes copies, because the compiler would reload anything whose address is known
-        // elsewhere for each pack.
+        // Passes copies: anything whose address is known elsewhere would be reloaded for each pack.
         run_along(local, planes, typename Kernel::RowArrays(rows), Row(row), x, after);
       }
     }
@@ -139,7 +138,7 @@ struct StageRowLoop {
   }
 };
 
-/// One site, on a device.
+/// A stage at one site, on a device.
 template <class Kernel>
 struct StageOnSite {
   using Flow = typename Kernel::Flow;
@@ -157,8 +156,8 @@ struct StageOnSite {
   }
 };
 
-/// Prepares the generator for a stage of run_pass. Rows carry no energies, which isotropy::Energy
-/// needs.
+/// Prepares the generator for a stage. isotropy::Energy needs energies, which terms that are
+/// computed along rows do not have.
 template <class Isotropy, class Generator, class Exec, class Spins>
 auto prepare_stage(Generator const& generator, Exec const& exec, Spins const& spins, double t) {
   if constexpr (is_host_execution<Exec> && !std::is_same_v<Isotropy, isotropy::Energy>)

@@ -16,11 +16,11 @@
 #include <string>
 #include <tuple>
 
-// All stages of a Runge-Kutta step in one pass through the lattice. Each stage is one plane and one
-// row behind the previous one, so that its data are still in the cache.
+// All stages of a Runge-Kutta step in one pass through the lattice. Each stage is a plane or two
+// behind the previous one, so that the data it reads are still in the cache.
 namespace cayspin::inline v0_2 {
 
-/// Order in which the stages of a step traverse the lattice. Both give equal bits.
+/// Order in which the stages of a step traverse the lattice. Both orders give equal bits.
 enum class Path {
   pass,  // one kernel per stage
   sweep  // all stages together, on host spaces
@@ -28,12 +28,12 @@ enum class Path {
 
 namespace detail {
 
-/// Memory of a sweep besides fields; initially empty.
+/// Memory that a sweep needs besides fields. Empty if default-constructed.
 template <class Real, class MemorySpace>
 class SweepBuffers {
  public:
   SweepBuffers() = default;
-  /// `label`: prefix of the labels of the memory.
+  /// `label`: prefix of the labels of the Views.
   SweepBuffers(std::string const& label, SweepPlan const& plan)
       : numbers_(Kokkos::view_alloc(Kokkos::WithoutInitializing, label + "::buffers"), plan.size()),
         progress_(label + "::progress", progress_size(plan)) {
@@ -64,8 +64,8 @@ class SweepBuffers {
   Kokkos::View<StripProgress*, MemorySpace> progress_;
 };
 
-/// Buffers between the stages of a method, numbered: spins of stage 1, 2, .., increments of stage
-/// 0, 1, .., weighted sums from stage 0, 1, ..
+/// The buffers between the stages of a method, numbered in this order: the spins of stages 1, 2,
+/// ..; the increments of stages 0, 1, ..; the weighted sums that stages 0, 1, .. write.
 template <class Tableau, class Update>
 struct StageBuffers {
   static constexpr int stages = Tableau::stages;
@@ -86,8 +86,9 @@ struct StageBuffers {
       if (reads(stage, buffer)) last = stage;
     return last;
   }
-  /// Returns how many planes are in use at a time, when each stage is `lag` planes behind the
-  /// previous one. The next stage reads neighbours of its spins.
+  /// Returns how many planes of a buffer are in use at a time when each stage is `lag` planes
+  /// behind the previous one. For spins these are at least lag + 2, as the next stage reads
+  /// neighbours.
   static constexpr int planes(int buffer, int lag) {
     int const behind = lag * (last_reader(buffer) - producer(buffer));
     if (behind == 0) return 0;
@@ -111,7 +112,7 @@ struct StageBuffers {
   }
 };
 
-/// Decision whether and how a method with `WorkFields` fields in passes sweeps.
+/// Decides whether a method sweeps, and with which plan. In passes it needs `WorkFields` fields.
 template <class Spins, class Tableau, class Update, int WorkFields>
 struct SweepChoice {
   using Real = typename Spins::value_type;
@@ -127,8 +128,8 @@ struct SweepChoice {
     return possible && !wraps_in_replicas &&
            (!layout.periodic[1] || layout.ny == 1 || layout.ny >= stages);
   }
-  /// Returns false while all fields fit the cores' caches, and if the buffers would take more
-  /// memory than the fields of passes.
+  /// Returns true if a sweep is possible and the default: the fields do not all fit in the caches
+  /// of the cores, and the buffers take no more memory than the fields of passes.
   static bool sweeps_by_itself(RowLayout const& layout, int threads) {
     std::size_t const field = layout.allocation(3) * sizeof(Real);
     return can_sweep(layout) && layout.rows() > 1 &&
@@ -193,7 +194,7 @@ struct SweepLoop {
   }
 
  private:
-  /// Places of the arrays of a stage: in the fields, or in the buffers of a part.
+  /// Locates the arrays of a stage, in fields or in the buffers of a part.
   template <class Part>
   struct PlaneOfStep {
     using Buffers = StageBuffers<Tableau, Update>;

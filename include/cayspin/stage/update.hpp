@@ -9,12 +9,13 @@
 #include <cstddef>
 #include <type_traits>
 
-// The geometry of a Runge-Kutta method: how an increment moves a spin, and the increment from a
-// stage's generator. Coordinates f are relative to m0, the spin at the start of the step.
-// increment(f, dt A, m, m0) belongs to the stage's spin m, which is m0 moved by f. `move` is for
-// stages, `finish` for the end of the step, and displacement(f, m0) is finish(f, m0) - m0.
-// recovers_increments(stages): true if a chain of `stages` stages (each uses only the increment
-// before it) recomputes increments from the spins to which they move m0.
+// The geometry of a Runge-Kutta method: how the generator of a stage gives an increment, and how
+// coordinates f, which are sums of increments, move a spin from m0, the spin at the start of the
+// step. increment(f, dt A, m, m0) is the increment of a stage at spin m, which is m0 moved by f.
+// `move` is for stages, `finish` for the end of the step, and displacement(f, m0) is finish(f, m0)
+// - m0. recovers_increments(stages) is true if a chain of `stages` stages (each uses only the
+// increment before it) does not store increments, but recomputes them from the spins to which they
+// move m0.
 namespace cayspin::inline v0_2::update {
 
 /// Runge-Kutta-Munthe-Kaas: f in the Lie algebra, m = Rotation(f) m0, f' = dRotation_f^-1 (A).
@@ -88,7 +89,8 @@ struct Classical {
 };
 
 /// Classical, with each spin divided by its length at the end of the step, as in most spin codes.
-/// RK4 stores increments; longer chains of stages recompute them from the spins.
+/// Chains of up to four stages, such as RK4, store increments; longer ones recompute them from the
+/// spins.
 struct Projected : Classical {
   static constexpr bool recovers_increments(int stages) { return stages > 4; }
 
@@ -204,7 +206,7 @@ struct Stereographic {
 
   /// Returns move(f, m0) with f = sum_j Weights::spin(j) f_j + Weights::last increment(step a, m,
   /// m0), where f_j moves m0 to spins[j] and m is the last of Count spins; with one division. It
-  /// uses differences from m0, so small ones keep their relative precision.
+  /// computes with differences from m0, so that small steps keep their relative precision.
   template <class Weights, int Count, class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> arrive(Value const& step, Vec3<Value> const& a,
                                                         Vec3<Value> const* spins,
@@ -214,7 +216,7 @@ struct Stereographic {
     Vec3<Value> d[std::size_t{Count}];
     // |d|^2 and 4 - |d|^2: f_j = (2 d + |d|^2 m0) / rest
     Value square[std::size_t{Count}], rest[std::size_t{Count}];
-    Value others(1);  // all rests but that of m
+    Value others(1);  // product of all rests but that of m
     detail::unrolled<Count>([&](auto j) {
       if constexpr (j() < own && Weights::spin(j()) == 0) return;
       d[j()] = spins[j()] - m0;

@@ -20,14 +20,14 @@ struct Compensated : Update {
 
 namespace detail {
 
-/// Number of fields that the end of a step leaves for the end of the next.
+/// Returns the number of fields that the last stage of a step leaves for that of the next step.
 template <class Update>
 constexpr int carried_fields() {
   if constexpr (requires { Update::carried; }) return static_cast<int>(Update::carried.size());
   return 0;
 }
 
-/// The update of all stages but the last: without compensation.
+/// The update without compensation, for all stages but the last.
 template <class Update>
 struct PlainUpdate {
   using type = Update;
@@ -37,13 +37,13 @@ struct PlainUpdate<update::Compensated<Update>> {
   using type = Update;
 };
 
-/// A vector as the unevaluated sum of two vectors of equal precision.
+/// A vector as an unevaluated sum: the rounded sum and its rounding error.
 template <class Value>
 struct RoundedSum {
   Vec3<Value> sum, residual;
 };
 
-/// Returns a + b and its rounding error, for any order of magnitudes (Knuth 1969).
+/// Returns a + b and its rounding error, whichever of the two is larger (Knuth 1969).
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION RoundedSum<Value> rounded_sum(Vec3<Value> const& a,
                                                           Vec3<Value> const& b) {
