@@ -83,8 +83,8 @@ CAYSPIN_DETAIL_NOINLINE void run_tasks(Exec const& exec, std::string const& labe
   Kokkos::parallel_for(label, Kokkos::RangePolicy<Exec, TaskIndex>(exec, 0, count), task);
 }
 
-/// Calls body(0) .. body(count - 1) on the threads of a host space. Kernels over few `sites` run on
-/// the calling thread if the space finishes a kernel before the launch returns.
+/// Calls body(0) .. body(count - 1) on the threads of a space. Kernels over few `sites` run on the
+/// calling thread if the space finishes a kernel before the launch returns.
 template <class Exec, class Body>
 void for_each_task(Exec const& exec, std::string const& label, std::int64_t count,
                    std::int64_t sites, Body const& body) {

@@ -24,8 +24,8 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// Functor that computes E and the sum of |A_o|^2; stores m x A (A_o turned by a right angle) for
-/// the rotation.
+/// Functor that computes E and |A_o|^2, where A_o is the part of A normal to m. Stores m x A (A_o
+/// turned by a right angle), the axis of the correction's rotation.
 template <class Generator, class Real>
 struct EnergyAndSlope {
   Generator generator;
@@ -58,7 +58,7 @@ struct TurnAboutAxes {
 
 }  // namespace detail
 
-/// Options of EnergyControl. Its constructor throws std::invalid_argument when one is out of range.
+/// Options of EnergyControl, whose constructor throws std::invalid_argument if one is out of range.
 struct EnergyControlOptions {
   std::int64_t period = 1;  // steps between corrections
   /// Largest turn of a spin in a correction, as a fraction of its turn in a step.
@@ -67,17 +67,18 @@ struct EnergyControlOptions {
 };
 
 /// Lagged energy control: an observer for undamped runs with any one-step or multistep method,
-/// called at the end of any step. Spins turn towards or away from the field, m <- cay(kappa m x A)
-/// m with the same kappa = (E - E_0) / sum |A_o|^2 for all of them: a Newton step to the initial
-/// energy. Each energy error is thus corrected before the next step and does not accumulate. The
-/// generator A must conserve an energy and not depend on t. kappa is of the order of the method, so
-/// the method keeps its order.
+/// called at the end of steps. A correction turns all spins towards or away from the field, m <-
+/// cay(kappa m x A) m with the same kappa = (E - E_0) / sum |A_o|^2, where A_o is the part of A
+/// normal to m. This is a Newton step to the initial energy, so that energy errors do not
+/// accumulate. The generator A must conserve an energy and not depend on t. kappa is of the order
+/// of the method's error, so the method keeps its order.
 ///
 /// Each correction costs one evaluation of the generator and two passes; the memory cost is one
 /// field:
 ///   EnergyControl control(spins, generator);
 ///   integrate(exec, stepper, generator, spins, times, control);
-/// Other observers see the spins before or after the correction, in the order of the arguments.
+/// Other observers see the spins before or after the correction, depending on their position among
+/// the arguments.
 /// Does not compile with an AdaptiveStepper, which continues from an internal state.
 template <class Spins, class Generator>
 class EnergyControl {
@@ -92,8 +93,8 @@ class EnergyControl {
   using Real = typename Spins::value_type;
   static constexpr bool changes_spins = true;
 
-  /// Throws std::invalid_argument when the generator does not conserve its energy, and for invalid
-  /// options.
+  /// Throws std::invalid_argument when the generator does not conserve its energy, for invalid
+  /// options, and for a lattice of several replicas.
   EnergyControl(Spins const& like, Generator generator, EnergyControlOptions const& options = {})
       : generator_(std::move(generator)),
         options_(options),
@@ -115,12 +116,12 @@ class EnergyControl {
   std::size_t work_bytes() const { return axes_.bytes(); }
   /// Returns the held energy; empty before the first call unless the options give it.
   std::optional<double> energy() const { return energy_; }
-  /// Returns by how much the energy exceeded it at the last call, before the correction.
+  /// Returns by how much the energy exceeded the held one at the last call, before the correction.
   double excess() const { return excess_; }
   /// Evaluations of the generator so far.
   std::int64_t evaluations_done() const { return evaluations_done_; }
 
-  /// Forgets the energy: the next call holds that of its spins, or that of the options.
+  /// Forgets the held energy. The next call takes that of its spins, unless the options give one.
   void reset() { energy_ = options_.energy; }
 
   /// For cayspin::serialize.

@@ -23,7 +23,7 @@ struct NewtonNormalize {
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     auto const m = site.load(spins);
     using Value = typename decltype(m)::value_type;
-    // Written as m plus a small change: below an epsilon it is lost, and m keeps its bits.
+    // Written as m plus a small change: if this is below the rounding error, m keeps its bits.
     Value const half_excess = Value(0.5) * (Value(1) - dot(m, m));
     site.store(multiply_add(half_excess, m, m), output);
   }
@@ -32,8 +32,8 @@ struct NewtonNormalize {
 }  // namespace detail
 
 /// Takes one Newton step towards |m| = 1 for every spin, m <- m (3 - m.m) / 2, without a root or a
-/// division: a length 1 + d becomes 1 - 3/2 d^2, to round-off. Repeated calls converge to 1 from
-/// lengths below sqrt(3); non-finite spins stay non-finite.
+/// division: a length 1 + d becomes 1 - 3/2 d^2, to leading order. Repeated calls converge to 1
+/// from lengths between 0 and sqrt(3); non-finite spins stay non-finite.
 template <class Exec, class Real, class MemorySpace>
 void normalize(Exec const& exec, SpinField<Real, MemorySpace> const& spins) {
   detail::check_access<Exec, MemorySpace>();

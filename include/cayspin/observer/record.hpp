@@ -19,7 +19,7 @@ struct Sample {
   Energy energy;
   double norm_defect = 0;
   Vec3<double> magnetization{0, 0, 0};
-  double largest_rate = 0;  // if a generator was given for it
+  double largest_rate = 0;  // stays 0 if no generator was given for it
 };
 
 namespace detail {

@@ -25,30 +25,31 @@ namespace cayspin::inline v0_2 {
 /// Options of ThermalNoise.
 struct ThermalNoiseOptions {
   double temperature = 0;  ///< in units of moment times field: kB T over the energy unit of a site
-  std::uint64_t seed = 0;  ///< of the first replica of the lattice; that of replica r is r more
-  /// Gyromagnetic ratio over moment for each site of a crystal's cell, and 0 without a spin. Empty:
-  /// all 1.
+  std::uint64_t seed = 0;  ///< replica r of the lattice uses seed + r
+  /// Gyromagnetic ratio over moment for each site of a crystal's cell; 0 where there is no spin.
+  /// Empty: all 1.
   std::vector<double> cell_sites = {};
   /// Factor of damping times temperature for each replica of the lattice. Empty: all 1.
   std::vector<double> replicas = {};
-  /// Columns, the sites with equal x, are independent lattices whose first axis is y: column x gets
-  /// the numbers of such a lattice with seed + x, and `replicas` has a factor for each column.
+  /// True: columns, the sites with equal x, are independent lattices whose first axis is y. Column
+  /// x gets the random numbers of such a lattice with seed + x, and `replicas` has a factor for
+  /// each column.
   bool columns_are_replicas = false;
 };
 
 /// Thermal noise for LandauLifshitz with damping and any one-step method: half of it is applied
 /// before each step and half after. A half turns each spin by a random angle about a random axis,
 /// with a variance per component of s^2 = u - u^2/12, u = damping temperature dt. Spins without a
-/// field then diffuse with an error of third order in u. With the step this is a splitting of
-/// second order, which samples Boltzmann's distribution of E / temperature.
+/// field then diffuse with an error of third order in u. Together with the step this is a splitting
+/// of second order, which samples Boltzmann's distribution of E / temperature.
 ///   ThermalNoise const noise(spins, damping, {.temperature = 0.5, .seed = 1});
 ///   integrate(exec, stepper, generator, spins, times, noise.after_steps(times), observers...,
 ///             noise.before_steps());
 /// Without observers in between, noise.between_steps(times) applies both halves at once. Random
 /// numbers come from Philox by seed, site and step: the bits do not depend on threads, host spaces
-/// or ranks, nor on where a run is interrupted, and each replica gets those of a lattice of its
-/// own. Costs no memory and two passes a step. Does not compile with an AdaptiveStepper. Multistep
-/// methods lose their order.
+/// or ranks, nor on where a run is interrupted, and each replica gets the bits that it would get as
+/// a separate lattice. Costs two passes a step, and no memory per site. Does not compile with an
+/// AdaptiveStepper. Multistep methods lose their order.
 template <class Spins>
 class ThermalNoise {
   using Real = typename Spins::value_type;
@@ -57,7 +58,8 @@ class ThermalNoise {
   enum class Half { before, after };
 
   /// Throws std::invalid_argument for a temperature, damping or factor that is negative or not
-  /// finite, and if there is not one number for each site of a cell, or for each replica.
+  /// finite, if there is not one number for each site of a cell or for each replica, and if columns
+  /// are to be replicas on a lattice with replicas, on a part, or with numbers for a cell's sites.
   ThermalNoise(Spins const& like, double damping, ThermalNoiseOptions const& options)
       : lattice_(like.lattice()), damping_(damping), options_(options) {
     if (!(damping >= 0) || !std::isfinite(damping))
@@ -79,8 +81,8 @@ class ThermalNoise {
   }
   /// Multiplies damping times temperature at each site by a factor, which may contain the damping,
   /// the temperature, or one over the moment; 0 where a spin does not move. Factors other than 0
-  /// and 1 replace options.cell_sites. Throws std::invalid_argument for a negative or non-finite
-  /// factor, and if both are given.
+  /// and 1 replace options.cell_sites and options.replicas, which must then be empty. Throws
+  /// std::invalid_argument if they are not, and for a negative or non-finite factor.
   ThermalNoise(Spins const& like, double damping, ThermalNoiseOptions const& options,
                ScalarField<Real, typename Spins::memory_space> const& factors)
       : ThermalNoise(like, damping, options) {
@@ -113,8 +115,8 @@ class ThermalNoise {
   }
 
   /// Applies the noise before or after step number `step`, of length dt, also to ghosts. Throws
-  /// std::invalid_argument if half a step would turn spins by more than a radian, and for spins on
-  /// another lattice.
+  /// std::invalid_argument if u (with the largest factor) is above 1, where a half would turn spins
+  /// by about a radian, and for spins on another lattice.
   template <class Exec>
   void turn(Exec const& exec, std::int64_t step, Half half, double dt, Spins const& spins) const {
     bool const after = half == Half::after;
@@ -129,16 +131,16 @@ class ThermalNoise {
     turn_between(exec, step, true, true, dt, spins);
   }
 
-  /// Returns an observer for the second half of each step. Put it first, so that other observers
-  /// see the spins after it.
+  /// Returns an observer that applies the half after each step. Put it first, so that other
+  /// observers see the spins after it.
   auto after_steps(Times const& times) const {
     return BetweenSteps<true, false>{*this, times.first};
   }
-  /// Returns an observer for the first half of the next step. Put it last: a later observer that
-  /// may stop the run does not compile.
+  /// Returns an observer that applies the half before the next step. Put it last: a later observer
+  /// that may stop the run does not compile.
   auto before_steps() const { return BetweenSteps<false, true>{*this}; }
-  /// Returns an observer for both halves in one pass, if no observer is between them; restricted
-  /// like before_steps.
+  /// Returns an observer that applies both halves in one pass, for runs without observers between
+  /// them. Put it last, like before_steps.
   auto between_steps(Times const& times) const {
     return BetweenSteps<true, true>{*this, times.first};
   }
@@ -207,7 +209,7 @@ class ThermalNoise {
     auto const replicas = options_.replicas.size(), sites = options_.cell_sites.size();
     if (replicas == 0 && sites == 0) return;
     if (options_.columns_are_replicas)
-      // Registers read past the last column.
+      // Packs read past the last column.
       column_numbers_ = ColumnNumbers(4 * (replicas + detail::RandomBits<true>::most_lanes));
     else
       cell_turns_ = CellTurns(std::max<std::size_t>(replicas, 1) * std::max<std::size_t>(sites, 1));
@@ -218,7 +220,7 @@ class ThermalNoise {
     std::size_t const stride = column_numbers_.size() / 4;
     auto const* const found = column_numbers_.get(exec, u, [&](auto const& numbers) {
       for (std::size_t column = 0; column < options_.replicas.size(); ++column) {
-        // Rounded as for a lattice of that temperature.
+        // Multiplied in this order, so that the rounding is that of a lattice of this temperature.
         double const temperature = options_.replicas[column] * options_.temperature;
         auto const turn = turn_of<Exec>(damping_ * temperature * std::abs(dt));
         for (std::size_t i = 0; i < 4; ++i) numbers(i * stride + column) = turn.numbers()[i];
@@ -271,7 +273,7 @@ class ThermalNoise {
   struct BetweenSteps {
     static constexpr bool changes_spins = true, begins_step = Before;
     ThermalNoise noise;
-    std::int64_t first = 0;  // no step ends there
+    std::int64_t first = 0;  // the step number at which the run starts, where no step ends
 
     template <class Exec>
     void operator()(Exec const& exec, Step const& step, Spins const& spins) const {

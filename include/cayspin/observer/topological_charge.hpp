@@ -27,8 +27,8 @@ struct SpinAndLength {
 
 /// Returns half the solid angle that three spins enclose, within -pi .. pi (van Oosterom and
 /// Strackee 1983): its tan is a.(b x c) / (1 + a.b + b.c + c.a) for unit vectors. Returns 0 for
-/// spins that are coplanar to round-off: for antiparallel ones the quotient would be that of two
-/// errors.
+/// spins that are coplanar to round-off: if two of them are antiparallel, both parts of the
+/// quotient would be rounding errors.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value half_solid_angle(SpinAndLength<Value> const& a,
                                                    SpinAndLength<Value> const& b,
@@ -42,8 +42,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value half_solid_angle(SpinAndLength<Value> const& a
                        Value(Kokkos::atan2(volume, rest)));
 }
 
-/// The two triangles at a site, one with its next neighbours along x and y and one with its
-/// previous ones. Over all sites they cover each plaquette with one triangle of each kind.
+/// Functor for the two triangles at a site, one with its next neighbours along x and y and one with
+/// its previous ones. Over all sites they cover each plaquette with one triangle of each kind.
 template <class Real>
 struct SolidAngleOfSites {
   SiteArray<Real, 3> spins;
@@ -61,7 +61,7 @@ struct SolidAngleOfSites {
   }
 };
 
-/// Returns the sum over the part's own sites of `layout`.
+/// Returns the charge of the rows `layout.own`, summed over all parts of the lattice.
 template <class Exec, class Real, class MemorySpace>
 double charge_of(Exec const& exec, SpinField<Real, MemorySpace> const& spins,
                  RowLayout const& layout) {
@@ -85,7 +85,7 @@ double charge_of(Exec const& exec, SpinField<Real, MemorySpace> const& spins,
 /// A skyrmion with its core down among spins up has Q = -1, of Neel or Bloch type; an antiskyrmion
 /// with that core has +1. The charge of a periodic plane is an integer, to round-off. At open ends
 /// the plaquettes end: a vortex in a film has +-1/2. Three spins that lie in a plane and point all
-/// around it have no sign, and count as 0.
+/// around it enclose half the sphere, but of either sign; they count as 0.
 ///
 /// Sums are in double. On host spaces their bits do not depend on the number of threads. Throws
 /// std::invalid_argument for spins without sites.

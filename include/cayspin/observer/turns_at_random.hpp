@@ -124,7 +124,8 @@ struct LargestNumber {
   }
 };
 
-/// A table of turns for the last requested length of step. A copy has a separate table.
+/// A table of turns for the u (damping temperature dt) that was requested last. A copy has its own
+/// table.
 template <class Entry, class MemorySpace>
 class TableOfTurns {
  public:
@@ -141,7 +142,8 @@ class TableOfTurns {
 
   std::size_t size() const { return table_.size(); }
 
-  /// Returns the table filled by fill(table in host memory), unless already made for `u`; waits.
+  /// Returns the table for `u`. Unless `u` was requested last, calls fill(table in host memory) and
+  /// waits.
   template <class Exec, class Fill>
   Entry const* get(Exec const& exec, double u, Fill const& fill) {
     if (u != made_for_) {
@@ -160,13 +162,13 @@ class TableOfTurns {
   double made_for_ = -1;
 };
 
-/// Random numbers by the site of a lattice, with replicas or as a part of a larger one.
+/// Random numbers for the sites of a lattice, which may have replicas or be part of a larger one.
 template <bool OnHost>
 struct NumbersOfSites {
   RandomBitsOfReplica<OnHost> random;
-  std::int64_t first_y, first_z, ny,
-      nz;                       // the part's place in the whole lattice, and the extents of that
-  std::uint64_t places;         // for random bits, in a row
+  // The part's place in the whole lattice, and the extents of the whole lattice.
+  std::int64_t first_y, first_z, ny, nz;
+  std::uint64_t places;         // places of RandomBits in a row
   std::int32_t replica_planes;  // 0: there is one replica
 
   template <class Bits, class Site>
@@ -185,13 +187,13 @@ struct NumbersOfSites {
   }
 
  private:
-  // Ghosts are less than a lattice away.
+  // One extent is enough, because ghosts are less than a lattice away.
   KOKKOS_FORCEINLINE_FUNCTION static std::int64_t wrapped(std::int64_t at, std::int64_t extent) {
     return at < 0 ? at + extent : at < extent ? at : at - extent;
   }
 };
 
-/// Random numbers of columns that are a lattice each, whose rows are along y.
+/// Random numbers for columns, each of which is a lattice whose rows are along y.
 struct NumbersOfColumns {
   RandomBitsOfColumns random;
   std::uint64_t places;  // in a row of such a lattice
@@ -221,7 +223,7 @@ struct TurnAtRandom {
     Vec3<Value> const found = site.load(spins);
     Vec3<Value> m = found;
     if (after) {
-      // The turn's round-off repeats in each step: without this, lengths would drift.
+      // Rounding errors of the turn repeat in each step: without normalising, lengths would drift.
       m = turn.template turned<0>(bits, m);
       m = multiply_add(Value(Real(-0.5)), dot(m, m), Value(Real(1.5))) * m;
     }

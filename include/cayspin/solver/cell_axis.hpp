@@ -22,8 +22,8 @@ class CellAxis {
 
   std::size_t cells() const { return widths_.size(); }
   std::size_t coarse_cells() const { return std::max<std::size_t>(cells() / 2, 1); }
-  /// Returns the coarse cell that holds a cell: two cells each, and three in the last one if the
-  /// number is odd.
+  /// Returns the coarse cell that holds a cell. Coarse cells hold two cells; the last one holds
+  /// three if the number of cells is odd.
   std::size_t parent(std::size_t cell) const { return std::min(cell / 2, coarse_cells() - 1); }
 
   CellAxis coarser() const {
@@ -41,7 +41,7 @@ class CellAxis {
     if (cells() == 1 || (!periodic_ && i == 0)) return 0;
     return 2 / (widths_[i] * (widths_[i] + widths_[(i + cells() - 1) % cells()]));
   }
-  /// Returns the largest sum of both; its half bounds the frequencies from one side.
+  /// Returns the largest sum of both. Twice this is an upper bound of the frequencies.
   double largest_sum() const {
     double largest = 0;
     for (std::size_t i = 0; i < cells(); ++i)
@@ -58,7 +58,7 @@ class CellAxis {
   Interpolation interpolation(std::size_t cell) const {
     std::size_t const own = parent(cell), last = coarse_cells() - 1;
     if (last == 0) return {own, 0};
-    double before = 0;  // from the parent's first edge to the cell's centre
+    double before = 0;  // from the parent's first edge to the cell's
     for (std::size_t i = 2 * own; i < cell; ++i) before += widths_[i];
     double const way = before + 0.5 * widths_[cell] - 0.5 * coarse_width(own);
     if (way == 0 || (!periodic_ && own == (way < 0 ? 0 : last))) return {own, 0};
@@ -66,8 +66,8 @@ class CellAxis {
     return {beside, 2 * std::abs(way) / (coarse_width(own) + coarse_width(beside))};
   }
 
-  /// Restriction: the transpose of the interpolation, scaled by widths. A coarse value is the
-  /// weighted sum over `reach` cells, starting at 2 coarse - 1 and wrapping around.
+  /// Restriction is the transpose of the interpolation, scaled by widths. A coarse value is the
+  /// weighted sum over `reach` cells, from cell 2 coarse - 1 on, wrapping around.
   static constexpr std::size_t reach = 5;
   std::vector<std::array<double, reach>> restriction() const {
     std::vector<std::array<double, reach>> weights(coarse_cells(), std::array<double, reach>{});
@@ -103,12 +103,12 @@ template <class Real>
 struct CellAxisArrays {
   Real const *to_previous = nullptr, *to_next = nullptr;  // multiplied by the coupling
   Real const *share = nullptr, *weights = nullptr;        // weights[k coarse_cells + coarse]
-  Real const* mean = nullptr;                             // its products with the weights sum to 1
+  Real const* mean = nullptr;                             // 1 / (sum of a coarse cell's weights)
   std::int32_t const* beside = nullptr;
   std::int32_t coarse_cells = 0;
 };
 
-/// Memory of these arrays.
+/// The memory of CellAxisArrays.
 template <class Real, class MemorySpace>
 class CellAxisTables {
  public:

@@ -15,7 +15,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Row y of plane z, starting at cell x.
+/// A cell: the only one, or the first of a pack or row, on which a functor works.
 struct CellPlace {
   std::int32_t x, y, z;
 };
@@ -73,7 +73,7 @@ CellArray<Real, Components> cells_of(SiteField<Real, All, MemorySpace> const& fi
   return {array.data + first * array.stride, array.stride, layout.pitch, layout.plane};
 }
 
-/// Memory layout of the cells of a grid, and their couplings.
+/// Extents of a grid of cells, and the couplings of the cells.
 template <class Real>
 struct CellGrid {
   std::int32_t extent[3];
@@ -81,8 +81,9 @@ struct CellGrid {
   CellAxisArrays<Real> axis[3];
 };
 
-/// Kernel loop of a solver on hosts: a task is a row. A functor takes packs of cells as
-/// functor.template operator()<Value>(place), or rows as functor.row(place, begin, end).
+/// Kernel loop of a solver on hosts: a task is a row. The functor is called for packs of cells, as
+/// functor.template operator()<Value>(place), or if it has this member for rows, as
+/// functor.row(place, nx).
 template <class Real, class Functor>
 struct RowOfCells {
   Functor functor;
@@ -96,7 +97,7 @@ struct RowOfCells {
     } else {
       for (; place.x < nx; place.x += host_lanes<Real>)
         local.template operator()<Pack<Real>>(place);
-      // Packs do not wrap around the ends of a row.
+      // Packs do not reach around to the other end of a row, so its end cells are computed again.
       if constexpr (requires { local.goes_around; })
         if (local.goes_around)
           for (std::int32_t const x : {0, nx - 1}) {
@@ -121,10 +122,10 @@ struct OneCell {
   }
 };
 
-/// Returns the cost of a pass over these cells, in sites of a field evaluation.
+/// Returns the cost of a pass over these cells, as a number of sites of a field evaluation.
 inline std::int64_t sites_worth(RowLayout const& layout) { return layout.sites() / 4; }
 
-/// Launcher that calls functor for all cells of a grid, in a separate kernel.
+/// Launcher that calls a functor for all cells of a grid, in a kernel of its own.
 template <class Exec>
 struct LaunchEach {
   Exec const& exec;
@@ -140,8 +141,8 @@ struct LaunchEach {
   }
 };
 
-/// Launcher that calls functor for all cells inside a host kernel, so that many small passes take
-/// one launch.
+/// Launcher that calls a functor for all cells inside a running host kernel, so that many small
+/// passes take one launch.
 struct RunInside {
   template <class Real, class Functor>
   void run(std::string const&, RowLayout const& layout, Functor const& functor) const {

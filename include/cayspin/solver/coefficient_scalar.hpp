@@ -8,7 +8,7 @@
 
 #include <concepts>
 
-// Real and complex coefficients of linear systems. A complex number in a field is two real ones.
+// Real and complex coefficients of linear systems. Fields store a complex number as two real ones.
 namespace cayspin::inline v0_2::detail {
 
 template <class Scalar>

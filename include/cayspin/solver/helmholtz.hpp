@@ -15,19 +15,20 @@
 namespace cayspin::inline v0_2::detail {
 
 /// Solver that approximates z = (c + b K)^-1 r for fields of vectors, with K = -J Lap over the
-/// neighbours of a lattice, b >= 0 and c > 0. Along an axis with J < 0 the difference to a
-/// neighbour becomes the sum, as |J| gives between vectors of alternating sign, so that K >= 0. If
-/// only one axis couples, z is the exact solution. Otherwise it is one multigrid cycle V(2, 2) in
-/// single precision, which leaves a fifth to a half of the residual. A cycle is a linear map,
-/// symmetric to its round-off, and positive definite.
+/// neighbours of a lattice, b >= 0 and c > 0. Along an axis with J < 0, K has |J| and adds
+/// neighbours rather than subtract them, so that K >= 0: this is -|J| Lap for vectors whose sign
+/// alternates along the axis. If only one axis couples, z is the exact solution. Otherwise z is the
+/// result of one multigrid cycle V(2, 2) in single precision, which leaves a fifth to a half of the
+/// residual. A cycle is a linear map, symmetric to round-off, and positive definite.
 template <class Real, class MemorySpace>
 class Helmholtz {
  public:
   using Field = SiteField<Real, 3, MemorySpace>;
 
   Helmholtz() = default;
-  /// `couplings`: J of each axis, A / spacing^2 for exchange, not negative on an odd ring; ignored
-  /// along axes without neighbours. Throws std::invalid_argument for a part of a lattice.
+  /// `couplings`: J of each axis, A / spacing^2 for exchange, not negative along a periodic axis of
+  /// odd extent; ignored along axes without neighbours. Throws std::invalid_argument for a part of
+  /// a lattice, and for replicas.
   Helmholtz(std::string const& name, Lattice const& lattice, std::array<double, 3> couplings)
       : scale_label_("cayspin::" + name + "::scale"), signs_label_("cayspin::" + name + "::signs") {
     require_whole("cayspin::Helmholtz", lattice);
@@ -44,7 +45,7 @@ class Helmholtz {
     }
   }
 
-  /// `r` is not `z`. Does not wait.
+  /// `r` and `z` must be different fields. Does not wait.
   template <class Exec>
   void solve(Exec const& exec, double c, double b, Field const& r, Field const& z) {
     if (lines_) return lines_->solve(exec, c, static_cast<Real>(b), r, z);

@@ -12,9 +12,10 @@
 namespace cayspin::inline v0_2::detail {
 
 /// Coefficients of lines that are solved from both ends, with equal factors for both halves: y_i =
-/// inverse_i r_i + ratio_i y_(i-1) towards the middle, z_i = y_i + ratio_i z_(i+1) back. In the
-/// middle z = same y + other y' + inverse r, where y' belongs to the other half, and r to the site
-/// in the middle of an odd line. A periodic line finally adds closing (z + sign z').
+/// inverse_i r_i + ratio_i y_(i-1) towards the middle, z_i = y_i + ratio_i z_(i+1) back. The first
+/// z_(i+1), beyond the middle, is same y + other y' + middle r, where y and y' are the last ones of
+/// this half and of the other, and r is that of the site in the middle of an odd line. A periodic
+/// line finally adds closing_i (z_0 + sign z_0'), where z_0' is at the other end.
 template <class Scalar>
 struct LineFactors {
   Scalar const *inverse = nullptr, *ratio = nullptr, *closing = nullptr;
@@ -22,13 +23,13 @@ struct LineFactors {
   int sign = 0;  // 0 on an open line
 };
 
-/// Offset of a number, and the distance to its mirror image.
+/// Offset of a site of a line, and the distance to its mirror image in the line.
 struct LinePlace {
   std::ptrdiff_t at, to_mirror;
 };
 
-/// Three components at a place and three at its mirror image: of as many lines as Value has lanes,
-/// adjacent along x; or of one line, if InLanes.
+/// Three components at a place and three at its mirror image. They belong to as many lines as Value
+/// has lanes, adjacent along x. If InLanes, they belong to one line and fill the lanes.
 template <class Value, int Parts, bool InLanes>
 struct LineEnds {
   using Real = scalar_t<Value>;
@@ -107,7 +108,8 @@ struct SolveLines {
   SiteArray<Real, 3 * parts> z;
   Real imaginary_sign;  // of r
 
-  /// Returns the number of tasks: a task is a line along x, or as many lines as there are lanes.
+  /// Returns the number of tasks side by side along x. A task is one line along x; along other axes
+  /// it is as many adjacent lines as there are lanes.
   KOKKOS_FUNCTION std::int64_t tasks_across(int lanes) const {
     return axis == 0 ? 1 : (layout.nx + lanes - 1) / lanes;
   }
@@ -134,7 +136,8 @@ struct SolveLines {
     auto const place = [&](std::int32_t i) {
       return LinePlace{begin + i * step, (count - 1 - 2 * i) * step};
     };
-    // Short lines store y as packs, rather than unpack them twice.
+    // Short lines along x keep y in packs, which would otherwise be unpacked into z and packed
+    // again.
     constexpr std::int32_t most_kept = InLanes ? 512 : 1;
     Ends kept[std::size_t{most_kept}];
     bool const keeps = InLanes && half <= most_kept;

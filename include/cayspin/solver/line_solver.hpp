@@ -28,9 +28,9 @@ inline std::optional<int> only_coupled_axis(Lattice const& lattice,
   return count <= 1 ? std::optional(only) : std::nullopt;
 }
 
-/// Solver of z = (c + b K)^-1 r, with K as in Helmholtz, where only one axis couples: tridiagonal
-/// lines, with the bond that closes a periodic line by Sherman and Morrison. Caches factors for the
-/// last few pairs (c, b).
+/// Solver of z = (c + b K)^-1 r, with K as in Helmholtz, where only one axis couples: a tridiagonal
+/// system for each line. The formula of Sherman and Morrison adds the bond that closes a periodic
+/// line. Keeps the factors of the last four pairs (c, b).
 template <class Scalar, class MemorySpace>
 class LineSolver {
   using Real = real_part_t<Scalar>;
@@ -94,7 +94,7 @@ class LineSolver {
       return {static_cast<Real>(value.real()), static_cast<Real>(value.imag())};
   }
 
-  // std::complex divides slowly, to support numbers beyond 1e154.
+  // Division of std::complex is slow, because it supports numbers beyond 1e154.
   static Number inverse_of(Number const& value) {
     if constexpr (parts == 1)
       return 1 / value.real();
@@ -114,7 +114,7 @@ class LineSolver {
   void factorize(Kept& kept, double c, Scalar b) const {
     double const sign = coupling_ < 0 ? -1 : 1;
     Number const e = number(b) * std::abs(coupling_),
-                 beside = sign * e;  // without the off-diagonal part
+                 beside = sign * e;  // off-diagonal elements are -beside
     auto const half = count_ / 2;
     std::vector<Number> inverse(half), ratio(half), closing(half);
     Number reduced = count_ > 1 ? c + e : c;  // diagonal after elimination
@@ -135,7 +135,8 @@ class LineSolver {
       factors.same = scalar(last * other);
     }
     if (periodic_) {
-      // c + b K = T + e w w^T with T of the open line, w = (1, 0, .., 0, -sign), T^-1 w like w.
+      // c + b K = T + e w w^T, with T of an open line and w = (1, 0, .., 0, -sign). T^-1 w is even
+      // or odd like w.
       closing[0] = inverse[0];
       for (std::size_t i = 1; i < half; ++i) closing[i] = ratio[i] * closing[i - 1];
       Number after = count_ % 2 == 1 ? 0 : -sign * closing.back() / (1.0 + sign * last);

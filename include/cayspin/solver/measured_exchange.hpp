@@ -15,7 +15,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Functor that computes z + amplitude sign x where there is a spin, 0 on vacant sites.
+/// Functor that writes e_z + amplitude sign e_x where there is a spin, and 0 on vacant sites.
 template <class Real>
 struct FillWaves {
   AlternatingSigns signs;
@@ -34,8 +34,8 @@ struct FillWaves {
   }
 };
 
-/// Functor that counts the bonds along each axis between spins whose waves have opposite signs, at
-/// both ends.
+/// Functor that counts a site's bonds along each axis to spins whose waves have the opposite sign.
+/// Each bond is thus counted at both of its ends.
 template <class Real>
 struct OpposedBonds {
   SiteArray<Real, 3> waves;
@@ -60,7 +60,8 @@ struct OpposedBonds {
   }
 };
 
-/// Functor that sums A along the waves, and along the waves rotated about z.
+/// Functor that computes the components of A along the wave, and along the wave rotated about z by
+/// a right angle.
 template <class Generator, class Real>
 struct ResponseToWaves {
   Generator generator;
@@ -75,18 +76,18 @@ struct ResponseToWaves {
   }
 };
 
-/// Measured exchange in a generator A = precession H + damping m x H, from its response to the
-/// shortest waves along each axis on uniform spins: the couplings of H = sum of couplings times
-/// second differences. Local terms cancel. Site-dependent constants give means over the bonds
-/// between spins. (For minimisers `probe` uses m.H of a field instead, and finds couplings of
-/// either sign.)
+/// The exchange in a generator A = precession H + damping m x H, measured by the response to the
+/// shortest waves along each axis on uniform spins. H is a sum over the axes of a coupling times
+/// the second difference of the spins; local terms cancel. If the exchange depends on the site, the
+/// couplings are means over the bonds between spins. (For minimisers `probe` uses m.H of a field
+/// instead, and finds couplings of either sign.)
 struct MeasuredExchange {
   std::array<double, 3> couplings{};
   double precession = 1, damping = 0;
   bool known = false;
 
-  /// Evaluates the generator 2 + 2 axes times and returns that number. Overwrites `work` with waves
-  /// where `spins` are not zero. Waits.
+  /// Evaluates the generator twice, and twice more for each axis with neighbours. Returns how often
+  /// it did so. Overwrites `work`, with waves where `spins` are not zero. Waits.
   template <class Exec, class Generator, class Spins>
   int measure(Exec const& exec, std::string const& label, Generator const& generator,
               Spins const& spins, Spins const& work, double t) {
@@ -130,7 +131,8 @@ struct MeasuredExchange {
     return counts;
   }
 
-  // Half the difference between waves of opposite sign, which cancels even terms.
+  // Half the difference of the responses to waves of opposite sign, in which terms that are even in
+  // the wave cancel.
   template <class Exec, class Generator, class Spins>
   static std::array<double, 2> response(Exec const& exec, std::string const& label,
                                         Generator const& generator, Spins const& spins,

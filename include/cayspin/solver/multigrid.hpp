@@ -18,9 +18,9 @@
 namespace cayspin::inline v0_2::detail {
 
 /// One multigrid cycle on cell-centred grids for an Operation, ShiftedExchange or ShiftedSpinWaves,
-/// in precision Real. It relaxes after the coarse-grid correction, and if IsSymmetric as often
-/// before, which makes it a symmetric map. Small grids run in a single kernel on one host thread.
-/// Bits do not depend on threads or host spaces.
+/// in precision Real. It relaxes after the coarse-grid correction and, if IsSymmetric, equally
+/// often before it, which makes the cycle a symmetric map. On hosts, the small grids share one
+/// kernel on the calling thread. Bits do not depend on threads or host spaces.
 template <class Operation, int Relaxations, bool IsSymmetric, class Real, class MemorySpace>
 class Multigrid {
   static constexpr int right_components = Operation::right_components;
@@ -48,7 +48,8 @@ class Multigrid {
     while (!levels_.back().coarsened.empty());
   }
 
-  /// Returns the right side to be filled; padding of its rows is zero.
+  /// Returns the right side, which the caller fills. The padding of its rows is zero, and must stay
+  /// so.
   Right const& right() const { return levels_.front().right; }
 
   /// `same_directions`: coarse grids keep their directions from the previous call. Does not wait.
@@ -77,7 +78,7 @@ class Multigrid {
   };
   struct Inside {};
 
-  /// Runs the cycle from this level on.
+  /// Runs the cycle on this level and the coarser ones.
   template <class Exec, class Launch, class OutReal>
   void solve_from(Exec const& exec, Launch const& launch, Shift const& shift,
                   CellArray<OutReal, 3> const& out, std::size_t number) const {
@@ -90,7 +91,8 @@ class Multigrid {
     cycle(exec, launch, shift, out, number);
   }
 
-  // Returns what the last relaxation reads, and where coarser grids leave their solution.
+  // Return the field that a level's last relaxation reads, and the field for its solution if the
+  // level is not the finest.
   static Field const& last_of(Level const& level) {
     return Relaxations % 2 == 0 ? level.other : level.one;
   }
@@ -98,8 +100,8 @@ class Multigrid {
     return Relaxations % 2 == 0 ? level.one : level.other;
   }
 
-  // Returns the relaxation at zero `k` of Chebyshev's polynomial of degree `count` on [least,
-  // largest].
+  // Returns the relaxation that is exact at a frequency: zero `k` of Chebyshev's polynomial of
+  // degree `count` on [least, largest].
   static Operation relaxation(Coefficient b, double least, double largest, int count, int k) {
     double const angle = std::numbers::pi * (2 * k + 1) / (2 * count);
     return Operation::relaxing(b,

@@ -19,7 +19,7 @@ struct ShiftedExchange {
 
   Real b, weight;
 
-  /// Returns the weight that solves exactly for waves of frequency s of K.
+  /// Returns the operation whose relaxation is exact for waves of frequency s of K.
   static ShiftedExchange relaxing(double b, double s) {
     return {static_cast<Real>(b), static_cast<Real>(1 / (1 + b * s))};
   }
@@ -36,23 +36,23 @@ struct ShiftedExchange {
                                                    CellPlace const& place) const {
     return multiply_add(Value(Real(-b)), ku, right.template load<Value>(place) - u);
   }
-  /// Relaxes from zero.
+  /// Returns u after a relaxation that starts from u = 0.
   template <class Value, class Right>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> first(Right const& right, CellPlace const& place) const {
     return Value(weight) * right.template load<Value>(place);
   }
 };
 
-/// The operator 1 + b K with a complex b, where i stands for m x: spin waves about directions m,
-/// which are stored after the right side. For vectors normal to m. Where a coarse m is short, being
-/// the mean of many, the operator is 1 + |b| K instead.
+/// The operator 1 + b K on vectors normal to m, with a complex b whose i stands for m x: spin waves
+/// about directions m, which are stored after the right side. On coarse grids m is a mean, and
+/// short where directions differ. The shorter it is, the closer the operator is to 1 + |b| K.
 template <class Real>
 struct ShiftedSpinWaves {
   using Coefficient = std::complex<double>;
   static constexpr int right_components = 6;
 
-  Real magnitude, along, turned;  // |b|, its real and imaginary part
-  Real weight, weight_turned;     // real and imaginary part
+  Real magnitude, along, turned;  // |b|, and the real and imaginary parts of b
+  Real weight, weight_turned;     // real and imaginary parts of the weight
 
   static ShiftedSpinWaves relaxing(Coefficient b, double s) {
     Coefficient const weight = 1.0 / (1.0 + b * s);
@@ -146,7 +146,7 @@ struct RelaxCells {
   }
 };
 
-/// Functor that sets u to its part normal to m, the space of the equation of ShiftedSpinWaves.
+/// Functor that keeps only the part of u normal to m, since ShiftedSpinWaves is for such vectors.
 template <class Real>
 struct KeepAcross {
   std::int32_t nx;
@@ -161,7 +161,7 @@ struct KeepAcross {
   }
 };
 
-/// Functor that writes the relaxation from zero to out.
+/// Functor that writes u after a relaxation from u = 0 to out.
 template <class Operation, class Real, class OutReal>
 struct RelaxZero {
   std::int32_t nx;
@@ -175,8 +175,8 @@ struct RelaxZero {
   }
 };
 
-/// Functor that writes scale r, with signs, to `to`, which may be r. The solver's padding stays
-/// zero.
+/// Functor that writes scale r, times the alternating signs, to `to`, which may be r. It does not
+/// write to the padding, which stays zero.
 template <class FromReal, class Real>
 struct ScaleCells {
   CellArray<FromReal, 3> r;
@@ -202,9 +202,9 @@ struct ScaleCells {
   }
 };
 
-/// Functor that writes (r x m, m), with m of length 1, or 0 where there is no spin: the right side
-/// of ShiftedSpinWaves, whose solution d gives m x d for r. Six components of r are r' + sign m x
-/// r''. `same_directions`: m is already there.
+/// Functor that writes (r x m, m), with m of length 1, or 0 where there is no spin: a right side of
+/// ShiftedSpinWaves. If d is the solution for it, m x d is the solution for r. Six components of r
+/// stand for r' + sign m x r''. `same_directions`: m is already there.
 template <int Components, class FromReal, class Real>
 struct TurnRightSide {
   std::int32_t nx;

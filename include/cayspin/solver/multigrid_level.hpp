@@ -19,15 +19,15 @@ struct MultigridLevel {
   using Right = SiteField<Real, RightComponents, MemorySpace>;
   using Field = SiteField<Real, 3, MemorySpace>;
 
-  /// Replaces `lattice` and `axes` by those of the next level. Coarsens axes whose coupling is at
-  /// least half the strongest.
+  /// Replaces `lattice` and `axes` by those of the next level, which coarsens the axes whose
+  /// strength (J over the squared width of the cells) is at least half the largest.
   MultigridLevel(std::string const& name, Lattice& lattice, std::array<double, 3> const& couplings,
                  std::vector<CellAxis>& axes, bool smooths_only_after)
       : layout(RowLayout::of<Real>(lattice)),
         right(name + "::right", lattice),
         one(name + "::one", lattice),
         other(name + "::other", lattice) {
-    std::array<double, 3> strengths{};  // J over the squared width of the cells
+    std::array<double, 3> strengths{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       tables[axis] = {name, axes[axis], couplings[axis]};
       grid.axis[axis] = tables[axis].arrays();
@@ -47,7 +47,7 @@ struct MultigridLevel {
         rights_between.emplace_back(name + "::right_between", lattice);
       }
       coarsened.push_back(number);
-      // Three cells merged into one hide longer waves than two.
+      // Three cells merged into one hide longer waves than two cells do.
       double const lowest = !smooths_only_after ? 1.5 : axes[axis].cells() % 2 == 1 ? 0.6 : 1.2;
       least = std::min(least, lowest * strengths[axis]);
       axes[axis] = axes[axis].coarser();

@@ -9,14 +9,14 @@
 // Transfers between a grid and the next coarser one, one axis at a time.
 namespace cayspin::inline v0_2::detail {
 
-/// Packs read padding beside a row and multiply it by zero.
+/// Zeroes the padding after a row, up to the end of a pack: packs read it and multiply it by zero.
 template <class Real>
 KOKKOS_FORCEINLINE_FUNCTION void clear_beside_row(Real* row, std::int32_t nx) {
   for (std::int32_t x = nx; x % host_lanes<Real> != 0; ++x) row[x] = 0;
 }
 
 /// Restriction along y or z: `to` has about half the cells along the axis. Components from the
-/// fourth on are means.
+/// fourth on (directions) become means instead.
 template <class Real, int Components>
 struct RestrictRows {
   int axis;
@@ -66,7 +66,7 @@ struct RestrictAlongRows {
       for (std::int32_t i = 1; i < cells - 2; ++i)
         target[i] = w0[i] * source[2 * i - 1] + w1[i] * source[2 * i] + w2[i] * source[2 * i + 1] +
                     w3[i] * source[2 * i + 2];
-      // The last coarse cell may hold three cells, some of which the one before it uses, too.
+      // The last coarse cell may hold three cells, and the one before it reads some of these, too.
       for (std::int32_t i = cells > 3 ? cells - 2 : 1; i < cells; ++i) target[i] = sum(source, i);
       Real const* const mean = numbers.mean;
       if (component >= 3) {
@@ -95,8 +95,8 @@ struct RestrictAlongRows {
   }
 };
 
-/// Interpolation along y or z: `to` has about twice the cells along the axis. Adds to its values or
-/// replaces them.
+/// Interpolation along y or z: `to` has about twice the cells along the axis. Adds to the values of
+/// `to`, or else replaces them.
 template <class Real, bool Adds>
 struct InterpolateRows {
   int axis;

@@ -19,10 +19,11 @@ struct SpinWaveOptions {
       false;  ///< reuse the directions of the previous call, which are close enough
 };
 
-/// Solver that approximates v with v + b K v = r normal to the directions m, where i of the complex
-/// b stands for m x, and K = -J Lap over the neighbours of a lattice. If only one axis couples, it
-/// solves lines, which is exact for parallel m. Otherwise it runs one multigrid cycle in single
-/// precision, which follows m and leaves 0.1 to 0.3 of the residual.
+/// Solver that approximates v in v + b K v = r, for vectors normal to the directions m. The i of
+/// the complex b stands for m x, and K = -J Lap over the neighbours of a lattice. If only one axis
+/// couples, it solves lines, which is exact for parallel m. Otherwise it runs one multigrid cycle
+/// in single precision, which takes m of each site into account and leaves 0.1 to 0.3 of the
+/// residual.
 template <class Real, class MemorySpace>
 class SpinWaveSolver {
   using Vectors = SiteField<Real, 3, MemorySpace>;
@@ -31,7 +32,8 @@ class SpinWaveSolver {
   using Solution = SiteField<Real, 6, MemorySpace>;
 
   SpinWaveSolver() = default;
-  /// `couplings`: J of each axis, at least 0. Throws std::invalid_argument for a part of a lattice.
+  /// `couplings`: J of each axis, at least 0. Throws std::invalid_argument for a part of a lattice,
+  /// and for replicas.
   SpinWaveSolver(std::string const& name, Lattice const& lattice, std::array<double, 3> couplings)
       : turn_label_("cayspin::" + name + "::turn") {
     require_whole("cayspin::SpinWaveSolver", lattice);
@@ -43,11 +45,11 @@ class SpinWaveSolver {
       multigrid_ = {name, lattice, couplings};
   }
 
-  /// Returns true if v' of every solution is zero.
+  /// Returns true if v' is zero in all solutions; solve() then does not write it.
   bool solves_only_rotated_part() const { return !lines_; }
 
-  /// Computes z = (v', v'') with v = v' + m x v''. Multigrid does not write v'. A right side of 6
-  /// components is likewise (r', r''). Does not wait.
+  /// Computes z = (v', v''), where v = v' + m x v''. A right side of 6 components is likewise (r',
+  /// r''). Does not wait.
   template <class Exec, int RightComponents>
   void solve(Exec const& exec, std::complex<double> b,
              SiteField<Real, RightComponents, MemorySpace> const& r, Vectors const& m,
