@@ -14,8 +14,8 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Work memory of an adaptive step, and the state between steps. Passes need one more field, a
-/// sweep its buffers.
+/// Work memory of an adaptive step, and the state between steps. Passes need one more field; a
+/// sweep needs buffers.
 template <class Spins, class Tableau>
 struct AdaptiveMemory {
   using Real = typename Spins::value_type;
@@ -24,7 +24,7 @@ struct AdaptiveMemory {
 
   Spins begin, end, level, first, last;  // first, last: generators at begin and end
   std::array<Spins, std::size_t{stages - 1}> increments;
-  ScalarField<Real, typename Spins::memory_space> square;  // of the error of each spin
+  ScalarField<Real, typename Spins::memory_space> square;  // squared error of each spin
 
   AdaptiveMemory(std::string const& name, Lattice const& lattice)
       : begin(name + "::begin", lattice),

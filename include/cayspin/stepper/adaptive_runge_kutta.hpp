@@ -32,10 +32,11 @@ using AdaptiveStages = StagedStepper<Spins, tableau::FirstSameAsLast<Embedded>, 
 }  // namespace detail
 
 /// An embedded Runge-Kutta method that chooses its own steps. The error of a step is the largest
-/// angle of any spin between the two solutions; it is kept below the tolerance. `step(.., t, dt)`
-/// returns the spins at t + dt, by the tableau's polynomial in the coordinates of the group. The
-/// internal steps do not depend on dt. It remembers its state: `spins` and t must be those at the
-/// end of the previous step. Otherwise call `reset`.
+/// angle of any spin between the two solutions. It is kept below a fraction of the tolerance,
+/// because the tolerance bounds the error of a run. `step(.., t, dt)` leaves the spins at t + dt,
+/// interpolated by the tableau's polynomial in the coordinates of the group. The internal steps do
+/// not depend on dt. It remembers its state: `spins` and t must be those at the end of the previous
+/// step. Otherwise call `reset`.
 template <class Spins, class Embedded, class Update, class Isotropy = isotropy::Zero>
 class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update, Isotropy>,
                            public detail::OwnSteps {
@@ -57,7 +58,7 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
   /// Returns the generator evaluations so far.
   std::int64_t evaluations_done() const { return evaluations_done_; }
 
-  /// Visits the internal step in progress and the step size control, for cayspin::serialize.
+  /// Visits the last internal step and the step size control, for cayspin::serialize.
   template <class Visit>
   void visit_memory(Visit const& visit) {
     visit("evaluations", evaluations_done_);
@@ -101,7 +102,8 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
                                 detail::FirstGeneratorStage<Isotropy, decltype(prepared), Real>{
                                     std::move(prepared), isotropy_, start.array(),
                                     memory_.last.output(false), memory_.square.output(false)});
-    detail::update_ghosts(exec, this->lattice_, memory_.last);  // a field in memory has own rows
+    // On ghosts it may be wrong, because terms may store their field for own rows only.
+    detail::update_ghosts(exec, this->lattice_, memory_.last);
     ++evaluations_done_;
     begin_run(t, std::sqrt(largest_square(exec)), asked);
     begin_time_ = t;
@@ -118,7 +120,7 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     detail::update_ghosts(exec, this->lattice_, memory_.end, memory_.last);
   }
 
-  /// Returns the error of a step, an angle.
+  /// Attempts a step, and returns its error, an angle.
   template <class Exec, class Generator>
   double try_step(Exec const& exec, Generator const& generator, double t, double dt,
                   double wanted) {
@@ -140,8 +142,8 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     return error(exec);
   }
 
-  /// Returns true if such a step ends later, so that the wanted spins are interpolated from its
-  /// increments.
+  /// Returns true if a step of dt ends after the wanted time, so that the wanted spins are
+  /// interpolated from its increments.
   static bool ends_beyond(double wanted, double end, double dt) { return end - wanted > 1e-9 * dt; }
 
   template <class Exec>
@@ -149,7 +151,8 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     return 2 * std::asin(std::min(1.0, 0.5 * std::sqrt(largest_square(exec))));
   }
 
-  /// Runs stage `Stage` with a prepared generator. The first stage's is known.
+  /// Returns the kernel of a stage, with a prepared generator. The first stage needs none, because
+  /// its generator is known.
   template <int Stage, class Prepared>
   auto stage(Prepared prepared, double dt) const {
     return detail::RungeKuttaStage<Tableau, Update, Isotropy, Stage, Prepared, Real>{
@@ -270,7 +273,7 @@ class AdaptiveStereographic : public AdaptiveRungeKutta<Spins, Embedded, update:
       : AdaptiveStereographic::AdaptiveRungeKutta("AdaptiveStereographic", like, options) {}
 };
 
-/// Adaptive baseline: steps in space, with each spin divided by its length at the end.
+/// Adaptive baseline: steps in space, at the end of which each spin is divided by its length.
 template <class Spins, class Embedded = tableau::DormandPrince5>
 class AdaptiveProjected : public AdaptiveRungeKutta<Spins, Embedded, update::Projected> {
  public:

@@ -32,7 +32,7 @@ struct FirstGeneratorStage {
   }
 };
 
-/// The first stage, with the generator from the end of the previous step.
+/// Generator of the first stage, which was computed at the end of the previous step.
 template <class Real>
 struct KnownGenerator {
   SiteArray<Real, 3> generators;
@@ -49,7 +49,7 @@ struct ErrorWeights {
   KOKKOS_FUNCTION static constexpr double at(int j) { return Tableau::error[j]; }
 };
 
-/// All increments of a completed step.
+/// The stored increments of a completed step: all except the last.
 template <class Tableau, class Real>
 struct StepIncrements {
   static constexpr int stages = Tableau::stages;
@@ -64,8 +64,8 @@ struct StepIncrements {
   }
 };
 
-/// Arrays that the end of a step leaves in memory. After a sweep these include its spins, and its
-/// increments if a time within the step is requested; after passes those are already in memory.
+/// Arrays that the end of a step leaves in memory. In a sweep these include the spins, and the
+/// increments if a time within the step is wanted. After passes both are already in memory.
 template <class Tableau, class Real>
 struct EndOutputs {
   OutputArray<Real, 3> last;
@@ -105,7 +105,7 @@ struct EndStage {
     f[stages - 1] = Update::increment(total, Vec3<Value>(Value(dt) * xi), m, m0);
     Vec3<Value> const error = weighted_sum<ErrorWeights<Tableau>, stages>(f);
     Vec3<Value> const difference = m - Update::finish(Vec3<Value>(total - error), m0);
-    // Large coordinates may differ although their rotations hardly do: take the larger error.
+    // Large coordinates may differ although their rotations hardly do: the larger error counts.
     Vec3<Value> const unbounded = cross(error, m0);
     Value const apart = dot(difference, difference), of_error = dot(unbounded, unbounded);
     site.store(xi, to.last);
@@ -119,7 +119,7 @@ struct EndStage {
   }
 };
 
-/// Kernel that computes the spins at a time within a completed step.
+/// Functor that computes the spins at a time within a completed step.
 template <class Tableau, class Update, class Real>
 struct DenseOutput {
   static constexpr int stages = Tableau::stages;

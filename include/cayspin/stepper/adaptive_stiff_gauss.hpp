@@ -14,13 +14,14 @@
 namespace cayspin::inline v0_2 {
 
 /// StiffGauss2 with adaptive steps, which become long as spins approach equilibrium. The error of a
-/// step is the largest angle of any spin due to the third derivative of the spins, dt^3 / 12 of it,
-/// as for a spin that precesses: a divided difference of their changes over three steps, multiplied
-/// by (1 + b K)^-1 as corrections are, so that residual short spin waves do not count. If the field
-/// depends on t, the rate at the end of the step replaces the earliest of the three. Corrections
-/// use K + c for K, where c is the mean of A.m.
+/// step is the largest angle of any spin: dt^3 / 12 times the third derivative of the spin, which
+/// is the error for a spin that precesses. It is found from a divided difference of the changes of
+/// the spins over three steps. This is multiplied by (1 + b K)^-1, as corrections are, so that
+/// residual short spin waves do not count. If the generator is not stationary, the rate at the end
+/// of the step replaces the earliest of the three changes. Corrections use K + c in place of K,
+/// where c is the mean of A.m.
 ///
-/// `step(.., t, dt)` returns the spins at t + dt; within an internal step A is interpolated
+/// `step(.., t, dt)` leaves the spins at t + dt; within an internal step A is interpolated
 /// linearly. The internal steps do not depend on dt. It remembers its state: `spins` and t must be
 /// those at the end of the previous step. Otherwise call `reset`.
 template <class Spins>
@@ -87,11 +88,12 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
 
  private:
   static constexpr auto name = "AdaptiveStiffGauss2";
-  static constexpr double share_of_corrections = 0.05;  // of the error of a step
+  static constexpr double share_of_corrections = 0.05;  // their error / tolerance of a step
   static constexpr double most_growth = 2;    // above it, earlier steps do not predict the next
-  static constexpr double fast_enough = 0.4;  // convergence factor of corrections
-  static constexpr double hardly_changes =
-      0.1;  // error / tolerance below which A is not extrapolated
+  static constexpr double fast_enough = 0.4;  // desired convergence factor of corrections
+  // Below this error / tolerance of a step, the next one starts from A of the last, without
+  // extrapolation.
+  static constexpr double hardly_changes = 0.1;
 
   template <class Exec, class Generator>
   void begin(Exec const& exec, Generator const& generator, Spins const& spins, double t,
@@ -126,8 +128,8 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
     swap(now_, this->end_);
   }
 
-  /// Returns the error of a solved step, an angle. 0 for the first two, which are short, or at
-  /// equilibrium.
+  /// Returns the error of a solved step, an angle. If the generator is stationary, it is 0 for the
+  /// first two steps, which are short or start at equilibrium.
   template <class Exec, class Generator>
   double error_of(Exec const& exec, Generator const& generator, double t, double dt) {
     // Midpoints of steps may miss what a field does between them.
@@ -194,7 +196,7 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
               difference_label_ = this->label("::difference"),
               error_label_ = this->label("::error"), dense_label_ = this->label("::dense_output");
   Spins now_, before_;   // at the end of the last step, and at the start of the one before
-  double local_dt_ = 0;  // when local_ was measured
+  double local_dt_ = 0;  // dt when local_ was measured
 };
 
 }  // namespace cayspin::inline v0_2

@@ -90,8 +90,8 @@ struct ExactFlow {
     return multiply_add(lower, x, multiply_add(upper, square, term(0)));
   }
 
-  /// Flows by entire functions of |f|^2, without a root: |f| < 3/2 and damping |f| < 1/2. The
-  /// relaxation has the form of the aberration of light along f.
+  /// Returns the flow for |f| < 3/2 and damping |f| < 1/2, by entire functions of |f|^2, so that no
+  /// root is needed. The relaxation has the form of the aberration of light along f.
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> small(Vec3<Value> const& f, Value const& turn2,
                                                 Vec3<Value> const& q) const {
     constexpr bool is_double = sizeof(Scalar) == sizeof(double);
@@ -164,7 +164,8 @@ struct ExactFlow {
   }
 
   /// Takes one Newton step towards length 1. For spins nearly opposite to the field, an error in
-  /// the length would grow like the angle. Spins at equilibrium keep their bits.
+  /// the length would grow like the angle. Spins that `rests` marks (no field or no damping) keep
+  /// their bits.
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> kept_on_sphere(Vec3<Value> const& q,
                                                                 Mask const& rests) {
     Value const factor = multiply_add(Value(Scalar(-0.5)), dot(q, q), Value(Scalar(1.5)));

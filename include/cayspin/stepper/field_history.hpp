@@ -26,7 +26,7 @@ class FieldHistory {
   /// Returns the memory for the next field: that of the oldest.
   Field const& following() const { return (*this)[Count - 1]; }
 
-  /// Records that the next field is stored, and that a step of dt starts from it.
+  /// Records that following() now has the next field, and that a step of dt starts from it.
   void remember(double dt) {
     newest_ = (newest_ + Count - 1) % Count;
     known_ = std::min(known_ + 1, Count);
@@ -47,8 +47,8 @@ class FieldHistory {
     }
   }
 
-  /// Returns times of the state after the last step, as 0, and of the Count - 1 fields before it,
-  /// in steps of `unit`.
+  /// Returns the times of the state after the last step, which is 0, and of the Count - 1 fields
+  /// before it, as multiples of `unit`.
   std::array<double, Count> times(double unit) const {
     std::array<double, Count> times{};
     double sum = 0;

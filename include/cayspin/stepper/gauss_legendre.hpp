@@ -10,8 +10,9 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Gauss's collocation method for m' = a(t) x m on one site, given f_i = dt a(nodes_i): Y_i = m +
-/// sum_j a_ij f_j x Y_j, m' = m + sum_j b_j f_j x Y_j. The linear equations are solved exactly, so
+/// Gauss's collocation method for dm/dt = a(t) x m on one site, given f_i = dt a(nodes_i): Y_i = m
+/// + sum_j a_ij f_j x Y_j, m1 = m + sum_j b_j f_j x Y_j. The linear equations are solved exactly,
+/// so
 /// |m| is preserved for any f. (Hairer, Lubich, Wanner 2006, Sec. II.1.3 and IV.2.1)
 template <int Stages>
 struct GaussLegendre;
@@ -19,10 +20,10 @@ struct GaussLegendre;
 template <>
 struct GaussLegendre<1> {
   static constexpr std::array nodes{0.5};
-  /// Eigenvalue of the matrix a. If there are two, its conjugate is the other.
+  /// Eigenvalue of the matrix a_ij. If there are two, the other is its conjugate.
   static constexpr std::complex<double> eigenvalue{0.5, 0};
 
-  /// Returns m', which is cay(f) m.
+  /// Returns m1, which is cay(f) m.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> solve(Vec3<Value> const (&f)[1],
                                                        Vec3<Value> const& m,
@@ -37,19 +38,20 @@ template <>
 struct GaussLegendre<2> {
   static constexpr double sqrt3 = 1.7320508075688772;
   static constexpr std::array nodes{0.5 - sqrt3 / 6, 0.5 + sqrt3 / 6};
-  /// With the eigenvector (1, i turned).
+  /// The eigenvector is (1, i turned).
   static constexpr std::complex<double> eigenvalue{0.25, sqrt3 / 12};
   static constexpr double turned = -2 - sqrt3;
 
-  /// Returns m'.
+  /// Returns m1.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> solve(Vec3<Value> const (&f)[2],
                                                        Vec3<Value> const& m,
                                                        Vec3<Value> (&stage)[2]) {
     // With u = f_1 / 4, v = f_2 / 4, p_1 = u x Y_1, p_2 = v x Y_2:
     // Y_1 = m + p_1 + (1 - 2/sqrt3) p_2, Y_2 = m + (1 + 2/sqrt3) p_1 + p_2.
-    // (1 - u x)^-1 = s R with s = 1 / (1 + |u|^2), R = 1 + u x + u u^T. Without Y_1:
-    // Y_2 - p_2 + (s R - 1) p_2 / 3 = m + (1 + 2/sqrt3) (s R - 1) m, of rows a, b, c.
+    // (1 - u x)^-1 = s R with s = 1 / (1 + |u|^2), R = 1 + u x + u u^T. Eliminating Y_1 leaves a
+    // linear system for Y_2, whose matrix has the rows a, b, c: Y_2 - p_2 + (s R - 1) p_2 / 3 = m +
+    // (1 + 2/sqrt3) (s R - 1) m.
     auto const plus = as_value<Value>(1 + 2 / sqrt3), minus = as_value<Value>(1 - 2 / sqrt3);
     Vec3<Value> const u = Value(0.25) * f[0], v = Value(0.25) * f[1];
     Value const s = Value(1) / (Value(1) + dot(u, u));
@@ -69,7 +71,7 @@ struct GaussLegendre<2> {
     Vec3<Value> const p2 = cross(v, stage[1]), w = multiply_add(minus, p2, m);
     stage[0] = w + turned_by(s, u, w);
     Vec3<Value> const change = Value(2) * (cross(u, stage[0]) + p2);
-    // Round-off changes the length by |f| epsilon; this reverts it.
+    // Round-off changes the length by |f| epsilon; this is reverted.
     Value const longer = dot(change, multiply_add(Value(0.5), change, m)) / square_to_divide_by(m);
     return m + multiply_add(Value(-longer), m + change, change);
   }

@@ -30,7 +30,7 @@ struct ImplicitOptions {
 
 namespace detail {
 
-/// One iterate of an implicit step, from A at `level`: the estimate of the end or of the midpoint.
+/// One iterate of an implicit step: the estimate of the end or of the midpoint, from A at `level`.
 template <class Isotropy, class Rotation, class Generator, class Real>
 struct ImplicitStage {
   Generator generator;
@@ -54,7 +54,7 @@ struct ImplicitStage {
 };
 
 /// sigma at the start of an implicit step, for isotropies that compute it from the step's solution.
-/// Zero and Constant do not.
+/// Zero and Constant do not, and use this empty one.
 template <class Spins, class Isotropy>
 struct ImplicitSigma {
   static constexpr bool is_there = false;
@@ -64,7 +64,7 @@ struct ImplicitSigma {
   static std::size_t bytes() { return 0; }
 };
 
-/// m1 = R(dt xi(p)) m0 with p = m1, or with p half way between m0 and m1.
+/// Step m1 = R(dt xi(p)) m0, where p is m1 or, if AtMiddle, half way between m0 and m1.
 template <class Spins, class Isotropy, class Rotation, bool AtMiddle>
 class Implicit : public StepperBase<Spins> {
  public:
@@ -138,7 +138,7 @@ class Implicit : public StepperBase<Spins> {
       map(i == 0 ? spins : level_, next_);
       change = largest_difference(exec, i == 0 ? spins : level_, next_);
       if (change <= tolerance) return true;
-      // Below a few hundred epsilons, a change that no longer falls is round-off.
+      // A small change that no longer falls is round-off.
       stalled = change < smallest ? 0 : stalled + 1;
       if (change <= 512 * tolerance && stalled == 4) return true;
       if (!(change < 100 * smallest)) break;

@@ -115,21 +115,22 @@ class ClassicalRk4 : public ClassicalRungeKutta<Spins, tableau::Classical4> {
   explicit ClassicalRk4(Spins const& like) : ClassicalRk4::ClassicalRungeKutta(like) {}
 };
 
-/// Euler's method in space, order 1, each step divided by its length at the end.
+/// Euler's method in space, order 1, with each spin divided by its length at the end of a step.
 template <class Spins>
 class ProjectedEuler : public ProjectedRungeKutta<Spins, tableau::Euler> {
  public:
   explicit ProjectedEuler(Spins const& like) : ProjectedEuler::ProjectedRungeKutta(like) {}
 };
 
-/// Heun's method in space, order 2, each step divided by its length at the end.
+/// Heun's method in space, order 2, with each spin divided by its length at the end of a step.
 template <class Spins>
 class ProjectedHeun : public ProjectedRungeKutta<Spins, tableau::Heun> {
  public:
   explicit ProjectedHeun(Spins const& like) : ProjectedHeun::ProjectedRungeKutta(like) {}
 };
 
-/// The classical Runge-Kutta method in space, order 4, each step divided by its length at the end.
+/// The classical Runge-Kutta method in space, order 4, with each spin divided by its length at the
+/// end of a step.
 template <class Spins>
 class ProjectedRk4 : public ProjectedRungeKutta<Spins, tableau::Classical4> {
  public:

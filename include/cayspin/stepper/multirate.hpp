@@ -27,18 +27,18 @@ struct MultirateOptions {
 };
 
 /// A one-step method in substeps, during which one expensive term of the field (SlowField) is
-/// interpolated in time, so that it is evaluated once a step. Of order Order, if the method has
-/// that order.
+/// interpolated in time, so that it is evaluated once a step. The order is Order, or that of the
+/// method if it is lower.
 ///
 /// A step predicts the expensive field from its last values, takes its substeps, and evaluates the
 /// expensive field at their end. It then repeats the substeps from the start with the field
 /// interpolated between that value and the last ones. The value is kept for the next step. Without
-/// the second pass, feedback through the field amplifies short waves at any step.
+/// the second pass, feedback through the field amplifies short waves at any dt.
 ///
 /// Order 2 and 3 interpolate by the polynomials through the last Order - 1 values (first pass) and
 /// Order values (second pass). A mode of frequency w in the expensive field is damped by about (w
 /// dt)^4 / 3 more per step. Order 4 uses polynomials chosen for stability (multirate_weights.hpp),
-/// through 4 and 5 values; after unequal steps, the polynomial of degree 3. It changes the damping
+/// from 4 and 5 values. After unequal steps it interpolates 3 and 4 values. It changes the damping
 /// by (w dt)^6.
 ///
 /// With D the largest eigenvalue of the expensive field, no linear mode grew up to dt D = .05, .24,
@@ -84,8 +84,8 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
 
   /// Returns the generator evaluations by the inner method so far.
   std::int64_t evaluations_done() const { return evaluations_done_; }
-  /// Returns the evaluations of the expensive field by steps so far: one a step, plus in each start
-  /// one more and those of the method's substeps.
+  /// Returns the evaluations of the expensive field by steps so far: one a step. A first step adds
+  /// one more, and those in the stages of its substeps.
   std::int64_t slow_evaluations_done() const { return slow_evaluations_done_; }
   std::size_t work_bytes() const {
     return stepper_.work_bytes() + (past_fields + 2) * begin_.bytes();
@@ -155,7 +155,7 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   template <class Exec, class Generator>
   void go_on(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     past_.remember(dt);
-    // At first the value at the end is missing: nodes and values start with the second.
+    // In the first pass the value at the end is missing: nodes and values start with the second.
     auto nodes = past_.times(dt);
     std::array<Spins, past_fields> values;
     std::size_t known = std::min(past_.known(), past_fields - 1);
@@ -231,8 +231,8 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   std::int64_t substeps_;
   Spins begin_;  // the spins at the start of a step
   detail::FieldHistory<Spins, past_fields> past_;
-  bool knows_begin_ =
-      false;  // past_.following() is the expensive field at the start of the next step
+  // past_.following() is the expensive field at the start of the next step.
+  bool knows_begin_ = false;
   std::int64_t evaluations_done_ = 0, slow_evaluations_done_ = 0;
 };
 

@@ -22,7 +22,8 @@ class NewtonKrylov {
 
  public:
   /// `g(v, to)` fills `to`. `v` is the first guess and becomes the solution; `image` becomes g(v).
-  /// Returns true if |g(v) - v| fell below `tolerance` within `iterations`.
+  /// Returns true if, within `iterations`, the components of g(v) - v fell to `tolerance`, or to
+  /// somewhat more where round-off prevents further progress.
   template <class Exec, class Map>
   bool solve(Exec const& exec, Map const& g, Spins const& v, Spins const& image, double tolerance,
              int iterations) {
@@ -37,7 +38,7 @@ class NewtonKrylov {
       double scale = 1, before = norm;
       for (;; scale /= 2) {
         bool const is_last = scale < 1e-3;
-        // The rest is round-off.
+        // A small remainder that does not fall is round-off.
         if (scale < 1 && largest <= (is_last ? 512 : 8) * tolerance) {
           g(v, image);
           return true;

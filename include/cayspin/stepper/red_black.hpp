@@ -15,17 +15,17 @@ namespace cayspin::inline v0_2 {
 
 /// Splitting by the two colours of a checkerboard, of order 2 or 4, for the Landau-Lifshitz
 /// equation with nearest-neighbour couplings. While the spins of one colour move, their neighbours
-/// are fixed. Each moves by the exact flow of one spin in a fixed field, with precession and
-/// damping together. In place: no work memory.
+/// are fixed. Each spin moves by the exact flow of one spin in a fixed field, with precession and
+/// damping together. Works in place, without work memory.
 ///
 /// On-site terms (anisotropy, a local demagnetising field) are evaluated at the mean of the spin
 /// before and after the move, by iteration. Field terms are therefore also evaluated at spins
 /// shorter than one, and at zero. Without damping, a step of -dt undoes a step of dt.
 ///
-/// Energies that are quadratic in the spins and do not depend on t: without damping both orders
-/// conserve them to round-off. With damping, order 2 never raises them; order 4 may, because one of
+/// If the energy is quadratic in the spins and does not depend on t, both orders conserve it to
+/// round-off without damping. With damping, order 2 never raises it; order 4 may, because one of
 /// its steps goes backwards. This holds for any dt at which the iteration converges: |dt| (1 +
-/// damping) times the strength of the on-site terms below about 1/2.
+/// damping) times the strength of the on-site terms must be below about 1/2.
 template <class Spins, int Order>
 class RedBlack : public detail::StepperBase<Spins> {
   static_assert(Order == 2 || Order == 4, "RedBlack is of order 2 or 4.");
@@ -152,7 +152,8 @@ class RedBlack : public detail::StepperBase<Spins> {
   std::int64_t passes_done_ = 0;
 };
 
-/// Red-black splitting of order 2 (RedBlack): two passes over half of the spins per step.
+/// Red-black splitting of order 2 (RedBlack): three passes over half of the spins per step, of
+/// which consecutive steps of a batch share one.
 template <class Spins>
 class RedBlack2 : public RedBlack<Spins, 2> {
  public:

@@ -18,7 +18,8 @@
 namespace cayspin::inline v0_2::detail {
 
 /// One pass over a colour, for fractions of a step: one flow of every spin, or two flows where two
-/// steps meet. `length` and `middle` of each flow are in steps, from the start of the step.
+/// steps meet. `length` is that of each flow, and `middle` the time of its midpoint from the start
+/// of the step, both in units of dt.
 struct ColourPass {
   std::int32_t colour = 0, flows = 1;
   bool of_one_step = true;
@@ -75,12 +76,12 @@ KOKKOS_FORCEINLINE_FUNCTION Value largest_component(Vec3<Value> const& v) {
 /// itself. Multiples of the spin are omitted, because they do not move it. The spin moves by the
 /// exact flow in the fixed field N + D(mean), mean = (q + q')/2 of the spin before (q) and after
 /// (q'); solved by iteration. Then (q' - q).(N + D(mean)) is zero without damping and positive with
-/// damping. An energy that is quadratic in the spins falls by exactly this number in every step.
+/// damping. An energy that is quadratic in the spins falls by exactly this number in every move.
 template <class Generator, class Real>
 struct RedBlackStage {
   Generator generators[2];  // prepared for the midpoints of the flows
   SiteArray<Real, 3> spins;
-  bool changes;  // between the two
+  bool changes;  // the generator, between the two
   Real dt[2];
   std::int32_t flows, colour;
   bool joined;  // flows in equal fields become one flow
@@ -159,7 +160,7 @@ struct RedBlackStage {
       d_ = own(q_);
       if (!varies(stage)) return;
 
-      // Converged: the remaining change moves the spin less than the rounding of the field does.
+      // Changes below enough_ move the spin less than the rounding of the field does.
       constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
       Value const rate = flow_.damping + Value(Real(flow_.precession ? 1 : 0));
       enough_ =

@@ -157,7 +157,7 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
     swap(spins, memory_.end());
   }
 
-  // Runs the kernels of one step; of two if each step swaps the memory of spins and level.
+  // Returns the loops of one step, or of two if each step swaps the memory of the spins.
   template <class Prepared>
   auto loops_of_steps(Prepared const& prepared, Spins& spins, double dt) {
     auto const loop = [&]<int Stage>(std::integral_constant<int, Stage>) {

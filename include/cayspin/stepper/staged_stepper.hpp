@@ -18,15 +18,15 @@ namespace cayspin::inline v0_2 {
 /// Parameters of a run that determine a stepper's work memory.
 struct PredictedRun {
   int threads = 1;
-  bool by_time_only = true;  ///< the generator is prepared from the time, not the spins (Generator)
+  bool by_time_only = true;  ///< the generator is prepared from t, not from the spins (FieldTerm)
 };
 
 namespace detail {
 
 /// Base class of steppers with Runge-Kutta stages, for constant or adaptive steps. On a host, a
 /// step sweeps through a large field once, unless the generator needs all spins of a stage
-/// beforehand (a nonlocal field). Otherwise each stage is one fused kernel. Memory holds the fields
-/// that passes need or the buffers of a sweep.
+/// beforehand (a nonlocal field). Otherwise each stage is one fused kernel. `Memory` holds the
+/// fields that passes need or the buffers of a sweep.
 template <class Spins, class Tableau, class Update, class Isotropy, class Memory>
 class StagedStepper : public StepperBase<Spins> {
  public:

@@ -10,25 +10,27 @@
 
 namespace cayspin::inline v0_2 {
 
-/// A time interval in which steps are at most max_dt long; a longer step that reaches it ends at
-/// its start. max_dt = 0 is a jump of the field between `begin` and `end`, a few roundings of t
-/// apart: steps end at `begin`, and a new run starts at `end` with the same spins.
+/// A time interval in which steps are at most max_dt long; a longer step that would reach it ends
+/// at its start. max_dt = 0 stands for a jump of the field between `begin` and `end`, which are a
+/// few roundings of t apart: steps end at `begin`, and a new run starts at `end` with the same
+/// spins.
 struct StepBound {
   double begin = 0, end = 0, max_dt = 0;
 };
 
 namespace detail {
 
-/// Returns dt, adjusted to reach the end (`left` away) exactly without a very short last step.
+/// Returns dt, adjusted to reach the end (`left` away) exactly, without a very short last step.
 inline double step_within(double left, double dt) {
   if (dt >= left * (1 - 1e-9)) return left;
   return 2 * dt > left ? 0.5 * left : dt;
 }
 
-/// Bounds on the length of steps beyond their error control.
+/// Bounds on the length of steps, in addition to their error control.
 class StepBounds {
  public:
-  /// Throws std::invalid_argument unless the bounds are ascending and do not overlap.
+  /// Throws std::invalid_argument unless the bounds are ascending and do not overlap, with max_dt
+  /// >= 0.
   StepBounds(std::vector<StepBound> bounds, std::string const& region) : all_(std::move(bounds)) {
     double last = all_.empty() ? 0 : all_.front().begin;
     for (auto const& bound : all_) {

@@ -16,8 +16,8 @@ namespace cayspin::inline v0_2 {
 
 /// Thrown when an adaptive step would have to be shorter than min_dt or than the resolution of t:
 /// the values are not finite, or the field is not smooth. The spins are those before the step;
-/// under integrate() they are those last due for observers, or later ones. The next step starts a
-/// run from them.
+/// under integrate() they are those of the last time due for observers, or later ones. The next
+/// step starts a run from them.
 class StepTooSmall : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -31,8 +31,8 @@ struct StepOptions {
   double min_dt = 0;    ///< a step that would be shorter throws StepTooSmall
   double max_dt = std::numeric_limits<double>::infinity();
   double end = std::numeric_limits<double>::infinity();  ///< no stage is evaluated after this time
-  /// Intervals in which the field jumps or changes faster than the steps could detect: stages may
-  /// miss what happens between them. Ascending, disjoint.
+  /// Intervals in which the field jumps or changes too fast for steps to detect, because it happens
+  /// between their stages. Ascending and disjoint.
   std::vector<StepBound> bounds = {};
 
   /// The smallest tolerance: below it, round-off hides the error of a step.
@@ -136,7 +136,7 @@ class OwnSteps {
   /// Outcome of an attempted step. The error is an angle.
   struct Try {
     double error = 0;
-    double most_growth = std::numeric_limits<double>::infinity();  // of the next dt
+    double most_growth = std::numeric_limits<double>::infinity();  // largest next dt / dt
     bool is_solved = true;  // if false there is no error, and half the step is tried
   };
 

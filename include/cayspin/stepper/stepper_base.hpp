@@ -23,8 +23,8 @@ template <class Stepper>
   requires requires { Stepper::ghosts; }
 inline constexpr int ghosts_of<Stepper> = Stepper::ghosts;
 
-/// Base class of steppers; each call starts with its static checks, profiling region and run-time
-/// checks.
+/// Base class of steppers. Each call starts with the static checks, the run-time checks and the
+/// profiling region of begin_step.
 template <class Spins>
 class StepperBase {
  public:
@@ -65,7 +65,8 @@ class StepperBase {
     return labels;
   }
 
-  /// Returns a profiling region, which ends with its lifetime. `call`: name of the member function.
+  /// Checks the spins, and returns a profiling region, which ends with its lifetime. `call`: name
+  /// of the member function.
   template <class Exec>
   [[nodiscard]] Kokkos::Profiling::ScopedRegion begin_step(Exec const&, Spins const& spins,
                                                            char const* call = "::step") const {

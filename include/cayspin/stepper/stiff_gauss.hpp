@@ -46,7 +46,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
   using typename detail::StepperBase<Spins>::Real;
   static constexpr int order = Order;
   static constexpr int stages = Order / 2;
-  // The grids are in single precision.
+  // The solver's grids are in single precision, so they take half as many fields of doubles.
   static constexpr int work_fields = 2 + 5 * stages + History::fields + (sizeof(Real) == 8 ? 4 : 8);
 
   explicit StiffGauss(Spins const& like, StiffOptions options = {})
@@ -57,7 +57,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
   /// Returns how many steps, or parts of steps, were halved so far.
   std::int64_t halvings_done() const { return halvings_done_; }
 
-  /// Forgets the previous steps.
+  /// Forgets the previous steps and the measured exchange.
   void reset() {
     exchange_ = {};
     history_.forget();
@@ -134,7 +134,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
   }
 
   /// Prepares a step: checks that the spins are not the stepper's own memory, and measures the
-  /// exchange.
+  /// exchange unless it is known.
   template <class Exec, class Generator>
   void make_ready(Exec const& exec, Generator const& generator, Spins const& spins, double t) {
     for (Spins const* own : {&end_, &start_}) this->require_other_memory(spins, *own);
@@ -174,7 +174,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
   }
 
   /// Leaves the spins after the step in end_, and A at its stages in x_. `Shifted`: corrections use
-  /// K + local_ for K.
+  /// K + local_ in place of K. Returns false if it does not converge.
   template <bool Shifted = false, class Exec, class Generator>
   bool solve(Exec const& exec, Generator const& generator, Spins const& spins, double t, double dt,
              History* history) {
@@ -189,7 +189,8 @@ class StiffGauss : public detail::StepperBase<Spins> {
       if (!(change < 1)) return false;  // diverging, or not a number
       if (i == 0) {
         tolerance = tolerance_of(generator, history, change);
-        // Only a second correction shows how fast they converge.
+        // A second correction is needed to measure how fast they converge. If this was measured a
+        // few steps ago, one correction may be enough.
         bool const measures = !has_history || contraction_ > 0.1 || ++unmeasured_ >= 16;
         if (!measures && contraction_ * change <= tolerance) return true;
       } else {
@@ -214,7 +215,8 @@ class StiffGauss : public detail::StepperBase<Spins> {
     if constexpr (requires { generator.conserves_energy(); })
       if (generator.conserves_energy()) return 4 * epsilon;
     if (history != nullptr && history->is_complete()) return history->tolerance(first);
-    // `first` is of this order in the rotation angle; without history it is the whole rotation.
+    // `first` is proportional to this power of the step's rotation; without history it is the whole
+    // rotation.
     double const of_rotation = 1 + (history != nullptr ? history->known() : 0);
     return std::max(std::min(1e-3 * first, 0.01 * std::pow(first, (Order + 1) / of_rotation)),
                     16 * epsilon);
@@ -296,7 +298,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
   detail::MeasuredExchange exchange_;
   double local_ = 0;
   double last_dt_ = 0;
-  double contraction_ = 1;              // ratio of the last two compared corrections
+  double contraction_ = 1;              // last measured second correction / first correction
   int unmeasured_ = 0;                  // steps since then
   int corrections_ = 0;                 // of the last step
   int extrapolated_ = History::fields;  // earlier values that an extrapolation uses

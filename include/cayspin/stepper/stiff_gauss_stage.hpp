@@ -12,8 +12,8 @@
 // Kernels of StiffGauss. x is the estimate of A at the stages.
 namespace cayspin::inline v0_2::detail {
 
-/// Functor that extrapolates x linearly from x of earlier steps, and computes the spins at the
-/// stages.
+/// Functor that extrapolates x by a polynomial from x of earlier steps, and computes the spins at
+/// the stages.
 template <int Stages, int Earlier, class Real>
 struct GuessStage {
   SiteArray<Real, 3> earlier[std::size_t{Earlier}];
@@ -51,8 +51,9 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> across_spin(Vec3<Value> const& v, Vec3<V
   return select<Value>(vacant, zero<Value>(), multiply_add(Value(-dot(v, m) / divisor), m, v));
 }
 
-/// Functor that computes the residual A(Y) - x normal to the spin Y at a stage. Its part along Y
-/// has no effect, since x acts as x x Y; that part of x is replaced. Zero on a vacant site.
+/// Functor that computes the part of the residual A(Y) - x normal to the spin Y at a stage; zero on
+/// a vacant site. Parts along Y have no effect, since only the cross product of x and Y counts.
+/// That of x is removed.
 template <class Generator, class Real>
 struct ResidualStage {
   Generator generator;
@@ -76,9 +77,9 @@ struct ResidualStage {
   }
 };
 
-/// Functor that adds the solution normal to the spins at the stages to x, and computes the spins
-/// there and at the end of the step. `Scaled`: solutions are multiplied by a complex factor, a
-/// second one by its conjugate. Values: the largest |change|^2.
+/// Functor that adds to x the part of the solution normal to the spins at the stages, and computes
+/// the spins there and at the end of the step. `Scaled`: the first solution is multiplied by a
+/// complex factor, a second one by its conjugate. The value is the largest |change|^2.
 template <int Stages, bool Scaled, class Real>
 struct CorrectStage {
   SiteArray<Real, 6> solution[std::size_t{Stages}];
@@ -123,7 +124,7 @@ struct CorrectStage {
     if constexpr (Stages == 1) {
       v[0] = part(0, 0) + cross(Vec3<Value>(site.load(stage[0])), part(0, 3));
     } else {
-      // z + z~ and i turned (z - z~)
+      // With solutions z and z~: z + z~ at the first stage, i turned (z - z~) at the second.
       auto const turned = as_value<Value>(GaussLegendre<2>::turned);
       Vec3<Value> const a = part(0, 0), b = part(0, 3), c = part(1, 0), d = part(1, 3);
       v[0] = (a + c) + cross(Vec3<Value>(site.load(stage[0])), b + d);
@@ -132,7 +133,7 @@ struct CorrectStage {
   }
 };
 
-/// Functor that sums A.m.
+/// Functor that computes A.m.
 template <class Generator, class Real>
 struct SumAlongSpins {
   Generator generator;
@@ -145,8 +146,8 @@ struct SumAlongSpins {
   }
 };
 
-/// Functor that sums weighted changes of the spins over steps, and turns the sum by the spins at a
-/// stage: a vector that corrections can be applied to.
+/// Functor that sums weighted changes of the spins over steps, and stores the cross product of the
+/// spins at a stage and this sum: a right side for the solver of corrections.
 template <class Real>
 struct SecondDifference {
   SiteArray<Real, 3> spins[4];  // at the end of a step, at its start, at the starts of those before
@@ -158,7 +159,7 @@ struct SecondDifference {
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     store(site, zero<typename Site::value_type>(), 3);
   }
-  /// Adds the changes over this many steps to the stored one.
+  /// Adds the weighted changes over `count` steps to `sum`, and stores its cross product.
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void store(Site const& site, Vec3<Value> sum, int count) const {
     Vec3<Value> later = site.load(spins[0]);
@@ -188,8 +189,8 @@ struct SecondDifferenceWithEnd {
   }
 };
 
-/// Functor that computes the spins within a step: those at its start, turned by `whole` A of its
-/// stage, and by `slope` times the change of A since the previous stage.
+/// Functor that computes the spins within a step: those at its start, turned by f = `whole` times A
+/// at its stage plus `slope` times the change of A since the previous step's stage.
 template <class Real>
 struct StiffDenseOutput {
   SiteArray<Real, 3> begin, last, before;

@@ -21,7 +21,7 @@ struct StiffOptions {
   /// small and the order is 4.
   double tolerance = 0;
   int iterations = 30;  ///< corrections before the step is halved
-  int halvings = 12;    ///< of a step, before NotConverged
+  int halvings = 12;    ///< how often a step is halved before it throws NotConverged
 };
 
 namespace detail {
@@ -47,7 +47,7 @@ class StiffHistory {
     times_ = times_of_equal_steps();
     usual_ = std::numeric_limits<double>::infinity();
   }
-  /// Takes x of the last step, and leaves other memory in it.
+  /// Takes the fields x of the last step, and leaves other memory in their place.
   void remember(std::array<Spins, std::size_t{Stages}>& x) {
     std::rotate(earlier_.begin(), earlier_.end() - Stages, earlier_.end());
     std::rotate(times_.begin(), times_.end() - Stages, times_.end());
@@ -63,7 +63,7 @@ class StiffHistory {
     for (double& time : times_) time /= ratio;
   }
 
-  /// For cayspin::serialize; after unequal steps it includes times.
+  /// For cayspin::serialize. Methods with unequal steps visit the times, too.
   template <class Visit>
   void visit_times(Visit const& visit) {
     for (std::size_t i = 0; i < times_.size(); ++i)
@@ -86,10 +86,10 @@ class StiffHistory {
     }
   }
 
-  /// Returns weights for half the second derivative of the rates of the spins in units of dt, from
-  /// the changes over a step, over the one before, and over the one before that; with `has_end`
-  /// from dt times the rate at the end instead of the last. For a first step they give the first
-  /// derivative.
+  /// Returns weights that give half the second derivative of the spins' rate, in units of dt, from
+  /// the changes over the last three steps, latest first. With `has_end`, dt times the rate at the
+  /// end of the last step takes the place of the third change. For a first step the weights give
+  /// the first derivative.
   std::array<double, 3> second_difference(bool has_end) const
     requires(Stages == 1)
   {
@@ -100,7 +100,8 @@ class StiffHistory {
             1 / ((other - now) * (other - before) * (has_end ? 1 : one_before))};
   }
 
-  /// Interpolates within the last step at this share of it, with A linear since the previous step.
+  /// Interpolates at this share of the last step, with A linear in time through the stages of the
+  /// last two steps.
   StiffDenseOutput<Real> dense_output(double dt, double share) const
     requires(Stages == 1)
   {
@@ -116,8 +117,8 @@ class StiffHistory {
   }
 
   /// Returns the bound on the error that corrections leave, given the first correction. Spin waves
-  /// that are too short for dt are not damped, and extrapolation amplifies their remains. A first
-  /// correction larger than usual is therefore not a measure.
+  /// that are too short for dt are not damped, and extrapolation amplifies what is left of them. A
+  /// first correction therefore counts as at most 1.2 times the usual one.
   double tolerance(double first) {
     double const least = 16 * epsilon;
     first = usual_ = std::clamp(first, least, std::max(least, 1.2 * usual_));
@@ -148,7 +149,7 @@ class StiffHistory {
   std::array<Spins, std::size_t{fields}> earlier_;
   Times times_ = times_of_equal_steps();  // from the start of the next step, in units of dt
   int known_ = 0;
-  double usual_ = std::numeric_limits<double>::infinity();  // first correction
+  double usual_ = std::numeric_limits<double>::infinity();  // usual first correction
 };
 
 }  // namespace detail

@@ -5,10 +5,11 @@
 
 // Explicit Butcher tableaux as data. To add a Runge-Kutta method, write a struct like these.
 // - a: stages x stages, strictly lower triangular; b: weights; c: stage times in units of dt.
-// Embedded tableaux also have an error estimate and interpolate between steps. They use one more
+// Embedded tableaux also have an error estimate and interpolate within a step. They use one more
 // stage: the generator at the end of the step, which is the first one of the next step.
-// - error: weights, for all stages and that one, of the step minus the embedded solution of order
-// embedded_order.
+// - error: weights, of all stages and that one, that give the step minus the embedded solution,
+// which
+//   is of order embedded_order.
 // - dense: for each stage, the coefficients of s, s^2, ... s^5 in its weight at t + s dt, of order
 // dense_order.
 namespace cayspin::inline v0_2::tableau {
@@ -54,9 +55,10 @@ struct ThreeEighths4 {
   static constexpr double c[4] = {0, 1. / 3, 2. / 3, 1};
 };
 
-/// Six stages of order 4 with the structure of RK4: each stage uses one slope, from the start of
-/// the step. The weights solve the eight conditions of order 4 to 2e-14. Made for stability along
-/// the imaginary axis: up to dt omega = 0.82 per stage with a little damping; RK4 has 0.71.
+/// Six stages of order 4 with the structure of RK4: each stage starts from the spins at the start
+/// of the step and uses one slope. The weights satisfy the eight conditions of order 4 to 2e-14.
+/// Made for stability along the imaginary axis: up to dt omega = 0.82 per stage with a little
+/// damping; RK4 has 0.71.
 struct Oscillatory64 {
   static constexpr int stages = 6, order = 4;
   static constexpr double c[6] = {0,

@@ -13,15 +13,15 @@
 
 #include <limits>
 
-// Steps that use the generator at two points, one of which is stored in a field: finite differences
+// Steps that use two values of the generator, one of which is stored in a field: finite differences
 // of A_o, and the two-step method of Adams and Bashforth.
 namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// Inputs of a rule at a site: the spin m that A belongs to, the spin m0 at the start of the step,
-/// A there including its isotropy, the stored vector, and dt. The rule returns the step's
-/// coordinates F and sets `kept` to the vector to store.
+/// Inputs of a rule at a site: the spin m at which A is evaluated, the spin m0 at the start of the
+/// step, A including its isotropy, the stored vector, and dt. The rule returns the step's
+/// coordinates F and, if it writes, sets `kept` to the vector to store.
 template <class Value>
 struct TwoPoints {
   Vec3<Value> m, m0, a, kept;
@@ -38,7 +38,8 @@ struct PredictOrthogonal {
   }
 };
 
-/// F = dt (w + sigma m0), with the stored w, and sigma from A_o here.
+/// F = dt (w + sigma m0), where w is the stored A_o, and sigma comes from its difference to A_o
+/// here.
 struct ForwardDifference {
   static constexpr bool reads = true, writes = false;
   double cap;
@@ -51,7 +52,8 @@ struct ForwardDifference {
   }
 };
 
-/// F = dt (w + sigma m), w = A_o here, sigma from the stored one, `ratio` = dt / (previous dt).
+/// F = dt (w + sigma m); stores w. Here w is A_o at m, sigma comes from its difference to the
+/// stored A_o, and `ratio` is dt / (previous dt).
 struct BackwardDifference {
   static constexpr bool reads = true, writes = true;
   double cap, ratio;
@@ -147,7 +149,8 @@ struct TwoPointStage {
 }  // namespace detail
 
 /// A step that stores A between its two evaluations, or from one step to the next. Method defines
-/// how the step uses both (detail::ForwardDifferenceMethod and so on). Work memory: two fields.
+/// how the step uses the stored and the new A (detail::ForwardDifferenceMethod and so on). Work
+/// memory: two fields.
 template <class Spins, class Method, class Isotropy, class Rotation>
 class TwoPoint : public detail::StepperBase<Spins> {
   using Base = detail::StepperBase<Spins>;
@@ -174,10 +177,10 @@ class TwoPoint : public detail::StepperBase<Spins> {
 
   std::size_t work_bytes() const { return work_fields * next_.bytes(); }
 
-  /// Advances `spins` from t to t + dt under `generator`. A method that remembers the previous step
-  /// needs the `spins` at its end. Swaps the memory of `spins` with its own: take arrays of `spins`
-  /// again after a step. Throws std::invalid_argument when `spins` is not on the lattice given at
-  /// construction.
+  /// Advances `spins` from t to t + dt under `generator`. For a method that remembers the previous
+  /// step, `spins` must be those at the end of that step. A step may swap the memory of `spins`
+  /// with its own: take arrays of `spins` again after it. Throws std::invalid_argument when `spins`
+  /// is not on the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
@@ -220,7 +223,7 @@ class TwoPoint : public detail::StepperBase<Spins> {
     visit(next_);
   }
 
-  /// Uses `spins` as the state at t, one step of dt before the next one.
+  /// Uses `spins` as the state at t, from which the next call of `step` is one step of dt away.
   template <class Exec, class Generator>
   void remember(Exec const& exec, Generator const& generator, Spins const& spins, double t,
                 double dt)
