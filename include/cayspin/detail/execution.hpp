@@ -13,8 +13,8 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// True for host spaces, whose kernels run along rows in packs. On device spaces a kernel call is
-/// for a single site.
+/// True for host spaces, whose kernels run along rows in packs. Device kernels work on single
+/// sites.
 template <class Exec>
 inline constexpr bool is_host_execution =
     std::is_same_v<typename Exec::memory_space, Kokkos::HostSpace>;
@@ -43,7 +43,7 @@ bool runs_on_calling_thread(std::int64_t sites) {
   return is_synchronous<Exec> && sites <= calling_thread_sites;
 }
 
-/// The space that stands for the calling thread. Kokkos' tools see its kernels there.
+/// The space under which Kokkos' tools see kernels that run on the calling thread.
 #if defined(KOKKOS_ENABLE_SERIAL)
 using CallingThread = Kokkos::Serial;
 #else

@@ -74,8 +74,8 @@ struct ColourRowLoop {
   using Edge = PackOfColour<Value, true>;
   static constexpr std::int32_t pack_sites = 2 * lanes_of<Value>;
 
-  /// Packs that the inner loop left, which wait for a partner if the functor takes pairs. All are
-  /// served by one instance of the kernel, because kernels are large and slow to compile.
+  /// Packs that the inner loop leaves over. They wait for a partner if the functor takes pairs. All
+  /// are served by one instance of the kernel, because kernels are large and slow to compile.
   struct Waiting {
     struct Place {
       Row row;

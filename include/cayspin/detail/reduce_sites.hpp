@@ -22,8 +22,8 @@
 // with twice the digits, in their own order.
 namespace cayspin::inline v0_2::detail {
 
-// `sums`: how many of `Count` values are summed, from the first on. Of the others the maximum is
-// found.
+// `sums`: this many of the `Count` values, from the first on, are summed. Of each of the others the
+// maximum is found.
 struct Sum {
   template <int Count>
   static constexpr int sums = Count;
@@ -104,8 +104,8 @@ void for_each_pack_ends_first(RowLayout const& layout, std::int64_t task, std::i
     functor(Site<Value>(row, pack * lanes));
 }
 
-/// A sum of twice the digits, as two doubles. Knuth's formula gives the rounding error of each
-/// addition.
+/// A sum with twice the digits of a double, held as two doubles. Knuth's formula gives the rounding
+/// error of each addition.
 struct DoubledSum {
   double value = 0, error = 0;
 

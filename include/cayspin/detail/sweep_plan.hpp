@@ -15,9 +15,9 @@
 // (row_sweep.hpp).
 namespace cayspin::inline v0_2::detail {
 
-/// The planes or rows of one part. Unless the part ends at an open end of the lattice, each stage
-/// works on one plane or row more than the stage after it. The part beyond that end computes these
-/// planes or rows, too.
+/// The planes or rows of one part. At each end of the part, unless it is an open end of the
+/// lattice, a stage works on one plane or row more than the stage after it. The part beyond that
+/// end computes these planes or rows, too.
 template <class AlongAxis>
 struct SweepRange {
   std::int32_t begin, end, stages;
@@ -201,7 +201,7 @@ struct SweepPlan {
       of_stage.producer = Buffers::producer(b);
       of_stage.planes = std::min(Buffers::planes(b, lag), most_planes);
       if (of_stage.planes == 0) continue;
-      of_stage.seam_rows = Buffers::planes(b, 1) - 1;  // there stages are one row apart
+      of_stage.seam_rows = Buffers::planes(b, 1) - 1;  // at a seam, stages are one row apart
       of_stage.ring = size;
       size += of_stage.planes * ring_rows * row;
       if (blocks(rows) == 1) continue;

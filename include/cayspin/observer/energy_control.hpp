@@ -67,7 +67,7 @@ struct EnergyControlOptions {
 };
 
 /// Lagged energy control: an observer for undamped runs with any one-step or multistep method,
-/// called at the end of steps. A correction turns all spins towards or away from the field, m <-
+/// called at the end of steps. A correction turns all spins towards the field or away from it, m <-
 /// cay(kappa m x A) m with the same kappa = (E - E_0) / sum |A_o|^2, where A_o is the part of A
 /// normal to m. This is a Newton step to the initial energy, so that energy errors do not
 /// accumulate. The generator A must conserve an energy and not depend on t. kappa is of the order

@@ -49,8 +49,8 @@ class CellAxis {
     return largest;
   }
 
-  /// Weights that interpolate a cell's value linearly between centres of coarse cells: (1 - share)
-  /// of its parent's value and `share` of that of the coarse cell `beside` it.
+  /// Linear interpolation of a cell's value between the centres of coarse cells: (1 - share) times
+  /// the value of its parent, plus `share` times the value of the coarse cell `beside` the parent.
   struct Interpolation {
     std::size_t beside;
     double share;

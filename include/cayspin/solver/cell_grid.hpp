@@ -15,7 +15,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// A cell: the only one, or the first of a pack or row, on which a functor works.
+/// The cell on which a functor works, or the first cell of a pack or row.
 struct CellPlace {
   std::int32_t x, y, z;
 };

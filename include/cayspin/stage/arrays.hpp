@@ -12,10 +12,10 @@
 #include <cstdint>
 #include <type_traits>
 
-// The arrays of a Runge-Kutta stage, as whole fields, planes or rows. A pass locates them in
-// fields, a sweep in planes of fields and buffers; the kernel gets rows or, on devices, sites of
-// fields. A new array must be added to the functions here, to FieldsOfStep (memory.hpp) and
-// PlaneOfStep (sweep.hpp), and to the kernel.
+// The arrays of a Runge-Kutta stage, as whole fields, planes or rows. A pass starts from whole
+// fields, and a sweep starts from planes of fields and buffers. Both convert them to rows for the
+// kernel; on devices the kernel uses whole fields. A new array must be added to the functions here,
+// to FieldsOfStep (memory.hpp) and PlaneOfStep (sweep.hpp), and to the kernel.
 namespace cayspin::inline v0_2::detail {
 
 /// Kind selects the type of the arrays: WholeFields, Planes or Rows.
@@ -66,8 +66,8 @@ void find_arrays(Step const& step, StageArrays<Kind, Flow::stages>& arrays) {
   }
 }
 
-/// Converts the arrays to another kind. `to` has a function each for inputs, the stage's spins and
-/// outputs.
+/// Converts the arrays to another kind. `to` has one function for inputs, one for the stage's
+/// spins, and one for outputs.
 template <class Flow, class From, class Convert, class Arrays>
 KOKKOS_FORCEINLINE_FUNCTION void convert(StageArrays<From, Flow::stages> const& from,
                                          Convert const& to, Arrays& arrays) {
@@ -175,8 +175,8 @@ struct ToRow {
   }
 };
 
-/// Functor that prefetches the numbers at `ahead` of a row. Of a stencil it prefetches the row in
-/// the next plane, because the others have been read before.
+/// Functor that prefetches the numbers of a row at offset `ahead`. Of a stencil it prefetches the
+/// row in the next plane, because the others have been read before.
 template <class Real>
 struct Prefetch {
   std::ptrdiff_t ahead;

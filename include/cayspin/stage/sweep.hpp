@@ -112,7 +112,8 @@ struct StageBuffers {
   }
 };
 
-/// Decides whether a method sweeps, and with which plan. In passes it needs `WorkFields` fields.
+/// Decides whether a method sweeps, and with which plan. In passes the method needs `WorkFields`
+/// fields.
 template <class Spins, class Tableau, class Update, int WorkFields>
 struct SweepChoice {
   using Real = typename Spins::value_type;

@@ -12,10 +12,10 @@
 // The geometry of a Runge-Kutta method: how the generator of a stage gives an increment, and how
 // coordinates f, which are sums of increments, move a spin from m0, the spin at the start of the
 // step. increment(f, dt A, m, m0) is the increment of a stage at spin m, which is m0 moved by f.
-// `move` is for stages, `finish` for the end of the step, and displacement(f, m0) is finish(f, m0)
-// - m0. recovers_increments(stages) is true if a chain of `stages` stages (each uses only the
-// increment before it) does not store increments, but recomputes them from the spins to which they
-// move m0.
+// `move` is for stages and `finish` is for the end of the step; displacement(f, m0) is the change
+// of the spin, finish(f, m0) - m0. recovers_increments(stages) is true if a chain of `stages`
+// stages (each uses only the increment before it) does not store increments, but recomputes them
+// from the spins to which they move m0.
 namespace cayspin::inline v0_2::update {
 
 /// Runge-Kutta-Munthe-Kaas: f in the Lie algebra, m = Rotation(f) m0, f' = dRotation_f^-1 (A).

@@ -20,7 +20,8 @@ struct Compensated : Update {
 
 namespace detail {
 
-/// Returns the number of fields that the last stage of a step leaves for that of the next step.
+/// Returns the number of fields that the last stage of a step leaves for the last stage of the
+/// next.
 template <class Update>
 constexpr int carried_fields() {
   if constexpr (requires { Update::carried; }) return static_cast<int>(Update::carried.size());

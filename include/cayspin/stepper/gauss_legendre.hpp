@@ -10,10 +10,10 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Gauss's collocation method for dm/dt = a(t) x m on one site, given f_i = dt a(nodes_i): Y_i = m
-/// + sum_j a_ij f_j x Y_j, m1 = m + sum_j b_j f_j x Y_j. The linear equations are solved exactly,
-/// so
-/// |m| is preserved for any f. (Hairer, Lubich, Wanner 2006, Sec. II.1.3 and IV.2.1)
+/// Gauss's collocation method for dm/dt = a(t) x m on one site, given f_i = dt a(nodes_i):
+///   Y_i = m + sum_j a_ij f_j x Y_j, m1 = m + sum_j b_j f_j x Y_j.
+/// The linear equations are solved exactly, so that any f preserves |m|. (Hairer, Lubich, Wanner
+/// 2006, Sec. II.1.3 and IV.2.1)
 template <int Stages>
 struct GaussLegendre;
 
@@ -49,9 +49,9 @@ struct GaussLegendre<2> {
                                                        Vec3<Value> (&stage)[2]) {
     // With u = f_1 / 4, v = f_2 / 4, p_1 = u x Y_1, p_2 = v x Y_2:
     // Y_1 = m + p_1 + (1 - 2/sqrt3) p_2, Y_2 = m + (1 + 2/sqrt3) p_1 + p_2.
-    // (1 - u x)^-1 = s R with s = 1 / (1 + |u|^2), R = 1 + u x + u u^T. Eliminating Y_1 leaves a
-    // linear system for Y_2, whose matrix has the rows a, b, c: Y_2 - p_2 + (s R - 1) p_2 / 3 = m +
-    // (1 + 2/sqrt3) (s R - 1) m.
+    // (1 - u x)^-1 = s R with s = 1 / (1 + |u|^2), R = 1 + u x + u u^T. Without Y_1, this is a
+    // linear system for Y_2, whose matrix has the rows a, b, c:
+    //   Y_2 - p_2 + (s R - 1) p_2 / 3 = m + (1 + 2/sqrt3) (s R - 1) m.
     auto const plus = as_value<Value>(1 + 2 / sqrt3), minus = as_value<Value>(1 - 2 / sqrt3);
     Vec3<Value> const u = Value(0.25) * f[0], v = Value(0.25) * f[1];
     Value const s = Value(1) / (Value(1) + dot(u, u));

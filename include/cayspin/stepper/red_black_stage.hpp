@@ -18,8 +18,8 @@
 namespace cayspin::inline v0_2::detail {
 
 /// One pass over a colour, for fractions of a step: one flow of every spin, or two flows where two
-/// steps meet. `length` is that of each flow, and `middle` the time of its midpoint from the start
-/// of the step, both in units of dt.
+/// steps meet. Each flow has a length in time; `middle` is the time of its midpoint, from the start
+/// of the step. Both are in units of dt.
 struct ColourPass {
   std::int32_t colour = 0, flows = 1;
   bool of_one_step = true;

@@ -61,8 +61,8 @@ class StepController {
     if (!(options.first_dt >= 0)) refuse(": first_dt must not be negative");
   }
 
-  /// Returns the largest allowed error of one step, in radians; smaller than that of the run
-  /// because errors add up. Calibrated on switching, films and Heisenberg lattices
+  /// Returns the largest allowed error of one step, in radians. It is smaller than the tolerance of
+  /// the run, because errors add up. Calibrated on switching, films and Heisenberg lattices
   /// (docs/reports/trade.md): low orders take more steps.
   double step_tolerance() const {
     return options_.tolerance * (exponent_ < 0.25 ? 1.0 / 12 : 1.0 / 160);

@@ -46,7 +46,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
   using typename detail::StepperBase<Spins>::Real;
   static constexpr int order = Order;
   static constexpr int stages = Order / 2;
-  // The solver's grids are in single precision, so they take half as many fields of doubles.
+  // The solver's grids are always in single precision, and count half if Real is double.
   static constexpr int work_fields = 2 + 5 * stages + History::fields + (sizeof(Real) == 8 ? 4 : 8);
 
   explicit StiffGauss(Spins const& like, StiffOptions options = {})
@@ -87,10 +87,10 @@ class StiffGauss : public detail::StepperBase<Spins> {
     visit(end_);
   }
 
-  /// Advances `spins` from t to t + dt under `generator`. Swaps their memory with its own, so take
-  /// arrays of `spins` again after a step. Waits. If a field throws, `spins` are unchanged. Throws
-  /// NotConverged, with `spins` unchanged, when halved steps have no solution either, and
-  /// std::invalid_argument when `spins` is not on the lattice given at construction.
+  /// Advances `spins` from t to t + dt under `generator`. A step swaps the memory of `spins` with
+  /// its own, so take arrays of `spins` again after it. Waits. If a field throws, `spins` are
+  /// unchanged. Throws NotConverged, with `spins` unchanged, when halved steps have no solution
+  /// either, and std::invalid_argument when `spins` is not on the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);

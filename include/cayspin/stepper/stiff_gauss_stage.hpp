@@ -159,7 +159,7 @@ struct SecondDifference {
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     store(site, zero<typename Site::value_type>(), 3);
   }
-  /// Adds the weighted changes over `count` steps to `sum`, and stores its cross product.
+  /// Adds the weighted changes over `count` steps to `sum`, then stores the cross product.
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void store(Site const& site, Vec3<Value> sum, int count) const {
     Vec3<Value> later = site.load(spins[0]);
