@@ -116,6 +116,11 @@ TYPED_TEST(Columns, HaveNumbersForAllOfThem) {
   EXPECT_THROW(make(spins, std::vector<double>(7, -1.0)), std::invalid_argument);
   EXPECT_THROW(make(spins, {}, {1.0}), std::invalid_argument);
   EXPECT_THROW(make(replicas, {}), std::invalid_argument);
+  ScalarField<typename TypeParam::Real, typename Spins::memory_space> const factors(
+      "factors", spins.lattice());
+  EXPECT_THROW(
+      ThermalNoise<Spins>(spins, 0.5, {.temperature = 1, .columns_are_replicas = true}, factors),
+      std::invalid_argument);
 }
 
 }  // namespace

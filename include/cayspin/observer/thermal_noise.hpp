@@ -82,11 +82,15 @@ class ThermalNoise {
   /// Multiplies damping times temperature at each site by a factor, which may contain the damping,
   /// the temperature, or one over the moment; 0 where a spin does not move. Factors other than 0
   /// and 1 replace options.cell_sites and options.replicas, which must then be empty. Throws
-  /// std::invalid_argument if they are not, and for a negative or non-finite factor.
+  /// std::invalid_argument if they are not, if columns are to be replicas, and for a negative or
+  /// non-finite factor.
   ThermalNoise(Spins const& like, double damping, ThermalNoiseOptions const& options,
                ScalarField<Real, typename Spins::memory_space> const& factors)
       : ThermalNoise(like, damping, options) {
     require_lattice("cayspin::ThermalNoise", lattice_, factors.lattice());
+    if (options.columns_are_replicas)
+      throw std::invalid_argument(
+          "cayspin::ThermalNoise: columns with factors of sites cannot be replicas");
     auto const signs = detail::signs_of(factors, "cayspin::ThermalNoise: the factors");
     if (signs.negative)
       throw std::invalid_argument("cayspin::ThermalNoise: the factors must be >= 0 on every site");
