@@ -72,7 +72,7 @@ cayspin_status guarded(Work const& work) {
   }
 }
 
-/// Throws UsageError that names a null pointer.
+/// Returns *pointer; throws UsageError with `name` for a null pointer.
 template <class Type>
 Type& required(Type* pointer, char const* name) {
   if (pointer == nullptr)
@@ -230,7 +230,7 @@ cayspin_status cayspin_steps(cayspin_simulation const* simulation, int64_t* step
 cayspin_status cayspin_borrow_spins(cayspin_simulation* simulation, cayspin_array* spins) {
   return in_turn(simulation, [&](SceneRun& run) {
     required(spins, "spins");
-    // On a device this is a copy, which stays valid if it is requested again.
+    // On a device this is a copy, which must stay valid when it is requested again.
     if (!simulation->borrowed) simulation->borrowed.emplace(run.spins());
     *spins = array_of(simulation->borrowed->vectors);
   });

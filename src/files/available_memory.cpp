@@ -54,8 +54,8 @@ std::int64_t left_in(Group const& group, fs::path const& folder) {
   return std::max<std::int64_t>(0, *limit - std::max<std::int64_t>(0, used));
 }
 
-// Returns the memory left in a group, which the groups around it limit, too. In a container only
-// the root folder exists, and stands for its group.
+// Returns the memory left in a group and in the groups that contain it, whichever is least. In a
+// container only the root folder exists; it describes the container's group.
 std::int64_t left_around(Group const& group, fs::path const& root, fs::path const& name) {
   auto least = unlimited;
   for (auto inner = name.relative_path();; inner = inner.parent_path()) {

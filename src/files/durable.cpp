@@ -50,7 +50,7 @@ int sync_file(int file) {
 int sync_folder_of(std::filesystem::path const& path) {
   auto const folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   int const file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (file < 0) return errno == EACCES ? 0 : errno;  // a write-only file
+  if (file < 0) return errno == EACCES ? 0 : errno;  // a folder that may not be read
   int const error = ::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP ? 0 : errno;
   ::close(file);
   return error;

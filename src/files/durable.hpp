@@ -11,7 +11,7 @@ namespace cayspin::inline v0_2::io {
 
 int write_all(int file, void const* data, std::size_t bytes, std::uint64_t offset);
 
-/// Reads zeros beyond the end of the file.
+/// Fills `data` with zeros beyond the end of the file.
 int read_all(int file, void* data, std::size_t bytes, std::uint64_t offset);
 
 /// Waits until written data and the size would survive a power cut. A file that cannot be

@@ -69,7 +69,7 @@ class Descriptor {
   int file_;
 };
 
-// Returns true unless the file was removed while this process waited for its lock.
+// Returns true unless the file was removed, or replaced, before this process locked it.
 bool has_name(int file, fs::path const& path) {
   struct stat open {
   }, named{};
@@ -82,7 +82,8 @@ struct Record {
   std::vector<Sector> sectors;
 };
 
-// Returns nothing if the journal is incomplete: then the file does not need it.
+// Returns nothing if the journal is incomplete: the file is changed only after the whole journal is
+// on the disk, so it does not need this one.
 std::optional<Record> read_record(int file) {
   struct stat status {};
   Head head{};

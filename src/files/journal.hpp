@@ -18,13 +18,13 @@ struct Sector {
   std::array<std::byte, sector_bytes> bytes;
 };
 
-/// A number at a fixed place of a file, constant from its creation on and different in every file.
+/// A number at a fixed offset that identifies a file: set at its creation, different in every file.
 struct FileMark {
   std::uint64_t offset, value;
 };
 
-/// PATH.journal: new content of sectors of the file PATH. Until those sectors have reached the
-/// disk, they can be restored from it.
+/// PATH.journal holds the new content of sectors of the file PATH, from which they can be restored
+/// until they have reached the disk.
 class Journal {
  public:
   /// Creates the file, or empties the one left by an earlier run, and locks it. Throws
@@ -48,8 +48,8 @@ class Journal {
 };
 
 /// Completes a file from the journal that a power cut or a kill left next to it, and removes the
-/// journal. Changes nothing while a writer has them open, or if the journal belongs to another
-/// file. Throws std::runtime_error if the file needs its journal and cannot be written.
+/// journal. Changes nothing while a writer has the journal locked, or if the journal belongs to
+/// another file. Throws std::runtime_error if the file needs its journal and cannot be written.
 void complete_from_journal(std::filesystem::path const& path);
 
 }  // namespace cayspin::inline v0_2::io

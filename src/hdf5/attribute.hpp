@@ -13,13 +13,14 @@ namespace cayspin::inline v0_2::io {
 /// Returns the type of variable-length UTF-8 strings.
 DatatypeHandle text_type();
 
-/// Writes an attribute with names, as ASCII of fixed length: HDF5's checksums cover no other text.
+/// Writes an attribute with names, as strings of fixed length: HDF5's checksums do not cover
+/// strings of variable length.
 void write_names(hid_t object, char const* name, std::vector<std::string> const& names,
                  std::filesystem::path const& path);
 std::vector<std::string> read_names(hid_t object, char const* name,
                                     std::filesystem::path const& path);
 
-/// Attributes of a file's root group.
+/// Attributes of a file's root group, or of another object.
 class RootAttributes {
  public:
   RootAttributes(hid_t file, std::filesystem::path const& path) : file_(file), path_(path) {}
@@ -36,8 +37,8 @@ class RootAttributes {
   std::string read_text(char const* name) const;
   std::int64_t read_integer(char const* name) const;
   double read_real(char const* name) const;
-  /// Requires this version of the file layout: any other than `accepted` throws PATH: ACTION:
-  /// REASON.
+  /// Throws PATH: ACTION: REASON unless the attribute `name`, a version of the file layout, is
+  /// `accepted`.
   void require_version(char const* name, std::int64_t accepted, char const* action) const;
 
  private:

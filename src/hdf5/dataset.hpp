@@ -22,7 +22,7 @@ DatasetHandle create_growing_dataset(hid_t group, char const* name, hid_t type,
                                      std::filesystem::path const& path,
                                      std::span<hsize_t const> inner = {});
 
-/// Creates a dataset of these extents. `properties`: H5P_DATASET_CREATE, or the default.
+/// Creates a dataset of these extents. `properties`: a property list of class H5P_DATASET_CREATE.
 DatasetHandle create_dataset(hid_t group, char const* name, hid_t type, Extents const& extents,
                              std::filesystem::path const& path, hid_t properties = H5P_DEFAULT);
 

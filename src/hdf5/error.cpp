@@ -25,8 +25,8 @@ std::string system_words(std::string const& description) {
 
 }  // namespace
 
-// At exit, HDF5 closes open files and crashes on one whose disk has failed. This library leaves no
-// file open, so it disables that before HDF5 starts.
+// At exit, HDF5 closes open files, and crashes on a file whose disk has failed. This library leaves
+// no file open, so it turns this off, which it can do only before HDF5 starts.
 QuietErrors::QuietErrors() {
   [[maybe_unused]] static auto const told = H5dont_atexit();
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);

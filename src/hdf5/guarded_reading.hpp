@@ -9,17 +9,17 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Runs the trial of `reading`; does nothing if none is set.
+/// Runs `reading` in a trial (set_trial); does nothing if no trial is set.
 void try_before(std::filesystem::path const& path, std::function<void()> const& reading);
 
-/// Runs the trial of `reading`; if none is set, runs `reading` itself.
+/// Runs `reading` in a trial; if no trial is set, runs it here.
 void try_reading(std::filesystem::path const& path, std::function<void()> const& reading);
 
-/// Rethrows the exception being handled; if memory ran out, as one line about the file.
+/// Rethrows the exception being handled. If memory ran out, throws one line about the file instead.
 [[noreturn]] void rethrow_reading(std::filesystem::path const& path);
 
-/// Returns the result of `reading` after its trial, which has run equal code on equal bytes.
-/// `reading` must open the file itself: a file that is already open keeps its state.
+/// Runs `reading` in a trial, then here, and returns its result. `reading` must open the file
+/// itself, so that it runs the same code on the same bytes both times.
 template <class Reading>
 auto read_guarded(std::filesystem::path const& path, Reading const& reading) {
   QuietErrors const quiet;

@@ -12,7 +12,7 @@ namespace {
 thread_local int depth_of_turns = 0;  // how many scopes this thread is in
 
 std::mutex& one_at_a_time() {
-  static auto& mutex = *new std::mutex;  // never destroyed: it is used while the program ends
+  static auto& mutex = *new std::mutex;  // never destroyed: it may be used while the program ends
   return mutex;
 }
 
@@ -30,7 +30,7 @@ namespace {
 
 FileHandle open_with(PropertyHandle const& access, std::filesystem::path const& path) {
   std::string const action = "cannot open the file";
-  // Otherwise HDF5 would wait for the other end of a pipe.
+  // HDF5 would open a pipe and wait for its other end.
   std::error_code ignored;
   auto const status = std::filesystem::status(path, ignored);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))

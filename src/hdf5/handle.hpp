@@ -8,8 +8,8 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// While in scope, no other thread of the library uses HDF5. Scopes may be nested. A child forked
-/// in scope owns the lock, too, unlike with std::recursive_mutex.
+/// While in scope, no other thread of the library uses HDF5. Scopes may be nested. A child process
+/// forked in scope owns the lock, too, which it would not with std::recursive_mutex.
 class TurnOfHdf5 {
  public:
   TurnOfHdf5();
@@ -53,13 +53,14 @@ using DatatypeHandle = Handle<H5Tclose>;
 using AttributeHandle = Handle<H5Aclose>;
 using PropertyHandle = Handle<H5Pclose>;
 
-/// Lock on a file that is read against writers. Without it, data that another process is writing
-/// may be read half written.
+/// Whether a file that is read is locked against writers. Without the lock, data that another
+/// process is writing may be read half written.
 enum class Locking { on, off };
 
-/// Opens an existing file for reading, completed from its journal.
+/// Opens an existing file for reading. Completes it first if a power cut or a kill has left a
+/// journal.
 FileHandle open_file(std::filesystem::path const& path, Locking locking = Locking::on);
-/// Opens a small file that nobody writes, by reading it into memory in one piece.
+/// Opens a small file that nobody writes, and reads all of it into memory.
 FileHandle open_file_in_memory(std::filesystem::path const& path);
 
 // Creates a group of the file `path`.

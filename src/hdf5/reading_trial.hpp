@@ -6,14 +6,14 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Tries `reading` of a possibly damaged file where a crash does no harm, for example in another
-/// process. Throws std::runtime_error with one line if the file must not be read. No other thread
-/// of the library uses HDF5 while it runs.
+/// Runs `reading`, of a file that may be damaged, where a crash does no harm, for example in
+/// another process. Throws std::runtime_error with one line if the file must not be read. No other
+/// thread of the library uses HDF5 while it runs.
 using ReadingTrial = void (*)(std::filesystem::path const& path,
                               std::function<void()> const& reading);
 
-/// Sets a function to call before each reading. There is none by default, because a library must
-/// not start processes. Call it before other threads read files.
+/// Sets the trial to run before each reading. There is none by default, because a library must not
+/// start processes. Call it before other threads read files.
 void set_trial(ReadingTrial trial);
 
 /// Scope without trials, for files that this program has just written. No other thread may read.

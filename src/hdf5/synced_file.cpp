@@ -96,7 +96,8 @@ int SyncedFile::commit() {
   return 0;
 }
 
-// Also puts the sectors on disk that the last commit overwrote, which frees their journal.
+// Also puts on disk the sectors that the last commit overwrote, after which their journal may be
+// reused.
 int SyncedFile::put_appended_on_disk() const {
   struct stat status {};
   if (::fstat(file_, &status) != 0) return errno;
@@ -143,7 +144,7 @@ void SyncedFile::begin(std::filesystem::path const& path) {
 
 int SyncedFile::close() {
   int error = commit();
-  // The overwritten sectors are on disk, so the journal is removed.
+  // Once the overwritten sectors are on disk, the journal is not needed.
   if (journal_ && !half_applied_ && sync_file(file_) == 0) {
     if (error == 0 && ::ftruncate(file_, static_cast<off_t>(end)) != 0) error = errno;
     if (error == 0) error = sync_file(file_);

@@ -13,7 +13,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// A file written by HDF5 that a power cut returns to its state at the last commit().
+/// A file written by HDF5 that after a power cut has its state at the last commit().
 ///
 /// HDF5 overwrites its own blocks. New content of committed bytes stays in memory until commit(),
 /// which writes it to a journal before the file. Appended data go to the file at once, because no
@@ -28,7 +28,7 @@ class SyncedFile {
   /// Makes HDF5 open and close a file through this object, which must outlive it.
   void use_in(hid_t file_access);
 
-  /// Returns a number to be stored in the file: 8 bytes that no other file has.
+  /// Returns a random number of 8 bytes to be stored in the file, which identifies it.
   std::uint64_t mark() const { return mark_; }
 
   /// Commits for the first time a file that is to be named `path`, with a journal next to it.
@@ -60,7 +60,7 @@ class SyncedFile {
   int file_ = -1;
   std::uint64_t mark_;
   std::uint64_t committed_end_ = 0;
-  std::map<std::uint64_t, Sector> over_;  // by offset: not yet committed
+  std::map<std::uint64_t, Sector> over_;  // new content not yet committed, by offset
   std::optional<Journal> journal_;
   bool half_applied_ = false;
   int error_ = 0;

@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-/// Differences between two scenes, for a run that continues from another one's state.
+/// Differences between two scenes, for a run that continues from the state of another.
 namespace cayspin::inline v0_2::io {
 
 /// Returns the first key by which two scenes of equal shape and cell_sites have different sites:
 /// "lattice.spacing", boundary, cell, basis, moments, gyromagnetic, occupied, frozen, or
-/// "system.kind"; empty if all are equal. Values are compared in SI, site by site. An axis of one
-/// site has no spacing and no boundary, unless the field has demag. Throws SceneError when a file
-/// cannot be read.
+/// "system.kind"; empty if none differs. Spacings are compared in SI, site-dependent numbers site
+/// by site. Spacing and boundary of an axis with one cell are ignored, except in crystals with
+/// several sites per cell and with demag. Throws SceneError when a file cannot be read.
 std::string changed_lattice_key(Scene const& before, Scene const& now);
 
 /// Returns the keys whose values differ between two scene texts, such as "field.applied", in

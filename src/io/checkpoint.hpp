@@ -45,10 +45,10 @@ class CheckpointWriter final : public Checkpoint {
   bool restores() const override { return false; }
   void number(std::string const& name, double& value) override;
   void field(std::string const& name, std::vector<double>& numbers) override;
-  /// Stores a field in several calls, by planes along z: `components` numbers of each site.
+  /// Stores a field in several calls, some planes along z at a time: `components` numbers per site.
   void planes(std::string const& name, std::int64_t components, std::vector<double> const& numbers);
 
-  /// Waits until the file is on the disk, then gives it its name.
+  /// Waits until the file is on the disk, then renames it.
   void commit();
 
  private:
@@ -56,8 +56,8 @@ class CheckpointWriter final : public Checkpoint {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Reader of a checkpoint. Verifies each field by its checksum, and the rest by the checksum of the
-/// file, which files of earlier versions lack.
+/// Reader of a checkpoint. Verifies each field by its own checksum, and everything else by a
+/// checksum of the file, which files of earlier versions lack.
 class CheckpointReader final : public Checkpoint {
  public:
   explicit CheckpointReader(std::filesystem::path path);
@@ -71,7 +71,7 @@ class CheckpointReader final : public Checkpoint {
   bool restores() const override { return true; }
   void number(std::string const& name, double& value) override;
   void field(std::string const& name, std::vector<double>& numbers) override;
-  /// Returns the numbers of only these sites. It needs memory for them, and for some planes.
+  /// Returns the numbers of the sites in a box. Needs memory for these, and for a few planes.
   std::vector<double> field(std::string const& name, SiteBox const& box) const;
 
  private:

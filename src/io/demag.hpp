@@ -12,12 +12,12 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// The local field of a slab, H = -strength (m.n) n.
+/// The demagnetising field of a slab in the local approximation, H = -strength (m.n) n.
 struct SlabDemagnetization {
   Triple normal = {};  ///< unit vector n
   double strength = 1;
   bool on_host = false;    ///< computed on the host through a mirror copy
-  bool multirate = false;  ///< evaluated once or twice a step, between substeps of the other terms
+  bool multirate = false;  ///< evaluated only once or twice per step, and not in the substeps
 
   static constexpr auto keys() {
     using Slab = SlabDemagnetization;
@@ -28,13 +28,13 @@ struct SlabDemagnetization {
   }
 };
 
-/// The field of all cells on all cells, H = -strength sum N m, or that of point dipoles.
+/// The demagnetising field of the cells, H = -strength sum N m, or the field of point dipoles.
 struct Demagnetization {
   double strength = 1;
-  std::array<int, 3> periodic_images{};  ///< on each side, besides the nearest one
-  std::optional<Crystal> dipoles;        ///< their positions; empty: cells of DemagnetizingField
+  std::array<int, 3> periodic_images{};  ///< per axis, on each side of the nearest one
+  std::optional<Crystal> dipoles;        ///< positions of the dipoles; empty: cells
   Triple demagnetizing_factors = {};     ///< for dipoles with three periodic axes
-  std::string key = "demag";             ///< its key in [field]
+  std::string key = "demag";             ///< the key in [field]: demag or dipoles
   std::optional<bool> multirate;         ///< default: true if the method supports it
   std::filesystem::path cache;           ///< file for tensors, which take long to compute; or empty
 

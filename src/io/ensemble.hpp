@@ -20,24 +20,24 @@ struct VariedKey {
 struct Ensemble {
   std::int64_t replicas = 0;  ///< 0: the scene has no such table
   std::vector<VariedKey> vary;
-  std::string text_of_replicas;  ///< the scene without [ensemble], whose lists may be long
+  std::string text_of_replicas;  ///< scene text without [ensemble], which may be long
 
   bool there() const { return replicas > 0; }
 };
 
 /// A lattice whose columns, the sites with equal x, are replicas that do not interact
-/// (simulation/replica_columns.hpp). No file has such a scene.
+/// (simulation/replica_columns.hpp). Scenes read from files never have it.
 struct Columns {
-  std::vector<double> temperatures;  ///< multiply that of the scene; empty: all 1
+  std::vector<double> temperatures;  ///< factors on the scene's temperature; empty: all 1
 };
 
-/// The scene of one replica, which has no [ensemble]: its values of the varied keys, and the seeds
-/// of noise and random starts plus `replica`. Throws SceneError.
+/// Returns the scene of one replica, without [ensemble]: the varied keys have the replica's values,
+/// and `replica` is added to the seeds of noise and of random starts. Throws SceneError.
 Scene replica_of(Scene const& scene, std::int64_t replica);
-/// As replica_of, of a scene for `cayspin relax`.
+/// Like replica_of, for a scene of `cayspin relax`.
 Scene replica_to_relax(Scene const& scene, std::int64_t replica);
 
-/// Throws SceneError for an ensemble. `who`: what takes none, as the message names it.
+/// Throws SceneError for an ensemble. `who`: the name in the message of what accepts none.
 void require_no_ensemble(Scene const& scene, std::string_view who);
 
 }  // namespace cayspin::inline v0_2::io

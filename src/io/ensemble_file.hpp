@@ -15,7 +15,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// The state of a search for the equilibrium of one replica, as `cayspin relax` ends.
+/// Result of the search for the equilibrium of one replica, by `cayspin relax`.
 struct RelaxedReplica {
   double torque = 0;  ///< max |m x H|: reduced, or mu0 H in T
   bool converged = false;
@@ -26,8 +26,8 @@ struct RelaxedReplica {
 /// Errors are those of TrajectoryFile.
 class EnsembleFile {
  public:
-  /// `header`: of one replica. Of the options it takes `overwrite`, the compression and the
-  /// positions.
+  /// `header`: that of one replica. From the options, uses only `overwrite`, `positions`, and in
+  /// `storage` the compression and the number of frames.
   EnsembleFile(std::filesystem::path path, TrajectoryHeader const& header, Ensemble const& ensemble,
                RunOutputOptions const& options);
   ~EnsembleFile();
@@ -44,7 +44,7 @@ class EnsembleFile {
 
   /// Ends a run that went as planned: `complete` = 1.
   void finish(RunCost const& cost);
-  /// Ends another one: the same, but `complete` stays 0.
+  /// Ends a run that was interrupted or failed: like finish(), but `complete` stays 0.
   void close(RunCost const& cost);
 
   std::int64_t frames() const;
@@ -60,7 +60,7 @@ struct EnsembleInfo {
   Ensemble ensemble;
   RunCost cost;
   bool complete = false;
-  std::int64_t frames = 0, samples = 0;  ///< whole ones
+  std::int64_t frames = 0, samples = 0;  ///< complete ones
   std::int64_t step = 0;                 ///< of the last frame
   double time = 0;                       ///< of the last frame
   std::vector<Scalars> last;             ///< of each replica, in the last frame

@@ -9,9 +9,9 @@
 #include <string_view>
 
 // Exchange and DMI. Exchange, InterfacialDmi and BulkDmi are lattice terms: their H is linear in
-// the spin and its neighbours. To add such a term, write a struct with the members of Exchange, a
-// member of Field, and its entry in Field::lattice_terms. The scene reader, `cayspin check`, the
-// stability bound and the kernels use that list.
+// the spin and its neighbours. To add such a term, write a struct with the same members as
+// Exchange, add a member to Field, and list that member in Field::lattice_terms. The scene reader,
+// `cayspin check`, the stability bound and the kernels use that list.
 namespace cayspin::inline v0_2 {
 class Exchange;
 class InterfacialDmi;
@@ -37,11 +37,11 @@ struct Exchange {
   double& strength() { return constant; }
 
   static constexpr std::string_view key = "exchange";
-  /// A scene may give a single required number without a table: exchange = 1.
+  /// The value of a term with only one key is typed without a table: exchange = 1.
   static constexpr auto keys() {
     return std::to_array<Key<Exchange>>({{"constant", &Exchange::constant, {}, true}});
   }
-  /// Printed by `cayspin check`, with the values of the keys in their order.
+  /// Printed by `cayspin check`, with the values of keys() in place of {}.
   static constexpr std::string_view formula = "H = {} Lap(m)";
 
   /// Returns the largest |H| of alternating unit spins, or an upper bound on it.
@@ -78,7 +78,8 @@ struct InterfacialDmi {
   }
   static constexpr std::string_view formula = "E = {} (m_n div m - m.grad m_n), n = {}";
 
-  /// Returns an upper bound: both neighbours along each axis, in the direction normal to n.
+  /// Returns an upper bound: along each axis e, each of two neighbours contributes at most |D| |n x
+  /// e| / spacing.
   template <class Lattice>
   double field_bound(Lattice const& lattice) const {
     return 2 * energy_magnitude(lattice);
@@ -86,7 +87,7 @@ struct InterfacialDmi {
   template <class Lattice>
   double energy_magnitude(Lattice const& lattice) const {
     return sum_over_axes(lattice, [&](std::size_t axis, double spacing) {
-      double const across = 1 - normal[axis] * normal[axis];  // |n x e|^2, but for round-off
+      double const across = 1 - normal[axis] * normal[axis];  // |n x e|^2; may round below 0
       return across > 0 ? std::abs(interfacial) * std::sqrt(across) / spacing : 0;
     });
   }
@@ -96,7 +97,7 @@ struct InterfacialDmi {
   }
 };
 
-/// Bulk Dzyaloshinskii-Moriya interaction, instead of the interfacial one.
+/// Bulk Dzyaloshinskii-Moriya interaction. A scene has only one kind of DMI.
 struct BulkDmi {
   double constant = 0;  ///< D in the energy density D m.(curl m)
 
@@ -108,7 +109,8 @@ struct BulkDmi {
   }
   static constexpr std::string_view formula = "E = {} m.curl m";
 
-  /// Returns an upper bound: both neighbours along each axis.
+  /// Returns an upper bound: along each axis, each of two neighbours contributes at most |D| /
+  /// spacing.
   template <class Lattice>
   double field_bound(Lattice const& lattice) const {
     return 2 * energy_magnitude(lattice);
@@ -124,8 +126,7 @@ struct BulkDmi {
   }
 };
 
-/// DMI of crystals of symmetry D2d, instead of the other two. It is evaluated as a site-dependent
-/// term.
+/// DMI of crystals with symmetry D2d. It is evaluated like a site-dependent term.
 struct D2dDmi {
   double constant = 0;  ///< D in the energy density D m.(dm/dx x e_x - dm/dy x e_y)
 

@@ -13,7 +13,7 @@ struct ExchangeBetween {
 };
 
 /// E = -J m.m' - B (m.m')^2 across each face between two regions, with J and B per area. m is the
-/// spin at the face; exchange turns the spins between the face and the centre of its cell.
+/// spin at the face; between the face and the centre of its cell, exchange turns the spins.
 struct Interlayer {
   std::array<std::int64_t, 2> regions = {};
   double bilinear = 0, biquadratic = 0;  ///< J, B

@@ -74,18 +74,20 @@ struct Field {
   static constexpr std::tuple lattice_terms{&Field::exchange, &Field::dmi, &Field::bulk_dmi};
 };
 
-/// Returns the first key whose value depends on t: that of an applied field (also a program's), a
+/// Returns the first key whose value depends on t: an applied field (also a program's own), a
 /// source, a factor of a term, or a current. Empty if there is none.
 std::string_view key_in_time(Field const& field);
 inline bool depends_on_time(Field const& field) { return !key_in_time(field).empty(); }
 
-/// Returns the field without terms whose constants differ from site to site.
+/// Returns the field without interlayers, and without exchange, DMI and uniaxial anisotropies that
+/// are site-dependent or have a second constant.
 Field without_numbers_of_sites(Field field);
 
 /// Returns true if a current acts on the spins: their energy may then rise.
 bool has_torque(Field const& field);
 
-/// Returns true if the field at a site depends on more than the site and its neighbours.
+/// Returns true for terms whose field is computed for all sites at once: demag or dipoles, a slab's
+/// field on the host, and a program's own nonlocal field.
 bool is_nonlocal(Field const& field);
 
 /// Calls work(term) for the std::optional of each lattice term.

@@ -26,7 +26,7 @@ inline std::span<Word<Followed> const> words() {
 struct Follow {
   int axis = 0;
   Followed quantity = Followed::mx;
-  double value = 0;  ///< of the mean of a component, where the wall is in place
+  double value = 0;  ///< mean of the component when the wall is in place
 };
 
 }  // namespace cayspin::inline v0_2::io

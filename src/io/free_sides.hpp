@@ -5,8 +5,8 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Returns true for constants that the reader computes from the scene's exchange and DMI, for
-/// free_boundary.
+/// Returns true for the anisotropy constants by which the reader represents free_boundary. It
+/// computes them from the scene's exchange and DMI.
 bool is_of_free_sides(SiteNumbers const& numbers);
 
 }  // namespace cayspin::inline v0_2::io

@@ -9,7 +9,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Numbers in the memory of a program. Those of sites are in the order of initial_spins.
+/// Numbers that a program passes in memory. Numbers per site are in the order of initial_spins.
 using GivenNumbers = std::shared_ptr<std::vector<double> const>;
 
 /// Data that a program passes with the text of a scene.

@@ -19,7 +19,7 @@ struct UniformStart {
 };
 /// An expression for each component; each spin is normalised.
 struct ExpressionStart {
-  std::array<std::string, 3> components;  ///< in x, y, z, i, j, k
+  std::array<std::string, 3> components;  ///< in x, y, z, i, j, k, and s for a crystal
 };
 /// Random spins, distributed uniformly on the sphere.
 struct RandomStart {
@@ -27,7 +27,7 @@ struct RandomStart {
 };
 /// The last frame of an HDF5 file, or an OVF file; each spin is normalised.
 struct FileStart {
-  std::filesystem::path path;  ///< dataset /spins, or OVF 2.0
+  std::filesystem::path path;  ///< HDF5 with dataset /spins, or OVF
 };
 /// Spins that a program passes with the text of a scene; each is normalised.
 struct GivenStart {

@@ -22,15 +22,15 @@ struct Integrator {
   Rotation rotation = Rotation::cayley;
   double dt = 0;                    ///< for adaptive methods: interval between observations
   std::int64_t steps = 0;           ///< computed from `end` when the scene gives that
-  std::int64_t substeps = 1;        ///< of the method in each step, for an expensive field
+  std::int64_t substeps = 1;        ///< steps of the method in each step, for an expensive field
   std::optional<double> tolerance;  ///< only for adaptive methods
-  std::optional<double> error;      ///< for method "auto": largest error of the chosen method
+  std::optional<double> error;      ///< for method "auto": largest error allowed
   /// Bounds on the internal steps of an adaptive method.
   double min_dt = 0, max_dt = std::numeric_limits<double>::infinity();
   bool compensated = false;      ///< adds the rounding error of the spins to the next step
-  bool energy_guard = true;      ///< stops a run whose energy rises although it can only fall
+  bool energy_guard = true;      ///< stops a run whose energy rises although it should only fall
   bool energy_control = false;   ///< holds the energy of a run without damping
-  bool refuse_unstable = false;  ///< if `run` would warn about dt, it is an error
+  bool refuse_unstable = false;  ///< an unstable dt is an error, not a warning
   std::optional<double> until_torque;
 
   static constexpr auto keys() {

@@ -27,7 +27,7 @@ inline constexpr Limits not_negative{"a number >= 0", 0};
 inline constexpr Limits positive{"a number > 0", 0, std::numeric_limits<double>::infinity(), true};
 
 /// A key of a table of the scene, and the member that it sets. The reader accepts the keys in
-/// Section::keys() and refuses any other. It normalises a Triple.
+/// Section::keys() and refuses any other. A Triple is a direction, and is normalised.
 template <class Section>
 struct Key {
   std::string_view name;

@@ -19,7 +19,7 @@ struct Material {
   std::optional<double> exchange;     ///< A, J/m, or J of a bond, J
   std::optional<double> anisotropy;   ///< Ku, J/m^3, or K of a site, J
   std::optional<double> anisotropy2;  ///< Ku2, J/m^3, or K2 of a site, J
-  std::optional<double> dmi;          ///< D, J/m^2, or D of a bond, J, of an interface
+  std::optional<double> dmi;          ///< D of an interface, J/m^2, or of its bonds, J
   std::optional<double> bulk_dmi;     ///< D of the bulk
   std::optional<double> d2d_dmi;      ///< D of a crystal of symmetry D2d
   SiteNumbers moment_factors, exchange_factors, anisotropy_factors, anisotropy2_factors,
@@ -27,7 +27,7 @@ struct Material {
   SiteVectors axes, normals;                      ///< instead of one axis, one normal
   Triple axis = {}, normal = {};                  ///< unit vectors
   double alpha = 0;
-  bool gilbert = true;  ///< Gilbert's equation, or that of Landau and Lifshitz
+  bool gilbert = true;  ///< true: Gilbert's equation; false: Landau and Lifshitz's
   double gamma = 0;     ///< rad/(s T); if site-dependent, the unit of reduced ratios
 };
 

@@ -12,7 +12,7 @@ namespace cayspin::inline v0_2::io {
 /// A variant of a method that `cayspin trade` tries.
 enum class Trial { plain, in_chart, sigma, single_precision, compensated_single_precision };
 
-/// Properties of a method of scenes. src/simulation/method_list.hpp lists all methods.
+/// Properties of a method that scenes may choose. src/simulation/method_list.hpp lists all methods.
 struct Method {
   std::string_view word;              ///< integrator.method
   int order = 0;                      ///< order of the trajectories
@@ -27,7 +27,7 @@ struct Method {
   bool by_colour = false;             ///< moves the spins of one colour of a checkerboard at a time
   SetOf<Rotation> rotations{};        ///< empty: a baseline
   SetOf<Generator> generators{};      ///< empty: a baseline
-  SetOf<Isotropy> isotropies{};       ///< without energy
+  SetOf<Isotropy> isotropies{};       ///< without Isotropy::energy
   SetOf<Trial> trials{};
 
   /// Returns true for a method outside the Lie group, without generator, isotropy and rotation.

@@ -12,7 +12,7 @@
 /// The file of `cayspin modes` (HDF5; docs/reference/file_format.md has the layout).
 namespace cayspin::inline v0_2::io {
 
-/// Contents of the file. Vectors of sites are in the order of initial_spins.
+/// Contents of the file. Vectors with numbers per site are in the order of initial_spins.
 struct ModesContents {
   std::string scene_text, cayspin_version, git_commit, space;
   std::string precision = "double";
@@ -30,17 +30,17 @@ struct ModesContents {
   std::vector<std::vector<double>> curvature_vectors;  ///< sites x 3
 };
 
-/// Contents with spin waves instead of modes: `frequencies` and `decays` have the branches of each
-/// wave vector.
+/// Contents with spin waves instead of modes: `frequencies` and `decays` list all branches of the
+/// first wave vector, then those of the next.
 struct BandsContents : ModesContents {
   std::vector<std::array<double, 3>> wave_vectors;  ///< in cycles per cell
 };
 void write_bands(std::filesystem::path const& path, BandsContents const& contents, bool overwrite);
 
-/// Is it a file of modes, or of waves? Throws where it is no HDF5 file.
+/// Returns true for a file of modes or of spin waves. Throws if it is not an HDF5 file.
 bool is_modes(std::filesystem::path const& path);
 
-/// Reads a file of modes or of waves, except the vectors of sites.
+/// Reads a file of modes or of spin waves, except the vectors with numbers per site.
 BandsContents read_modes(std::filesystem::path const& path);
 
 /// Writes PATH.partial and renames it. Throws std::runtime_error with one line.

@@ -10,8 +10,8 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// How often a run stores FILE.checkpoint.h5, from which it can continue with the same bits: every
-/// so many steps or seconds, never if both are 0.
+/// How often a run writes FILE.checkpoint.h5, from which it can continue with the same bits: every
+/// so many steps, or seconds; never if both are 0.
 struct CheckpointPeriod {
   double seconds = 600;
   std::int64_t steps = 0;

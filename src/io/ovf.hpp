@@ -45,14 +45,15 @@ bool is_ovf(std::filesystem::path const& path);
 /// Returns the number of values per node.
 std::int64_t ovf_components(std::filesystem::path const& path);
 
-/// Reads only the mesh of a file with 3 components, or 1.
+/// Reads only the mesh. Throws unless the file has this number of components, 3 or 1.
 OvfMesh read_ovf_mesh(std::filesystem::path const& path, std::int64_t components = 3);
 
-/// Reads a file of one segment, in any of the formats, with 3 components, or 1.
+/// Reads a file of one segment, in any of the formats. Throws unless it has this number of
+/// components, 3 or 1.
 OvfField read_ovf(std::filesystem::path const& path, std::int64_t components = 3);
 
-/// Writes three components as a file of one segment, first as PATH.partial. A file that exists is
-/// an error unless `overwrite`. Throws std::invalid_argument unless there are three values a node
+/// Writes three components as a file of one segment, first as PATH.partial. An existing file is an
+/// error unless `overwrite`. Throws std::invalid_argument unless there are three values per node
 /// and the mesh is finite.
 void write_ovf(std::filesystem::path const& path, OvfField const& field, OvfFormat format,
                bool overwrite);

@@ -19,7 +19,7 @@ struct HostVectors {
 /// Fields that a program adds to its scene; they are stored in no file. Both functions are called
 /// on the host, by the stepping thread; an exception from them ends the run.
 struct OwnField {
-  /// Returns the uniform field at t, instead of field.applied; mu0 multiplies it, too.
+  /// Returns the uniform field at t. It replaces field.applied and, like it, is multiplied by mu0.
   std::function<std::array<double, 3>(double t)> uniform;
   /// Writes H of all sites to `field`. H must be linear in the spins and symmetric, like that of an
   /// FFT demag: E = -sum m.H / 2. Reduced units.

@@ -18,11 +18,12 @@ struct SaddleOfPath {
   std::int64_t image = 0;
 };
 
-/// The rates of harmonic transition state theory, and of Langer's with damping: prefactor T^(half
-/// the zero modes that the start has more than the saddle) exp(-barrier / kT).
+/// Rates of harmonic transition state theory, and of Langer's theory, which includes damping:
+/// prefactor T^((z0 - zs) / 2) exp(-barrier / kT), where z0 and zs are the numbers of zero modes of
+/// the state that is left and of the saddle.
 struct RatesOfPath {
   double prefactor_forward = 0, prefactor_backward = 0;  ///< reduced, or 1/s and T in K
-  double langer_forward = 0, langer_backward = 0;        ///< the same of Langer's theory
+  double langer_forward = 0, langer_backward = 0;        ///< prefactors of Langer's theory
   std::array<std::int64_t, 3> zero_modes{};              ///< of the start, the saddle and the end
   std::array<double, 3> volumes{};                       ///< of the zero modes
 };
@@ -37,7 +38,7 @@ struct Path {
   std::vector<SaddleOfPath> saddles;     ///< highest first
   std::optional<RatesOfPath> rates;
   double torque = 0;  ///< largest max |m x H| of the saddles
-  double across = 0;  ///< largest |H| of a spin across the path
+  double across = 0;  ///< largest |H| of a spin perpendicular to the path
   std::int64_t evaluations = 0;
   bool converged = false;
   double wall_seconds = 0;
@@ -51,13 +52,13 @@ struct Path {
 /// it. Errors are those of trajectory.hpp.
 void write_path(std::filesystem::path const& path, Path const& found, bool overwrite);
 
-/// Is it a file of a path? Throws where it is no HDF5 file.
+/// Returns true for a file of a path. Throws if it is not an HDF5 file.
 bool is_path(std::filesystem::path const& path);
 
 /// Reads the file of a path except its spins. Errors are those of trajectory.hpp.
 Path read_path(std::filesystem::path const& path);
 
-/// Throws as write_path does for a file that it would not write.
+/// Throws the error of write_path if it could not write this file.
 void require_writable(std::filesystem::path const& path, bool overwrite);
 
 }  // namespace cayspin::inline v0_2::io

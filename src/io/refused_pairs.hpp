@@ -9,8 +9,8 @@ namespace cayspin::inline v0_2::io {
 struct Scene;
 
 /// Terms and sites of a scene that cannot be combined with a key of its [integrator], though each
-/// is valid by itself. What a method never accepts, such as a rotation, is in its row of the
-/// methods.
+/// is valid by itself. Options that a method never accepts, such as a rotation, are listed in its
+/// Method instead.
 struct RefusedPair {
   std::string_view terms, with;  ///< both for the message
   std::string_view why;          ///< reason for the message; "{}" stands for the method

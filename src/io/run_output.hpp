@@ -32,7 +32,8 @@ class RunOutput {
   RunOutput(std::filesystem::path path, TrajectoryHeader const& header,
             RunOutputOptions const& options);
 
-  /// Writes the buffered data. Without finish() before, the trajectory is not complete.
+  /// Writes the buffered data. Unless finish() was called, the trajectory stays marked as
+  /// incomplete.
   ~RunOutput();
   RunOutput(RunOutput&&) noexcept;
   RunOutput& operator=(RunOutput&&) noexcept;
@@ -55,7 +56,7 @@ class RunOutput {
   void write_scalars(std::int64_t step, double time, Scalars const& scalars,
                      std::vector<double> const& more = {});
 
-  /// End the run like those of TrajectoryFile, after everything else is written.
+  /// Like TrajectoryFile's functions, after writing everything else.
   void finish(RunCost const& cost);
   void close(RunCost const& cost);
 

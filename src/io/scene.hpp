@@ -45,7 +45,7 @@ class SceneError : public std::runtime_error {
 struct Stage;
 
 /// A scene: a member for each table, and where each key was typed. Numbers are in reduced units,
-/// also if the scene is typed in SI, except in the members for units = "SI".
+/// even if the scene is typed in SI; the three members for units = "SI" are exceptions.
 struct Scene {
   Units units;
   /// For units = "SI", as typed: t in s, velocities in m/s, strengths in T.
@@ -63,7 +63,7 @@ struct Scene {
   std::optional<Columns> columns;
   std::string text;            ///< the TOML text; re-serialised when an override changed it
   std::filesystem::path path;  ///< the scene file, or the name of a text without one
-  std::vector<std::filesystem::path> files;  ///< those that its own tables name to be read
+  std::vector<std::filesystem::path> files;  ///< files to be read that its own tables name
   Given given;
   std::map<std::string, std::string, std::less<>>
       places;                 ///< key -> "FILE:LINE" or "--set key=value"
@@ -93,18 +93,18 @@ struct Stage {
 };
 
 /// Reads and validates a scene. Each override is "key.path=VALUE" with a TOML value, applied in
-/// order. Of the files that the scene names, it opens only a unit-cell file that defines the cell;
+/// order. Opens no file that the scene names, except a unit-cell file that defines the cell;
 /// check_files, initial_spins, couplings and inertia open the others. Throws SceneError.
 Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides = {},
                  Given given = {});
 
-/// Parses a text in memory, such as that of a trajectory file. Messages call it `name`; its files
-/// are relative to the folder of `name`.
+/// Parses a text in memory, such as that of a trajectory file. Messages call it `name`; file names
+/// in it are relative to the folder of `name`.
 Scene parse_scene(std::string text, std::filesystem::path const& name,
                   std::vector<std::string> const& overrides = {}, Given given = {});
 
-/// Returns a scene with more overrides, and its text with them. Later errors name the keys of
-/// `scene`, where its author finds them. Throws SceneError.
+/// Returns a scene with more overrides, and its text with them. Later errors give the places of
+/// keys in `scene`, where its author finds them, not the overrides. Throws SceneError.
 Scene with_overrides(Scene const& scene, std::vector<std::string> const& overrides);
 
 /// Returns a table of a scene's text as the override "NAME={...}" for another scene.
@@ -143,15 +143,15 @@ std::vector<Coupling> couplings(Scene const& scene);
 std::vector<unsigned char> occupied(Scene const& scene, SiteBox const& box);
 std::vector<unsigned char> frozen(Scene const& scene, SiteBox const& box);
 
-/// Returns the moment of each site, 0 where there is no spin; empty if lattice.moments gives them.
-/// Throws SceneError for a negative one.
+/// Returns site-dependent moments, 0 where there is no spin; empty if moments are uniform or given
+/// for the sites of a cell. Throws SceneError for a negative one.
 std::vector<double> moments_of_sites(Scene const& scene, SiteBox const& box);
 
-/// Returns the moment of each site, also if lattice.moments gives them; 0 where there is no spin,
+/// Returns the moment of each site, however the scene gives moments; 0 where there is no spin,
 /// empty if all are 1.
 std::vector<double> all_moments(Scene const& scene, SiteBox const& box);
-/// Returns the gyromagnetic ratio of each site; empty if lattice.gyromagnetic gives them. Throws
-/// SceneError for one that is not positive.
+/// Returns site-dependent gyromagnetic ratios; empty if they are uniform or given for the sites of
+/// a cell. Throws SceneError for one that is not positive.
 std::vector<double> gyromagnetic_of_sites(Scene const& scene, SiteBox const& box);
 
 /// Returns the region of each site, in the order of initial_spins. Throws SceneError for a number
@@ -182,19 +182,19 @@ std::vector<double> directions_of_sites(Scene const& scene, SiteVectors const& v
 std::array<std::vector<double>, 2> crystal_axes(Scene const& scene, CrystalAnisotropy const& term,
                                                 SiteBox const& box);
 
-/// Returns the regions at both ends of the bond from each site to the next one along an axis, also
-/// past the end of the box; past an open end both are equal.
+/// For each site of a box, returns its region and the region of the next site along an axis, which
+/// may be outside the box. Past an open end, both are the site's own region.
 std::vector<std::array<std::int64_t, 2>> regions_of_bonds(Scene const& scene, SiteBox const& box,
                                                           std::size_t axis);
 
-/// Returns the regions at both ends of the bond from each site to the one `reach` further along an
-/// axis, or back if `reach` is negative; -1 twice if one of the two has no spin, or a site between
-/// them has one. A bond does not lead around a periodic axis to its own site.
+/// For each site of a box, returns its region and the region of the site `reach` further along an
+/// axis, or back if `reach` is negative. Returns -1 twice if one of the two has no spin, if a site
+/// between them has one, past an open end, and if |reach| is not below the lattice's extent.
 std::vector<std::array<std::int64_t, 2>> regions_across(Scene const& scene, SiteBox const& box,
                                                         std::size_t axis, std::int64_t reach);
 
-/// Returns the numbers of the sites `reach` further along an axis, or back; |reach| is below the
-/// extent. 0 past an open end.
+/// For each site of a box, returns the number of the site `reach` further along an axis, or back if
+/// `reach` is negative; 0 past an open end. |reach| must be below the lattice's extent.
 std::vector<double> numbers_across(Scene const& scene, SiteNumbers const& numbers,
                                    std::string_view key, SiteBox const& box, std::size_t axis,
                                    std::int64_t reach);
@@ -202,11 +202,13 @@ std::vector<double> numbers_across(Scene const& scene, SiteNumbers const& number
 /// Returns the longest `reach` of interlayers with a range above 0, or 0.
 std::int64_t reach_of_interlayers(Scene const& scene);
 
-/// Returns true if H needs a separate pass over the sites, for terms that few scenes have.
+/// Returns true if H needs a separate pass over the sites, for terms and lattices that few scenes
+/// have.
 bool needs_pass(Scene const& scene);
 
-/// Returns true if each site has its own moment, instead of those of a cell: by lattice.moments,
-/// and for point dipoles, which act on moments rather than spins.
+/// Returns true if moments are stored for each site of the lattice rather than of a cell: if
+/// lattice.moments is site-dependent, and with point dipoles, whose field depends on moments rather
+/// than unit spins.
 bool has_moments_of_sites(Scene const& scene);
 
 /// Returns true if a site has no spin, by lattice.occupied or a moment of 0.
@@ -216,7 +218,7 @@ bool has_vacancies(Scene const& scene);
 /// couplings, of which some may be biquadratic.
 bool has_linear_field(Scene const& scene);
 
-/// Returns the number of a site of the cell; 1 without numbers.
+/// Returns numbers[site], a number of a site of the cell; 1 if `numbers` is empty.
 double of_cell_site(std::vector<double> const& numbers, std::size_t site);
 
 /// Returns `number` over the moment of a site of the cell; 0 where the moment is 0 (no spin).
@@ -227,11 +229,10 @@ double over_moment(Lattice const& lattice, std::size_t site, double number);
 std::vector<double> noise_of_cell_sites(Scene const& scene);
 /// Returns true if the damping, temperature, moment or gyromagnetic ratio is site-dependent.
 bool has_noise_of_sites(Scene const& scene);
-/// Returns the product of damping, temperature, and gyromagnetic ratio over moment for each site,
-/// of those that are site-dependent; 0 where a spin does not move. Throws SceneError for a negative
-/// number.
+/// Returns for each site the gyromagnetic ratio over the moment, times damping and temperature if
+/// these are site-dependent; 0 where a spin does not move. Throws SceneError for a negative number.
 std::vector<double> noise_of_sites(Scene const& scene, SiteBox const& box);
-/// Returns the largest of these, or of those of the cell's sites.
+/// Returns the largest of noise_of_sites, or of noise_of_cell_sites if nothing is site-dependent.
 double largest_noise(Scene const& scene);
 /// Refuses a dt for which the noise of half a step would turn spins too far. `heat`: the largest
 /// product of damping, temperature, and gyromagnetic ratio over moment. Throws SceneError.
@@ -245,7 +246,7 @@ Crystal crystal(Lattice const& lattice);
 /// definite.
 std::vector<InertiaTensor> inertia(Scene const& scene);
 
-/// Returns their inverses in the order xx, yy, zz, xy, xz, yz. Throws like inertia.
+/// Returns the inverse tensors in the order xx, yy, zz, xy, xz, yz. Throws like inertia.
 std::vector<std::array<double, 6>> inverse_inertia(Scene const& scene);
 
 }  // namespace cayspin::inline v0_2::io

@@ -25,8 +25,8 @@ inline SiteBox in_planes(SiteBox const& box, std::int64_t first, std::int64_t pl
   return part;
 }
 
-/// Appends those numbers of a box that are in consecutive planes of a lattice (nx, ny, nz);
-/// `of_site` numbers per site.
+/// Appends to `chosen` the numbers of a box's sites, taken from `of_planes`: `of_site` numbers for
+/// each site of consecutive planes, which the box lies in. `shape`: (nx, ny, nz) of the lattice.
 template <class Number>
 void append_numbers_in(SiteBox const& box, std::array<std::int64_t, 3> const& shape,
                        std::int64_t of_site, std::vector<Number> const& of_planes,
@@ -40,7 +40,8 @@ void append_numbers_in(SiteBox const& box, std::array<std::int64_t, 3> const& sh
     }
 }
 
-/// Returns the numbers of a box out of those of all sites of a lattice, `of_site` per site.
+/// Returns the numbers of a box's sites, taken from `of_all`: `of_site` numbers for each site of
+/// the lattice.
 template <class Number>
 std::vector<Number> numbers_in(SiteBox const& box, std::array<std::int64_t, 3> const& shape,
                                std::int64_t of_site, std::vector<Number> const& of_all) {

@@ -21,9 +21,9 @@ struct SiteNumbers {
   std::vector<double> per_region;
   GivenNumbers given;
   double unit = 1;  ///< multiplies each number, which may be typed in SI
-  std::string key;  ///< in SI, the key of [material] that they replace
+  std::string key;  ///< in SI, their key in [material]
   std::filesystem::path image = {};
-  std::vector<int> levels = {};  ///< thresholds of grey: a pixel's number is how many it reaches
+  std::vector<int> levels = {};  ///< grey values; a pixel's number is how many of them it reaches
 
   bool there() const {
     return !expression.empty() || !file.empty() || !image.empty() || !per_region.empty() || given;

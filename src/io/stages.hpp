@@ -10,14 +10,14 @@
 /// A run in stages: [[stage]].
 namespace cayspin::inline v0_2::io {
 
-/// Returns all stages of a run: the scene's own tables, and those that follow. Each starts where it
-/// would if no stage before it ended early.
+/// Returns all stages of a run: the scene's own tables, and the stages after them. Each starts
+/// where it would start if no stage before it ended early.
 std::vector<Stage> stages_of(Scene const& scene);
 
 /// Returns the start of the stage after one that has ended after `step`.
 StageBegin begin_after(Scene const& stage, std::int64_t step, Scene const& next);
 
-/// Makes the stages after `first` start where those before them end.
+/// Sets the start of each stage after `first` to the end of the stage before it.
 void put_begins(std::vector<Stage>& stages, std::size_t first);
 
 /// Returns the last step of a stage; if it takes none, the step after which it starts.
@@ -26,12 +26,12 @@ std::int64_t end_of(Stage const& stage);
 /// "stage 1 (switch)"
 std::string stage_text(Stage const& stage);
 
-/// Refuses a scene in stages, which `who` does not support.
+/// Throws SceneError for a scene in stages. `who`: the name in the message of what accepts none.
 void require_no_stages(Scene const& scene, std::string_view who);
 
-/// Returns a scene with keys changed as by a stage, to continue from a state of this one. The
-/// overrides are those of `--set`; `given`: the numbers for keys with { given = true }. Throws
-/// SceneError, also for keys that no stage may change.
+/// Returns a scene with keys changed as a stage would, to continue from a state of this scene. The
+/// overrides are written as for `--set`; `given`: the numbers for keys with { given = true }.
+/// Throws SceneError, also for keys that no stage may change.
 Scene changed_on_the_way(Scene const& scene, std::vector<std::string> const& overrides,
                          Given const& given = {});
 

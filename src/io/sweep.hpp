@@ -53,7 +53,7 @@ struct SweptRun {
   Scalars scalars{time, time, {time, time, time}};  ///< of the last frame
   RunCost cost;
   bool has_file = false;  ///< true if its file has a frame
-  bool is_new = false;    ///< this process has just had its file written: it needs no trial
+  bool is_new = false;    ///< written in this sweep just now: its file needs no trial
 };
 
 /// Contents of a sweep's file.
@@ -74,9 +74,9 @@ std::string swept_run_name(std::int64_t run);
 std::filesystem::path swept_run_file(std::filesystem::path const& file, std::int64_t run);
 
 /// Writes PATH.partial and renames it, so that a complete file exists at every moment. With
-/// `one_file` the runs' own files are copied into it, otherwise it links to them. A damaged file is
-/// refused by name, for which each file that is not new is read once before. `go_on` is called
-/// before each copy; if it returns false, the old file stays and the result is false.
+/// `one_file` the runs' own files are copied into it, otherwise it links to them. Before copying,
+/// each file that is not new is read once; the error names a damaged one. `go_on` is called before
+/// each group of files; if it returns false, the old file stays and the result is false.
 bool write_sweep(std::filesystem::path const& path, SweepInfo const& sweep,
                  std::function<bool()> const& go_on = {});
 

@@ -13,7 +13,7 @@ namespace cayspin::inline v0_2::io {
 
 using PrincipalMoments = Triple;
 using InertiaTensor = std::array<double, 9>;  ///< symmetric 3x3, row by row
-/// An inertia tensor for each body, from an HDF5 file.
+/// An HDF5 file with an inertia tensor for each body.
 struct InertiaFile {
   std::filesystem::path path;  ///< dataset /inertia (count, 3, 3)
 };

@@ -9,7 +9,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// The table [thermal]. kB T over the energy of a site is temperature * in_time(t) * of_sites.
+/// The table [thermal]. A site has kB T = temperature * in_time(t) * of_sites, in units of energy.
 struct Thermal {
   double temperature = 0;          ///< >= 0
   AppliedComponent in_time = 1.0;  ///< an expression in t, or 1

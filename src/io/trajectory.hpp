@@ -18,7 +18,8 @@
 ///
 /// Every failure of the file system or of HDF5 throws std::runtime_error with one line: the file,
 /// the action that failed, and why. HDF5 itself prints nothing. Not thread-safe. If this is a
-/// program's first use of HDF5, HDF5 does not close files of others at exit.
+/// program's first use of HDF5, HDF5's clean-up at exit is turned off: it does not close files that
+/// other code left open.
 namespace cayspin::inline v0_2::io {
 
 /// Optional numbers of each sample besides its Scalars, in this order.
@@ -62,11 +63,12 @@ struct TrajectoryHeader {
 struct TrajectoryStorage {
   int compression = 0;      ///< level of deflate with shuffle, 0 (none) to 9
   std::int64_t chunk = 0;   ///< planes along z in a chunk; 0: the frame, or as many as 256 MiB hold
-  std::int64_t frames = 0;  ///< number planned: a kill loses none of these, or of 8180 chunks
+  std::int64_t frames = 0;  ///< planned; a kill loses none of these, nor of the first 8180 chunks
   bool sync = false;        ///< a power cut loses at most the frame being written
 };
 
-/// Division of a frame into pieces of so many planes along z for writing; the last may have fewer.
+/// Division of a frame into pieces along z for writing, all of `planes` planes except the last,
+/// which may have fewer.
 struct FramePieces {
   std::int64_t planes = 0;
   std::size_t bytes = 0;   ///< memory for a piece
@@ -187,8 +189,9 @@ struct TrajectoryInfo {
   std::vector<double> more_of_last_sample = {};  ///< as listed in header.more
 };
 
-/// Completes a file of TrajectoryStorage::sync after a kill or a power cut, for other readers than
-/// those below, which do so themselves. Leaves any other file unchanged.
+/// Completes a file written with TrajectoryStorage::sync after a kill or a power cut. Call it
+/// before reading the file with another program; the functions below do it themselves. Leaves any
+/// other file unchanged.
 void complete_file(std::filesystem::path const& path);
 
 /// Returns what another file of cayspin is, as in "the file of a sweep"; empty for a trajectory
@@ -203,10 +206,11 @@ TrajectoryInfo read_info(std::filesystem::path const& path);
 /// state; a later call may succeed.
 TrajectoryInfo read_info_while_written(std::filesystem::path const& path);
 
-/// Returns true if a process has the file open for writing. Unknown if files are not locked.
+/// Returns true if a process has the file open for writing; nothing if that is unknown, because
+/// files are not locked.
 std::optional<bool> is_being_written(std::filesystem::path const& path);
 
-/// Accepts any number of sites per cell that the file has, if they fill the planes of the lattice.
+/// For `cell_sites`: accepts any number of sites per cell in the file that fits the lattice.
 inline constexpr std::int64_t any_cell_sites = 0;
 
 /// Reads dataset /spins of any HDF5 file for a lattice (nx, ny, nz): (nz, ny, nx, 3), or the last

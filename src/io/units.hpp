@@ -3,7 +3,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// The reduced units in the units that a scene is typed in and its files are written in.
+/// The units of reduced numbers, measured in the units of the scene and its files.
 struct Units {
   bool si = false;    ///< units = "SI"; otherwise all are 1
   double time = 1;    ///< s

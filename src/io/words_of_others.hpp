@@ -16,7 +16,7 @@ std::string hint_for_value_of_others(std::string_view value);
 /// Returns the key of this name in another table: `, did you mean "integrator.dt"?`.
 std::string hint_for_other_table(std::string_view key);
 
-/// Returns the same for a key in other case, or with other signs between its words: MinDt.
+/// Returns the same for a key that differs only in case, '_' and '-': MinDt.
 std::string hint_for_other_case(std::string_view key);
 
 /// Returns a word in lower case, without '_' and '-'.

@@ -80,7 +80,7 @@ class Records {
 
   std::filesystem::path const& path_;
   std::map<std::string, std::string> values_;
-  std::set<std::string> repeated_;  // with different values
+  std::set<std::string> repeated_;  // labels with several different values
 };
 
 /// Returns the next line, or nothing at the end of the file.

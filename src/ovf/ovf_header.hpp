@@ -22,7 +22,7 @@ struct OvfHeader {
   OvfFormat format = OvfFormat::text;
   int version = 2;
   std::int64_t components = 3;
-  double multiplier = 1;  ///< of the values; OVF 1.0
+  double multiplier = 1;  ///< multiplies the values of OVF 1.0
 };
 
 /// A line of a header without its '#': "label: value". The label is in lower case without blanks;

@@ -13,7 +13,7 @@ namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 constexpr std::string_view accepted_axes = "two vectors at right angles, to 1e-4";
-constexpr double most_skew = 1e-4;  // of cayspin::CubicAnisotropy
+constexpr double most_skew = 1e-4;  // limit of cayspin::CubicAnisotropy
 
 // Returns -1 for all sites of the cell, or the index of one.
 int read_site(Table const& table) {
@@ -39,7 +39,7 @@ std::string skew_text(Triple const& a, Triple const& b) {
                            : fmt::format("the axes are not at right angles, by {:.3g}", skew);
 }
 
-// Site-dependent axes are compared where they are used.
+// Site-dependent axes are checked where they are used, in crystal_axes().
 void read_axes(Item const& of_both, std::array<Item, 2> const& each, Scene& scene,
                CrystalAnisotropy& term) {
   for (std::size_t i = 0; i < 2; ++i)

@@ -12,7 +12,7 @@
 namespace cayspin::inline v0_2::io {
 namespace {
 
-// Compares up to the round-off of a conversion from SI.
+// Compares two numbers, allowing for round-off of a conversion from SI.
 bool same(double a, double b) {
   return a == b || std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b));
 }
@@ -26,7 +26,7 @@ bool same_spacing(Scene const& before, Scene const& now, std::size_t axis) {
               now.lattice.spacing[axis] * now.units.length);
 }
 
-// Compares numbers of the cell's sites, which are all 1 if none are typed.
+// Compares numbers of the cell's sites; if none are typed, all are 1.
 bool same_of_cell(std::vector<double> before, std::vector<double> now, std::size_t sites) {
   if (before.empty()) before.assign(sites, 1);
   if (now.empty()) now.assign(sites, 1);
@@ -36,7 +36,8 @@ bool same_of_cell(std::vector<double> before, std::vector<double> now, std::size
 template <class Number>
 using OfSites = std::vector<Number> (*)(Scene const&, SiteBox const&);
 
-// `of_sites`: if empty, all sites have the value `otherwise`.
+// Compares numbers per site. If of_sites(scene, box) returns none, all sites have the value
+// `otherwise`.
 template <class Number>
 bool same_sites(Scene const& before, Scene const& now, SiteNumbers Lattice::*numbers,
                 OfSites<Number> of_sites, Number otherwise) {

@@ -73,7 +73,8 @@ void check_isotropy(Scene const& scene) {
            "\"cayley\"");
 }
 
-// Checks that a periodic axis keeps the two colours of the checkerboard.
+// Checks what a method needs that moves one colour of a checkerboard at a time: among others, an
+// even number of cells along periodic axes.
 void check_two_colours(Scene const& scene) {
   constexpr std::string_view key = "integrator.method";
   auto const method = scene.integrator.method->word;
@@ -109,7 +110,7 @@ void check_tangent(Scene const& scene) {
            "\"cayley\"");
 }
 
-// Checks combinations of keys within [integrator].
+// Checks the keys of [integrator] against each other and the system, temperature and lattice.
 void check_integrator(Scene const& scene) {
   if (scene.field.own.uniform && scene.field.applied)
     refuse(scene, "field.applied", "the program has a uniform field of its own", "no such key");

@@ -56,7 +56,8 @@ std::array<double, 9> read_tensor(Item const& item, Scene& scene) {
   return tensor;
 }
 
-// Bonds past an open end are omitted; refuses a coupling that loses all of them.
+// Refuses a coupling that leaves the lattice from every cell. (Single bonds past an open end are
+// left out.)
 void refuse_beyond(Item const& item, Lattice const& lattice, std::array<int, 3> const& offset) {
   auto cells = lattice.shape;
   cells[2] /= static_cast<std::int64_t>(lattice.basis.size());
@@ -143,7 +144,7 @@ bool are_close(Coupling const& a, Coupling const& b) {
   return difference <= 1e-6 * largest;
 }
 
-// Keeps one of the two ends from which each bond is written.
+// Keeps each bond once. All are written from both ends, with equal values.
 std::vector<Coupling> one_direction(std::vector<Item> const& items,
                                     std::vector<Coupling> const& couplings) {
   constexpr std::string_view accepted = "each bond from both ends, with J, and with -D there";
@@ -172,7 +173,7 @@ std::vector<Coupling> read_pairs(Item const& item, Scene& scene, bool both_direc
   return bonds;
 }
 
-// A bond in both lists becomes one bond, with the sum of their values.
+// Adds the bonds of `more` to `bonds`; values of a bond that is in both are summed.
 void add_bonds(std::vector<Coupling> const& more, std::vector<Coupling>& bonds) {
   std::map<BondKey, std::size_t> seen;
   for (std::size_t i = 0; i < bonds.size(); ++i) seen.emplace(key_of(bonds[i]), i);
@@ -190,7 +191,8 @@ void add_bonds(std::vector<Coupling> const& more, std::vector<Coupling>& bonds) 
   }
 }
 
-// The cell's vectors are in units of the spacing.
+// Returns the crystal with its vectors in the unit of the spacing; the lattice has them in
+// multiples of the spacing.
 Crystal with_spacing(Lattice const& lattice) {
   auto made = crystal(lattice);
   for (auto& vector : made.cell)

@@ -13,8 +13,8 @@
 
 namespace cayspin::inline v0_2::io::detail {
 
-/// A dataset with `of_site` numbers of each site: (nz, ny, nx), or (site, nz, ny, nx) for a
-/// crystal, and a last extent for several numbers.
+/// A dataset with `of_site` numbers per site. Its extents are (nz, ny, nx), or (site, nz, ny, nx)
+/// for a crystal, followed by `of_site` if that is above 1.
 class DatasetOfSites {
  public:
   DatasetOfSites(std::filesystem::path const& path, std::string name, Lattice const& lattice,
@@ -31,7 +31,7 @@ class DatasetOfSites {
     dataset_.refuse_extents(accepted);
   }
 
-  /// Reads a box in the order of a lattice, whose planes are the sites of a cell in turn.
+  /// Reads a box in the order of the lattice: plane k * sites + s has the sites s of the cells k.
   std::vector<double> in(SiteBox const& box) const {
     auto const at_once = sites_ == 1 ? box.extent[2] : 1;
     std::vector<double> numbers;
@@ -45,7 +45,8 @@ class DatasetOfSites {
   }
 
  private:
-  /// Returns the extents that the dataset has.
+  /// Returns `all` without the extents that the dataset lacks: the first for one site per cell, the
+  /// last for one number per site.
   Extents extents(std::array<std::int64_t, 5> const& all) const {
     return Extents(all.begin() + (sites_ == 1 ? 1 : 0), all.end() - (of_site_ == 1 ? 1 : 0));
   }

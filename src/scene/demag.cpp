@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Demagnetising field of all cells, or dipolar field of all sites.
+// Reads the demagnetising field of cells, or the dipolar field of sites.
 #include "sections.hpp"
 
 #include <cayspin/demagnetization/images.hpp>
@@ -15,8 +15,8 @@
 namespace cayspin::inline v0_2::io::detail {
 namespace {
 
-// Periodic axes of more than one cell have infinitely many images. Cells have no such sum along
-// three axes.
+// Sets the default: infinitely many images along each periodic axis with several cells. Along three
+// such axes, only dipoles have this sum.
 void set_usual_images(Item const& item, Lattice const& lattice, Demagnetization& demag) {
   auto& images = demag.periodic_images;
   auto const basis = static_cast<std::int64_t>(lattice.basis.size());
@@ -44,7 +44,7 @@ void set_usual_images(Item const& item, Lattice const& lattice, Demagnetization&
         "up to 1e4 : 1, or " + otherwise);
 }
 
-// By default, the surface far away has no poles.
+// The default, 0, means a surface far away without poles.
 void read_demagnetizing_factors(Table const& table, Demagnetization& demag) {
   auto const item = table.find("demagnetizing_factors");
   if (!item) return;
@@ -57,7 +57,7 @@ void read_demagnetizing_factors(Table const& table, Demagnetization& demag) {
                "no such key");
 }
 
-// Reads `true`, or a table. The demag of a crystal is that of dipoles.
+// Reads `true` or `false`, or a table. In a crystal, demag is the field of dipoles.
 std::optional<Demagnetization> read_whole_demag(Item const& item, Scene& scene, bool of_dipoles) {
   Demagnetization demag;
   if (of_dipoles) demag.key = "dipoles";

@@ -24,7 +24,7 @@ Term read_term(Item const& item, Scene& scene) {
   return term;
 }
 
-// Reads a table, or a single number if the term has no other key.
+// Reads the number of a term with only one key, or the table of any other term.
 template <class Term>
 Term read_lattice_term(Item const& item, Scene& scene) {
   if constexpr (Term::keys().size() == 1) {
@@ -36,8 +36,8 @@ Term read_lattice_term(Item const& item, Scene& scene) {
   }
 }
 
-// Reads the DMI of an interface, of the bulk of a chiral crystal, or of symmetry D2d. free_boundary
-// is read after all sections.
+// Reads the DMI of an interface, of the bulk of a chiral crystal, or of D2d symmetry. The value of
+// free_boundary is read after all tables.
 void read_dmi(Item const& item, Scene& scene, Field& field) {
   constexpr std::string_view accepted =
       "{ interfacial = D, normal = [x, y, z] }, { bulk = D } or { d2d = D }, and free_boundary";
@@ -67,7 +67,7 @@ void read_lattice_terms(Table const& table, Field& field) {
     auto const item = table.find(Term::key);
     if (!item) return;
     if (std::is_same_v<Term, InterfacialDmi>) return read_dmi(*item, table.scene(), field);
-    if (std::is_same_v<Term, BulkDmi>) return;  // read next to it
+    if (std::is_same_v<Term, BulkDmi>) return;  // read_dmi has read it
     if (std::is_same_v<Term, Exchange> &&
         read_site_numbers(*item, table.scene(), field.exchange_factors)) {
       field.exchange = {1};
@@ -87,7 +87,7 @@ std::vector<std::string_view> field_keys() {
   return keys;
 }
 
-// Reads the bonds between two regions.
+// Reads the key `between`: two regions.
 std::array<std::int64_t, 2> read_between(Table const& table) {
   constexpr std::string_view accepted = "two regions";
   auto const item = table.required("between", accepted);

@@ -15,7 +15,8 @@ namespace {
 
 double square(double x) { return x * x; }
 
-/// Search among tiles of one size, with the nearest seed so far.
+/// Search for the seed nearest to a point, which keeps the nearest so far. There is one seed in
+/// each tile.
 struct Search {
   std::array<std::int64_t, 3> tiles;
   std::array<Triple, 3> edges;    // of a tile
@@ -26,8 +27,8 @@ struct Search {
   double nearest = std::numeric_limits<double>::infinity();  // squared distance
   std::int64_t grain = 0;
 
-  /// Searches the tiles of a row, a plane, or all, from the point outwards, as long as they may
-  /// contain a nearer seed.
+  /// Searches a row of tiles (axis 0), a plane (1) or all of them (2), from the point outwards, as
+  /// long as they may contain a nearer seed.
   void look(std::size_t axis, std::array<std::int64_t, 3>& tile) {
     if (tiles[axis] == 1) return look_into(axis, tile, 0);
     auto const middle = std::min(static_cast<std::int64_t>(point[axis]), tiles[axis] - 1);

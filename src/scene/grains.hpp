@@ -10,16 +10,16 @@ namespace cayspin::inline v0_2::io::detail {
 
 /// Voronoi grains of a lattice: a point belongs to the nearest seed. Each tile of the lattice has
 /// one seed at a random position. Grains wrap around where the lattice is periodic. They do not
-/// depend on the part of the lattice that is evaluated.
+/// depend on which part of the lattice is evaluated.
 class Grains {
  public:
-  /// `length`: the unit of lattice.spacing, in the unit of sizes.
+  /// `length`: the unit of lattice.spacing, in the unit of `size` below.
   Grains(Lattice const& lattice, double length);
 
-  /// Returns the number 0, 1, .. of the grain at a point, in fractions of the lattice. There are as
-  /// many grains as tiles of about `size` along each axis; along an axis shorter than 1.5 sizes
-  /// there is one, so that grains are columns. Throws std::runtime_error for an invalid size or
-  /// seed.
+  /// Returns the number 0, 1, .. of the grain at a point, in fractions of the lattice. The lattice
+  /// is divided into tiles with edges of about `size`, and each has one grain. An axis shorter than
+  /// 1.5 `size` is not divided: grains are columns along it. Throws std::runtime_error for an
+  /// invalid size or seed.
   double at(std::array<double, 3> const& point, double size, double seed) const;
 
  private:

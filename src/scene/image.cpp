@@ -29,7 +29,7 @@ class PngFile {
       refuse_image(path, "it is not a regular file");
     image_.version = PNG_IMAGE_VERSION;
     if (png_image_begin_read_from_file(&image_, path.c_str()) == 0) refuse();
-    // Deflate compresses at most 1032 bytes, each of 8 pixels, into one.
+    // Deflate compresses by at most 1032 : 1, and a byte holds at most 8 pixels.
     auto const size = std::filesystem::file_size(path, error);
     if (error || pixels() / 8256 > size) refuse_image(path, "it is truncated");
   }

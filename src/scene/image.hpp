@@ -36,8 +36,8 @@ Image read_image(std::filesystem::path const& path);
 /// Reads { image = "NAME.png", levels = [..] }, where only lattice.occupied may omit `levels`.
 void read_image_keys(Table const& table, SiteNumbers& numbers);
 
-/// Returns how many of the levels the grey value of each site of a box reaches. Without levels,
-/// returns 1 where it is dark (below 128), and 0 elsewhere.
+/// For each site of a box, returns how many of the levels its grey value reaches. Without levels,
+/// returns 1 where the image is dark (below 128), and 0 elsewhere.
 std::vector<double> numbers_of_image(SiteNumbers const& numbers, Lattice const& lattice,
                                      SiteBox const& box);
 

@@ -165,7 +165,7 @@ struct Start {
     set_all(numbers_in(box, scene.lattice.shape, 3, *start.spins), "initial.given");
   }
 
-  // Zero vectors are sites without a spin: the scene must have no spin there either.
+  // Zero vectors in the file mean sites without a spin; refuses them on sites that have one.
   void require_shape(std::vector<double> const& values, std::string const& name) const {
     if (occupied.empty()) return;
     std::int64_t there = 0, zeros = 0;

@@ -34,8 +34,8 @@ struct SpinOfState {
   Lattice const& lattice;
   std::array<std::int64_t, 3> const& site;
 
-  // Returns the vector to the site from a point given in fractions of the lattice. It may cross the
-  // periodic ends of the plane.
+  // Returns the vector to the site from a point given in fractions of the lattice. With
+  // `across_ends` it is the shortest one across periodic ends along x and y.
   Triple way_from(Triple const& point, bool across_ends = false) const {
     auto const values = site_values(lattice, site);
     auto const sites = static_cast<std::int64_t>(lattice.basis.size());
@@ -99,7 +99,8 @@ struct SpinOfState {
     double const turns = scalar_product(way_from({0, 0, 0}), helix.direction) / helix.period;
     double const angle = 2 * std::numbers::pi * turns + helix.phase;
     auto const& n = helix.normal;
-    // At angle 0 spins are along z, projected normal to n, or along x.
+    // At angle 0, spins are along the projection of z on the plane normal to n; along x if n is
+    // along z.
     bool const is_along_z = n[0] * n[0] + n[1] * n[1] < 1e-12;
     auto const side = vector_product(n, is_along_z ? Triple{1, 0, 0} : Triple{0, 0, 1});
     auto const begin = vector_product(side, n);

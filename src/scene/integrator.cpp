@@ -11,7 +11,7 @@
 namespace cayspin::inline v0_2::io::detail {
 namespace {
 
-// Times are n dt in double, so n must be exact there.
+// Times are n * dt in double precision, which must hold n exactly.
 constexpr std::int64_t most_steps = std::int64_t{1} << 53;
 
 std::int64_t read_steps(Table const& table, double dt) {
@@ -52,7 +52,7 @@ Method const* read_method(Table const& table) {
   return word_among(words, table.required("method", quoted(words)));
 }
 
-// Reads the coordinates on the group, which baselines do not have.
+// Reads generator, isotropy and rotation, which baselines and "auto" do not have.
 void read_coordinates(Table const& table, Integrator& integrator) {
   auto const& method = *integrator.method;
   auto const generator = table.find("generator");
@@ -110,8 +110,8 @@ void read_error(Table const& table, Integrator& integrator) {
     error.fail(fmt::format("{} is out of reach", *integrator.error), accepted);
 }
 
-// Default number of observations of a run with adaptive steps. With a power of two the end keeps
-// all bits.
+// Default number of observations of a run with adaptive steps. With a power of two, the run ends
+// exactly at `end`.
 constexpr double usual_looks = 128;
 
 double read_dt(Table const& table, Integrator const& integrator) {
@@ -123,8 +123,8 @@ double read_dt(Table const& table, Integrator const& integrator) {
 
 }  // namespace
 
-// The quotient must be whole to 1e-9 of a step. Beyond 2e6 steps the rounding of both decimal
-// numbers and of their quotient (2 eps of it) exceeds that and must not refuse a whole number.
+// The number of steps must be whole to within 1e-9. Beyond 2e6 steps the rounding of both decimal
+// numbers and of their quotient exceeds that; so the tolerance is then 2 eps times the quotient.
 std::int64_t whole_steps(Item const& item, double dt) {
   auto const time = number(item, not_negative);
   double const quotient = time / dt;

@@ -20,7 +20,7 @@ namespace {
 
 using Cells = std::array<std::int64_t, 3>;
 
-// Sites are counted up to this number: more would take too long.
+// Larger lattices are not searched site by site, which would take too long.
 constexpr std::int64_t most_sites_counted = 10'000'000;
 
 class Notes {
@@ -259,7 +259,7 @@ class Notes {
     return start != nullptr && scene_.lattice.occupied.file == start->path;
   }
 
-  // Spins are assigned by index, ignoring the cell sizes in the file.
+  // Notes another cell size in an OVF file. Spins are assigned by index, whatever the size.
   void of_mesh() {
     auto const* const start = std::get_if<FileStart>(&scene_.initial);
     if (start == nullptr || !scene_.units.si || !is_ovf(start->path)) return;
@@ -277,7 +277,7 @@ class Notes {
                                       fmt::join(mesh.step, " x "), fmt::join(edges, " x ")));
   }
 
-  /// Names numbers that are right in other units.
+  /// Notes values that look as if typed in other units.
   void of_magnitudes() {
     auto const& material = *scene_.material;
     auto const look = [&](std::string_view key, double value, double least, double most,

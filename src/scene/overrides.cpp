@@ -17,7 +17,7 @@
 namespace cayspin::inline v0_2::io::detail {
 namespace {
 
-// Between quotes a dot belongs to the key.
+// Splits a path at its dots, except those between quotes.
 std::vector<std::string> split_path(std::string_view path) {
   std::vector<std::string> keys(1);
   char quote = 0;
@@ -42,7 +42,7 @@ std::optional<std::size_t> as_index(std::string_view text) {
   return index;
 }
 
-// Returns true for a value that begins as only a path does: /a, ~/a, ./a, ../a.
+// Returns true for a value that can only be a file name: /a, ~/a, ./a, ../a.
 bool begins_a_path(std::string_view value) {
   return value.starts_with('/') || value.starts_with('~') || value.starts_with("./") ||
          value.starts_with("../");
@@ -57,7 +57,8 @@ bool is_toml(std::string_view value) {
   }
 }
 
-// Returns true for a word, or a file name, which may begin with a dot or a digit.
+// Returns true for a word or a file name without quotes. A file name may begin with a dot or a
+// digit.
 bool is_bare_word(std::string_view value) {
   constexpr std::array not_strings{"true", "false", "inf", "nan"};
   if (value.empty() || std::ranges::find(not_strings, value) != not_strings.end()) return false;
@@ -72,8 +73,8 @@ bool is_bare_word(std::string_view value) {
   return value[0] != '-' && std::ranges::any_of(value, is_letter) && !is_toml(value);
 }
 
-// Parses one value with the override as its source, which messages will name. A shell removes the
-// quotes of strings.
+// Parses one value. Its source, which messages name, is the override. Words may lack their quotes,
+// which a shell removes.
 toml::table parse_value(std::string const& place, std::string_view value) {
   toml::table parsed;
   value.remove_prefix(std::min(value.find_first_not_of(' '), value.size()));
@@ -90,7 +91,7 @@ toml::table parse_value(std::string const& place, std::string_view value) {
   return parsed;
 }
 
-// Moves the node, because a copy forgets its source.
+// Moves the value, because a copy forgets its source.
 void put(toml::node& parent, std::string const& key, toml::node&& value, std::string const& place) {
   std::move(value).visit([&](auto&& typed) {
     if (auto* const table = parent.as_table()) {

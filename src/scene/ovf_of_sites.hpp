@@ -9,8 +9,8 @@
 
 namespace cayspin::inline v0_2::io::detail {
 
-/// Throws std::runtime_error unless the header of an OVF file has the nodes of a lattice with one
-/// site per cell, and this number of components, 1 or 3.
+/// Throws std::runtime_error unless an OVF file has as many nodes along each axis as the lattice,
+/// which must have one site per cell, and this number of components, 1 or 3. Reads only the header.
 void check_ovf_of_sites(std::filesystem::path const& path, Lattice const& lattice,
                         std::int64_t components);
 

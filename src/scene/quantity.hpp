@@ -14,7 +14,7 @@ struct Unit {
   double in_si;
 };
 
-/// A typed value, and its unit in SI.
+/// A typed value, and the SI value of its unit.
 struct InUnit {
   Item value;
   double unit = 1;
@@ -24,16 +24,17 @@ constexpr std::string_view accepted_energy =
     "a number in J, { meV = number }, { eV = number } or { mRy = number }";
 constexpr std::string_view accepted_moment = "a number in J/T, or { bohr_magnetons = number }";
 
-/// Returns the entry of such a table, or the item itself. `accepted`: for messages.
+/// Returns the value of a table such as { meV = number } with its unit, or the item itself.
+/// `accepted`: for messages.
 InUnit in_joules(Item const& item, Scene& scene, std::string_view accepted = accepted_energy);
 InUnit in_joules_per_tesla(Item const& item, Scene& scene,
                            std::string_view accepted = accepted_moment);
 
-/// Reads a number, an energy if the material has mu_s; or site-dependent numbers, and then returns
-/// 1.
+/// Reads a number, or site-dependent numbers, and then returns 1. If the material has mu_s, a
+/// number is an energy, which may have a unit.
 double constant_of_sites(Item const& item, Scene& scene, SiteNumbers& numbers);
 
-/// Reads an energy if the material has mu_s, otherwise the item itself.
+/// Returns in_joules(item) if the material has mu_s, otherwise the item itself.
 InUnit in_joules_of_atoms(Item const& item, Scene& scene);
 
 }  // namespace cayspin::inline v0_2::io::detail

@@ -21,7 +21,8 @@ inline double random_number(std::uint64_t start, std::uint64_t counter) {
   return std::ldexp(static_cast<double>(random_bits(start, counter) >> 11U), -53);
 }
 
-/// Returns the seed of a function in an expression. Throws std::runtime_error.
+/// Returns the seed of a function in an expression as an integer. Throws std::runtime_error unless
+/// it is a whole number from 0 to 2^53.
 std::uint64_t whole_seed(double seed, std::string_view function);
 
 }  // namespace cayspin::inline v0_2::io::detail

@@ -70,7 +70,7 @@ InitialState read_vortex(Table const& table) {
   return vortex;
 }
 
-// Returns the shorter edge in the plane.
+// Returns the length of the lattice along x or y, whichever is shorter.
 double shorter_edge(Lattice const& lattice) {
   std::array<double, 2> edges{};
   for (std::size_t axis = 0; axis < 2; ++axis) {

@@ -50,11 +50,11 @@ toml::table parse(std::string const& text, std::filesystem::path const& path) {
   }
 }
 
-// Part of a scene to read. start: the scene's own tables in a run in stages, without an integrator.
-// rest: a stage that relaxes.
+// The purpose for which tables are read. any: run or relax, whichever the scene is for. start: the
+// scene's own tables if stages follow and [integrator] is missing. rest: a stage that relaxes.
 enum class Purpose { run, relax, any, start, rest };
 
-// For `relax`, [integrator] is read if it is there.
+// Reads [integrator]. Unless the scene is to be run, it may be missing.
 Integrator read_integrator_for(Purpose purpose, detail::Table const& root, SystemKind kind) {
   bool const is_for_bodies = purpose == Purpose::any && kind != SystemKind::llg;
   if (purpose == Purpose::run || is_for_bodies || root.contains("integrator"))
@@ -75,7 +75,8 @@ void check_purpose(Purpose purpose, Scene const& scene) {
   }
   if (scene.system.kind != SystemKind::llg)
     detail::refuse(scene, "system.kind", "rigid bodies have no equilibrium", "\"llg\"");
-  // For modes; relax and path refuse it.
+  // `cayspin modes` accepts torques; relax and path, which read scenes for the same purpose, refuse
+  // them later.
   if (has_torque(scene.field) && purpose != Purpose::relax)
     detail::refuse(scene, "torque",
                    "moves spins for ever, and an equilibrium needs an energy that falls",
@@ -108,8 +109,7 @@ std::string text_of(toml::table const& document) {
   return stream.str();
 }
 
-// Reads the tables of a document without stages. `place`: for messages about missing tables. May
-// write the cell into the document.
+// Reads the tables of a document without stages. `place`: for messages about missing tables.
 void read_tables(Purpose purpose, toml::table& document, std::string const& place, Scene& scene) {
   detail::Table const root({&document, "", place}, scene);
   root.accept_only({"units", "material", "system", "lattice", "field", "torque", "initial",

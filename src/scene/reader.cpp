@@ -47,7 +47,7 @@ std::string type_name(toml::node const& node) {
   }
 }
 
-constexpr std::size_t longest_word = 64;  // of those that are compared
+constexpr std::size_t longest_word = 64;  // longer words get no hint
 
 std::string hint_for_case(std::string_view word, std::span<std::string_view const> known) {
   auto const plain = without_case(word);
@@ -56,7 +56,7 @@ std::string hint_for_case(std::string_view word, std::span<std::string_view cons
   return found == known.end() ? std::string() : fmt::format(", did you mean \"{}\"?", *found);
 }
 
-// An exact word, here or elsewhere, wins over a near spelling.
+// A word that exists, in this table, in another or in another program, wins over a near spelling.
 std::string hint_for_key(std::string_view key, std::span<std::string_view const> known) {
   if (key.size() > longest_word) return {};
   if (auto hint = hint_for_case(key, known); !hint.empty()) return hint;
@@ -95,7 +95,7 @@ std::string did_you_mean(std::string_view word, std::span<std::string_view const
   std::size_t best_distance = 3;
   for (auto const candidate : known) {
     auto const distance = edit_distance(word, candidate);
-    // Short words are near to many others.
+    // A short word is within two edits of many others.
     if (distance < best_distance && 2 * distance < std::max(word.size(), candidate.size())) {
       best = candidate;
       best_distance = distance;

@@ -22,14 +22,15 @@ namespace cayspin::inline v0_2::io::detail {
 /// Replaces control characters by '?', so that a name typed in a scene cannot break the line.
 std::string one_line(std::string text);
 
-/// Returns a value of the command line as TOML: there a word or a file name needs no quotes.
+/// Returns a value typed on the command line as TOML: puts quotes around a word or a file name
+/// without them.
 std::string as_toml_value(std::string_view value);
 
 /// Throws `place: key: what; accepted: accepted`, without empty parts.
 [[noreturn]] void fail(std::string_view place, std::string_view key, std::string_view what,
                        std::string_view accepted = {});
 
-/// Returns `, did you mean "..."?` if one of the known words is equal but for its case, or within
+/// Returns `, did you mean "..."?` if a known word differs only in case, '_' and '-', or by at most
 /// two edits, otherwise "".
 std::string did_you_mean(std::string_view word, std::span<std::string_view const> known);
 
@@ -54,7 +55,7 @@ class Table {
  public:
   Table(Item item, Scene& scene);
 
-  /// Refuses every other key.
+  /// Refuses any other key.
   void accept_only(std::vector<std::string_view> const& known) const;
 
   std::optional<Item> find(std::string_view name) const;
@@ -79,22 +80,23 @@ bool boolean(Item const& item);
 std::string string(Item const& item, std::string_view accepted);
 /// Describes what a key with site-dependent numbers accepts instead of one number.
 std::string accepted_site_numbers(Lattice const& lattice);
-/// Returns true for an expression, a file, numbers of regions, or given numbers; false for a number
-/// with its unit.
+/// Returns true for an expression, a file, an image, numbers of regions, or given numbers; false
+/// for a number with its unit.
 bool are_numbers_of_sites(Item const& item);
 /// Returns false for an item that is neither an expression nor a table.
 bool read_site_numbers(Item const& item, Scene& scene, SiteNumbers& numbers);
 /// Reads site-dependent numbers and returns 1; or reads a number and returns that.
 double number_of_sites(Item const& item, Scene& scene, SiteNumbers& numbers);
-/// Reads a vector for each site; `accepted_site_vectors`: for messages.
+/// Describes, for messages, what read_site_vectors accepts: a vector for each site.
 std::string accepted_site_vectors(Lattice const& lattice);
 SiteVectors read_site_vectors(Item const& item, Scene& scene);
-/// Reads one direction, or site-dependent vectors, and then returns the zero vector.
+/// Reads one direction and returns it; or reads site-dependent vectors into `axes` and returns the
+/// zero vector.
 Triple axis_of_sites(Item const& item, Scene& scene, SiteVectors& axes);
 /// Reads a number, or an expression in t.
 AppliedComponent component_in_time(Item const& item);
 
-/// Returns the entries of an array of `least` to `most` entries.
+/// Returns the entries of an array; refuses fewer than `least` or more than `most`.
 std::vector<Item> entries(Item const& item, std::size_t least, std::size_t most,
                           std::string_view accepted);
 /// Reads three entries with `read`.
@@ -142,7 +144,7 @@ std::string all_words() {
                                std::vector<std::string_view> const& known,
                                std::string_view accepted);
 
-/// Reads one of these words; `accepted`: for messages, instead of all of them.
+/// Reads one of these words. `accepted`: for messages, which list all words if it is empty.
 template <class Value>
 Value word_among(std::span<Word<Value> const> words, Item const& item,
                  std::string_view accepted = {}) {

@@ -5,7 +5,7 @@
 
 namespace cayspin::inline v0_2::io::detail {
 
-/// Throws scene_error with what is accepted.
+/// Throws scene_error with the message "WRONG; accepted: ACCEPTED".
 [[noreturn]] void refuse(Scene const& scene, std::string_view key, std::string_view wrong,
                          std::string_view accepted);
 /// Converts a std::runtime_error from `work` into the scene_error of a key.
@@ -22,23 +22,26 @@ auto for_key(Scene const& scene, std::string_view key, Work const& work) {
 bool read_is_si(Table const& root);
 /// Reads [material]. Call it after reading the lattice and before the other sections.
 void read_material(Table const& root, Scene& scene);
-/// Refuses values that [material] has already, and atomistic keys in a continuum.
+/// Refuses keys that do not go with the material: moments, which [material] has, atomistic keys in
+/// a continuum, and slab_demag with several moments.
 void check_si(Scene const& scene);
 /// Converts a completely read scene to reduced units.
 void convert_to_reduced(Scene& scene);
 
-/// Returns a table that is not allowed for rigid bodies, if it is typed.
+/// Returns the table `name` if the scene has it; refuses it for rigid bodies.
 std::optional<Table> table_of_spins(Table const& root, std::string_view name, SystemKind kind);
 System read_system(Table const& root);
-/// Reads occupied and frozen sites. Call it after reading the lattice.
+/// Reads regions, occupied and frozen sites, and site-dependent moments and gyromagnetic ratios.
+/// Call it after reading the lattice.
 void read_occupied(Table const& root, Scene& scene);
 /// Reads lattice.follow. Call it after reading the lattice.
 void read_follow(Table const& root, Scene& scene);
 /// Reads site-dependent dampings. Call it after reading the lattice.
 void read_dampings(Table const& root, Scene& scene);
-/// Reads the lattice. For rigid bodies it has neither spacing nor boundary, and one extent.
+/// Reads the lattice. For rigid bodies, `shape` has one extent and other keys are refused.
 Lattice read_lattice(Table const& root, SystemKind kind);
-/// Reads the keys of [lattice] for the contents of a cell, if necessary from a unit-cell file.
+/// Reads the cell of a crystal from the keys of [lattice]; without them, from a unit-cell file if
+/// the scene has one.
 void read_crystal(Table const& root, Table const& lattice_table, Lattice& lattice);
 /// Reads the field. Call it after reading the lattice into the scene.
 Field read_field(Table const& root, SystemKind kind);
@@ -52,33 +55,34 @@ bool is_in_time(std::string const& text);
 Initial read_initial(Table const& root);
 Integrator read_integrator(Table const& root, SystemKind kind);
 std::optional<Thermal> read_thermal(Table const& root, SystemKind kind);
-/// Describes the site of a number in a box.
+/// Returns "site (i, j, k)" for site number `number` of a box.
 std::string site_text(SiteBox const& box, std::size_t number);
 /// Opens the files with site-dependent numbers.
 void check_site_numbers(Scene const& scene);
 void check_site_vectors(Scene const& scene, SiteVectors const& vectors, std::string_view key);
-/// Converts one constant into site-dependent numbers for terms that are only evaluated with these,
-/// and gives bonds between regions the exchange that they need.
+/// Converts a uniform constant into site-dependent numbers for terms that are evaluated only with
+/// these, and provides the exchange that bonds between regions need.
 void use_numbers_of_sites(Scene& scene);
-/// Refuses [field.in_time] for a term that the scene does not have, or that is constant.
+/// Refuses [field.in_time] for a term that the scene does not have, or that must be constant.
 void check_in_time(Table const& root);
 /// Refuses a lattice without a spin.
 void require_occupied(Scene const& scene);
 /// Returns true if a cell has several sites, or vectors other than the spacing along the axes.
 bool is_crystal(Lattice const& lattice);
-/// Refuses terms that need neighbours along the axes if a crystal has none.
+/// Refuses terms that need neighbours along the axes in a crystal, which may have none there.
 void check_crystal(Scene const& scene);
 /// Refuses the pairs of refused_pairs.hpp.
 void check_pairs(Scene const& scene);
 /// Refuses combinations that do not work at a temperature above 0.
 void check_thermal(Scene const& scene);
 Ensemble read_ensemble(Table const& root);
-/// Refuses keys that an ensemble cannot have, and varied values that its first or last replica
-/// does.
+/// Refuses keys that do not go with an ensemble, and values that the scene of its first or last
+/// replica does not accept.
 void check_ensemble(Scene const& scene, bool relaxes);
 /// `integrator`: as typed, in the units of the scene.
 Output read_output(Table const& root, Integrator const& integrator);
-/// Returns a time as a number of steps dt. Refuses a negative time, and parts of a step.
+/// Returns a time as a number of steps of dt. Refuses a negative time, and one that is not a whole
+/// number of steps.
 std::int64_t whole_steps(Item const& time, double dt);
 
 /// Applies "key.path=VALUE" to the table. Creates missing tables; an integer in the path is an

@@ -16,8 +16,8 @@ namespace cayspin::inline v0_2::io::detail {
 /// the index in the cell.
 std::vector<std::string> site_variables(Lattice const& lattice);
 
-/// Returns their values at a site of the lattice; plane `site[2]` holds sites of one index. A
-/// single site at its cell's corner counts as the middle of the cell.
+/// Returns the values of these variables at a site (i, j, plane) of the lattice: plane k * sites +
+/// s has the sites s of the cells k. If a cell has only one site, it counts as being in the middle.
 inline std::array<double, 7> site_values(Lattice const& lattice,
                                          std::array<std::int64_t, 3> const& site) {
   auto const sites = static_cast<std::int64_t>(lattice.basis.size());
@@ -35,8 +35,9 @@ inline std::array<double, 7> site_values(Lattice const& lattice,
   return values;
 }
 
-/// Compiles an expression of these, which may use the functions grain(size, seed) and random(n,
-/// seed). `length`: the unit of lattice.spacing, in the unit of sizes. Throws like Expression.
+/// Compiles an expression in these variables, which may use the functions grain(size, seed) and
+/// random(n, seed). `length`: the unit of lattice.spacing, in the unit of `size`. Throws like
+/// Expression.
 Expression site_expression(std::string text, Lattice const& lattice, double length = 1);
 inline Expression site_expression(std::string text, Scene const& scene) {
   return site_expression(std::move(text), scene.lattice, scene.units.length);

@@ -35,7 +35,7 @@ std::vector<double> values_of_file(std::filesystem::path const& path, Lattice co
   return read_guarded(path, [&] { return open_values(path, lattice).in(box); });
 }
 
-// Returns true for occupied sites given by a file of spins.
+// Returns true if a file of spins tells which sites are occupied.
 bool is_file_of_spins(SiteNumbers const& numbers, std::string_view key) {
   return key == "lattice.occupied" && detail::holds_spins(numbers.file);
 }
@@ -147,7 +147,7 @@ bool read_site_numbers(Item const& item, Scene& scene, SiteNumbers& numbers) {
       return true;
     }
     auto const given = table.find("given");
-    // As in [initial].
+    // A program sets `given` for its own numbers; users do not type it.
     if (!given || item.node->as_table()->size() > 1)
       table.accept_only({"file", "image", "regions"});
     if (auto const regions = table.find("regions")) {

@@ -51,9 +51,9 @@ void for_each_site(SiteBox const& box, Visit const& visit) {
       for (at[0] = 0; at[0] < box.extent[0]; ++at[0]) visit(at);
 }
 
-/// Numbers of the sites of a box, and of those up to `reach` past its end along an
-/// axis, or before its start if `reach` is negative. read(box) returns those of a box; past an open
-/// end there is `none`.
+/// Numbers of the sites of a box, and of the sites up to `reach` past its end along an axis, or
+/// before its start if `reach` is negative. read(box) returns the numbers of a box; sites past an
+/// open end have `none`.
 template <class Number>
 class NumbersAlong {
  public:
@@ -88,7 +88,7 @@ class NumbersAlong {
   std::vector<std::pair<SiteBox, std::vector<Number>>> beyond_;
 };
 
-// Returns -1 where there is no spin.
+// Returns the region of each site, -1 where there is no spin.
 std::vector<std::int64_t> regions_of_spins(Scene const& scene, SiteBox const& box) {
   auto all = regions(scene, box);
   auto const there = occupied(scene, box);
@@ -199,7 +199,7 @@ std::vector<std::array<std::int64_t, 2>> regions_of_bonds(Scene const& scene, Si
                                                           std::size_t axis) {
   auto const& lattice = scene.lattice;
   auto const own = regions(scene, box);
-  // One plane further along the axis than the last sites of the box.
+  // The plane that follows the box along the axis.
   auto behind = box;
   behind.begin[axis] = (box.begin[axis] + box.extent[axis]) % lattice.shape[axis];
   behind.extent[axis] = 1;

@@ -11,7 +11,7 @@
 namespace cayspin::inline v0_2::io {
 namespace {
 
-// Returns 1 where numbers are not 0; nothing without numbers.
+// Returns 1 for sites whose number is not 0; empty if there are no numbers.
 std::vector<unsigned char> sites_where(Scene const& scene, SiteNumbers const& numbers,
                                        std::string_view key, SiteBox const& box) {
   if (!numbers.there()) return {};
@@ -86,7 +86,7 @@ std::vector<unsigned char> occupied(Scene const& scene, SiteBox const& box) {
   auto const in_plane = static_cast<std::size_t>(box.extent[0] * box.extent[1]);
   auto const first = static_cast<std::size_t>(box.begin[2]);
   if (where.empty()) where.assign(in_plane * static_cast<std::size_t>(box.extent[2]), 1);
-  // The planes of a box are the sites of a cell in turn.
+  // Planes along z hold the sites of a cell in turn.
   for (std::size_t site = 0; site < where.size() && !moments.empty(); ++site)
     if (moments[(first + site / in_plane) % moments.size()] == 0) where[site] = 0;
   return where;

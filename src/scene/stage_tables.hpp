@@ -14,18 +14,18 @@ namespace cayspin::inline v0_2::io::detail {
 std::size_t count_stages(toml::table const& document, std::string const& path);
 
 /// Removes all stages from a document, and merges the first `count` into its tables. Returns the
-/// last of these, without what has been merged. Throws SceneError for keys that no stage may
-/// change.
+/// last of these stages, without the keys that were merged. Throws SceneError for keys that no
+/// stage may change.
 toml::table apply_stages(toml::table& document, std::size_t count, std::string const& path);
 
-/// Merges the changes of a stage into a document. `prefix`: of its keys, for messages.
+/// Merges the changes of a stage into a document. `prefix`: goes before its keys in messages.
 void apply_stage(toml::table& document, toml::table& stage, std::string const& prefix,
                  std::string const& path);
 
 /// Reads the keys of the stage itself: name and relax.
 void read_stage(Table const& table, Stage& stage);
 
-/// Refuses a list of fields, "auto", and keys that give the run another lattice.
+/// Refuses a list of fields, "auto", and a unit-cell file that gives the stage another lattice.
 void check_stage(Scene const& own, Scene const& stage);
 
 }  // namespace cayspin::inline v0_2::io::detail

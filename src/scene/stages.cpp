@@ -16,7 +16,8 @@ namespace cayspin::inline v0_2::io {
 namespace detail {
 namespace {
 
-// Tables whose keys a stage may change, with the exceptions.
+// Tables whose keys a stage may change, except `fixed`. In [output], it may change only
+// `of_output`.
 constexpr std::string_view changeable[] = {"material", "system",     "field", "torque",
                                            "thermal",  "integrator", "output"};
 constexpr std::string_view fixed[] = {"system.kind", "system.inertia", "material.Ms",
@@ -30,7 +31,7 @@ bool is_among(std::string_view key, std::span<std::string_view const> keys) {
   return std::ranges::find(keys, key) != keys.end();
 }
 
-/// Refuses a key that must be constant during a run. `key`: of the scene, at most two names.
+/// Refuses a key that must be constant during a run. `key`: "table" or "table.key" of the scene.
 void require_changeable(std::string const& key, std::string const& place,
                         std::string const& prefix = {}) {
   auto const table = std::string_view(key).substr(0, key.find('.'));
@@ -173,7 +174,7 @@ std::vector<Stage> stages_of(Scene const& scene) {
 StageBegin begin_after(Scene const& stage, std::int64_t step, Scene const& next) {
   auto const& begin = stage.begin;
   double time = begin.time + static_cast<double>(step - begin.step) * stage.integrator.dt;
-  // The damping is part of the unit of time.
+  // Units of time depend on the damping, which may differ.
   if (stage.units.time != next.units.time) time *= stage.units.time / next.units.time;
   return {begin.stage + 1, step, time};
 }

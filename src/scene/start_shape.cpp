@@ -38,7 +38,7 @@ Scene with_shape_of_start(Scene scene) {
   auto const zeros =
       detail::for_key(scene, "initial.file", [&] { return count_zeros(*start, scene.lattice); });
   if (zeros == 0 || zeros == sites(scene)) return scene;
-  // The text must have it, too, because trajectory files store the text.
+  // The text must say so, too, because trajectory files store the text.
   auto document = toml::parse(scene.text, scene.path.string());
   auto const typed = document["initial"]["file"].value_or(std::string());
   document["lattice"].as_table()->insert("occupied", toml::table{{"file", typed}});

@@ -124,7 +124,7 @@ std::vector<double> noise_of_sites(Scene const& scene, SiteBox const& box) {
   multiply(scene.system.dampings, "system.damping");
   multiply(scene.thermal->of_sites, "thermal.temperature");
   if (!scene.system.gilbert_of_sites) return noise;
-  // Gilbert's form divides the noise by the same factor as the torques.
+  // In Gilbert's form, noise and torques are divided by the same factor.
   auto const dampings = numbers_of_sites(scene, scene.system.dampings, "system.damping", box);
   for (std::size_t site = 0; site < noise.size(); ++site)
     noise[site] /= 1 + dampings[site] * dampings[site];

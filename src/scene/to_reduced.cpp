@@ -13,14 +13,14 @@
 namespace cayspin::inline v0_2::io::detail {
 namespace {
 
-// Returns a formula in t, with t in units of `time` and the result in units of `field`.
+// Returns a formula with t in units of `time`, and its value in units of `field`.
 std::string scaled_expression(std::string const& text, double time, double field) {
   static std::regex const variable(R"(\bt\b)");
   return fmt::format("({})/{}", std::regex_replace(text, variable, fmt::format("({}*t)", time)),
                      field);
 }
 
-// If the damping is site-dependent, each site applies its own factor.
+// With site-dependent damping, alpha is 0 here, and each site applies its own factor.
 units::Damping damping_of(Material const& material) {
   return material.gilbert ? units::gilbert(material.alpha) : units::landau_lifshitz(material.alpha);
 }
@@ -34,7 +34,8 @@ double largest_coupling(std::vector<Coupling> const& couplings) {
   return largest;
 }
 
-// Returns the first constant that is uniform; 1 T times the moment if there is none.
+// Returns the unit of energy: the first constant that is uniform and not 0, or 1 T times the moment
+// if there is none.
 double energy_unit(Material const& material, Field const& field) {
   auto const one = [](std::optional<double> const& value, SiteNumbers const& numbers) {
     return numbers.there() ? 0 : std::abs(value.value_or(0));
@@ -48,7 +49,7 @@ double energy_unit(Material const& material, Field const& field) {
   return material.moment;
 }
 
-// Site-dependent numbers stay in SI: `in_reduced` converts 1.
+// Converts a constant. Site-dependent numbers stay in SI, and get the factor that converts them.
 double constant(double typed, SiteNumbers& numbers, auto const& in_reduced) {
   if (!numbers.there()) return in_reduced(typed);
   numbers.unit = in_reduced(1);
@@ -61,7 +62,7 @@ void convert_material(Scene& scene, auto const& units) {
   auto const exchange = [&](double A) { return units.exchange(A); };
   auto const anisotropy = [&](double K) { return units.anisotropy(K); };
   auto const dmi = [&](double D) { return units.dmi(D); };
-  // Ku2 gives H = 4 Ku2 (m.e)^3 e: twice the field of the first constant.
+  // Ku2 gives H = 4 Ku2 (m.e)^3 e, with twice the factor of the first constant.
   auto const anisotropy2 = [&](double K) { return 2 * units.anisotropy(K); };
   for (auto& term : field.anisotropies) {
     term.constant = constant(term.constant, term.factors, anisotropy);
@@ -101,7 +102,7 @@ void convert_couplings(Field& field, units::ReducedUnits const& units) {
   field.couplings_scale = units.energy(field.couplings_scale);
 }
 
-// Moments relative to the first; empty if all are equal.
+// Stores moments relative to the first; none if all are equal.
 void convert_moments(Scene& scene) {
   scene.lattice.moments_of_sites = scene.material->moment_factors;
   scene.lattice.moments_of_sites.unit = 1 / scene.material->moment;
@@ -203,7 +204,8 @@ void convert(Scene& scene, auto const& units) {
            "a time in s");
 }
 
-// Returns the sites in a cube of the spacing, the volume that a slab's dipolar field refers to.
+// Returns the number of sites in a cube with the spacing as its edge, to whose volume a slab's
+// dipolar field refers.
 double sites_in_cube(Lattice const& lattice) {
   return static_cast<double>(lattice.basis.size()) / crystal(lattice).volume();
 }

@@ -19,8 +19,8 @@ AppliedComponent times(AppliedComponent const& component, double factor) {
   return fmt::format("({})*({})", factor, std::get<std::string>(component));
 }
 
-// Reads a number, an expression in t, site-dependent numbers, or a product of these: then
-// `of_sites` is set.
+// Reads a number, an expression in t, site-dependent numbers, or a product of numbers and an
+// expression. Site-dependent numbers go to `of_sites`.
 AppliedComponent strength(Item const& item, Scene& scene, SiteNumbers& of_sites) {
   of_sites.key = item.key;
   auto const* const table = item.node->as_table();
@@ -46,7 +46,8 @@ void scale(AppliedComponent& component, SiteNumbers& of_sites, double factor) {
     component = times(component, factor);
 }
 
-// Finds a current in A/m^2 that replaces the torque, for a material with Ms.
+// Returns current_density in A/m^2 if it is typed in place of the key `torque`. It needs a material
+// with Ms. The keys in `with` belong to it.
 std::optional<Item> find_current(Table const& table, std::string_view torque,
                                  std::vector<std::string_view> const& with) {
   auto const current = table.find("current_density");
@@ -70,7 +71,7 @@ std::optional<Item> find_current(Table const& table, std::string_view torque,
   return current;
 }
 
-// In a scene in SI, velocities are in m/s.
+// If the scene is in SI, velocities are in m/s.
 ZhangLi read_zhang_li(Item const& item, Scene& scene) {
   Table const table(item, scene);
   table.accept_only(names_of_keys<ZhangLi>());
@@ -90,7 +91,7 @@ ZhangLi read_zhang_li(Item const& item, Scene& scene) {
   return read;
 }
 
-// epsilon' multiplies hbar j / (e Ms thickness) as half an efficiency does.
+// epsilon' multiplies hbar j / (e Ms thickness), and the efficiency half of it.
 void read_current(Item const& current, Table const& table, Slonczewski& read) {
   auto& scene = table.scene();
   auto const efficiency = number(table.required("efficiency", "a number"));
@@ -114,7 +115,7 @@ void read_current(Item const& current, Table const& table, Slonczewski& read) {
   scale(read.field_like, read.field_like_of_sites, of_unit_current(2 * number(*second)));
 }
 
-// In a scene in SI, strengths are in T.
+// If the scene is in SI, strengths are in T.
 Slonczewski read_slonczewski(Item const& item, Scene& scene) {
   Table const table(item, scene);
   table.accept_only(names_of_keys<Slonczewski>());

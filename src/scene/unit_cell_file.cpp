@@ -16,10 +16,10 @@
 #include <stdexcept>
 #include <tuple>
 
-// The file has the lengths of the cell's edges, its three vectors in units of these, its atoms, its
-// bilinear interactions and, in some files, biquadratic ones. Vampire numbers atoms by line and
-// ignores their first number. E = -sum S.J S' over the bonds, each of which is listed from both
-// ends.
+// The file lists the lengths of the cell's edges, its three vectors in units of these lengths, its
+// atoms, its bilinear interactions and, in some files, biquadratic ones. Vampire numbers atoms by
+// line and ignores the number at the start of the line. Each bond is listed from both ends, and
+// contributes E = -S.J S' once.
 namespace cayspin::inline v0_2::io::detail {
 namespace {
 
@@ -45,7 +45,8 @@ class Lines {
     }
     return std::nullopt;
   }
-  /// `what`: for the message at the end of the file.
+  /// Throws at the end of the file, and for a line of fewer than `least` words. `what`: the missing
+  /// part, for the message.
   Words required(std::size_t least, std::string_view what) {
     auto words = next();
     if (!words) fail(fmt::format("ends before {}", what));
@@ -173,7 +174,7 @@ Tensors read_interactions(Lines& lines, Words const& head, std::int64_t atoms) {
   return tensors;
 }
 
-/// Keeps one direction of each bond, with the mean over both, which differ by rounding.
+/// Keeps each bond once, with the mean of both directions, which may differ by rounding.
 Tensors one_way(Lines const& lines, Tensors const& tensors) {
   double largest = 0;
   for (auto const& [key, tensor] : tensors)

@@ -18,7 +18,7 @@ constexpr std::int64_t most_sites = 32767;
 
 constexpr std::string_view accepted_unit_cell_file = "the name of a unit-cell file of Vampire";
 
-/// Returns the cell, scaled to a first vector of length 1, with its atoms.
+/// Returns the cell with its atoms, scaled so that the first vector has length 1.
 Crystal read_unit_cell(std::filesystem::path const& path);
 
 /// Returns the bonds, each once, times `scale`. The atoms must be the sites of `crystal`, and each

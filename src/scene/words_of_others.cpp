@@ -162,7 +162,7 @@ constexpr std::array foreign_commands{
 
 constexpr std::array names_of_simple_cubic{"sc", "cubic", "simple_cubic", "simple-cubic"};
 
-/// A table of scenes and a key of it. Earlier ones win where two tables have a key of this name.
+/// A key of a scene's table. If two tables have a key of the same name, the first in the list wins.
 struct OwnKey {
   std::string_view table, name;
 };
@@ -172,7 +172,8 @@ void add_keys_of(std::string_view table, std::vector<OwnKey>& all) {
   for (auto const& key : Section::keys()) all.push_back({table, key.name});
 }
 
-// Keys whose meaning their table gives, as `file` and `axis`, are left out.
+// Lists keys that hints may suggest. Keys whose meaning depends on the table, such as `axis`, are
+// left out.
 std::vector<OwnKey> own_keys() {
   std::vector<OwnKey> all;
   add_keys_of<Integrator>("integrator", all);
@@ -200,7 +201,7 @@ std::string lower_case(std::string_view word) {
   return lower;
 }
 
-// Returns the meaning here, or "".
+// Returns the counterpart in scenes of another program's word, or "".
 std::string_view meaning_of(auto const& words, std::string_view lower) {
   auto const found = std::ranges::find(words, lower, &ForeignWord::of_others);
   return found == words.end() ? std::string_view() : found->here;

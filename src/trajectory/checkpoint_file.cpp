@@ -21,7 +21,7 @@ namespace cayspin::inline v0_2::io {
 namespace {
 
 constexpr char const* format_mark = "checkpoint_format";
-constexpr char const* sum_mark = "checksum";  // of the file, and of each field
+constexpr char const* sum_mark = "checksum";  // an attribute of the file, and of each field
 constexpr std::int64_t checkpoint_version = 1;
 constexpr std::uint64_t checkpoint_overhead_bytes = 64 * 1024;
 constexpr hsize_t most_components = 3;

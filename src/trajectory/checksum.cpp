@@ -11,7 +11,7 @@
 namespace cayspin::inline v0_2::io {
 namespace {
 
-// Spreads the bits of one sum over all bits of the result.
+// Mixes a sum into the hash; each bit of the sum changes many bits of the result.
 std::uint64_t mixed(std::uint64_t hash, std::uint32_t sum) {
   hash = (hash ^ sum) * 0x9E3779B97F4A7C15U;
   return hash ^ hash >> 32U;

@@ -9,7 +9,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Storage of an integer, a double or three doubles per row in a dataset, all of 64 bits.
+/// How a dataset stores one integer, one double or three doubles per row, each of 64 bits.
 template <class Value>
 struct Column {
   static constexpr bool is_integer = std::is_same_v<Value, std::int64_t>;
@@ -21,7 +21,7 @@ struct Column {
   static Extents begin(hsize_t row) { return is_triple ? Extents{row, 0} : Extents{row}; }
 };
 
-/// Type of the member of a Row.
+/// Type of what `Member` returns for a Row, without reference.
 template <class Row, class Member>
 using MemberValue = std::decay_t<std::invoke_result_t<Member, Row&>>;
 

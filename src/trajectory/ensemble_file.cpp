@@ -21,8 +21,8 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// The datasets time, step, energy, norm_defect and magnetization of one group: an entry for each
-/// sample, or in it one for each replica.
+/// The datasets time, step, energy, norm_defect and magnetization of one group. The first two have
+/// one entry per sample, the others one per sample and replica.
 class ReplicaSeries {
  public:
   static constexpr hsize_t numbers_per_chunk = 4096;
@@ -42,7 +42,7 @@ class ReplicaSeries {
     return series;
   }
 
-  // A reader counts a sample when all datasets have it; `energy` grows last.
+  // Readers count the samples by `energy`, which therefore grows last.
   void append(std::int64_t step, double time, std::vector<Scalars> const& scalars,
               std::filesystem::path const& path) {
     std::vector<double> energies, defects, means;
@@ -69,7 +69,7 @@ class ReplicaSeries {
 
 namespace {
 
-constexpr std::uint64_t overhead = 1 << 20;  // index nodes and new chunks of a frame
+constexpr std::uint64_t overhead = 1 << 20;  // bytes for index nodes and new chunks of a frame
 
 void write_attributes(hid_t file, TrajectoryHeader const& header, std::int64_t replicas,
                       std::filesystem::path const& path) {
@@ -77,7 +77,7 @@ void write_attributes(hid_t file, TrajectoryHeader const& header, std::int64_t r
   attributes.create(ensemble_format, ensemble_format_version);
   attributes.create("replicas", replicas);
   attributes.create("scene", header.scene_text);
-  // Only trajectories have `cayspin_version`, which identifies them.
+  // Not `cayspin_version`: if /spins has frames, it marks a trajectory.
   attributes.create("written_by", "cayspin " + header.cayspin_version);
   attributes.create("git_commit", header.git_commit);
   attributes.create("kokkos_version", header.kokkos_version);
@@ -105,7 +105,8 @@ void write_varied(hid_t file, Ensemble const& ensemble, std::filesystem::path co
   if (!names.empty()) write_names(group.get(), "keys", names, path);
 }
 
-/// (replica, nz, ny, nx, 3), of crystals (replica, site, nz, ny, nx, 3).
+/// Returns (replica, nz, ny, nx, 3), or (replica, site, nz, ny, nx, 3) for a crystal with several
+/// sites per cell.
 Extents extents_of_frame(TrajectoryHeader const& header, hsize_t replicas) {
   auto const sites = static_cast<hsize_t>(header.cell_sites);
   Extents extents{replicas};
@@ -125,7 +126,7 @@ DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header, hsize_t r
   Extents chunk{1};
   chunk.insert(chunk.end(), inner.begin(), inner.end());
   chunk[1] = std::clamp<hsize_t>(chunk_bytes / of_replica, 1, replicas);
-  // A replica above the limit is cut along its axes, from the slowest on.
+  // A replica larger than a chunk may be is cut along its axes, the slowest first.
   for (std::size_t axis = 2; axis + 1 < chunk.size(); ++axis)
     while (elements(chunk) * 8 > most_chunk_bytes && chunk[axis] > 1)
       chunk[axis] = (chunk[axis] + 1) / 2;
@@ -190,7 +191,8 @@ class EnsembleFile::Implementation {
     release();
   }
 
-  // Readers count a frame once its scalars are there: those reach the file after its spins.
+  // Readers count a frame once its scalars are there, so the scalars reach the file after the
+  // spins.
   void write_frame(std::int64_t step, double time, std::vector<Scalars> const& scalars,
                    std::vector<std::byte> const& spins) {
     require_replicas(scalars.size());

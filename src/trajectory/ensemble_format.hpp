@@ -5,7 +5,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// The attribute by which an ensemble's file is known, and its value.
+/// The attribute that identifies the file of an ensemble, and its value.
 inline constexpr char const* ensemble_format = "ensemble_format";
 inline constexpr std::int64_t ensemble_format_version = 1;
 

@@ -6,7 +6,7 @@
 namespace cayspin::inline v0_2::io {
 namespace {
 
-// Folds modulo 65535, but a nonzero sum does not become 0.
+// Reduces a sum modulo 65535, except that a multiple of 65535 becomes 65535, not 0.
 std::uint64_t folded(std::uint64_t sum) {
   while (sum > 0xffff) sum = (sum & 0xffff) + (sum >> 16);
   return sum;

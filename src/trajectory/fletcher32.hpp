@@ -7,7 +7,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// The checksum of HDF5's filter fletcher32, for bytes in pieces of even length.
+/// The checksum of HDF5's filter fletcher32, of bytes added in pieces of even length.
 class Fletcher32 {
  public:
   void add(std::span<std::byte const> bytes);

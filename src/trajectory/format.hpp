@@ -14,7 +14,8 @@ namespace cayspin::inline v0_2::io {
 inline constexpr int format_version = 1;
 inline constexpr char const* single_precision = "single";
 inline constexpr char const* double_precision = "double";
-/// Reading or writing a part of a chunk takes all of it into memory. HDF5 allows 4 GiB.
+/// Largest chunk, because HDF5 takes a whole chunk into memory to read or write a part of it. HDF5
+/// itself allows 4 GiB.
 inline constexpr std::uint64_t most_chunk_bytes = 256 << 20;
 inline constexpr std::uint64_t file_page_bytes = 4096;
 inline constexpr int most_pending = 512;  // samples written at once
@@ -30,14 +31,14 @@ inline constexpr UnitAttribute unit_attributes[] = {{"time_unit", &Units::time},
                                                     {"field_unit", &Units::field},
                                                     {"energy_unit", &Units::energy}};
 
-/// Largest number of chunks that HDF5 indexes by blocks of at most a page. Beyond it blocks have
-/// 512 elements of 8 bytes, and a kill can stop the system within one.
+/// Largest number of chunks for which the blocks of HDF5's index fit into a page. Beyond it, a
+/// block has 512 elements of 8 bytes and a header, and a kill can leave it half written.
 inline constexpr std::int64_t most_chunks = 8180;
 
-/// Returns the number of frames per chunk if each takes so many bytes of it. Larger chunks start on
-/// pages of the file: at most a sixteenth of the pages stays empty. If more than `most_chunks`
-/// chunks would be planned with one frame each, a chunk holds more frames, up to
-/// `most_chunk_bytes`.
+/// Returns the number of frames in a chunk. `bytes`: of one frame in it. `chunks`: how many there
+/// would be with one frame each; above `most_chunks`, chunks hold more frames, up to
+/// `most_chunk_bytes`. Large chunks start on pages of the file, of which at most a sixteenth stays
+/// empty.
 inline std::int64_t frames_of_chunk(std::uint64_t bytes, std::int64_t chunks) {
   auto const empty_bytes = [&](std::uint64_t frames) {
     return (file_page_bytes - frames * bytes % file_page_bytes) % file_page_bytes;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Files of paths and of modes, without their vectors per site.
+// Reads files of paths and of modes, except their vectors with numbers per site.
 #include "format.hpp"
 #include "hdf5/attribute.hpp"
 #include "hdf5/dataset.hpp"
@@ -47,7 +47,8 @@ std::vector<double> read_reals(hid_t group, char const* name, fs::path const& pa
 
 bool has_dataset(hid_t file, char const* name) { return H5Lexists(file, name, H5P_DEFAULT) > 0; }
 
-/// The lattice of a dataset with `before` extents before those of a state, and its sites of a cell.
+/// Reads the shape and the sites per cell from the extents of /spins, in which `before` extents
+/// precede those of a state.
 void read_lattice(hid_t file, std::size_t before, std::array<std::int64_t, 3>& shape,
                   std::int64_t& cell_sites, fs::path const& path) {
   auto extents = dataset_extents(open_dataset(file, "spins", path).get(), path);

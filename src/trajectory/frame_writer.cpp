@@ -20,7 +20,8 @@ using Shape = std::array<std::int64_t, 3>;
 // Mean spin of some rows, in double. A zero vector is a site without a spin.
 class SublatticeMean {
  public:
-  // Adds one row. Rows are added in the order of the file, so that equal rows give equal bits.
+  // Adds the sum of one row. Rows are added in the order of the file, so that equal frames give
+  // equal bits.
   template <class Real>
   void add_row(Real const* spins, std::int64_t sites) {
     std::array<double, 3> row{};
@@ -44,14 +45,14 @@ class SublatticeMean {
   std::int64_t count_ = 0;
 };
 
-// Returns the contiguous block of one site of a cell in the file.
+// Returns the shape of the block that holds one site of every cell in the file.
 Shape block_of(Shape shape, std::int64_t cell_sites) {
   shape[2] /= cell_sites;
   return shape;
 }
 
-// Returns the chunk of such a block. Without HDF5's filters, a frame is written into its part of a
-// chunk, and the other frames keep their bytes.
+// Returns the extents of a chunk of such blocks. Without HDF5's filters, a chunk may hold several
+// frames: each is written into its own part and leaves the bytes of the others.
 std::array<hsize_t, 5> chunk_of(Shape const& block, std::int64_t cell_sites,
                                 std::size_t number_bytes, TrajectoryStorage const& storage) {
   auto chunk = frame_chunk(block, number_bytes, storage.chunk);
@@ -66,14 +67,14 @@ std::array<hsize_t, 5> chunk_of(Shape const& block, std::int64_t cell_sites,
   return chunk;
 }
 
-// Returns (frame, z, y, x, 3), or with the site of a cell as the second extent.
+// Returns (frame, z, y, x, 3); for several sites per cell, with `sites` as second extent.
 Extents with_site(std::array<hsize_t, 5> const& extents, std::int64_t cell_sites, hsize_t sites) {
   Extents all(extents.begin(), extents.end());
   if (cell_sites > 1) all.insert(all.begin() + 1, sites);
   return all;
 }
 
-// A frame that never reached the disk reads as NaN, not as zeros.
+// Spins that never reached the disk read as NaN, not as zeros.
 DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header,
                            TrajectoryStorage const& storage, std::array<hsize_t, 5> const& chunk,
                            std::filesystem::path const& path) {
@@ -97,7 +98,8 @@ DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header,
                                 with_site(chunk, sites, 1), std::move(properties), path, inner);
 }
 
-// Returns true for chunks of whole planes of one frame, which are contiguous in memory.
+// Returns true if memory has the bytes of a chunk as the file stores them: whole planes of one
+// frame, uncompressed.
 bool written_raw(Shape const& shape, std::array<hsize_t, 5> const& chunk,
                  TrajectoryStorage const& storage) {
   return std::endian::native == std::endian::little && storage.compression == 0 && chunk[0] == 1 &&
@@ -229,7 +231,8 @@ void FrameWriter::write_part(std::int64_t site, std::int64_t first, std::int64_t
       spins, path_);
 }
 
-// Bypasses HDF5, which would copy the chunk. The chunk has memory for all its planes.
+// Writes a chunk directly, because HDF5 would copy it. `chunk` has memory for all planes of a
+// chunk; those after the first `planes` are set to 0.
 void FrameWriter::write_chunk(std::int64_t site, std::int64_t first, std::int64_t planes,
                               std::byte* chunk) {
   auto const chunk_bytes = plane_bytes_ * chunk_[1];

@@ -22,22 +22,24 @@ class FrameWriter {
   FrameWriter(hid_t file, TrajectoryHeader const& header, TrajectoryStorage const& storage,
               std::filesystem::path path);
 
-  /// Returns the bytes of the file that a frame may take: the first of a chunk takes all of it.
+  /// Returns the bytes that a frame may take in the file: the first frame of a chunk takes the
+  /// whole chunk.
   std::uint64_t frame_bytes() const;
 
-  /// Starts frame number `frame`, possibly again.
+  /// Starts frame number `frame`, or starts it again.
   void begin(std::int64_t frame);
   /// Adds the next planes: those of whole chunks, or all that are left. Other numbers throw
   /// std::logic_error.
   void add(std::int64_t planes, void const* spins);
-  /// Adds planes without a copy if possible: `spins` is followed by the rest of the memory of a
-  /// piece.
+  /// Adds planes without a copy if possible. `spins` must have memory for a whole piece, of which
+  /// the rest is overwritten.
   void add_in_room(std::int64_t planes, std::byte* spins);
 
-  std::int64_t planes() const { return planes_; }  ///< of the frame, so far
+  std::int64_t planes() const { return planes_; }  ///< added to the frame so far
   bool is_whole() const { return planes_ == shape_[2]; }
   Fletcher32 const& checksum() const { return checksum_; }
-  /// Returns TrajectoryInfo::frame_sublattices of a whole frame of a crystal. Otherwise empty.
+  /// Returns the last frame's entries of TrajectoryInfo::frame_sublattices; empty if cells have one
+  /// site.
   std::vector<std::array<double, 3>> const& sublattices() const { return sublattices_; }
 
   void close() { dataset_.close(); }
@@ -60,7 +62,7 @@ class FrameWriter {
   bool raw_ = false;
   std::int64_t frame_ = 0, planes_ = 0;
   Fletcher32 checksum_;
-  std::vector<std::byte> part_;  // of a site: as many planes as a chunk
+  std::vector<std::byte> part_;  // planes of a chunk, all of one site of the cells
   std::vector<std::array<double, 3>> sublattices_;
 };
 

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr int modes_format_version = 1;
 
-/// Reorders a crystal's planes, which are the sites of a cell in turn, site by site.
+/// Sorts the planes of a crystal, which hold the sites of a cell in turn, site by site.
 std::vector<double> by_sites_of_cell(std::span<double const> values, std::size_t planes,
                                      std::size_t cell_sites) {
   std::size_t const plane = values.size() / planes;

@@ -36,8 +36,8 @@ void require_folder(fs::path const& path) {
 
 bool is_locked(int file) { return ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; }
 
-// Tries to write to the old file, so that one which is protected, or locked by HDF5 in another
-// program, is not replaced unnoticed.
+// Opens the old file for writing and tests its lock: a file that is protected, or open in another
+// program, must not be replaced.
 void require_replaceable(fs::path const& path) {
   int const file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (file < 0) throw_failure(path, action, std::strerror(errno));
@@ -46,7 +46,7 @@ void require_replaceable(fs::path const& path) {
   if (locked) throw_failure(path, action, "another program has it open");
 }
 
-// Allocates disk space, so that HDF5 never finds the disk full.
+// Creates a file with disk space for its header, so that HDF5 does not find the disk full.
 void create_with_room(fs::path const& written, fs::path const& path) {
   int const file = ::open(written.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (file < 0) throw_failure(path, action, std::strerror(errno));
@@ -61,10 +61,10 @@ void create_with_room(fs::path const& written, fs::path const& path) {
   throw_failure(path, action, std::strerror(error));
 }
 
-// All metadata of HDF5 has checksums, and a kill can stop a write between two pages of the system:
-// so blocks smaller than a page must lie within one. Version 3 of the superblock has a flag for
-// files being written, which a kill leaves set and which makes others refuse the file: so version
-// 2.
+// A kill can stop a write between two pages of the system, and HDF5 refuses a block of metadata
+// whose checksum is wrong. Therefore blocks smaller than a page are placed within one. The
+// superblock has version 2: in version 3, a flag marks files being written; a kill would leave it
+// set, and other programs would refuse the file.
 FileHandle create_file(fs::path const& written, fs::path const& path, SyncedFile* synced) {
   PropertyHandle const creation(H5Pcreate(H5P_FILE_CREATE)), access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_attr_phase_change(creation.get(), 64, 0);
@@ -83,7 +83,8 @@ FileHandle create_file(fs::path const& written, fs::path const& path, SyncedFile
   return file;
 }
 
-// Keeps a file that was created meanwhile, if the file system supports it. Returns errno, or 0.
+// Renames a file. Unless it replaces a file, fails if another one has appeared under that name,
+// where the file system can tell. Returns errno, or 0.
 int put_in_place(fs::path const& from, fs::path const& to, bool replaces) {
   if (!replaces) {
     if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;

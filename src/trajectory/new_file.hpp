@@ -10,7 +10,7 @@ namespace cayspin::inline v0_2::io {
 
 /// An HDF5 file being written as PATH.partial until commit(), so that PATH is complete at every
 /// moment. An existing file stays unchanged until then; with `shared` it may have readers. With
-/// `synced`, through which HDF5 then writes, this also holds after a power cut.
+/// `synced`, HDF5 writes through that object, and PATH is complete also after a power cut.
 class NewFile {
  public:
   NewFile(std::filesystem::path path, bool overwrite, bool shared = false,

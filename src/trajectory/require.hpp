@@ -12,13 +12,14 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Checks the contents of a file; throws std::invalid_argument for an unknown precision.
+/// Throws std::invalid_argument unless the precision is "single" or "double".
 inline void require_precision(std::string const& precision) {
   if (precision != single_precision && precision != double_precision)
     throw std::invalid_argument("precision is '" + precision + "'; accepted are single and double");
 }
 
-/// Requires that the bytes of a frame and its other data fit into 63 bits.
+/// Throws std::invalid_argument unless all extents are at least 1 and the bytes of a frame and its
+/// other data fit into 63 bits.
 inline void require_shape(std::array<std::int64_t, 3> const& shape) {
   std::int64_t room = std::numeric_limits<std::int64_t>::max() / 64;
   for (auto const extent : shape) {

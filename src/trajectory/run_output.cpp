@@ -83,7 +83,7 @@ class RunOutput::Implementation {
   ~Implementation() {
     try {
       if (!ended_) end({}, false);
-    } catch (std::exception const&) {  // of the writer thread; no further call could throw it
+    } catch (std::exception const&) {  // from the writer thread; no further call could throw it
     }
   }
 
@@ -134,8 +134,8 @@ class RunOutput::Implementation {
   std::filesystem::path const& path() const { return file_->path(); }
 
  private:
-  // Data that the run hands over at once: samples, then planes of a frame, then its end; or some of
-  // these.
+  // A Part is what the run hands over at once: samples, then planes of a frame, then the end of the
+  // frame; or only some of these.
   struct Frame {
     Sample sample;
     FrameNumbers numbers;
@@ -189,7 +189,7 @@ class RunOutput::Implementation {
     rethrow();
   }
 
-  // Runs in the thread: writes all parts, including those left when it is asked to stop.
+  // Runs in the writer thread. Writes all parts, including those left when it is asked to stop.
   void write_parts(std::stop_token const& stop) {
     std::unique_lock lock(mutex_);
     while (changed_.wait(lock, stop, [&] { return !parts_.empty(); })) {

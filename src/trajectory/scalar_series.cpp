@@ -118,8 +118,8 @@ ScalarSeries ScalarSeries::open(hid_t group, std::filesystem::path const& path,
   return series;
 }
 
-// Without the filter fletcher32, whose sum would cover a chunk of 512 samples that is written in
-// pieces.
+// The datasets do not use the filter fletcher32: its sum would cover a whole chunk of 512 samples,
+// which is written in pieces.
 void ScalarSeries::append(std::vector<Sample> const& samples, std::filesystem::path const& path,
                           std::uint32_t spins, std::vector<double> const& more) {
   if (samples.empty()) return;

@@ -18,7 +18,7 @@ namespace cayspin::inline v0_2::io {
 /// MoreScalars. Files of earlier versions have no checksums.
 class ScalarSeries {
  public:
-  /// `cell_sites`: for frames; 1 for samples without them.
+  /// `cell_sites`: of the lattice for frames; 1 for samples that are not frames.
   static ScalarSeries create(hid_t group, std::filesystem::path const& path,
                              std::int64_t cell_sites = 1, MoreScalars const& more = {});
   static ScalarSeries open(hid_t group, std::filesystem::path const& path,
@@ -29,12 +29,12 @@ class ScalarSeries {
   void append(std::vector<Sample> const& samples, std::filesystem::path const& path,
               std::uint32_t spins = 1, std::vector<double> const& more = {});
 
-  /// Returns the number of complete samples: that of the shortest dataset.
+  /// Returns the number of complete samples, which is the length of the shortest dataset.
   std::int64_t size(std::filesystem::path const& path) const;
-  /// Returns how many of these samples are readable. A killed process may have left up to
-  /// `most_torn` unreadable ones, which it was adding at that moment.
+  /// Returns how many of these samples are readable. The last ones, up to `most_torn`, may not be
+  /// if a process was killed while it added them.
   std::int64_t readable(std::int64_t most_torn, std::filesystem::path const& path) const;
-  /// Returns samples `begin` to `end`. Throws if one is not as it was written.
+  /// Returns samples `begin` to `end` - 1. Throws if one is not as it was written.
   std::vector<Sample> read(std::int64_t begin, std::int64_t end,
                            std::filesystem::path const& path) const;
 

@@ -10,7 +10,7 @@
 namespace cayspin::inline v0_2::io {
 
 /// Samples as a text table in mumax3's style: columns with names and units, separated by tabs, with
-/// enough digits to restore every double. The file holds complete lines at every moment.
+/// enough digits to restore every double. After each call the file holds complete lines.
 class ScalarTable {
  public:
   struct Line {

@@ -16,7 +16,8 @@
 namespace cayspin::inline v0_2::io {
 namespace {
 
-// Only trajectory files have the version of cayspin that wrote them.
+// Returns the observables of the frames; nothing unless it is a trajectory file. If /spins has
+// frames, only trajectory files have `cayspin_version`.
 std::optional<ScalarSeries> open_series(hid_t file, std::int64_t cell_sites,
                                         std::filesystem::path const& path) {
   QuietErrors const quiet;
@@ -25,7 +26,8 @@ std::optional<ScalarSeries> open_series(hid_t file, std::int64_t cell_sites,
   return ScalarSeries::open(file, path, cell_sites);
 }
 
-// A killed run may leave the spins of a frame without its observables.
+// Returns the number of frames that have spins and observables. A killed run may leave the spins of
+// a frame without its observables.
 hsize_t whole_frames(RealDataset const& spins, std::optional<ScalarSeries> const& series,
                      std::filesystem::path const& path) {
   QuietErrors const quiet;
@@ -41,7 +43,8 @@ void add(Fletcher32& sum, std::vector<double> const& spins, bool single) {
   single ? add_bytes(std::vector<float>(spins.begin(), spins.end())) : add_bytes(spins);
 }
 
-// Returns the planes along z that hold one site of a cell: every `sites`th, starting with `site`.
+// Returns the part of a box with one site of the cells, counted in planes of such sites: plane k of
+// it is plane k * sites + site of the lattice.
 SiteBox of_site(SiteBox box, std::int64_t site, std::int64_t sites) {
   auto const planes_before = [&](std::int64_t plane) { return (plane + sites - 1 - site) / sites; };
   auto const end = planes_before(box.begin[2] + box.extent[2]);

@@ -41,8 +41,8 @@ class StoredSpins {
   std::filesystem::path path_;
   std::array<std::int64_t, 3> shape_;
   RealDataset dataset_;
-  std::optional<ScalarSeries> series_;  // of a trajectory file
-  std::int64_t sites_ = 1;              // per cell, if they are stored one after the other
+  std::optional<ScalarSeries> series_;  // set for a trajectory file
+  std::int64_t sites_ = 1;              // per cell, if /spins has an extent for them
   bool framed_ = false;
   Extents begin_, frame_;
 };

@@ -131,8 +131,8 @@ void try_copies(std::vector<fs::path> const& files) {
   fs::remove(trial);
 }
 
-// Small files share a trial, which may start a process. Where it fails, each has its own, which
-// names the damaged one.
+// All files share one trial, which may start a process. If it fails, each file gets a trial of its
+// own, to name the damaged one.
 void require_whole(std::vector<fs::path> const& files) {
   if (files.empty()) return;
   try {
@@ -167,7 +167,8 @@ bool for_each_group(fs::path const& path, std::vector<SweptRun> const& runs, Tak
   return group.empty() || take(group);
 }
 
-// Links are relative, so that the folder and the file can be moved together.
+// Copies a group of runs into the file of the sweep, or links to their files. Links are relative,
+// so that the folder and the file can be moved together.
 void take_in(hid_t runs, fs::path const& path, SweepInfo const& sweep,
              std::vector<std::int64_t> const& group) {
   bool const copy = sweep.one_file;

@@ -29,8 +29,8 @@
 namespace cayspin::inline v0_2::io {
 namespace {
 
-// Files of versions without units are in reduced ones.
-// Texts are stored where HDF5 has no checksums.
+// Compares the texts with their checksum, because HDF5's own checksums do not cover them. Files of
+// earlier versions have no such checksum.
 void require_whole_texts(RootAttributes const& attributes, TrajectoryHeader const& header,
                          std::filesystem::path const& path) {
   if (!attributes.has("text_checksum")) return;
@@ -40,7 +40,8 @@ void require_whole_texts(RootAttributes const& attributes, TrajectoryHeader cons
                   "its attributes are damaged: their checksum differs");
 }
 
-// Reads (frame, nz, ny, nx, 3), or (frame, site, nz, ny, nx, 3) for a crystal.
+// Reads the extents of /spins: (frame, nz, ny, nx, 3), or (frame, site, nz, ny, nx, 3) for a
+// crystal.
 void read_extents(hid_t file, TrajectoryInfo& info, std::filesystem::path const& path) {
   constexpr std::size_t rank = 5;
   auto const spins = open_dataset(file, "spins", path);
@@ -75,7 +76,7 @@ std::string_view kind_of_other(RootAttributes const& attributes) {
   return {};
 }
 
-// Does not read the scalars; `frames` counts those that have spins.
+// Reads everything but the scalars. `frames` counts the frames that have spins.
 TrajectoryInfo read_header(hid_t file, std::filesystem::path const& path) {
   RootAttributes const attributes(file, path);
   TrajectoryInfo info;

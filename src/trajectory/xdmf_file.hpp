@@ -9,12 +9,12 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Positions of the sites that an XDMF file describes.
+/// The lattice that an XDMF file describes.
 struct XdmfGrid {
   std::array<std::int64_t, 3> shape;  ///< as in TrajectoryHeader
   std::int64_t cell_sites = 1;
   std::array<double, 3> spacing = {1, 1, 1};
-  bool has_positions = false;  ///< in the trajectory file; they replace the spacing
+  bool has_positions = false;  ///< the trajectory file has /positions, which replace the spacing
 };
 
 /// Describes /spins of a trajectory file to viewers such as ParaView: an XDMF time series of a
@@ -26,7 +26,7 @@ class XdmfFile {
   XdmfFile(std::filesystem::path path, std::filesystem::path const& trajectory,
            XdmfGrid const& grid, bool single, bool overwrite);
 
-  /// Adds the next frame. Beyond a thousand, those of about a second are written together.
+  /// Adds the next frame. Beyond a thousand frames, the file is written about once a second.
   void add_frame(double time);
 
   /// Writes the frames that add_frame has postponed.
