@@ -4,9 +4,9 @@
 #                  [ON_HOST_DEVICE])
 # One GoogleTest program test_<name>, linked to cayspin and started by tests/main.cpp, which runs it
 # inside Kokkos. THREADS registers one entry per count where a threaded host backend is compiled in;
-# otherwise there is one entry with two threads. BATCH: so many files are compiled as one, for what
-# they share. FAST: compiled to run fast. ON_HOST_DEVICE: a second program,
-# test_<name>_on_host_device.
+# otherwise there is one entry with two threads. BATCH: so many files are compiled as one, to
+# compile their common headers once. FAST: is compiled to run fast. ON_HOST_DEVICE: a second
+# program, test_<name>_on_host_device.
 function(cayspin_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "FAST;ON_HOST_DEVICE" "BATCH;TIMEOUT"
                         "SOURCES;LIBRARIES;LABELS;THREADS")
@@ -64,7 +64,7 @@ endfunction()
 
 macro(cayspin_register_test entry program threads)
   add_test(NAME ${entry} COMMAND ${program})
-  # Threads that spin slow down tests that run at the same time.
+  # With the policy "active", waiting threads would slow down tests that run at the same time.
   set(environment OMP_NUM_THREADS=${threads} KOKKOS_NUM_THREADS=${threads} OMP_PROC_BIND=false
                   OMP_WAIT_POLICY=passive)
   set_tests_properties(${entry} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} PROCESSORS

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # Target cayspin_git_commit: <cayspin_git_commit.hpp> defines CAYSPIN_GIT_COMMIT, the full commit
 # followed by "-dirty" when tracked files differ from it, or "unknown" outside a repository.
-# Looked up at every build; the header is written only when the answer changed.
-# Run as a script (cmake -P) it is the look-up itself.
+# The commit is looked up at every build, and the header written only if it has changed. The look-up
+# is this file, run as a script (cmake -P).
 if(CMAKE_SCRIPT_MODE_FILE)
   cmake_policy(VERSION 3.25)
   set(commit "")

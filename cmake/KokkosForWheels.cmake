@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Kokkos under pip where none is installed, or for the processor that is asked for: its source,
-# built inside the wheel's build.
+# Builds Kokkos from source within the build of a wheel, if none is installed, or if the wheel is
+# for another processor than this one.
 if(NOT CAYSPIN_KOKKOS_SOURCE)
   message(STATUS "fetch Kokkos' source")
   execute_process(COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/bootstrap.sh kokkos-source
@@ -13,8 +13,8 @@ if(NOT CAYSPIN_KOKKOS_SOURCE)
 endif()
 set(Kokkos_ENABLE_OPENMP ON)
 set(Kokkos_ENABLE_SERIAL ON)
-# -march of haswell and skylake-avx512: the level, and nothing beyond it that compilers use by
-# themselves.
+# Kokkos passes -march=haswell or -march=skylake-avx512. They go beyond the level, but only with
+# instructions that compilers do not use by themselves.
 set(architecture_of_native NATIVE)
 set(architecture_of_x86-64-v3 HSW)
 set(architecture_of_x86-64-v4 SKX)
@@ -22,4 +22,4 @@ if(architecture_of_${CAYSPIN_PROCESSOR})
   set(Kokkos_ARCH_${architecture_of_${CAYSPIN_PROCESSOR}} ON)
 endif()
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
-set(CAYSPIN_KOKKOS_AS_UNITY ON) # a quarter of the processor time
+set(CAYSPIN_KOKKOS_AS_UNITY ON) # takes a quarter of the processor time

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# The package under pip. The loader looks for libraries in glibc-hwcaps/LEVEL first, so a wheel can
-# have one of each level: cmake/PortableWheel.cmake.
+# Settings for a build by pip. The loader looks for libraries in glibc-hwcaps/LEVEL first, so a
+# wheel can have libraries for several levels: cmake/PortableWheel.cmake.
 set(CAYSPIN_PROCESSOR native CACHE STRING "The processor for which a wheel is compiled")
 set(processors native x86-64 x86-64-v3 x86-64-v4 any-x86-64)
 if(NOT CAYSPIN_PROCESSOR IN_LIST processors)
@@ -8,7 +8,7 @@ if(NOT CAYSPIN_PROCESSOR IN_LIST processors)
   message(FATAL_ERROR "CAYSPIN_PROCESSOR is ${CAYSPIN_PROCESSOR}; accepted: ${processors}")
 endif()
 
-# Nothing installs the libraries: one line names those that are missing.
+# pip does not install these libraries, so one message names all that are missing.
 enable_language(C) # FindHDF5 compiles a C program
 set(debian_of_HDF5 libhdf5-dev)
 set(debian_of_fmt libfmt-dev)

@@ -4,7 +4,7 @@
 
 # Recurses along the libraries that a target links with; lists them in the linker's order.
 function(cayspin_link_flags target flags)
-  # A Kokkos in our own tree finds these only for itself.
+  # A Kokkos that is built within this project finds these packages only for itself.
   if(NOT TARGET ${target} AND target MATCHES "^(OpenMP|Threads|CUDA)::")
     string(REPLACE CUDA CUDAToolkit package ${CMAKE_MATCH_1})
     find_package(${package} QUIET)
@@ -45,7 +45,7 @@ function(cayspin_link_flags target flags)
   if(options)
     list(APPEND ${flags} ${options})
   endif()
-  list(REVERSE ${flags}) # of a library that stands there twice, the last one counts
+  list(REVERSE ${flags}) # if a library is listed twice, only the last place is kept
   list(REMOVE_DUPLICATES ${flags})
   list(REVERSE ${flags})
   set(${flags} ${${flags}} PARENT_SCOPE)
@@ -53,7 +53,8 @@ endfunction()
 
 # cayspin_install_pkg_config(<name> <description> <compile flags> <link flags>)
 function(cayspin_install_pkg_config name description compile_flags link_flags)
-  # Flags depend on the language: CMake writes a file for each one, and that of C++ is installed.
+  # Flags depend on the language: CMake writes a file for each language, and the file for C++ is
+  # installed.
   string(REPLACE "$<LINK_LANGUAGE:" "$<COMPILE_LANGUAGE:" link_flags "${link_flags}")
   file(RELATIVE_PATH to_prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
   string(REGEX REPLACE "/$" "" to_prefix "${to_prefix}")

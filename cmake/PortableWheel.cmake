@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# A wheel for any x86-64: its libraries once more for AVX2 and for AVX-512. The loader of glibc 2.33
-# or newer takes the highest level that the processor has.
+# For a wheel for any x86-64, builds its libraries once more for AVX2 and for AVX-512. The loader of
+# glibc 2.33 or newer takes those of the highest level that the processor has.
 include(ExternalProject)
 set(passed "")
 foreach(name CMAKE_BUILD_TYPE CAYSPIN_KOKKOS_SOURCE HDF5_ROOT HDF5_USE_STATIC_LIBRARIES)
@@ -26,7 +26,7 @@ foreach(processor x86-64-v3 x86-64-v4)
   endforeach()
 endforeach()
 
-# What the wheel contains of others comes with its licences.
+# Libraries of others in the wheel come with their licences.
 foreach(package libhdf5-dev libfmt-dev libmuparser-dev libtomlplusplus-dev libeigen3-dev
                 libcli11-dev nlohmann-json3-dev libfftw3-dev libpng-dev zlib1g-dev libgomp1)
   set(copyright /usr/share/doc/${package}/copyright)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # cayspin_find_python(<variable> <modules> <doc>): finds an interpreter that imports the modules,
-# such as "h5py, matplotlib". The first one on PATH may lack them. .deps/site has the theme of the
-# site.
+# such as "h5py, matplotlib". The first one on PATH may lack them. It may also find them in
+# .deps/site, which has the theme of the documentation's site.
 function(imports_modules result candidate)
   execute_process(
     COMMAND ${CMAKE_COMMAND} -E env "PYTHONPATH=${PROJECT_SOURCE_DIR}/.deps/site:$ENV{PYTHONPATH}"

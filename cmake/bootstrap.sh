@@ -79,14 +79,15 @@ build() {
   logged build cmake --build --preset "$preset" --target "$@"
 }
 
-# python3-matplotlib takes half a minute to install, in which the other processors compile.
+# python3-matplotlib takes half a minute to install, so it is installed while the compilation runs.
 start_installing_drawing() {
   install_packages drawing "${drawing[@]}" &
   installing_drawing=$!
   trap wait EXIT
 }
 
-# The scripts that draw read PYTHON: an interpreter before Debian's on PATH may lack its packages.
+# Sets PYTHON for the scripts that draw, because the first python3 on PATH may lack Debian's
+# packages.
 finish_installing_drawing() {
   local candidate
   wait "$installing_drawing" || exit 1
@@ -110,7 +111,7 @@ install_python_package() {
   say "import cayspin with $venv/bin/python; the program: $venv/bin/cayspin"
 }
 
-# Warnings are errors.
+# Builds the documentation's site. Warnings are errors.
 build_site() {
   local candidate
   provide_site_theme
@@ -124,7 +125,7 @@ build_site() {
   fail "no python3 with sphinx, myst_parser and furo"
 }
 
-# Fails at once, before anything is built, where nothing could run.
+# Fails before anything is built if no GPU is here to run it.
 require_gpu() {
   case $preset in
     cuda)
@@ -137,7 +138,7 @@ require_gpu() {
   esac
 }
 
-# The report includes failures.
+# Failures do not end the script; the report includes them.
 report_gpu() {
   mkdir -p "$build_dir"
   say "test (all of it in build/$preset/gpu-tests.txt)"

@@ -88,7 +88,8 @@ PYTHON
   unpack_checked "$file" "$release_sha256" "kokkos-$release" 1
 }
 
-# unpack_checked FILE SHA256 FOLDER DEPTH: its FOLDER, which is DEPTH folders deep.
+# unpack_checked FILE SHA256 FOLDER DEPTH: unpacks FOLDER of an archive, DEPTH levels below its
+# root.
 unpack_checked() {
   printf '%s  %s\n' "$2" "$1" | sha256sum --check --quiet ||
     fail "$1 is not the file it should be; delete it and try again"

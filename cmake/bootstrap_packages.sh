@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # shellcheck shell=bash disable=SC2034,SC2154
-# Sourced by bootstrap.sh. The Debian packages by what needs them, install_packages for them, and
-# provide_style_tools, provide_site_theme, provide_nvdisasm and provide_interchange_tools for what
-# tests of these names run.
+# Sourced by bootstrap.sh. Lists Debian packages by what needs them. install_packages installs them.
+# The functions provide_... fetch tools that tests run, from the Python package index.
 
 core=(g++ cmake ninja-build git ca-certificates python3 python3-pip) # the header library, Kokkos
 io=(libhdf5-dev libfmt-dev libmuparser-dev libtomlplusplus-dev libeigen3-dev libpng-dev) # scenes and files
@@ -16,7 +15,7 @@ tests=("${mpi[@]}" "${docs[@]}" libgtest-dev nlohmann-json3-dev valgrind clang l
   python3-nbclient python3-ipykernel python3-xarray chromium chromium-driver
   python3-selenium zsh)
 bench=(libbenchmark-dev)
-everything=("${core[@]}" "${io[@]}" "${program[@]}" "${python[@]}" "${tests[@]}" "${bench[@]}") # but drawing
+everything=("${core[@]}" "${io[@]}" "${program[@]}" "${python[@]}" "${tests[@]}" "${bench[@]}") # except drawing
 # Only in Debian 12: elsewhere the tests that need them are skipped.
 left_out_where_unknown=(chromium chromium-driver libclang-rt-14-dev)
 
@@ -39,7 +38,7 @@ select_known_packages() {
   missing=("${known[@]}")
 }
 
-# install_packages LOG PACKAGE...: those that are missing.
+# install_packages LOG PACKAGE...: installs those that are missing.
 install_packages() {
   local log=$1 missing=() package become_root=()
   shift
@@ -68,8 +67,8 @@ install_packages() {
     apt-get install -y --no-install-recommends "${missing[@]}"
 }
 
-# provide_tools NAME PYTHON PINS: the versions that the file PINS names, from the Python package
-# index, in .deps/NAME.
+# provide_tools NAME PYTHON PINS: installs the versions listed in the file PINS, from the Python
+# package index, into .deps/NAME.
 provide_tools() {
   local name=$1 python=$2 pins=$3
   local tools=$deps/$name
@@ -97,13 +96,13 @@ provide_nvdisasm() {
   ! find_nvcc || provide_tools nvdisasm python3 "$root/tests/cuda/requirements.txt"
 }
 
-# The programs of others that the tests `interchange` hold files to: for the Python of the tests,
-# which has the packages that they need.
+# Programs of others that must read our files in the tests `interchange`. They are installed for the
+# Python of the tests, which has the packages that they need.
 provide_interchange_tools() {
   provide_tools interchange "$PYTHON" "$root/tests/interchange/requirements.txt"
 }
 
-# Headers and CMake files that the module of the Python package is compiled with.
+# nanobind: headers and CMake files for compiling the module of the Python package.
 provide_nanobind() {
   provide_tools nanobind python3 "$root/python/build_requirements.txt"
   [ ! -d "$deps/nanobind" ] || parts+=(PYTHON)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # shellcheck shell=bash disable=SC2012,SC2154
-# Sourced by bootstrap.sh. build_wheels: for each interpreter of the array `pythons` a wheel that
-# needs nothing but glibc, with its libraries inside, for any x86-64; each is tried before it counts.
+# Sourced by bootstrap.sh. build_wheels builds, for each interpreter in the array `pythons`, a wheel
+# for any x86-64 that contains its libraries and needs only glibc. Then it tries the wheel.
 
-# Debian's HDF5 brings 30 libraries with it, of networks and of encryption, and its archive is not
-# position-independent. So the same source is compiled once more, without them.
+# Debian's HDF5 depends on 30 libraries, for networks and encryption, and its static library is not
+# position-independent. So HDF5 is compiled from the same source without them.
 provide_hdf5() {
   local folder=$deps/hdf5-source source=${CAYSPIN_HDF5_SOURCE:-} address suite
   [ ! -f "$deps/hdf5/built" ] || return 0
@@ -32,10 +32,11 @@ provide_hdf5() {
   touch "$deps/hdf5/built"
 }
 
-# One build folder serves all interpreters: only the module is compiled for each of them.
+# All interpreters share one build folder: only the module is compiled for each of them.
 build_wheels() {
   local interpreter name venv wheel work=$root/build/wheels
-  # Interpreters name the compilers that compiled them, and another name compiles all anew.
+  # Each interpreter would choose the compiler that compiled it, and a new compiler name would
+  # compile everything again.
   local -x CC=${CC:-gcc} CXX=${CXX:-g++}
   [ "$(uname -m)" = x86_64 ] || fail "wheels are built on x86-64; this is $(uname -m)"
   provide_kokkos_source

@@ -8,14 +8,14 @@
 
 namespace cayspin::paper {
 
-/// Printed effect of errata, with the formula as printed and as corrected.
+/// Prints what errata change: quantities with the formula as printed and as corrected.
 class Comparison {
  public:
   explicit Comparison(Context const& context)
       : context(context),
         file_(context.folder, "errata.csv", "erratum,quantity,printed,corrected") {}
 
-  /// Starts erratum `number`: its place, the printed formula, the correct one.
+  /// Starts erratum `number`: its place in the paper, the printed formula and the correct one.
   void begin(int number, std::string_view where, std::string_view printed,
              std::string_view corrected);
   /// Prints a quantity with both formulas.

@@ -9,7 +9,7 @@
 namespace cayspin::paper {
 namespace {
 
-// Energies are of order 1/2; below this value they differ only by rounding.
+// Energies are of order 1/2, so smaller differences are rounding.
 constexpr double round_off = 1e-14;
 
 std::string number(double value) {

@@ -34,7 +34,7 @@ class EnergyTable {
   /// `name`: of the CSV file.
   EnergyTable(Context const& context, std::string_view name, std::string_view title);
   void add(Block const& block);
-  /// Prints a paragraph on why figures differ.
+  /// Prints a paragraph that explains why numbers differ.
   void note(std::string_view text) const;
   /// Writes the file.
   void close() const { file_.write(); }

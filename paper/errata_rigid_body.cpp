@@ -7,7 +7,8 @@
 namespace cayspin::paper {
 namespace {
 
-// (I_j - I_k)^2 I_i (m_j m_k)^power, and the quotient of sums that F^Eul_cor makes of it.
+// Returns sigma in the second form of F^Eul_cor, but for its sign: the sum of u_i over the sum of
+// I_i u_i, with u_i = (I_j - I_k)^2 I_i (m_j m_k)^power.
 double second_form(Body const& body, Vector const& m, int power) {
   auto const& moment = body.moments;
   double above = 0, below = 0;

@@ -80,7 +80,7 @@ auto remainder(double dt) {
   };
 }
 
-// sign <A', A x m>/|A_o|^2 added to xi = A(cay(dt xi) m)
+// Implicit Euler, xi = A(cay(dt xi) m), with sigma = sign <A', A x m>/|A_o|^2 added along m.
 auto implicit_energy_error(double sign) {
   return [=](double dt) {
     return [=](Body const& body) {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstdint>
 
-/// Steps m <- cay(F(m)) m of one rigid body on plain numbers, for wrong formulas, which the library
-/// does not have.
+/// Steps m <- cay(F(m)) m of one rigid body on plain numbers: for the paper's wrong formulas, which
+/// the library does not have.
 namespace cayspin::paper {
 
 /// A without its part along m.
@@ -31,7 +31,7 @@ struct HostRun {
   double energy_error;  // max over all steps of |H - H(start)|
 };
 
-/// `update(m)` returns F, which includes the step.
+/// `update(m)` returns F, with dt included.
 template <class Update>
 HostRun take_steps(Body const& body, std::int64_t steps, Update const& update) {
   HostRun run{body.start, 0};

@@ -11,10 +11,10 @@ namespace cayspin::paper {
 
 inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// Below it, errors are rounding.
+/// Errors below this are rounding.
 inline constexpr double order_round_off = 1e-12;
 
-/// Steps between which the orders of the errata are measured.
+/// The two step sizes between which the orders of the errata are measured.
 inline constexpr double coarse_dt = 0.05, fine_dt = 0.025;
 
 inline std::vector<Body> errata_bodies(Context const& context) {
@@ -28,13 +28,13 @@ std::vector<double> of_each(std::vector<Body> const& bodies, Measure const& meas
   return values;
 }
 
-/// The median over the bodies of measure(body).
+/// Returns the median over the bodies of measure(body).
 template <class Measure>
 double median_of(std::vector<Body> const& bodies, Measure const& measure) {
   return quantile(of_each(bodies, measure), 0.5);
 }
 
-/// The median order of the error measure_at(dt)(body) from coarse_dt to fine_dt.
+/// Returns the median order of the errors measure_at(dt)(body), from coarse_dt to fine_dt.
 template <class MeasureAt>
 double median_order(std::vector<Body> const& bodies, MeasureAt const& measure_at) {
   return quantile(

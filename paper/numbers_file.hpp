@@ -15,7 +15,7 @@ class NumbersFile {
   NumbersFile(std::optional<std::filesystem::path> const& folder, std::string_view name,
               std::string_view columns);
 
-  /// One cell per column; text must hold no quotes.
+  /// Adds a row with one cell per column. Texts must not contain quotes.
   template <class... Cells>
   void row(Cells const&... cells) {
     std::string line;

@@ -14,7 +14,7 @@ namespace {
 constexpr double flattening = 0.15;
 using Shape = Law::Shape;
 
-// Unlike the distributions of the standard library, its engines are equal on all platforms.
+// The standard library's engines give the same numbers on all platforms, unlike its distributions.
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : engine_(seed) {}
@@ -27,7 +27,8 @@ class Dice {
     double const radius = std::sqrt((1 - z) * (1 + z));
     return {radius * std::cos(azimuth), radius * std::sin(azimuth), z};
   }
-  // Axes uniform over all orientations: one on the sphere, the second rotated uniformly about it.
+  // Returns axes distributed uniformly over all orientations: the first uniform on the sphere, the
+  // second rotated about it by a uniform angle.
   std::array<Vector, 3> frame() {
     Vector const first = on_sphere();
     Vector const helper = std::abs(first.x) < 0.6 ? Vector{1, 0, 0} : Vector{0, 1, 0};
@@ -62,8 +63,8 @@ std::array<double, 3> draw_moments(Law const& law, Dice& dice) {
   return moments;
 }
 
-// On the great circles H(m) = 1/(2 I_middle): the ratio <m, e_least> : <m, e_largest> is fixed, the
-// rest random.
+// Returns a random point of the great circles H(m) = 1/(2 I_middle), on which the ratio of <m,
+// e_least> and <m, e_largest> is fixed up to its sign.
 Vector on_separatrix(Body const& body, Dice& dice) {
   std::array<std::size_t, 3> order{0, 1, 2};
   std::ranges::sort(order, {}, [&](std::size_t i) { return body.moments[i]; });

@@ -42,7 +42,7 @@ std::string describe(Law const& law);
 /// Returns equal bodies for equal seeds, on every machine up to the rounding of sin and cos.
 std::vector<Body> draw_bodies(Law const& law, std::int64_t count, std::uint64_t seed);
 
-/// A body whose axes are those of the frame.
+/// Returns a body whose principal axes are x, y and z.
 Body principal_body(std::array<double, 3> const& moments, Vector const& start);
 
 }  // namespace cayspin::paper

@@ -38,7 +38,7 @@ struct SlabPath {
   std::vector<Vector> end;         // every site
 };
 
-/// Samples `looks` equally spaced times besides the start; dt must divide their distance.
+/// Samples the start and `looks` equally spaced times; dt must divide the time between them.
 SlabPath run_slab(Slab const& slab, MethodChoice const& choice, double dt, int looks);
 
 /// Runs geometric Euler with sigma = -factor <dA_o, A_o x m>/|A_o|^2, dA_o by backward differences
@@ -48,13 +48,14 @@ SlabPath run_slab_with_sigma(Slab const& slab, double factor, double dt, int loo
 /// Returns the sigma of every site at the start, by forward differences over dt.
 std::vector<double> sigma_at_start(Slab const& slab, double dt);
 
-/// Returns the largest distance of two paths at their times.
+/// Returns the largest distance between two paths at corresponding samples.
 double largest_distance(SlabPath const& a, SlabPath const& b);
 
 /// Returns the largest distance over the sites at the end.
 double distance_at_end(SlabPath const& a, SlabPath const& b);
 
-/// Errors at the end for five steps, each half the previous one, starting with `coarsest`.
+/// Errors at the end of a run for five step sizes: `coarsest`, and each half the one before. Sizes
+/// whose error is only rounding are left out.
 struct Convergence {
   std::vector<double> dts, errors;             // largest over the sites
   std::vector<double> first_component_errors;  // of site 37

@@ -16,12 +16,12 @@ struct Spread {
 };
 Spread spread(std::vector<double> const& values);
 
-/// Returns the paper's statistic repeatedly: means of ten consecutive values. With fewer than ten
-/// values, their mean.
+/// Returns means of ten consecutive values each: samples of the paper's statistic. With fewer than
+/// ten values, returns their mean.
 std::vector<double> means_of_ten(std::vector<double> const& values);
 
-/// Returns orders log(coarse/fine) / log(ratio of the steps), value by value, if both are above
-/// round-off.
+/// Returns the orders log(coarse/fine) / log(step_ratio), value by value, where both errors are
+/// above `round_off`.
 std::vector<double> orders(std::vector<double> const& coarse, std::vector<double> const& fine,
                            double step_ratio, double round_off);
 

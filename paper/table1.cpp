@@ -8,8 +8,8 @@ namespace cayspin::paper {
 
 namespace {
 
-// Prints distances from the solution at t = 10, dt = 0.1, with either map; the paper says that one
-// of them is exact.
+// Prints distances from the solution at t = 10 with dt = 0.1, for the Cayley map and for the
+// exponential map. The paper says that the exponential map gives the exact solution.
 void print_distances(Context const& context, Law const& law) {
   auto const bodies = draw_bodies(law, context.bodies, context.seed);
   auto const solution = run_ensemble(bodies, rkmk4_def, 1e-3, 10).ends;

@@ -16,7 +16,8 @@ class Cayspin(CMakePackage):
 
     license("Apache-2.0 WITH LLVM-exception")
 
-    # No public address yet: dev-build takes the clone, install an archive in the current folder.
+    # No public address yet: `dev-build` takes the clone, `install` an archive in the current
+    # folder.
     url = f"file://{os.getcwd()}/cayspin-0.2.0.tar.gz"
     manual_download = True
     download_instr = (
@@ -78,7 +79,8 @@ class Cayspin(CMakePackage):
             return []
         return [self.define("CMAKE_CXX_COMPILER", compiler)]
 
-    # Users read the compiler from these files, and Spack's own works in its builds alone.
+    # Users read the compiler from these files; Spack's compiler wrapper works only in Spack's
+    # builds.
     filter_compiler_wrappers("*.pc", relative_root=os.path.join("lib", "pkgconfig"))
 
     test_requires_compiler = True

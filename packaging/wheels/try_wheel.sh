@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # Usage: bash packaging/wheels/try_wheel.sh WHEEL [PYTHON]
-# Installs a wheel into a new environment of PYTHON, computes with it and draws, from Python and by
-# the command, once for each level of x86-64 that this processor has. Needs no clone.
+# Installs a wheel into a new environment of PYTHON, and computes and draws with it, from Python and
+# by the command `cayspin`, once for each level of x86-64 that this processor has. Needs no clone.
 set -euo pipefail
 wheel=$1
 python=${2:-python3}
@@ -13,7 +13,7 @@ trap 'rm -rf "$work"' EXIT
 "$python" -m venv "$work/venv"
 "$work/venv/bin/python" -m pip install --quiet "$wheel[plots]"
 cd "$work"
-# The loader's own switches: it then takes the libraries of a lesser processor.
+# With these settings, the loader takes the libraries for a lesser processor.
 try() {
   GLIBC_TUNABLES=$2 "$work/venv/bin/python" "$here/try_wheel.py" "$1"
 }

@@ -61,7 +61,7 @@ struct RateStage {
   }
 };
 
-/// sigma of A_o from A' at m, X = A x m, and m.A.
+/// Returns sigma for A_o, from A' at m, X = A x m, and m.A.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value sigma_along_flow(isotropy::Analytic, Vec3<Value> const& rate,
                                                    Vec3<Value> const& x, Vec3<Value> const&,
@@ -81,7 +81,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value sigma_along_flow(isotropy::Connection, Vec3<Va
   return guarded_quotient(dot(second, cross(m, x)), dot(x, x));
 }
 
-/// The prepared generator whose derivative is taken. sigma replaces any part along m that it has.
+/// Returns the prepared generator whose derivative is taken: one that does not remove the part of A
+/// along m, which sigma replaces.
 template <class Generator>
 auto bare(Generator const& prepared) {
   if constexpr (requires { prepared.bare(); })
@@ -117,7 +118,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> rate_of(Generator const& generator, Vec3
   }
 }
 
-/// The rates of the spins, and m.A: the inputs of sigma.
+/// The rates X of the spins and m.A, from which sigma is computed.
 template <class Spins>
 class Rates {
   using Real = typename Spins::value_type;
@@ -231,8 +232,8 @@ class ImplicitSigma<Spins, isotropy::Analytic> {
 
 }  // namespace detail
 
-/// With sigma from the generator's derivative; energy error of order 2, one evaluation and one of
-/// the field's linear part.
+/// Geometric Euler with sigma from the generator's derivative; energy error of order 2. A step
+/// evaluates the generator once, and the linear part of its field once.
 template <class Spins, class Rotation, class Isotropy>
   requires(std::same_as<Isotropy, isotropy::Analytic> ||
            std::same_as<Isotropy, isotropy::Connection>)
@@ -242,7 +243,7 @@ class LieEuler<Spins, Isotropy, Rotation> : public detail::StepperBase<Spins> {
   static constexpr int order = 1;
   static constexpr int evaluations = 2;
   static constexpr int ghosts = 2;
-  static constexpr int work_fields = 2;  // 4 numbers per site: rates, and one number
+  static constexpr int work_fields = 2;  // 4 numbers per site: the rate, and m.A
 
   explicit LieEuler(Spins const& like, Isotropy isotropy = {}, Rotation = {})
       : LieEuler::StepperBase("LieEuler", like.lattice(), ghosts),

@@ -15,8 +15,8 @@
 #include <concepts>
 #include <stdexcept>
 
-// Derivatives of the effective field, for Series4 and isotropy::Analytic. Those of the library's
-// terms are here. A user's term has a degree (FieldTerm in cayspin/concepts.hpp), or
+// Derivatives of the effective field, for Series4 and isotropy::Analytic. The library's terms have
+// them here. A user's term needs a degree (FieldTerm in cayspin/concepts.hpp), or
 //   Vec3<Value> linear_field(stencil)     the linear part of an H that is affine in the spins;
 //                                         requires is_affine()
 //   Vec3<Value> field_rate(m, rates)      dH/dt at m, along the rates of the stencil's array
@@ -34,9 +34,9 @@ struct AppliedRate {
   }
 };
 
-/// Returns d/dt of a callable by differences of order 4 over dt/4: relative error about (w dt)^4 /
-/// 1e5 for changes of angular frequency w. The callable must be defined a quarter of a step either
-/// way.
+/// Returns d/dt of a callable by central differences of order 4, from its values at t +- dt/8 and t
+/// +- dt/4, where it must be defined. The relative error is about (w dt)^4 / 1e5 for changes of
+/// angular frequency w.
 template <class Applied>
 Vec3<double> time_derivative(Applied const& applied, double t, double dt) {
   if (dt == 0) return {0, 0, 0};  // a step of no time moves no spin
@@ -71,7 +71,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> rate_of_field(CubicAnisotropy const& ter
                                                       Stencil const& rates) {
   Vec3<Value> const m = term.parts(spin), rate = term.parts(rates.center());
   Vec3<Value> const half{m.x * rate.x, m.y * rate.y,
-                         m.z * rate.z};  // from the rates of the squares
+                         m.z * rate.z};  // half the rates of the squares
   Value const a = m.x * m.x, b = m.y * m.y, c = m.z * m.z;
   Vec3<Value> const changes{rate.x * (b + c) + Value(2) * m.x * (half.y + half.z),
                             rate.y * (c + a) + Value(2) * m.y * (half.z + half.x),
@@ -94,7 +94,7 @@ auto prepared_rate(PairCouplings<MemorySpace> const& term, Exec const& exec, Spi
         "cayspin::PairCouplings: biquadratic couplings have no derivative along rates only");
   return term.prepare(exec, rates, t);
 }
-/// Throws std::logic_error between evaluations.
+/// Throws std::logic_error while the field is interpolated between evaluations.
 template <class Term, class Exec, class Spins>
 auto prepared_rate(SlowField<Spins, Term> const& term, Exec const& exec, Spins const& rates,
                    double t, double) {
@@ -179,7 +179,8 @@ auto prepare_rate(Term const& term, Exec const& exec, Spins const& rates, double
     return prepare_term(term, exec, rates, t);
 }
 
-/// True if a prepared field has the linear part of H, or the derivative of H along rates.
+/// The first is true if kernels can evaluate the linear part of a prepared field H, the second if
+/// they can evaluate the derivative of H along rates.
 template <class Term, class Stencil>
 constexpr bool has_linear_part();
 template <class Term, class Stencil>

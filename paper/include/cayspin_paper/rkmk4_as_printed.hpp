@@ -43,7 +43,7 @@ struct AsPrintedStage {
     f[Stage] = Value(dt) * isotropy(stencil.center(), evaluate(generator, stencil));
     if constexpr (last) {
       unrolled<3>([&](auto j) { f[j()] = site.load(generators[j()]); });
-      // Each needs the previous generator.
+      // The last increment comes first, because each needs the generator of the stage before.
       unrolled<3>([&](auto j) {
         constexpr int stage = 3 - j();
         f[stage] = Cayley::inverse_differential(

@@ -46,8 +46,8 @@ struct Series4PaperCorrection {
   }
 };
 
-/// The truncated series of F from a_k = d^k A / dt^k on the exact flow. Lewis and Nigam 2002, Sec.
-/// 5.3, for any isotropy.
+/// The truncated series of F, from a_k = d^k A / dt^k on the exact flow. Lewis and Nigam 2002, Sec.
+/// 5.3; it holds for any part of A along m.
 struct DirectSeries {
   using Correction = Series4Correction;
   template <class Value>
@@ -71,8 +71,8 @@ struct DirectSeries {
   }
 };
 
-/// The orthogonal series as printed in the paper, from the derivatives of A_o: of equal order, with
-/// three times the energy error of the direct series.
+/// The orthogonal series as printed in the paper, from the derivatives of A_o. It has the same
+/// order as the direct series, and three times its energy error.
 struct PaperSeries : DirectSeries {
   using Correction = Series4PaperCorrection;
   template <class Value>
@@ -139,8 +139,9 @@ struct LocalSeriesStage {
   }
 };
 
-/// Kernel K of the four of a step on coupled spins. It computes the K-th derivative of the source,
-/// then the next derivative of the spins; the last kernel computes the end of the step.
+/// Kernel number K of the four that a step of coupled spins takes. It computes the K-th derivative
+/// of the source, and from it the next derivative of the spins; the last kernel computes the end of
+/// the step.
 template <class Series, int K, class Generator, class Real>
 struct SeriesStage {
   Generator generator;

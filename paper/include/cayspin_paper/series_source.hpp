@@ -16,7 +16,8 @@
 // Derivatives of the library's generators for the series. A user's generator needs
 //   Vec3<Value> series_source(stencil)           the source of A: H, or A itself
 //   Vec3<Value> linear_series_source(stencil)    its linear part; requires is_affine() on the host
-//   Vec3<Value> derivative<K>(m, source)         the K-th time derivative of A, from those of both
+// Vec3<Value> derivative<K>(m, source) the K-th time derivative of A, from derivatives of m and of
+// the source
 //   static bool is_local                         A is linear in the site's spin, without neighbours
 namespace cayspin::inline v0_2::detail {
 
