@@ -46,7 +46,7 @@ def parse_arguments():
 
 
 def import_libraries():
-    """After --help, which needs none of them."""
+    """Imports the libraries only now, because --help needs none of them."""
     global checksum, h5py, modes, path, replica_of_file, style, texture
     import h5py
     from cayspin_plots import modes, path, style

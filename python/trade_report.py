@@ -64,7 +64,7 @@ def best(trade, error, keep):
 
 
 def ratios(trade):
-    """Those of the first table: gains and projected_rk8 in double, then double over single."""
+    """The ratios of the first table: gains and projected_rk8 in double, then double over single."""
     found = []
     for error in ERRORS:
         gain = trade_costs.gain(trade, error)
@@ -88,7 +88,7 @@ def ratio_row(title, found):
 
 
 def gains_of(row):
-    """The row of a table of gains, from one of all ratios."""
+    """The row of a table of gains, made from a row with all ratios."""
     return row_of([cell.split(" (")[0] for cell in row.strip("| ").split(" | ")[:len(GAINS)]])
 
 

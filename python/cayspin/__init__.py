@@ -6,8 +6,8 @@
     sim.run()
     sim.spins  # (nz, ny, nx, 3)
 
-Arrays of vectors have the shape (nz, ny, nx, 3), of crystals with several sites in a cell
-(site, nz, ny, nx, 3). All numbers are in the units of the scene.
+Arrays of vectors have the shape (nz, ny, nx, 3), or (site, nz, ny, nx, 3) for crystals with several
+sites in a cell. All numbers are in the units of the scene.
 """
 
 from cayspin._cayspin import CayspinError, NumbersFailed, SceneError

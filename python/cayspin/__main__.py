@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""python -m cayspin, and the command `cayspin` of the package: the program of the wheel."""
+"""Starts the program in the wheel: python -m cayspin, or the package's command `cayspin`."""
 
 import os
 import sys

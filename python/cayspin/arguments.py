@@ -28,7 +28,8 @@ def shown(thing: Any) -> str:
 
 
 def without_line(message: str) -> str:
-    """A warning without the line of the text made from tables, and without --set."""
+    """A warning without the place that it starts with: the line of a text made from tables, or
+    --set."""
     return re.sub(r"^(replica \d+: )?(Scene:\d+: |--set )", r"\1", message)
 
 
@@ -79,7 +80,7 @@ def wants_stop(answer: Any) -> bool:
 
 
 def is_unicode(text: str) -> bool:
-    """Whether a string has no half of a surrogate pair, which UTF-8 does not have."""
+    """Whether UTF-8 can encode a string: it cannot encode half of a surrogate pair."""
     return not any("\ud800" <= letter <= "\udfff" for letter in text)
 
 

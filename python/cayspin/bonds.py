@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Files of bonds that other programs read, and bonds as a scene has them."""
+"""Reads files of bonds for other programs, and writes bonds as a scene has them."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class File:
 
 
 def _energy(value, unit, name):
-    """A number or a vector with its unit, or divided by `unit`."""
+    """A number or a vector: with the name of its unit, or divided by `unit` if that is given."""
     value = np.asarray(value, float)
     return {name: value.tolist()} if unit is None else (value / unit).tolist()
 

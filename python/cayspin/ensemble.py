@@ -17,7 +17,7 @@ class Ensemble:
     indexed: ensemble.spins[-1, 5]. Use it in a `with`, or call close(). Numbers are in the units
     of the scene.
 
-    - `spins`: (frame, replica, nz, ny, nx, 3), of a crystal with several sites in a cell
+    - `spins`: (frame, replica, nz, ny, nx, 3), for a crystal with several sites in a cell
       (frame, replica, site, nz, ny, nx, 3)
     - `time`, `step`: (frame)
     - `energy`, summed over the sites of a replica, and `norm_defect`: (frame, replica)
@@ -87,7 +87,7 @@ class Ensemble:
 
     def structure_factor(self, replicas: Sequence[int] | None = None,
                          frames: slice = slice(None), **options: Any) -> StructureFactor:
-        """S(k, w) of the `frames` of a slice, at all wave vectors of the lattice, averaged over
+        """S(k, w) at all wave vectors of the lattice, from the `frames` of a slice, averaged over
         `replicas`; see cayspin.structure_factor(), which also has the other options. If no key is
         varied, `replicas` may be omitted, which means all. By default the boundaries, the cell and
         the positions of its sites are those of the scene.

@@ -49,7 +49,7 @@ class EnsembleSimulation:
             file = arguments.file_name(restart, "restart")
             try:
                 warning = self._run.continue_from(file)
-            except RuntimeError as error:  # of a file that cannot be opened
+            except RuntimeError as error:  # for a file that cannot be opened
                 raise _cayspin.CayspinError(str(error)) from None
             if warning:
                 warnings.warn(warning, stacklevel=2)
@@ -57,9 +57,9 @@ class EnsembleSimulation:
         self._dt_is_checked = False
 
     def step(self, n: int = 1) -> None:
-        """Takes `n` steps of dt in every replica; those that run() has ended early go on, to the
-        step of the others. The first step warns of a dt that is too large for one of them. After
-        Ctrl-C some replicas may be further than `steps`; they wait for the others.
+        """Takes `n` steps of dt in every replica. Replicas that run() has ended early go on until
+        they are at the step of the others. The first step warns of a dt that is too large for one
+        of them. After Ctrl-C some replicas may be further than `steps`; they wait for the others.
 
         Raises NumbersFailed when spins of a replica are not finite, leave the sphere or gain energy
         without a source, SceneError for a dt that integrator.refuse_unstable refuses, CayspinError
@@ -72,7 +72,7 @@ class EnsembleSimulation:
         meets the scene's until_torque.
 
         Raises NumbersFailed and SceneError as step() does. Raises CayspinError for a time that has
-        passed or is no whole number of steps, and for a scene without end.
+        passed or is not a whole number of steps, and for a scene without end.
         """
         if self._scene._scene.has_integrator and until is None and self._scene.steps == 0:
             raise _cayspin.CayspinError("run: the scene has no end; accepted: run(until=t), or "
@@ -112,7 +112,7 @@ class EnsembleSimulation:
 
     @property
     def spins(self) -> np.ndarray:
-        """The spins now, (replica, nz, ny, nx, 3), of a crystal with several sites in a cell
+        """The spins now, (replica, nz, ny, nx, 3), for a crystal with several sites in a cell
         (replica, site, nz, ny, nx, 3): a copy."""
         spins, cell_sites = self._run.spins(), self._scene._scene.cell_sites
         if cell_sites == 1:
@@ -149,7 +149,7 @@ class EnsembleSimulation:
 
     @property
     def evaluations(self) -> int:
-        """Evaluations of the field of all sites of a replica so far, in all replicas."""
+        """Evaluations so far of the field of all sites of a replica, summed over the replicas."""
         return self._run.evaluations
 
     @property

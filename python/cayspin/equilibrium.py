@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""An equilibrium that was sought, and its normal modes."""
+"""Results of searches for an equilibrium and for its normal modes."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ class Minimum:
     energy: float  #: summed over sites, in the scene's unit, J in SI
     iterations: int  #: steps of the search
     evaluations: int  #: of the field of all sites
-    saddles: int  #: that were left during the search
-    curvature: float  #: upper bound of the lowest one, in energy / rad^2, if converged
+    saddles: int  #: saddles left during the search
+    curvature: float  #: upper bound of the lowest curvature, energy / rad^2, if converged
 
     @property
     def converged(self) -> bool:

@@ -17,7 +17,7 @@ from cayspin.texture.replica import Replica
 
 @contextlib.contextmanager
 def reading(file: Any, path: Any) -> Iterator[None]:
-    """Errors of h5py, and of the text of a scene, as a CayspinError of one line."""
+    """Turns errors of h5py, and of the text of a scene, into a CayspinError of one line."""
     if not file:
         raise CayspinError(f"{path}: the file is closed; accepted: an open one")
     try:
@@ -36,7 +36,8 @@ def found_in(file: Any, names: Iterable[str]) -> dict[str, Any]:
 
 def texture_of(file: Any, path: Any, frame: int, before: int | None = None,
                replica: int | None = None) -> tuple[texture.Texture, np.ndarray | None]:
-    """A frame to draw, and the spins of the frame `before`; of one replica of an ensemble."""
+    """A frame to draw, and the spins of the frame `before`. `replica`: only for the file of an
+    ensemble."""
     with reading(file, path):
         try:
             return texture.of_file(file if replica is None else Replica(file, replica), frame,
@@ -46,8 +47,8 @@ def texture_of(file: Any, path: Any, frame: int, before: int | None = None,
 
 
 class Frames:
-    """Some of the frames of a dataset, read one by one; of one replica where its frames have
-    several."""
+    """Some of the frames of a dataset, read one by one; if frames have several replicas, those of
+    one."""
 
     def __init__(self, dataset: Any, frames: range, replica: int | None = None):
         self.dataset, self.frames, self.replica = dataset, frames, replica
@@ -85,7 +86,8 @@ def at_equal_steps(file: Any, path: Any, count: int, frames: Any,
 
 
 def tables(path: Any, text: str, key: str, otherwise: str) -> dict:
-    """The tables of a scene, from which a key is read; `otherwise` is accepted in its place."""
+    """The tables of a scene. If they cannot be read, the error names the `key` that is needed, and
+    what is accepted `otherwise`."""
     try:
         return toml.loads(text)
     except ValueError as error:
@@ -105,7 +107,7 @@ def along_axes(path: Any, text: str, key: str, default: Any, argument: str) -> l
 
 
 def crystal(path: Any, text: str, argument: str) -> Scene:
-    """A scene with only these cells."""
+    """A Scene with the cells of the scene `text`, and nothing else of it."""
     read = tables(path, text, "lattice.cell", f"the argument {argument}")
     lattice = read.get("lattice")
     if not isinstance(lattice, dict) or not isinstance(lattice.get("shape"), list):
@@ -119,7 +121,7 @@ def crystal(path: Any, text: str, argument: str) -> Scene:
 
 
 def with_lattice(path: Any, text: str, options: dict) -> dict:
-    """Options with periodic, cell and positions of the scene where they are not given."""
+    """The options, completed by periodic, cell and positions of the scene if they are not given."""
     options = dict(options)
     if "periodic" not in options:
         words = along_axes(path, text, "boundary", "open", "periodic")

@@ -87,19 +87,20 @@ def occupied_of_mesh(mesh: Any, shape: tuple[int, ...], spacing: float | tuple[f
         low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
         corners = corners - (low + high) / 2 + cells * edges / 2
     corners = corners / edges - 0.5  # in cells, from the middle of the first one
-    # No line through the middles of cells meets an edge or lies in a face.
+    # Shifts the mesh slightly: no line through the middles of cells may meet an edge or lie in a
+    # face.
     corners = corners + [1.234567e-7, 2.718281e-7, 3.141592e-7]
     first = np.maximum(np.ceil(corners.min(axis=1)[:, :2]), 0).astype(int)
     last = np.minimum(np.floor(corners.max(axis=1)[:, :2]), cells[:2] - 1).astype(int)
     wide = np.maximum(last - first + 1, 0)
-    count = wide.prod(axis=1)  # of the columns of cells that a triangle may meet
+    count = wide.prod(axis=1)  # columns of cells that each triangle may meet
     of = np.repeat(np.arange(len(corners)), count)
     turn = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
     x, y = first[of, 0] + turn % wide[of, 0], first[of, 1] + turn // wide[of, 0]
     a, (b, c) = corners[:, 0], np.moveaxis(corners[:, 1:] - corners[:, :1], 1, 0)
     area = b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0]
     dx, dy = x - a[of, 0], y - a[of, 1]
-    with np.errstate(divide="ignore", invalid="ignore"):  # of triangles along z
+    with np.errstate(divide="ignore", invalid="ignore"):  # for triangles parallel to z
         of_b = (dx * c[of, 1] - dy * c[of, 0]) / area[of]
         of_c = (b[of, 0] * dy - b[of, 1] * dx) / area[of]
         met = (of_b >= 0) & (of_c >= 0) & (of_b + of_c <= 1)
@@ -108,6 +109,6 @@ def occupied_of_mesh(mesh: Any, shape: tuple[int, ...], spacing: float | tuple[f
     below = np.clip(np.ceil(z), 0, cells[2]).astype(int)  # cells whose middle is below
     turns = np.zeros((cells[2] + 1, cells[1], cells[0]), dtype=int)
     np.add.at(turns, (below, y, x), np.where(area[of] > 0, 1, -1))
-    # A cell is inside if more of the surfaces above it lead out of the body than into it.
+    # A cell is inside if above it not as many surfaces lead out of the body as into it.
     above = np.cumsum(turns[::-1], axis=0)[::-1][1:]
     return above != 0

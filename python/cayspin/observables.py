@@ -83,8 +83,8 @@ def _on_segment(begin, end, shape):
 
 
 def _along(path, shape, reciprocal):
-    """The wave vectors on a path, (k, 3) in whole numbers of the lattice's, their distances along
-    it, and those of its corners."""
+    """The wave vectors on a path, (k, 3) in multiples of the lattice's smallest ones, their
+    distances along the path, and the distances of its corners."""
     corners = arguments.numbers(path, "dispersion: path").astype(np.float64)
     if corners.ndim != 2 or corners.shape[1] != 3 or len(corners) < 2:
         raise CayspinError(f"dispersion: a path of shape {corners.shape}; accepted: two or more "
@@ -149,7 +149,7 @@ def window_in_space(shape: Any, periodic: Sequence[bool]) -> np.ndarray:
 
 def checked_lattice(name: str, sites: int, cell: Any, positions: Any,
                     periodic: Any) -> tuple[np.ndarray, np.ndarray, tuple[bool, ...]]:
-    """The cell, the positions in it and the periodic axes, for so many sites in a cell."""
+    """Checks and returns the cell, the positions of its sites and the periodic axes."""
     cell = np.eye(3) if cell is None else arguments.numbers(cell, f"{name}: cell")
     if cell.shape != (3, 3) or not abs(np.linalg.det(cell)) > 0:
         raise CayspinError(f"{name}: cell: no volume; accepted: three vectors")
@@ -178,8 +178,8 @@ def dispersion(spins: Any, dt: float, path: Any, *, labels: Sequence[str] | None
 
     `spins`: frames (frame, nz, ny, nx, 3) at times `dt` apart, or (frame, site, nz, ny, nx, 3) with
     several sites in a cell. They are read frame by frame, also from a dataset of h5py.
-    `path`: the corners, each (h, k, l) in fractions of the reciprocal vectors of the cell; also
-    beyond the first zone. S is given at the lattice's own wave vectors on it, multiples of
+    `path`: the corners, each (h, k, l) in fractions of the reciprocal vectors of the cell, which
+    may lie beyond the first zone. S is given at the lattice's own wave vectors on it, multiples of
     (1 / nx, 1 / ny, 1 / nz), without interpolation between them. `labels` names the corners.
     `cell`: the three vectors of the cell, along x, y and z of the array (default: unit cubes).
     `positions`: of the sites of a cell, (site, 3), in fractions of its vectors.
@@ -255,7 +255,7 @@ class Average(NamedTuple):
 
 
 def _block_error(values):
-    """The standard error of the mean and the length of the blocks it is from."""
+    """The standard error of the mean, and the length of the blocks from which it is computed."""
     count, length, alone = len(values), 1, 0.0
     if count > 1 and (values == values[0]).all():
         return 0.0, 1

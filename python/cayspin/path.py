@@ -16,15 +16,16 @@ from cayspin.scene import Scene
 class MinimumEnergyPath:
     """Result of path(). Energies are in the scene's unit, J in SI. Without a saddle, the values
     that belong to it are None. `prefactor_*` and `langer_*` are those of
-    rate = prefactor T^((n - n_s) / 2) exp(-barrier / kT), n and n_s numbers of zero modes."""
+    rate = prefactor T^((n - n_s) / 2) exp(-barrier / kT), with n and n_s the numbers of zero modes
+    of the state that is left and of the saddle."""
 
-    spins: np.ndarray  #: (image, nz, ny, nx, 3), of a crystal (image, site, nz, ny, nx, 3)
+    spins: np.ndarray  #: (image, nz, ny, nx, 3), for a crystal (image, site, nz, ny, nx, 3)
     energy: np.ndarray  #: (image,), summed over sites
     distance: np.ndarray  #: (image,), radians along the great circles of all spins
     saddle: np.ndarray | None  #: spins of the highest saddle, (nz, ny, nx, 3) or with sites first
     saddle_energy: float | None  #: energy of the highest saddle, in the unit of `energy`
-    barrier_forward: float | None  #: saddle_energy less that of the first image, in its unit
-    barrier_backward: float | None  #: saddle_energy less that of the last image, in its unit
+    barrier_forward: float | None  #: saddle_energy minus the energy of the first image, in its unit
+    barrier_backward: float | None  #: saddle_energy minus the energy of the last image, in its unit
     saddle_curvature: float | None  #: its lowest curvature, negative, energy / rad^2
     saddles: np.ndarray  #: (saddle,), the highest first: energy, curvature, next_curvature, image
     end: str  #: "converged", or why not

@@ -17,7 +17,8 @@ _VECTORS = re.compile(r".*(sources\[\d+\]\.profile|axis|axes\[\d+\]|in_plane|nor
 
 
 def _without_arrays(thing, key, arrays):
-    """A value of a scene. Moves its arrays of values per site into `arrays`, by their keys."""
+    """A value of a scene without its arrays of values per site, which are moved into `arrays` by
+    their keys."""
     if isinstance(thing, np.ndarray) and thing.ndim in (4, 5) and thing.shape[-1] == 3 \
             and _VECTORS.fullmatch(key):
         thing = [thing[..., component] for component in range(3)]
@@ -32,7 +33,7 @@ def _without_arrays(thing, key, arrays):
 
 
 def _split(tables):
-    """The tables without what text cannot hold: the initial spins, functions of the field, and
+    """Splits tables into those that text can hold, the initial spins, functions of the field, and
     arrays of values per site."""
     tables = {name: table for name, table in tables.items() if table is not None}
     spins, own = None, {}
@@ -77,7 +78,8 @@ def _flat(arrays):
 
 
 def _nonlocal_by_planes(function, shape, cell_sites):
-    """A function of the field of crystals, to be called with arrays in the library's order."""
+    """Wraps a function of a crystal's field, so that it can be called with arrays in the library's
+    order."""
     def called(spins, t):
         field = np.asarray(function(sites.by_site(spins, cell_sites), t))
         if field.shape != (*shape, 3):
@@ -103,7 +105,7 @@ class Scene:
 
     `initial` is a dict, or an array (nz, ny, nx, 3) of vectors, which are copied and normalised.
     Arrays of a crystal with several sites in a cell are (site, nz, ny, nx, 3). Values per site may
-    be arrays (nz, ny, nx), of a crystal (site, nz, ny, nx): lattice={"shape": [20, 20],
+    be arrays (nz, ny, nx), for a crystal (site, nz, ny, nx): lattice={"shape": [20, 20],
     "occupied": mask}. Vectors per site may be arrays with a last axis of 3:
     field={"sources": [{"profile": array}]}.
 
@@ -169,8 +171,8 @@ class Scene:
         self._only_here |= dict.fromkeys(arrays, "an array")
 
     def at_sites(self, expression: str) -> np.ndarray:
-        """The values of an `expression` at the sites, (nz, ny, nx), of a crystal with several sites
-        in a cell (site, nz, ny, nx): at_sites("grain(20, 1)") numbers the grains.
+        """The values of an `expression` at the sites, (nz, ny, nx), for a crystal with several
+        sites in a cell (site, nz, ny, nx): at_sites("grain(20, 1)") numbers the grains.
 
         Raises CayspinError for an invalid expression.
         """
@@ -219,7 +221,7 @@ class Scene:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """(nz, ny, nx), of a crystal with several sites in a cell (site, nz, ny, nx)."""
+        """(nz, ny, nx), for a crystal with several sites in a cell (site, nz, ny, nx)."""
         return sites.shape_by_site(self._scene.shape, self._scene.cell_sites)
 
     @property
@@ -239,7 +241,7 @@ class Scene:
 
     @property
     def dt(self) -> float | None:
-        """The time step, in s in SI; of adaptive methods the time between guards, samples and
+        """The time step, in s in SI; for adaptive methods the time between guards, samples and
         frames. None without an integrator."""
         return self._scene.dt if self._scene.has_integrator else None
 

@@ -109,7 +109,7 @@ class Simulation:
             self._advance(end, self._scene._scene.guard_period, True, until)
             return
         file = arguments.file_name(output, "run: output")
-        # An observer may move the end, so it is left to _advance().
+        # An observer may move the end of the run, so _advance() looks after it.
         try:
             recorder = _cayspin.Recorder(self._run, _LAST_STEP, file, overwrite)
         except _cayspin.CayspinError as error:
@@ -276,7 +276,7 @@ class Simulation:
 
     @property
     def spins(self) -> np.ndarray:
-        """The spins now, (nz, ny, nx, 3), of a crystal with several sites in a cell
+        """The spins now, (nz, ny, nx, 3), for a crystal with several sites in a cell
         (site, nz, ny, nx, 3): a read-only view of the library's memory, no copy.
 
         A view never changes: while you hold one, the next step moves the spins to other memory.
@@ -322,21 +322,21 @@ class Simulation:
                                texture.time_text(self.time, si))
 
     def field(self) -> np.ndarray:
-        """The effective field H of every site now, (nz, ny, nx, 3), of a crystal with several sites
-        in a cell (site, nz, ny, nx, 3), in T in SI; read-only. It includes the torques of currents
-        as the field in which spins turn alike, and is 0 at frozen sites. Raises CayspinError for
-        rigid bodies."""
+        """The effective field H of every site now, (nz, ny, nx, 3), for a crystal with several
+        sites in a cell (site, nz, ny, nx, 3), in T in SI; read-only. It includes torques of
+        currents, as the field that would turn the spins in the same way, and is 0 at frozen sites.
+        Raises CayspinError for rigid bodies."""
         return sites.by_site(self._run.field(), self._scene._scene.cell_sites)
 
     def energy(self) -> float:
-        """The energy, summed over sites, in the scene's unit, J in SI; of rigid bodies that of
-        their rotation."""
+        """The energy, summed over sites, in the scene's unit, J in SI; for rigid bodies, the energy
+        of their rotation."""
         return self._run.sample()[0]
 
     def energies(self) -> dict[str, float]:
         """The energy of each term of the scene, summed over sites, in the scene's unit, J in SI:
-        exchange, dmi, anisotropy, applied, slab_demag, demag, dipoles, nonlocal and others; of
-        rigid bodies rotation."""
+        exchange, dmi, anisotropy, applied, slab_demag, demag, dipoles, nonlocal and others; for
+        rigid bodies, rotation."""
         return self._run.energies()
 
     def magnetization(self) -> np.ndarray:
@@ -344,7 +344,7 @@ class Simulation:
         return np.array(self._run.sample()[2])
 
     def sublattice_magnetization(self) -> np.ndarray:
-        """The mean spin of each site of the cell, (site, 3), where there are spins."""
+        """The mean spin of each site of the cell, (site, 3), over the sites that have a spin."""
         spins = self.spins
         spins = spins.reshape(-1, *spins.shape[-4:])
         count = spins.any(-1).sum((1, 2, 3))

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Vectors of crystals with several sites in a cell. The library has (nz * sites, ny, nx, 3), where
-plane k * sites + s holds site s of the cells in plane k; programs have (site, nz, ny, nx, 3)."""
+"""The two orders of vectors of crystals with several sites in a cell. The library has
+(nz * sites, ny, nx, 3), where plane k * sites + s holds site s of the cells in plane k; the package
+has (site, nz, ny, nx, 3)."""
 
 from __future__ import annotations
 
@@ -16,7 +17,8 @@ def by_site(vectors: np.ndarray, sites: int) -> np.ndarray:
 
 
 def by_plane(vectors: np.ndarray, sites: int) -> np.ndarray:
-    """Returns an array of the package in the order of the library: a copy."""
+    """Returns an array of the package in the order of the library: a copy if there are several
+    sites."""
     if sites == 1:
         return vectors
     vectors = vectors.swapaxes(0, 1)
@@ -24,6 +26,7 @@ def by_plane(vectors: np.ndarray, sites: int) -> np.ndarray:
 
 
 def shape_by_site(shape: tuple[int, ...], sites: int) -> tuple[int, ...]:
-    """An array (nz, ny, nx) of the library in the order of the package, with the sites first."""
+    """The shape of an array (nz, ny, nx) of the library in the order of the package, with sites
+    first."""
     planes, *rest = shape
     return shape if sites == 1 else (sites, planes // sites, *rest)

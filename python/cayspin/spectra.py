@@ -29,7 +29,7 @@ class StructureFactor:
 
 
 class _Waves:
-    """The wave vectors of a lattice, and the amplitudes of vectors of its sites there."""
+    """The wave vectors of a lattice, and the amplitudes at them of vectors on its sites."""
 
     def __init__(self, name, shape, components, cell, positions, periodic, zones):
         *of_cell, nz, ny, nx = shape
@@ -94,7 +94,7 @@ def _words(name, components):
 
 
 def _runs(spins):
-    """The runs to average over, checked to be alike."""
+    """The runs to average over, after checking that they have the same shape."""
     runs = list(spins) if isinstance(spins, (list, tuple)) else [spins]
     if not runs:
         raise CayspinError("structure_factor: no runs; accepted: one or more arrays of frames")
@@ -236,7 +236,7 @@ class _FileOfModes:
 
 
 def _is_number(value):
-    """Whether it is one number, also with a unit, as { bohr_magnetons = 2.0 }."""
+    """Whether a value is one number, possibly with a unit, as { bohr_magnetons = 2.0 }."""
     if isinstance(value, dict) and len(value) == 1:
         value = next(iter(value.values()))
     return isinstance(value, (int, float))
@@ -256,8 +256,8 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
     `frequency`: the frequencies of S, (w,), angular and rising, as those of structure_factor().
 
     Each mode has the mean energy k T, which for a deviation Re(c v exp(i w_n t)) is
-    |c|^2 w_n Q / 4 with Q = sum of mu / g i m.(v* x v). It adds, with v(k) = sum v exp(-i k.r) /
-    sqrt(N),
+    |c|^2 w_n Q / 4 with Q = sum of mu / g i m.(v* x v). With v(k) = sum v exp(-i k.r) / sqrt(N), it
+    contributes
 
         S_ab(k, w) = k T / (w_n Q) (u_a(k) u_b(k)* L(w - w_n) + v_a(k) v_b(k)* L(w + w_n))
 

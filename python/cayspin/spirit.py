@@ -37,10 +37,10 @@ def read_spirit_pairs(path: str | os.PathLike, *, unit: float | None = None) -> 
 
         field = {"couplings": cayspin.read_spirit_pairs("pairs.txt")}
 
-    `path` has a header with the columns i, j, da, db, dc, Jij, Dijx, Dijy, Dijz in any order, and
-    Dij. With Dij, the length of D, the vector gives only its direction. Other columns are not read.
-    Numbers are in meV, and D is Cartesian. E = -J m.m' - D.(m x m') with each pair once, as in a
-    scene. A pair that is listed twice, or from both ends, is the sum of both, as in Spirit.
+    `path` has a header that names columns, in any order: i, j, da, db, dc, Jij, Dijx, Dijy, Dijz
+    and Dij. With Dij, the length of D, the vector gives only its direction. Other columns are not
+    read. Numbers are in meV, and D is Cartesian. E = -J m.m' - D.(m x m') with each pair once, as
+    in a scene. A pair that is listed twice, or from both ends, is the sum of both, as in Spirit.
 
     Energies are { meV = .. } for units = "SI"; with `unit`, in meV, they are numbers divided by it,
     for a scene in reduced units. Sites i and j count as in lattice.basis, from 0.

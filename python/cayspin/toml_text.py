@@ -24,7 +24,7 @@ def value(thing, key):
     """One TOML value on one line. `key` names it in the message of a SceneError."""
     if isinstance(thing, (np.generic, np.ndarray)):
         thing = thing.tolist()
-    if isinstance(thing, np.floating):  # of more digits than Python's
+    if isinstance(thing, np.floating):  # with more digits than Python's
         thing = float(thing)
     if isinstance(thing, bool):
         return "true" if thing else "false"
@@ -72,8 +72,8 @@ def overrides(tables):
 
 @contextlib.contextmanager
 def errors_of_overrides():
-    """Errors in overrides name them as the caller knows them, who wrote neither --set nor the place
-    of an array."""
+    """Makes errors name overrides as the caller wrote them: without --set, and with "an array"
+    instead of the text that stands for it."""
     try:
         yield
     except SceneError as error:

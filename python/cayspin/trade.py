@@ -55,7 +55,8 @@ def _input_files(command: str, scene: Scene) -> list[str]:
 
 def _as_of_a_call(command: str, message: str, file: str, written: bool,
                   changed: list[str]) -> str:
-    """A message of the program without its options, and without the file written for it."""
+    """A message of the program in terms of the call: without options of the command line, and
+    without the file that was written for it."""
     if written:
         message = re.sub(rf"^{re.escape(file)}:(\d+: )?", "", message).strip()
     for one in changed:
@@ -164,7 +165,7 @@ class Advice:
     dt: float  #: the step, in the scene's unit
     steps: int  #: of the whole run
     tolerance: float | None  #: of adaptive methods, in radians
-    warning: str | None  #: what is too large about dt, as `cayspin run` warns
+    warning: str | None  #: the warning of `cayspin run` if dt is too large, otherwise None
     horizon: float  #: the time up to which the error is predicted, in the scene's unit
     units: str  #: of dt and horizon, the scene's: "reduced" or "SI"
     space: str  #: the execution space in which `seconds` holds

@@ -22,15 +22,15 @@ class Trajectory:
     trajectory.spins[-1]. Use it in a `with`, or call close(). Numbers are in the units of the
     scene.
 
-    - `spins`: (frame, nz, ny, nx, 3), of a crystal with several sites in a cell
+    - `spins`: (frame, nz, ny, nx, 3), for a crystal with several sites in a cell
       (frame, site, nz, ny, nx, 3)
     - `time`, `step`: (frame)
     - `energy`, summed over sites, and `norm_defect`, the largest | |m| - 1 |: (frame)
     - `magnetization`: the mean spin, (frame, 3)
-    - `sublattice_magnetization`: (frame, site, 3), of a crystal with several sites in a cell
-    - `positions`: in the shape of a frame of the spins, where the sites are on no rectangular grid
+    - `sublattice_magnetization`: (frame, site, 3), for a crystal with several sites in a cell
+    - `positions`: in the shape of a frame of `spins`, if the sites are not on a rectangular grid
     - `shift`: (frame), the cells by which a lattice with lattice.follow has moved
-    - `stage`: (frame), of a run in stages
+    - `stage`: (frame), for a run in stages
 
     Raises AttributeError for an array that the file does not have.
     """
@@ -109,11 +109,11 @@ class Trajectory:
             return bool(self.file.attrs["complete"])
 
     def topological_charge(self, boundary: Sequence[str] | None = None) -> np.ndarray:
-        """The topological charge of each plane, (frame, nz), of a crystal (frame, site, nz), as
+        """The topological charge of each plane, (frame, nz), for a crystal (frame, site, nz), as
         cayspin.topological_charge() says. `boundary` is that of the scene by default.
 
-        Raises CayspinError for another `boundary`, and without one before Python 3.11
-        where tomli is missing.
+        Raises CayspinError for an invalid `boundary`. Without `boundary`, raises it also before
+        Python 3.11 if tomli is missing.
         """
         if boundary is None:
             boundary = along_axes(self.path, self.scene, "boundary", "open", "boundary")[:2]
@@ -186,7 +186,7 @@ class Trajectory:
 
             def read(self, key):
                 first, *others = key
-                if isinstance(first, slice):  # a kill may leave a row more than is counted
+                if isinstance(first, slice):  # a kill may leave one more row than is counted
                     first = slice(*first.indices(self.shape[0]))
                 return self.dataset[(first, *others)]
 

@@ -92,8 +92,8 @@ class _Cell:
         return site - 1
 
     def bonds(self, i, j, vector):
-        """All (site, site, offset) from atoms of the type of i to atoms of the type of j at this
-        vector from them."""
+        """Yields (site, site, offset) for each bond with this vector, from an atom of the type of i
+        to one of the type of j."""
         starts = np.flatnonzero(self.types == self.types[i])
         targets = self.fractions[starts] + vector @ self.inverse
         keys = np.floor(targets * self.counts).astype(int) % self.counts
@@ -150,7 +150,7 @@ def _both_ends(file, cell, names, posfiletype, maptype, sym):
 
 
 def _once(file, both, sign):
-    """Bonds as above, but each only once, with the mean of its two ends."""
+    """The bonds of _both_ends(), each only once, with the mean of its two ends."""
     once: dict = {}
     largest = max((np.abs(values).max() for _, values in both.values()), default=0)
     for key, (line, values) in both.items():

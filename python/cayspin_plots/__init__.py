@@ -10,5 +10,5 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "cayspin"))
 
 import command_line  # noqa: E402, F401
 
-# Matplotlib says where it caches fonts if the home folder cannot be written, and when it lists them.
+# Silences matplotlib's notes on its list of fonts and on the folder where it keeps it.
 logging.getLogger("matplotlib").setLevel(logging.ERROR)

@@ -49,8 +49,9 @@ class Results:
         return 1e9 * self.median(kind, "GB/s", file)
 
     def limit(self, case):
-        """Lower limit of a step, in ns per spin and step, and what sets it: memory for the numbers
-        it must move, or the same kernels with all fields in the second-level cache."""
+        """Lower limit of the time of a step, in ns per spin, and what sets it: moving the numbers
+        to and from memory, or the arithmetic, measured with all fields in the second-level
+        cache."""
         precision, method, _ = case.split("/")
         file = next(iter(self.files(case)), None)
         words = self.median(case, "words", file)

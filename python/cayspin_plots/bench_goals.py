@@ -9,14 +9,15 @@ IN_CACHE = (32, 64)
 
 
 def yardstick(method):
-    """The hand-written loop of as many stages; there is none for Euler."""
+    """The hand-written loop with the same number of stages; there is none for Euler."""
     if "Euler" in method:
         return None
     return "hand-written Heun" if "Heun" in method else "hand-written RK4"
 
 
 class Goal:
-    """One line: a ratio; a larger one is better, or with `at_most` a smaller one."""
+    """One line: a measured value beside its goal and floor. Larger is better; with `at_most`,
+    smaller."""
 
     def __init__(self, text, value, goal, floor=None, at_most=False):
         self.text, self.value, self.goal, self.at_most = text, value, goal, at_most
@@ -45,7 +46,7 @@ def ratio(above, below):
 
 
 def worst(text, values, goal, floor=None, at_most=False):
-    """The worst of {case: value}, named."""
+    """The goal for the worst of {case: value}, whose case it names."""
     values = {case: value for case, value in values.items() if value is not None}
     if not values:
         return Goal(text, None, goal, floor, at_most)
@@ -59,7 +60,8 @@ def speedup(results, precision, method, size):
 
 
 def against_hand_written(results):
-    """Each method beyond the caches: goal and floor."""
+    """Speed over that of hand-written loops: of each method beyond the caches, of the worst one in
+    cache."""
     for method, goal, floor in (("Heun tangent", 2.2, 1.9), ("RKMK4 tangent", 2.4, 2),
                                 ("Heun", 1.5, 1.3), ("RKMK4", 2, 1.6),
                                 ("Heun orthogonal", 1.5, 1.3), ("RKMK4 orthogonal", 1.8, 1.5)):
@@ -75,7 +77,8 @@ def against_hand_written(results):
 
 
 def against_probes(results):
-    """One core, second-level cache: the time over that of the step written out for this scene."""
+    """On one core, in the second-level cache: the time of a step over that of a step written out
+    for this scene (a probe)."""
     for precision in PRECISIONS:
         for method in METHODS:
             case = f"{precision}/probe {method}/L2"
@@ -130,7 +133,8 @@ def few_spins(results):
 
 
 def per_evaluation(results):
-    """Methods of high order and adaptive ones, to the time of RKMK4 in the same run."""
+    """Time per evaluation of methods of high order and adaptive ones, over that of RKMK4 in the
+    same run."""
     def time(precision, method, size):
         return results.median(f"evaluations/{precision}/{method}/{size}", "ns/evaluation",
                               "evaluations")

@@ -14,9 +14,8 @@ def beside(method):
 
 
 def predicted(results, method, size):
-    """ns per spin and step: the necessary data at the speed of a non-temporal copy, or the same
-    kernels with all fields in the second-level cache. Code on the host runs after it, on one
-    thread."""
+    """The explained time of a step, in ns per spin: that of Results.limit(). Code on the host runs
+    after the kernels, on one thread, so its time is added to the limit of the plain method."""
     def in_cache(name):
         return results.median(f"options/{name}/L2", "ns/spin")
     bound = results.limit(f"options/{method}/{size}")

@@ -11,7 +11,7 @@ from . import style
 
 MOST_MODES = 16
 FRAMES = 40  # of a period
-TURN = 0.5  # radians by which the spins of a mode that moves turn at most
+TURN = 0.5  # radians: the largest angle by which a moving mode turns a spin
 ATTRIBUTE = "cayspin_modes_format"
 
 
@@ -38,7 +38,7 @@ def _component(shape):
 
 
 def _plane(file, mode):
-    """The middle plane of a mode, (ny, nx, 3); of crystals that of the first site of a cell."""
+    """The middle plane of a mode, (ny, nx, 3); for crystals, of the first site of the cells."""
     parts = file["mode"][mode]
     if parts.ndim == 6:
         parts = parts[0]
@@ -47,7 +47,7 @@ def _plane(file, mode):
 
 
 def moving(file, mode, frame, texture):
-    """The spins of a frame of a mode that moves, as a texture."""
+    """One frame of a moving mode, as a texture."""
     if "mode" not in file:
         raise ValueError("waves have no shapes; accepted: a file of modes, for --movie")
     count = len(file["mode"])
@@ -64,8 +64,8 @@ def moving(file, mode, frame, texture):
 
 
 def together(places, extent):
-    """Groups points (n, 2) whose labels would overlap: lists of numbers, in a picture that shows
-    an `extent` of two lengths."""
+    """Groups points (n, 2) whose labels would overlap, as lists of their numbers. `extent`: the
+    lengths that the picture shows along x and y."""
     groups = []
     for number, place in enumerate(places / extent):
         for group in groups:

@@ -14,7 +14,7 @@ def is_path(file):
 
 
 def number_of(file, image):
-    """An image counted from 0. Negative ones count from the end."""
+    """The number of an image, counted from 0. Negative numbers count from the end."""
     count = len(file["spins"])
     if not -count <= image < count:
         raise ValueError(f"frame {image}; accepted: {-count} to {count - 1}, the images of the path")

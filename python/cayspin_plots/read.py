@@ -24,7 +24,7 @@ class Series:
 class Trajectory:
     path: str
     time: np.ndarray  # (frame,)
-    spins: np.ndarray  # (frame, nz, ny, nx, 3); planes of crystals site by site of the cell
+    spins: np.ndarray  # (frame, nz, ny, nx, 3); for crystals, planes of one site, then of the next
     scalars: Series
     precision: str
     complete: bool
@@ -79,7 +79,7 @@ def _series(file, group=""):
 
 
 def read_trajectory(path):
-    """Whole frames only; a run that was killed or is unfinished has its complete flag at 0."""
+    """Reads whole frames only. `complete` is False if the run was killed or is under way."""
     with opened(path, "trajectory") as file:
         frames = _series(file)
         rank = 6 if np.ndim(file["spins"]) == 6 else 5

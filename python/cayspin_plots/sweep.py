@@ -30,7 +30,7 @@ def read_sweep(path):
         keys = [name.decode() for name in file["keys"][:]]
         columns = [[value.decode() for value in column] for column in file["values"][:].T]
         values = [list(dict.fromkeys(column)) for column in columns]
-        # One number for each typed value: 0.1 and 0.10 are two.
+        # One number for each typed value: 0.1 and 0.10 count as two values.
         numbers = [list(dict(zip(column, file["parameters"][key][:])).values())
                    if key in file["parameters"] else None for key, column in zip(keys, columns)]
         shape = [len(value) for value in values]

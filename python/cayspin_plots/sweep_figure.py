@@ -61,13 +61,14 @@ def _title(text, where):
 
 
 def _numbers(sweep, key):
-    """Where the values are on an axis of numbers; None where they have no place on one."""
+    """The positions of the values on an axis of numbers; None unless there are several finite
+    numbers."""
     numbers = sweep.numbers[key]
     return numbers if numbers and len(numbers) > 1 and np.all(np.isfinite(numbers)) else None
 
 
 def _coordinates(sweep, key):
-    """Positions of the values and the order that sorts them."""
+    """Positions of the values along an axis, sorted, and the order that sorts the values."""
     numbers = _numbers(sweep, key)
     if numbers is None:
         places = np.arange(len(sweep.values[key]))
@@ -77,7 +78,7 @@ def _coordinates(sweep, key):
 
 
 def _label(axis, sweep, key, positions, order):
-    """Values that are no numbers are written at equal distances."""
+    """Labels an axis. Values that are not numbers are written at equal distances."""
     axis.set_label_text(sweep.keys[key])
     if _numbers(sweep, key) is None:
         ticks = np.unique(np.linspace(0, len(order) - 1, MOST_TICKS).round().astype(int))

@@ -15,8 +15,8 @@ AXES = {"seconds": "seconds of stepping", "evaluations": "evaluations of the fie
 
 
 def chosen(trade):
-    """The methods that are cheapest to some error, those to most errors first, and the best
-    baselines."""
+    """The methods to draw with their names, and the best baselines. Methods that are cheapest for
+    one of the errors come first, then those that are nearly as cheap."""
     methods = trade["methods"]
     best = {error: cheapest(methods, error)[0] for error in ERRORS}
 
@@ -33,7 +33,8 @@ def chosen(trade):
 
 
 def axes_that_differ(trade):
-    """Evaluations are drawn where another method needs the fewest at a third of the errors."""
+    """The axes to draw. Evaluations are among them if, for a third of the errors or more, the
+    method with the fewest evaluations is not the fastest one."""
     known = [error for error in ERRORS if cheapest(trade["methods"], error)[1]]
     differ = sum(cheapest(trade["methods"], error)[1] is not
                  cheapest(trade["methods"], error, "evaluations")[1] for error in known)

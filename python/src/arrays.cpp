@@ -26,7 +26,8 @@ std::shared_ptr<nb::object> kept(nb::object object) {
           }};
 }
 
-// NumPy would take the real part of a complex number, and the element of an array of one.
+// Returns true for a real number. NumPy would also convert a complex number (to its real part) and
+// an array of one element.
 bool is_real_number(nb::object const& number) {
   if (PyFloat_CheckExact(number.ptr())) return true;
   if (PyComplex_Check(number.ptr())) return false;

@@ -14,24 +14,25 @@ namespace cayspin::python {
 
 namespace nb = nanobind;
 
-/// float32 or float64 in host memory, with any strides.
+/// An array of float32 or float64 in host memory, with any strides.
 using NumbersIn = nb::ndarray<nb::ro, nb::ndim<4>, nb::device::cpu>;
 /// One number for each site, x fastest.
 using SiteNumbersIn = nb::ndarray<nb::ro, double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using SiteNumbersOut = nb::ndarray<nb::numpy, double, nb::ndim<3>>;
 using NumbersOut = nb::ndarray<nb::numpy, nb::ro>;
 
-/// Returns an array (nz, ny, nx, 3) without a copy. Throws UsageError for another shape or type.
+/// Returns the memory of an array (nz, ny, nx, 3), without a copy. Throws UsageError for another
+/// shape or type.
 io::HostVectors vectors_of(NumbersIn const& array);
 
-/// Returns a read-only array of lent memory, which it keeps alive.
+/// Returns a read-only array on lent memory, and keeps that memory alive.
 NumbersOut array_of(simulation::LentVectors const& lent);
 
 /// Returns an array of these numbers.
 SiteNumbersOut array_of(std::vector<double> numbers, std::array<std::int64_t, 3> const& shape);
 
-/// Returns a field of the program from callables or None: uniform(t) returns three numbers, and
-/// nonlocal(spins, t) an array (nz, ny, nx, 3), given a copy of the spins.
+/// Makes a program's own field from callables or None. uniform(t) returns three numbers;
+/// nonlocal(spins, t) gets a copy of the spins and returns an array (nz, ny, nx, 3).
 io::OwnField own_field(nb::object uniform, nb::object nonlocal);
 
 }  // namespace cayspin::python

@@ -99,8 +99,8 @@ Minimum relax(SceneRun& run, double torque, std::int64_t evaluations,
   return found;
 }
 
-// Returns the modes' frequencies, decays, errors and shapes, whether all converged, and
-// evaluations.
+// Returns the modes' frequencies, decays, errors and shapes, whether all have converged, and the
+// number of evaluations.
 nb::tuple modes(SceneRun& run, std::int64_t count, double tolerance, std::int64_t evaluations) {
   FoundModes found;
   {
@@ -161,7 +161,7 @@ nb::dict path(SceneRun const& run, StateIn const& start, StateIn const& end, std
   return as_dict(std::move(*found), run.scene().lattice.shape);
 }
 
-// A list of fields would take several runs.
+// Refuses a list of fields, which would take several runs.
 io::Scene with_one_field(io::Scene scene) {
   if (!scene.field.applied_in_turn.empty())
     throw io::scene_error(scene, "field.applied",
@@ -353,7 +353,8 @@ void define_recorder(nb::module_& module) {
       });
 }
 
-// A scene given as tables has no lines: "Scene:12: " is a line of the text generated from them.
+// Removes "Scene:12: " from a message: a scene given as tables has no lines, and 12 would be a line
+// of the text that is generated from them.
 std::string without_line_of_tables(std::string_view line) {
   constexpr std::string_view name = "Scene:";
   if (!line.starts_with(name)) return std::string(line);

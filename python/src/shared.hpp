@@ -7,12 +7,12 @@
 
 namespace cayspin::python {
 
-/// Returns true with Python's exception set, which the caller raises.
+/// Returns true if a signal such as Ctrl-C has set a Python exception, which the caller must raise.
 bool interrupted();
-/// Throws the exception that interrupted() has left, also where the work ended otherwise.
+/// Throws the exception that interrupted() has left, even if the work ended for another reason.
 void rethrow_interruption();
 
-/// Throws UsageError for another word than double and single.
+/// Throws UsageError unless the name is "double" or "single".
 simulation::Precision precision_of(std::string const& name);
 
 }  // namespace cayspin::python

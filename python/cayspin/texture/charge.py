@@ -9,7 +9,8 @@ import numpy as np
 
 
 def _half_solid_angle(a, b, c):
-    """Returns the angle of three spins, within -pi .. pi; 0 if they are coplanar to round-off."""
+    """Returns half the solid angle of three spins, from -pi to pi; 0 if they are coplanar to
+    round-off."""
     def dot(u, v):
         return np.einsum("...i,...i", u, v)
 

@@ -20,7 +20,7 @@ def fletcher32(data):
 
 
 def _folded(total):
-    """Modulo 65535, but what is not 0 does not become 0."""
+    """Reduces a sum modulo 65535, except that a multiple of 65535 other than 0 becomes 65535."""
     return (total - 1) % 65535 + 1 if total else 0
 
 
@@ -30,8 +30,9 @@ def _mixed(total, checksum):
 
 
 def of_frame(step, numbers, spins, more=None):
-    """The 64 bits that stand for a frame. `numbers`: time, energy, norm_defect, magnetization;
-    `more`: what few files have, the sublattices' magnetizations, the shift and the stage."""
+    """The 64-bit checksum of a frame. `numbers`: time, energy, norm_defect, magnetization;
+    `more`: numbers that only some files have: the sublattices' magnetizations, the shift and the
+    stage."""
     row = np.array([step], "<i8").tobytes() + np.array(numbers, "<f8").tobytes()
     of_row = _mixed(0, fletcher32(row))
     of_spins = _mixed(of_row, fletcher32(spins.tobytes()))

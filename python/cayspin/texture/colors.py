@@ -15,8 +15,8 @@ MAPS = {"safe": "coolwarm", "charge": "PuOr_r", "difference": "viridis"}
 
 def hue_colors(spins: np.ndarray) -> np.ndarray:
     """Red, green and blue (..., 3) of spins (..., 3) with components along right, up and the
-    normal: the hue is the angle in the plane, red to the right and yellow-green up; what points
-    along the normal is light grey, against it dark grey. White where there is no spin."""
+    normal: the hue is the angle in the plane, red to the right and yellow-green up. Spins along the
+    normal are light grey, against it dark grey. White where there is no spin."""
     spins = np.asarray(spins, np.float32)
     right, up, normal = (spins[..., axis] for axis in range(3))
     length = np.sqrt(right * right + up * up + normal * normal)
@@ -34,7 +34,8 @@ def hue_colors(spins: np.ndarray) -> np.ndarray:
 
 
 def map_colors(values: np.ndarray, name: str, lowest: float, highest: float) -> Any:
-    """Values by one of MAPS, between two limits; NaN is white."""
+    """Colours of values by one of MAPS between two limits, white for NaN; and the scale that maps
+    them."""
     import matplotlib
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize

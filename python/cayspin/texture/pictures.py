@@ -62,7 +62,8 @@ class _Picture:
 
 
 def _length_unit(largest, si):
-    """How many of the unit of axes are in one of the file, and its name in labels."""
+    """The factor from the file's unit of length to the unit of axes, and that unit's name in
+    labels."""
     if not si:
         return 1.0, ""
     for size, name in ((1e-5, "nm"), (1e-2, "\u00b5m"), (np.inf, "mm")):
@@ -171,8 +172,7 @@ def _draw_crystal(axes, picture, texture):
 
 
 def _draw_chain(axes, picture, texture):
-    """Along the axis of more than one site: components, or the difference, and a strip of colours
-    above."""
+    """Draws a chain along its axis: components or the difference, and a strip of colours above."""
     plane = picture.plane
     along = plane.right if picture.spins.shape[-2] > 1 else plane.up
     count = picture.spins.shape[-3] * picture.spins.shape[-2]
@@ -238,7 +238,8 @@ def _picture(texture, plane, quantity, colors, before, limit):
 
 def largest(texture: Texture, *, plane: str | None = None, quantity: str = "spins",
             before: np.ndarray | None = None) -> float:
-    """Returns the limit that draw() would choose; the largest of several gives them one scale."""
+    """Returns the limit that draw() would choose. The largest one of several pictures gives them a
+    common scale."""
     return _picture(texture, plane, quantity, "hue", before, None)[0].largest()
 
 
@@ -284,4 +285,4 @@ def draw(texture: Texture, axes: Any = None, *, plane: str | None = None,
     return axes
 
 
-OPTIONS = tuple(draw.__kwdefaults__)  #: their names
+OPTIONS = tuple(draw.__kwdefaults__)  #: names of the options of draw()

@@ -9,7 +9,7 @@ def is_ensemble(file):
 
 
 class _Dataset:
-    """(frame, ..) of a dataset (frame, replica, ..)."""
+    """One replica of a dataset (frame, replica, ..), as a dataset (frame, ..)."""
 
     def __init__(self, dataset, number):
         self.dataset, self.number = dataset, number
@@ -24,8 +24,8 @@ class _Dataset:
 
 
 class Replica:
-    """What drawing reads of an open file (h5py.File). Raises ValueError where there is no such
-    replica."""
+    """One replica of an open file (h5py.File), for drawing it like a trajectory. Raises ValueError
+    if there is no such replica."""
 
     def __init__(self, file, number):
         count = int(file.attrs["replicas"])

@@ -18,7 +18,7 @@ AXES = "xyz"
 class Texture:
     """Spins at one time, and where they are."""
 
-    spins: np.ndarray  #: (nz, ny, nx, 3), of crystals (site, nz, ny, nx, 3); 0 where none is
+    spins: np.ndarray  #: (nz, ny, nx, 3), for crystals (site, nz, ny, nx, 3); 0: no spin
     spacing: Sequence[float] = (1.0, 1.0, 1.0)  #: of cells along x, y and z
     boundary: Sequence[str] = ("open", "open", "open")  #: or "periodic"
     positions: np.ndarray | None = None  #: of the sites of a crystal, in the shape of `spins`
@@ -34,15 +34,15 @@ class Plane:
     up: int
     normal: int
     number: int  #: counted from 0 along the normal
-    of: int  #: planes
+    of: int  #: number of planes along the normal
 
     def cut(self, values: np.ndarray) -> np.ndarray:
-        """Values (..., nz, ny, nx, 3) of this plane: (..., up, right, 3)."""
+        """The values of this plane, (..., up, right, 3), from values (..., nz, ny, nx, 3)."""
         return np.take(values, self.number, axis=values.ndim - 2 - self.normal)
 
     @property
     def axes(self) -> list[int]:
-        """Components along right, up and the normal."""
+        """The axes right, up and normal, in this order."""
         return [self.right, self.up, self.normal]
 
     def vectors(self, values: np.ndarray) -> np.ndarray:
@@ -111,7 +111,8 @@ def time_text(time: float, si: bool) -> str:
 
 
 def frame_number(file: Any, frame: int) -> int:
-    """A frame of an open trajectory file counted from 0. Negative ones count from the end."""
+    """The number of a frame of an open trajectory file, counted from 0. Negative numbers count from
+    the end."""
     count = min(len(file["spins"]), len(file["time"]))
     if not -count <= frame < count:
         accepted = f"{-count} to {count - 1}" if count else "a file that holds frames"

@@ -11,8 +11,8 @@ import sys
 import tempfile
 
 
-LONGEST_START = 600  # seconds: of a scene the run starts first, which may take minutes
-LONGEST_END = 90  # seconds: more than the server gives its run
+LONGEST_START = 600  # seconds: for a scene the run starts first, which may take minutes
+LONGEST_END = 90  # seconds: longer than the server waits for its run
 
 
 class View:

@@ -133,7 +133,8 @@ class Reader:
         return self._read(read).astype("<f4").tobytes()
 
     def path_of(self, place: int, plane: str, first: int) -> bytes:
-        """A site's spins from a frame on, 3 floats each; `place` counts the sites of `frame`."""
+        """The spins of one site from frame `first` on, 3 floats each. `place`: its number in
+        frame()."""
         def read(file):
             shape = file["spins"].shape[1:-1]
             numbers = np.arange(np.prod(shape)).reshape(*shape, 1)

@@ -33,7 +33,8 @@ class Run:
         was_there = self.output is None or self.output.exists()
         self._messages = tempfile.TemporaryFile()
         try:
-            # A separate session: an interrupt from the terminal reaches it once, from stop().
+            # In a session of its own, an interrupt from the terminal reaches it only through
+            # stop().
             self._process = subprocess.Popen(
                 [program, "run", scene, "--quiet"], stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL, stderr=self._messages, start_new_session=True)
@@ -83,5 +84,5 @@ class Run:
 
     def _send(self, *signals, paused):
         for number in signals:
-            self._process.send_signal(number)  # nothing once it has ended
+            self._process.send_signal(number)  # does nothing once it has ended
         self._paused = paused
