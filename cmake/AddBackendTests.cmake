@@ -4,8 +4,8 @@
 #                  [ON_HOST_DEVICE])
 # One GoogleTest program test_<name>, linked to cayspin and started by tests/main.cpp, which runs it
 # inside Kokkos. THREADS registers one entry per count where a threaded host backend is compiled in;
-# otherwise there is one entry with two threads. BATCH: so many files are compiled as one, to
-# compile their common headers once. FAST: is compiled to run fast. ON_HOST_DEVICE: a second
+# otherwise there is one entry with two threads. BATCH: compiles so many files as one, and their
+# common headers once. FAST: compiles the program to run fast. ON_HOST_DEVICE: adds a second
 # program, test_<name>_on_host_device.
 function(cayspin_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "FAST;ON_HOST_DEVICE" "BATCH;TIMEOUT"
@@ -46,8 +46,8 @@ function(cayspin_add_test name)
 endfunction()
 
 # cayspin_add_host_device_test(<name> SOURCES <file>... [LIBRARIES <target>...])
-# A program test_<name> whose default space is the device of tests/host_device; nothing if there is
-# no such device, or if it is the default of all programs.
+# Adds a program test_<name> whose default space is the device of tests/host_device; adds none if
+# there is no such device, or if it is the default of all programs.
 function(cayspin_add_host_device_test name)
   if(NOT TARGET cayspin_host_device_test_main)
     return()

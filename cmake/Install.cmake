@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Headers, program and the package for find_package(cayspin).
+# Installs headers, the program and the package for find_package(cayspin).
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/cayspin)
 
@@ -34,7 +34,7 @@ install(FILES ${PROJECT_BINARY_DIR}/cayspinConfig.cmake
               cmake/cayspinFftw.cmake DESTINATION ${package_dir})
 
 include(${CMAKE_CURRENT_LIST_DIR}/PkgConfig.cmake)
-# Requirements of a target that links with cayspin.
+# Flags that a target needs to link with cayspin.
 set(definitions $<TARGET_PROPERTY:cayspin,INTERFACE_COMPILE_DEFINITIONS>)
 set(folders "-I\${prefix}/include/kokkos") # of a Kokkos that is installed with cayspin
 if(Kokkos_DIR)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Manual pages generated from --help if help2man is installed: man/cayspin.1 for the program and
+# Generates manual pages from --help if help2man is installed: man/cayspin.1 for the program and
 # man/cayspin-COMMAND.1 for each command, in the build folder.
 find_program(HELP2MAN help2man)
 if(NOT HELP2MAN OR CMAKE_CROSSCOMPILING)

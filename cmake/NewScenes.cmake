@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# The scenes that `cayspin new` writes, as a source file of the program.
+# Makes a source file of the program from the scenes that `cayspin new` writes.
 function(cayspin_write_new_scenes output)
   set(folder ${PROJECT_SOURCE_DIR}/scenes)
   set(NEW_SCENES "")

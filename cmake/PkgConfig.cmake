@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Files for pkg-config, for build systems other than CMake. Kokkos has none, so ours include the
-# flags of the Kokkos that cayspin was built with.
+# Makes files for pkg-config, for build systems other than CMake. Kokkos has no such file, so ours
+# include the flags of the Kokkos that cayspin was built with.
 
-# Recurses along the libraries that a target links with; lists them in the linker's order.
+# Lists the libraries that a target links with, and recursively those that they link with, in the
+# linker's order.
 function(cayspin_link_flags target flags)
   # A Kokkos that is built within this project finds these packages only for itself.
   if(NOT TARGET ${target} AND target MATCHES "^(OpenMP|Threads|CUDA)::")

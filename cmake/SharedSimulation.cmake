@@ -38,7 +38,8 @@ if(reason)
 endif()
 set(CAYSPIN_SHARED_SIMULATION ON)
 
-# Programs and libraries find it relative to themselves, so folders may be moved.
+# Programs and libraries find the shared library by a path relative to themselves, so folders may be
+# moved.
 set(CMAKE_BUILD_RPATH_USE_ORIGIN ON)
 file(RELATIVE_PATH to_libraries ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
 if(SKBUILD) # cayspin/ has the libraries, cayspin/bin the program

@@ -9,7 +9,8 @@ program=(libcli11-dev nlohmann-json3-dev libfftw3-dev help2man)
 python=(python3-dev python3-venv) # the Python package, with nanobind from the package index
 drawing=(python3-h5py python3-matplotlib python3-tornado)
 mpi=(mpich libmpich-dev)
-# The pages as a site. Its theme comes from the package index: Debian's furo has no dark colours.
+# For the documentation's site. Its theme comes from the package index, because Debian's furo has no
+# dark colours.
 docs=(doxygen python3-sphinx python3-myst-parser sphinx-basic-ng python3-bs4)
 tests=("${mpi[@]}" "${docs[@]}" libgtest-dev nlohmann-json3-dev valgrind clang libclang-rt-14-dev libomp-dev pkg-config
   python3-nbclient python3-ipykernel python3-xarray chromium chromium-driver

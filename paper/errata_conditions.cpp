@@ -15,7 +15,7 @@ Vector fulfils_printed(Body const& body, Vector const& m) {
   return multiply_add(-dot(w, w) / dot(a, m), m, w);
 }
 
-// Makes A' + d the A' without its part along m: d x m = 0, but <d, A> is not 0.
+// A' + d is A' without its part along m: d x m = 0, but <d, A> is not 0.
 Vector fulfils_corrected(Body const& body, Vector const& m) {
   Vector const a = default_generator(body, m);
   Vector const rate = default_generator(body, cross(a, m));

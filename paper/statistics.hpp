@@ -10,7 +10,7 @@ double quantile(std::vector<double> values, double q);
 
 double mean(std::vector<double> const& values);
 
-/// Median, and the range that holds nine tenths.
+/// Median, and the range that holds nine tenths of the values.
 struct Spread {
   double low, median, high;  // 5, 50, 95 %
 };

@@ -109,6 +109,7 @@ def occupied_of_mesh(mesh: Any, shape: tuple[int, ...], spacing: float | tuple[f
     below = np.clip(np.ceil(z), 0, cells[2]).astype(int)  # cells whose middle is below
     turns = np.zeros((cells[2] + 1, cells[1], cells[0]), dtype=int)
     np.add.at(turns, (below, y, x), np.where(area[of] > 0, 1, -1))
-    # A cell is inside if above it not as many surfaces lead out of the body as into it.
+    # A cell is inside if more surfaces above it lead out of the body than into it (fewer, if the
+    # mesh is inside out).
     above = np.cumsum(turns[::-1], axis=0)[::-1][1:]
     return above != 0

@@ -10,5 +10,5 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "cayspin"))
 
 import command_line  # noqa: E402, F401
 
-# Silences matplotlib's notes on its list of fonts and on the folder where it keeps it.
+# Silences matplotlib's notes about its cache of fonts.
 logging.getLogger("matplotlib").setLevel(logging.ERROR)

@@ -61,7 +61,7 @@ cayspin_status failure() {
   }
 }
 
-/// Returns CAYSPIN_OK after work(), otherwise the status of its exception.
+/// Calls work(). Returns CAYSPIN_OK, or the status of the exception that it throws.
 template <class Work>
 cayspin_status guarded(Work const& work) {
   try {

@@ -32,7 +32,8 @@ struct Head {
 static_assert(sizeof(Sector) == sizeof(std::uint64_t) + sector_bytes);
 static_assert(std::is_trivially_copyable_v<Sector> && std::is_trivially_copyable_v<Head>);
 
-// Not Fletcher's sum, which cannot tell sectors of zeros from sectors of ones; both occur.
+// Fletcher's sum would not do: it cannot tell sectors of zeros from sectors of ones, and both
+// occur.
 std::uint64_t checksum(Head head, std::span<Sector const> sectors) {
   head.checksum = 0;
   std::uint64_t hash = 0;

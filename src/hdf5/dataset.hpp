@@ -50,7 +50,7 @@ void append_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extent
 /// Grows a dataset along its first extent without writing.
 void grow(hid_t dataset, hsize_t first_extent, std::filesystem::path const& path);
 
-/// Writes the chunk that starts at `begin`, as stored in the file, with filters applied.
+/// Writes the chunk that starts at `begin`. `stored`: its bytes as in the file, after all filters.
 void write_raw_chunk(hid_t dataset, Extents const& begin, void const* stored, std::size_t bytes,
                      std::filesystem::path const& path);
 

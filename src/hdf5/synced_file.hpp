@@ -13,7 +13,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// A file written by HDF5 that after a power cut has its state at the last commit().
+/// A file written by HDF5 which a power cut leaves in the state of its last commit().
 ///
 /// HDF5 overwrites its own blocks. New content of committed bytes stays in memory until commit(),
 /// which writes it to a journal before the file. Appended data go to the file at once, because no

@@ -37,7 +37,7 @@ Scene replica_of(Scene const& scene, std::int64_t replica);
 /// Like replica_of, for a scene of `cayspin relax`.
 Scene replica_to_relax(Scene const& scene, std::int64_t replica);
 
-/// Throws SceneError for an ensemble. `who`: the name in the message of what accepts none.
+/// Throws SceneError for an ensemble. `who`: what accepts no ensemble, for the message.
 void require_no_ensemble(Scene const& scene, std::string_view who);
 
 }  // namespace cayspin::inline v0_2::io

@@ -86,8 +86,8 @@ Field without_numbers_of_sites(Field field);
 /// Returns true if a current acts on the spins: their energy may then rise.
 bool has_torque(Field const& field);
 
-/// Returns true for terms whose field is computed for all sites at once: demag or dipoles, a slab's
-/// field on the host, and a program's own nonlocal field.
+/// Returns true with a term that is computed for all sites at once: demag or dipoles, a slab's
+/// field on the host, or a program's own nonlocal field.
 bool is_nonlocal(Field const& field);
 
 /// Calls work(term) for the std::optional of each lattice term.

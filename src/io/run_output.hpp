@@ -11,7 +11,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Options for the files of a run besides its trajectory.
+/// Options for the files of a run: the trajectory and the files beside it.
 struct RunOutputOptions {
   bool overwrite = false;
   TrajectoryStorage storage = {};
@@ -28,7 +28,8 @@ struct RunOutputOptions {
 /// one thread, which must not use HDF5 until finish(), close() or the destructor.
 class RunOutput {
  public:
-  /// Creates the files. An existing file is an error unless `overwrite`; then no file is changed.
+  /// Creates the files. An existing file is an error unless `overwrite`; in that case no file is
+  /// changed.
   RunOutput(std::filesystem::path path, TrajectoryHeader const& header,
             RunOutputOptions const& options);
 

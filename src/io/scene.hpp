@@ -122,7 +122,7 @@ SceneError scene_error(Scene const& scene, std::string_view key, std::string_vie
 std::int64_t sites(Scene const& scene);
 
 /// Opens every file that the scene reads and checks the types and shapes of datasets, not their
-/// values. Throws SceneError.
+/// values. Also refuses a lattice without a spin. Throws SceneError.
 void check_files(Scene const& scene);
 
 /// Returns the initial spins on the host, sites x 3, normalised in double: component c of site (i,
@@ -143,8 +143,8 @@ std::vector<Coupling> couplings(Scene const& scene);
 std::vector<unsigned char> occupied(Scene const& scene, SiteBox const& box);
 std::vector<unsigned char> frozen(Scene const& scene, SiteBox const& box);
 
-/// Returns site-dependent moments, 0 where there is no spin; empty if moments are uniform or given
-/// for the sites of a cell. Throws SceneError for a negative one.
+/// Returns site-dependent moments as the scene gives them (0: no spin); empty if moments are
+/// uniform or given for the sites of a cell. Throws SceneError for a negative one.
 std::vector<double> moments_of_sites(Scene const& scene, SiteBox const& box);
 
 /// Returns the moment of each site, however the scene gives moments; 0 where there is no spin,
@@ -155,7 +155,7 @@ std::vector<double> all_moments(Scene const& scene, SiteBox const& box);
 std::vector<double> gyromagnetic_of_sites(Scene const& scene, SiteBox const& box);
 
 /// Returns the region of each site, in the order of initial_spins. Throws SceneError for a number
-/// that is negative or not whole.
+/// that is negative, not whole or too large.
 std::vector<std::int64_t> regions(Scene const& scene, SiteBox const& box);
 
 /// Returns the number of regions: one more than the largest region number.

@@ -26,7 +26,7 @@ std::int64_t end_of(Stage const& stage);
 /// "stage 1 (switch)"
 std::string stage_text(Stage const& stage);
 
-/// Throws SceneError for a scene in stages. `who`: the name in the message of what accepts none.
+/// Throws SceneError for a scene in stages. `who`: what accepts no stages, for the message.
 void require_no_stages(Scene const& scene, std::string_view who);
 
 /// Returns a scene with keys changed as a stage would, to continue from a state of this scene. The

@@ -73,8 +73,8 @@ void check_isotropy(Scene const& scene) {
            "\"cayley\"");
 }
 
-// Checks what a method needs that moves one colour of a checkerboard at a time: among others, an
-// even number of cells along periodic axes.
+// Checks what methods need that move one colour of a checkerboard at a time: a lattice of spins,
+// the default generator, and an even number of cells along periodic axes.
 void check_two_colours(Scene const& scene) {
   constexpr std::string_view key = "integrator.method";
   auto const method = scene.integrator.method->word;

@@ -22,7 +22,7 @@ constexpr std::string_view accepted_values =
 // Starts of keys that may differ between replicas.
 constexpr std::array varied_tables{"field.", "torque.", "material.", "thermal.temperature",
                                    "system.damping"};
-// Moments may not, because units and lattice depend on them.
+// Exceptions: moments, on which units and lattice depend, and the form of damping.
 constexpr std::array fixed_keys{"material.Ms", "material.mu_s", "material.damping_form"};
 
 bool may_vary(std::string_view key) {

@@ -8,7 +8,8 @@
 
 namespace cayspin::inline v0_2::io::detail {
 
-/// Returns true if the scene has free_boundary. Refuses it without DMI of a continuum.
+/// Returns true if the scene has free_boundary. Refuses it for atomistic spins, without DMI, and
+/// with site-dependent normals.
 bool has_free_boundary(Table const& root);
 
 /// Adds the anisotropies that represent DMI with a free boundary. A spin beyond an open side that

@@ -15,8 +15,7 @@ namespace {
 
 double square(double x) { return x * x; }
 
-/// Search for the seed nearest to a point, which keeps the nearest so far. There is one seed in
-/// each tile.
+/// Search for the seed nearest to a point, with the nearest one so far. Each tile has one seed.
 struct Search {
   std::array<std::int64_t, 3> tiles;
   std::array<Triple, 3> edges;    // of a tile

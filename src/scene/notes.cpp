@@ -259,7 +259,8 @@ class Notes {
     return start != nullptr && scene_.lattice.occupied.file == start->path;
   }
 
-  // Notes another cell size in an OVF file. Spins are assigned by index, whatever the size.
+  // Notes if the cells in an OVF file have another size than the lattice's. Spins are assigned by
+  // index, whatever the size.
   void of_mesh() {
     auto const* const start = std::get_if<FileStart>(&scene_.initial);
     if (start == nullptr || !scene_.units.si || !is_ovf(start->path)) return;

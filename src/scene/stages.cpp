@@ -174,7 +174,7 @@ std::vector<Stage> stages_of(Scene const& scene) {
 StageBegin begin_after(Scene const& stage, std::int64_t step, Scene const& next) {
   auto const& begin = stage.begin;
   double time = begin.time + static_cast<double>(step - begin.step) * stage.integrator.dt;
-  // Units of time depend on the damping, which may differ.
+  // Units of time depend on the damping, which a stage may change.
   if (stage.units.time != next.units.time) time *= stage.units.time / next.units.time;
   return {begin.stage + 1, step, time};
 }

@@ -77,7 +77,7 @@ void write_attributes(hid_t file, TrajectoryHeader const& header, std::int64_t r
   attributes.create(ensemble_format, ensemble_format_version);
   attributes.create("replicas", replicas);
   attributes.create("scene", header.scene_text);
-  // Not `cayspin_version`: if /spins has frames, it marks a trajectory.
+  // Not `cayspin_version`: readers take a file with frames and this attribute for a trajectory.
   attributes.create("written_by", "cayspin " + header.cayspin_version);
   attributes.create("git_commit", header.git_commit);
   attributes.create("kokkos_version", header.kokkos_version);
@@ -126,7 +126,7 @@ DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header, hsize_t r
   Extents chunk{1};
   chunk.insert(chunk.end(), inner.begin(), inner.end());
   chunk[1] = std::clamp<hsize_t>(chunk_bytes / of_replica, 1, replicas);
-  // A replica larger than a chunk may be is cut along its axes, the slowest first.
+  // A replica that exceeds the largest chunk is cut along its axes, the slowest first.
   for (std::size_t axis = 2; axis + 1 < chunk.size(); ++axis)
     while (elements(chunk) * 8 > most_chunk_bytes && chunk[axis] > 1)
       chunk[axis] = (chunk[axis] + 1) / 2;

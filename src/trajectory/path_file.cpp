@@ -36,7 +36,7 @@ void write_attributes(hid_t file, Path const& found, std::filesystem::path const
   attributes.create("scene", header.scene_text);
   attributes.create("from", found.from);
   attributes.create("to", found.to);
-  // Not `cayspin_version`: if /spins has frames, it marks a trajectory.
+  // Not `cayspin_version`: readers take a file with frames and this attribute for a trajectory.
   attributes.create("written_by", "cayspin " + header.cayspin_version);
   attributes.create("git_commit", header.git_commit);
   attributes.create("space", header.space);

@@ -16,8 +16,8 @@
 namespace cayspin::inline v0_2::io {
 namespace {
 
-// Returns the observables of the frames; nothing unless it is a trajectory file. If /spins has
-// frames, only trajectory files have `cayspin_version`.
+// Returns the observables of the frames; nothing unless it is a trajectory file. No other file with
+// frames has `cayspin_version`.
 std::optional<ScalarSeries> open_series(hid_t file, std::int64_t cell_sites,
                                         std::filesystem::path const& path) {
   QuietErrors const quiet;

@@ -11,7 +11,7 @@ inline constexpr char const* sweep_format = "sweep_format";
 inline constexpr int sweep_format_version = 1;
 
 /// Calls use(name, member) for each dataset with one number, or three, per run, in the order of the
-/// file. `member(run)` returns it for a SweptRun.
+/// file. `member(run)` returns the values of a SweptRun.
 template <class Use>
 void for_each_result(Use const& use) {
   use("status", [](auto& run) -> auto& { return run.status; });

@@ -70,7 +70,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value sigma_along_flow(isotropy::Analytic, Vec3<Valu
   return guarded_quotient(multiply_subtract(along, dot(x, x), dot(rate, x)), dot(x, x));
 }
 
-/// Computes sigma by the second derivative of the orbit, m'' = A' x m + A x X with A = m x X +
+/// Computes sigma from the second derivative of the orbit, m'' = A' x m + A x X with A = m x X +
 /// (m.A) m.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value sigma_along_flow(isotropy::Connection, Vec3<Value> const& rate,
