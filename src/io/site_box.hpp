@@ -26,7 +26,8 @@ inline SiteBox in_planes(SiteBox const& box, std::int64_t first, std::int64_t pl
 }
 
 /// Appends to `chosen` the numbers of a box's sites, taken from `of_planes`: `of_site` numbers for
-/// each site of consecutive planes, which the box lies in. `shape`: (nx, ny, nz) of the lattice.
+/// each site of consecutive planes, from whose first one the box's z counts. `shape`: (nx, ny, nz)
+/// of the lattice.
 template <class Number>
 void append_numbers_in(SiteBox const& box, std::array<std::int64_t, 3> const& shape,
                        std::int64_t of_site, std::vector<Number> const& of_planes,
