@@ -52,7 +52,7 @@ class RunOutput {
   void write_frame(std::int64_t step, double time, Scalars const& scalars,
                    FrameNumbers const& numbers = {});
 
-  /// Queues a sample, which reaches the files with the next frame, or after about a second of
+  /// Queues a sample, which reaches the files with the next frame, or within about a second of
   /// calls.
   void write_scalars(std::int64_t step, double time, Scalars const& scalars,
                      std::vector<double> const& more = {});

@@ -6,17 +6,17 @@ namespace {
 
 constexpr char const* head = R"(# Tables of extreme inputs
 
-What each method does with inputs that are tiny, huge or wrong; [the report](extremes.md) has the
-results in short. The test `extremes` computes these tables, compares them with this page and holds
-every run to the promise above its table. `extremes_long` does so for the last one. After a change,
-`build/release/bin/test_extremes --write` writes the page, in minutes.
+How each method handles inputs that are tiny, huge or wrong; [the report](extremes.md) has a
+summary. The test `extremes` computes these tables, compares them with this page, and checks that
+every run does what the text above its table says. `extremes_long` does so for the last table. After
+a change, `build/release/bin/test_extremes --write` writes the page, in a few minutes.
 
 | word | meaning |
 |---|---|
 | exact | the exact solution to round-off: 8 epsilon a step, and 4 epsilon of the angle |
 | bounded | \| \|m\| - 1 \| is below 4 epsilon a step; the error is that of the method |
-| warned | dt is too large, says a warning; \|m\| is kept, or the run stops with status 3 |
-| drifts | \|m\| is not kept, as `classical_*` say of themselves |
+| warned | a warning says that dt is too large; \|m\| is kept, or the run stops with status 3 |
+| drifts | \|m\| is not kept, as documented for `classical_*` |
 | refused | one line before the first step |
 | detected | the run stops with status 3 |
 

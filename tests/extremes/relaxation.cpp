@@ -72,7 +72,7 @@ Section equilibria() {
   Section section{"Equilibria",
                   R"(
 `cayspin relax` of random spins in a field of 1 with exchange 1, to a bound of 1e-6 on the torque.
-Exact means that all stay to the bit; bounded, that all end along the field.)",
+Exact means that all spins keep their bits; bounded, that all end along the field.)",
                   {exact, bounded, refused, detected}};
   auto const add = [&](char const* name, Setting setting, Against against) {
     setting.steps = 1;

@@ -13,9 +13,9 @@ using enum Against;
 Section steps() {
   Section section{"Steps",
                   R"(
-One spin in a field of 1, damping 0.1. Runs are exact where nothing moves by an epsilon, then
-bounded. `run` warns above the stable dt, or above 2 radians a step where none is known. ab2 is
-unstable already at dt 1, which is detected.)",
+One spin in a field of 1, damping 0.1. Runs are exact as long as no step moves the spin by an
+epsilon; above that they are bounded. `run` warns above the stable dt, or above 2 radians a step
+where none is known. ab2 is unstable already at dt 1, which is detected.)",
                   {exact, bounded, warned, detected},
                   {exact, drifts, warned}};
   for (char const* dt : {"1e-300", "1e-12", "1e-3", "1", "1e8", "1e160", "1e300"}) {
@@ -30,9 +30,9 @@ Section turns() {
   Section section{"Turns",
                   R"(
 One spin or body, damping 0, that turns by dt |A| in a step. The Cayley map cannot rotate by pi.
-The exponential's inverse tangent has its pole at 2 pi. The square of 1e160 overflows, and an
-overflow stops the run at its first step. `run` warns in all four. The exponential is exact where A
-rests, up to 1e8.)",
+The exponential's dexp^-1 has its pole at 2 pi. The square of 1e160 overflows, and an overflow
+stops the run at its first step. `run` warns in all four. With the exponential, runs are exact up to
+1e8 where A is constant.)",
                   {exact, warned},
                   {warned}};
   for (auto const& [name, turn] : {std::pair{"pi", std::numbers::pi},
@@ -46,8 +46,8 @@ rests, up to 1e8.)",
 Section fields() {
   Section section{"Fields",
                   R"(
-Damping 0.1. A spin without a field, or along it, rests. Numbers below the smallest normal one
-count as zero: rates err by at most 2.3e-308, in single precision 1.2e-38. Numbers too large
+Damping 0.1. A spin without a field, or along it, stays at rest. Numbers below the smallest normal
+one count as zero: rates err by at most 2.3e-308, in single precision 1.2e-38. Numbers too large
 stop the run at its first step. A field that is switched on within a step costs every method its
 order there: the error is at most dt times the field.)",
                   {exact, bounded, warned, refused, detected},
@@ -75,9 +75,9 @@ One spin in a field of 1. At damping 1e-12 a method may add more energy than the
 Section starts() {
   Section section{"Starts",
                   R"(
-The program normalises every start; here the length is wrong all the same. More than 64 epsilon
-are detected before the first step. One ulp is kept or normalised away. `classical_*` are not
-checked.)",
+The program normalises every start; these runs begin with a wrong length all the same. Errors of
+more than 64 epsilon are detected before the first step. An error of one ulp is kept or normalised
+away. `classical_*` are not checked.)",
                   {bounded, warned, detected},
                   {drifts}};
   Setting start{.damping = 0.1, .dt = 1e-3, .start_length = 1.001};
@@ -93,7 +93,7 @@ Section lattices() {
   Section section{"Lattices",
                   R"(
 Uniform spins with exchange 1 in a field of 1, damping 0.1, dt 1e-3. Exact means that each spin
-is where a single one is, to 8 epsilon. red_black is bounded. A lattice that does not fit is
+agrees with a single one to 8 epsilon. red_black is bounded. A lattice that does not fit is
 refused, with the memory that it needs and the memory that there is.)",
                   {exact, refused},
                   {exact, refused}};
@@ -114,8 +114,8 @@ Section faults() {
   many.shape = {5000, 1, 1};
   Section section{"Faults",
                   R"(
-64 spins, and 5000, one of which becomes NaN after step 3. `run` detects it at the next step;
-above 4096 sites, within ten steps. No frame is written after the fault.)",
+Lattices of 64 and of 5000 spins, in which one spin becomes NaN after step 3. `run` detects it at
+the next step; above 4096 sites, within ten steps. No frame is written after the fault.)",
                   {detected},
                   {detected}};
   section.add("64 spins", few, nothing, 4);
@@ -156,10 +156,10 @@ Section longest_runs() {
   constexpr std::int64_t steps = 100'000'000;
   Section section{"1e8 steps",
                   R"(
-One spin in a field of 1, dt 0.37, rkmk4 in both rotations. Round-off adds up where steps are
-alike: | |m| - 1 | grows by some 0.01 epsilon a step, to 3e-10 in double precision. In single
-precision it reaches 0.01 after some 7e6 steps, where the run stops. A Newton step every 1000 steps
-keeps it below an epsilon.)",
+One spin in a field of 1, dt 0.37, rkmk4 with either rotation. Round-off accumulates where all
+steps are alike: | |m| - 1 | grows by some 0.01 epsilon a step, to 3e-10 in double precision. In
+single precision it reaches 0.01 after some 7e6 steps, where the run stops. A Newton step every
+1000 steps keeps it below an epsilon.)",
                   {bounded, detected}};
   section.add("without Newton steps", {.dt = 0.37, .steps = steps}, nothing, steps);
   section.add("with Newton steps", {.dt = 0.37, .steps = steps, .normalized = 1000}, nothing,

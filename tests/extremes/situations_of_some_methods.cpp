@@ -11,11 +11,11 @@ using enum Against;
 Section adaptive_steps() {
   Section section{"Adaptive steps",
                   R"(
-Tolerance 1e-4 and field 1, unless the table says otherwise. dt is from one sample to the next, and
-t runs from 0 to 6 or 6/128. The error stays below 30 times the tolerance, also where the field is
-switched on within a step. A run stops when a step would have to be below min_dt, when numbers are
-too large for the precision, and when the start is wrong. Damping of 1e12 takes steps of 1e-12:
-only min_dt bounds their number.)",
+Tolerance 1e-4 and field 1, unless the table says otherwise. dt is from one sample to the next,
+and t runs from 0 to 6 or 6/128. The error stays below 30 times the tolerance, also where the
+field is switched on within a step. A run stops when a step would have to be below min_dt, when
+numbers are too large for the precision, and when the start is wrong. With a damping of 1e12,
+steps are 1e-12 long, and only min_dt limits their number.)",
                   {exact, bounded, refused, detected}};
   section.add("A = 0", {.field = 0, .damping = 0.1}, solution);
   section.add("A along m", {.damping = 0.1, .along_field = true}, solution);
@@ -60,7 +60,7 @@ Methods that take a temperature; damping 0.1, field 1. T = 0 has the bits of a r
 Section expensive_fields() {
   Section section{"Expensive fields",
                   R"(
-Methods that take an expensive field: here a slab's, of 0.5; damping 0.1, field 1.)",
+Methods that accept an expensive field, here a slab's of 0.5. Damping 0.1, field 1.)",
                   {exact, bounded, warned, detected},
                   {exact, drifts, warned, detected}};
   auto const add = [&](char const* name, Setting setting, double strength,

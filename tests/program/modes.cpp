@@ -171,7 +171,11 @@ TEST_F(Modes, OfSpinsThatAreFrozenOrMissing) {
     std::size_t const site = i % 48;
     double size = 0;
     for (std::size_t c = 0; c < 6; ++c) size += std::abs(mode[6 * i + c]);
-    site % 8 >= 6 || site / 8 < 1 ? EXPECT_EQ(size, 0) << i : EXPECT_GT(size, 1e-6) << i;
+    if (site % 8 >= 6 || site / 8 < 1) {
+      EXPECT_EQ(size, 0) << i;
+    } else {
+      EXPECT_GT(size, 1e-6) << i;
+    }
   }
 }
 
