@@ -11,7 +11,7 @@ import pathlib
 import re
 import sys
 
-# Packages that CMake finds, and their names in Spack and conda-forge.
+# Packages that CMake finds: their names in Spack and in conda-forge.
 PACKAGES = {
     "HDF5": ("hdf5", "hdf5"),
     "tomlplusplus": ("tomlplusplus", "tomlplusplus"),
@@ -22,7 +22,7 @@ PACKAGES = {
     "CLI11": ("cli11", "cli11"),
     "PNG": ("libpng", "libpng"),
 }
-# Text that a file has to contain, with V for the version.
+# Text that each of these files has to contain, with V for the version.
 STATEMENTS = {
     "pyproject.toml": '\nversion = "V"\n',
     "CITATION.cff": "\nversion: V\n",

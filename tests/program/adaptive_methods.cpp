@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Methods that choose their steps by integrator.tolerance: their error, the times of frames, and
+// Methods that choose their steps by integrator.tolerance: their errors, the times of frames, and
 // failures.
 #include "io/method.hpp"
 #include "program_test.hpp"
@@ -58,7 +58,7 @@ TEST_F(AdaptiveMethods, WriteFramesAtTheTimesAskedFor) {
   EXPECT_LT(distance(second, exact), 30e-7);
 }
 
-// The number of observations changes no bit of the end and costs no evaluation.
+// How often a run is observed changes no bit of its end and costs no evaluation.
 TEST_F(AdaptiveMethods, TakeTheSameStepsHoweverOftenTheyAreLookedAt) {
   std::vector<double> ends[3];
   std::int64_t evaluations[3];
@@ -80,7 +80,7 @@ TEST_F(AdaptiveMethods, TakeTheSameStepsHoweverOftenTheyAreLookedAt) {
   }
 }
 
-// Near equilibrium the energy fluctuates within the tolerance.
+// Near equilibrium the energy may rise within the tolerance, which energy_guard accepts.
 TEST_F(AdaptiveMethods, ComeToRestUnderTheGuard) {
   for (std::string const method : {"tsit5", "bs3", "dp5"})
     for (std::string const tolerance : {"1e-1", "1e-3"})

@@ -21,18 +21,19 @@ class AllMethods : public ProgramTest {
     return end_of(scene, joined(joined(changes, set("integrator.dt=" + dt)), plain));
   }
 
-  // `floor`: errors below it are round-off, and longer steps show the order.
+  // Errors up to `floor` are round-off; the order is then measured with longer steps.
   void expect_orders(std::string const& scene, io::SystemKind kind, double floor) {
     auto const reference = end(scene, set("integrator.method='rkmk8'"), "0.0025");
     std::set<std::string_view> checked;
     std::set<double> errors_of_rkmk4;
     for_each_method_choice([&](MethodChoice const& choice) {
-      // The others use a tolerance: adaptive_methods.cpp.
+      // Adaptive methods have no order in dt; adaptive_methods.cpp tests them.
       if (!choice.method.has_equal_steps() || !choice.has_meaning(kind)) return;
       checked.insert(choice.method.word);
       Arguments changes;
       for (auto const& assignment : choice.overrides()) changes = joined(changes, set(assignment));
-      // It moves one colour of the spins at a time, but the host would compute the field of all.
+      // These methods move one colour of the spins at a time. They refuse a field of the host,
+      // which computes all sites at once.
       if (choice.method.by_colour)
         changes = joined(changes, set("field.slab_demag={normal=[1,0,0]}"));
       auto const name = testing::PrintToString(changes);
@@ -48,7 +49,7 @@ class AllMethods : public ProgramTest {
       if (fine <= floor) coarse = error("0.2"), fine = error("0.1"), above = 2;
       if (fine <= floor) coarse = error("0.5"), fine = error("0.25");
       EXPECT_GT(fine, floor) << name;
-      // Terms of higher orders show in long steps.
+      // In long steps, terms of higher order raise the apparent order, hence the wider upper bound.
       EXPECT_GT(std::log2(coarse / fine), choice.method.order - 0.4) << name;
       EXPECT_LT(std::log2(coarse / fine), choice.method.order + above) << name;
       if (choice.isotropy != io::Isotropy::energy) return;
@@ -62,7 +63,7 @@ class AllMethods : public ProgramTest {
   }
 };
 
-// Includes a field that the host computes.
+// Has a field that the host computes.
 std::string spins_scene() {
   return R"toml([system]
 kind = "llg"
@@ -106,9 +107,8 @@ TEST_F(AllMethods, OnRigidBodiesHaveTheirOrder) {
   expect_orders(tensor_bodies_scene(), io::SystemKind::rigid_body, 1e-12);
 }
 
-// With a time-dependent field, sigma by the derivative needs dH/dt: without it the rate of the
-// energy is wrong to first order, which shows in the difference between two ways to compute one
-// sigma.
+// In a field that depends on time, the analytic sigma needs dH/dt. With it, runs with the analytic
+// and the finite-difference sigma differ in second order of dt; without it, in first order.
 TEST_F(AllMethods, AnalyticSigmaSeesAFieldInTime) {
   auto const with = [&](std::string const& isotropy, char const* dt) {
     return end(spins_scene(),

@@ -9,7 +9,7 @@ namespace {
 
 class EarlyEnd : public ProgramTest {
  protected:
-  /// Runs the chain, and interrupts it a while after it began to write `file`.
+  /// Runs the chain, and interrupts it shortly after `file` appears.
   Outcome interrupt(std::string const& file, Arguments const& more) const {
     return start(joined({"run", "chain.toml", "--quiet", "--output", file}, more),
                  {.interrupt_after = 0.2, .interrupt_when = in_folder(file)});
@@ -30,7 +30,7 @@ TEST_F(EarlyEnd, InterruptLeavesAWholeFile) {
   for (double const component : last_spins("chain.h5")) EXPECT_TRUE(std::isfinite(component));
 }
 
-// Steps are counted from the start of the run that it continues.
+// Steps are counted from the start of the first run, which this one continues.
 TEST_F(EarlyEnd, InterruptAfterARestartNamesTheStepOfTheFile) {
   output_of({"run", "chain.toml", "--quiet", "--set", "integrator.steps=500"});
   auto const outcome =
@@ -41,7 +41,7 @@ TEST_F(EarlyEnd, InterruptAfterARestartNamesTheStepOfTheFile) {
   EXPECT_TRUE(contains(outcome.errors, "on.h5 (step " + step + ", t = "));
 }
 
-// Also if the scene has no dt.
+// A scene without dt can be interrupted, too.
 TEST_F(EarlyEnd, InterruptEndsAdaptiveSteps) {
   auto const outcome =
       interrupt("chain.h5", set("integrator={method='tsit5',tolerance=1e-8,end=2e5}",
@@ -57,7 +57,7 @@ TEST_F(EarlyEnd, InterruptEndsAdaptiveSteps) {
 TEST_F(EarlyEnd, RestEndsARun) {
   auto const info =
       run(macrospin_scene(), set("integrator.end=1000.0", "integrator.until_torque=1e-6"));
-  // sin(theta) falls as exp(-damping t), from about 1.
+  // sin(theta) starts at about 1 and falls as exp(-damping t).
   EXPECT_GT(info.frame_times.back(), std::log(1e6) / 0.5 - 2);
   EXPECT_LT(info.frame_times.back(), std::log(1e6) / 0.5 + 4);
   EXPECT_EQ(info.frames, 2);

@@ -5,8 +5,8 @@
 
 namespace cayspin::program::test {
 
-/// Returns a scene of a slab that reaches equilibrium in the first part of its run of 20, with the
-/// rest of the scene.
+/// Returns the scene of a chain that is practically at equilibrium after a tenth of its run to t =
+/// 20, followed by the tables given.
 inline std::string early_rest(std::string const& integrator_and_output) {
   return R"toml([system]
 kind = "llg"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// --restart of [ensemble]: two runs have the bits of one.
+// --restart with [ensemble]: two runs in sequence have the bits of one.
 #include "program_test.hpp"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ class EnsembleRestarts : public ProgramTest {
     return start(joined({"run", "all.toml", "--quiet", "--overwrite"}, more));
   }
 
-  /// The last frame of a dataset (frame, ...).
+  /// Returns the last frame of a dataset (frame, ...).
   std::vector<double> last(std::string const& file, std::string const& name) const {
     auto const [extents, values] = read_dataset(file, name);
     return {values.end() - static_cast<std::ptrdiff_t>(values.size()) / extents[0], values.end()};
@@ -35,7 +35,8 @@ TEST_F(EnsembleRestarts, HaveTheBitsOfOneRun) {
   };
   for (int composition = 0; composition < 16; ++composition) {
     bool const is_crystal = composition % 4 == 3;
-    // Many small lattices without couplings are columns of one.
+    // From 16 replicas on, small lattices without `couplings` are stepped as the columns of one
+    // lattice.
     auto const many = one_of({"3", "17", "40"});
     auto const noise = one_of({"", "[thermal]\ntemperature = 0.05\nseed = 7\n"});
     auto const scene =

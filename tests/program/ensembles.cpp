@@ -27,7 +27,7 @@ class Ensembles : public ProgramTest {
         0, joined({"run", "all.toml", "--quiet", "--overwrite", "--output", "all.h5"}, more));
   }
 
-  /// Numbers of one replica in a dataset (frame, replica, ..).
+  /// Returns the values of one replica in a dataset (frame, replica, ...).
   std::vector<double> of_replica(std::string const& name, std::int64_t replica) const {
     auto const [extents, values] = read_dataset("all.h5", name);
     std::int64_t row = 1;
@@ -40,7 +40,7 @@ class Ensembles : public ProgramTest {
     return found;
   }
 
-  /// A run of the scene by itself has the same bits in all datasets.
+  /// Expects that a separate run of the scene has the same bits as the replica in all datasets.
   void expect_run(std::int64_t replica, std::string const& scene, Arguments const& more) const {
     write("one.toml", scene);
     auto const outcome =
@@ -96,7 +96,7 @@ TEST_F(Ensembles, ChooseTheirOwnSteps) {
                              fmt::format("initial.random.seed={}", 3 + replica))));
 }
 
-// Small lattices without neighbours at a distance are the columns of one lattice.
+// Small lattices with only nearest-neighbour terms are stepped as the columns of one lattice.
 TEST_F(Ensembles, OfSmallLatticesHaveTheBitsOfTheirRuns) {
   std::mt19937 random(20);
   auto const one_of = [&](std::vector<std::string> const& choices) {
@@ -149,10 +149,10 @@ scalars_every = 5
                                       "[thermal]\ntemperature = '0.1 * t'\nseed = 5\n"});
     bool const varies = noise.find("0.05") != noise.npos && random() % 2 == 0;
     write("all.toml", scene + noise + "[ensemble]\nreplicas = 1\n");
-    if (start({"check", "all.toml"}).status != 0) continue;  // a method that refuses noise, say
+    if (start({"check", "all.toml"}).status != 0) continue;  // e.g. a method that refuses noise
     Arguments const same{"--precision", one_of({"double", "single"}), "--threads",
                          one_of({"1", "2"})};
-    // Some warn, of a large dt say.
+    // Some runs print a warning, for example of a large dt.
     write("all.toml",
           scene + noise +
               vary(varies ? "\"thermal.temperature\" = { from = 0, to = 0.3 }\n" : "", many));
@@ -176,10 +176,10 @@ scalars_every = 5
       expect_run(replica, scene + noise, joined(same, own));
     }
   }
-  EXPECT_GT(compared, 5);  // the others are refused
+  EXPECT_GT(compared, 5);  // `check` refuses the others
 }
 
-// Replicas share the threads, with kernels, transforms and noise of each on one of them.
+// The threads share the replicas: kernels, transforms and noise of each run on one thread.
 TEST_F(Ensembles, HaveTheSameBitsSideBySide) {
   auto const scene = chain_scene() + "[thermal]\ntemperature = 0.05\nseed = 7\n" +
                      vary("\"field.applied.2\" = { from = 0.1, to = 2 }\n", 9);
@@ -245,7 +245,7 @@ TEST_F(Ensembles, EndEachByItself) {
 }
 
 TEST_F(Ensembles, AreRelaxedEachToItsOwnEquilibrium) {
-  // Stoner-Wohlfarth across the easy axis: m.h = h / K.
+  // Stoner-Wohlfarth with the field across the easy axis: m_x = h / K.
   write("film.toml", R"([system]
 kind = "llg"
 damping = 0.1
@@ -282,7 +282,7 @@ TEST_F(Ensembles, WarnOfAStepThatIsTooLongForOneReplica) {
   EXPECT_FALSE(exists("b.h5"));
 }
 
-// Small replicas that differ only in temperature are columns of one lattice.
+// Small replicas that differ only in temperature are stepped as the columns of one lattice.
 TEST_F(Ensembles, WarnOfTheHottestReplica) {
   write("all.toml", chain_scene() + "[thermal]\ntemperature = 0.1\nseed = 3\n" +
                         vary("\"thermal.temperature\" = { from = 0.1, to = 15 }\n", 32));

@@ -15,7 +15,7 @@ class Exporting : public ProgramTest {
  protected:
   Arguments const to_ovf{"export", "out.h5", "--ovf", "ovf"};
 
-  /// Returns its output.
+  /// Returns the program's output.
   std::string export_frames(Arguments const& more) const { return output_of(joined(to_ovf, more)); }
 
   std::vector<double> frame(std::int64_t number) const {
@@ -128,7 +128,7 @@ TEST_F(Exporting, FullDiskLeavesNoFile) {
   EXPECT_EQ(files(), 0U);
 }
 
-// The start is normalised for any kind of file, so both runs start with equal bits.
+// A start from a file is normalised, whatever its format, so both runs start with equal bits.
 TEST_F(Exporting, RunsFromOvfAreRunsFromTheTrajectory) {
   for (std::string const precision : {"double", "single"}) {
     run(chain_scene(), {"--precision", precision});

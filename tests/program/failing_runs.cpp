@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Runs that fail on the way: status 2 or 3, one line, and a file marked as not complete.
+// Runs that fail after their start: status 2 or 3, one line, and a file marked as not complete.
 #include "program_test.hpp"
 
 #include <cmath>
@@ -15,7 +15,7 @@ class FailingRun : public ProgramTest {
 };
 
 TEST_F(FailingRun, EnergyThatRisesIsStatusThree) {
-  // Above the limit of the method, which is about 0.03.
+  // dt is above the method's stable limit of about 0.03.
   auto const outcome = run_chain(set("integrator={method='euler',dt=0.25,steps=1000}"));
   EXPECT_EQ(outcome.status, 3);
   EXPECT_TRUE(
@@ -27,8 +27,7 @@ TEST_F(FailingRun, EnergyThatRisesIsStatusThree) {
     EXPECT_LT(info.frame_scalars[frame].energy, info.frame_scalars[frame - 1].energy);
 }
 
-// Large lattices are checked only in every tenth step, small ones in every step: 4096 sites are
-// few.
+// Above 4096 sites the energy is checked only in every tenth step, otherwise in every step.
 TEST_F(FailingRun, AmongManySitesIsFoundInATenthStep) {
   auto const failing_step = [&](std::string const& sites) -> std::int64_t {
     auto const outcome = run_chain(set("lattice.shape=[" + sites + "]", "output.every=100000",
@@ -66,7 +65,7 @@ TEST_F(FailingRun, SpinsThatAreNotFiniteAreStatusThree) {
 }
 
 TEST_F(FailingRun, AppliedFieldThatIsNotFiniteOnTheWayIsStatusThree) {
-  // Only at one time of the run, so that earlier checks do not find it.
+  // The field is infinite at only one time of the run, which the checks before it do not find.
   auto const outcome = run_chain(set("integrator.dt=0.125", "integrator.steps=7", "output.every=1",
                                      "field.applied=[0,0,'t==0.125 ? 1/(t-0.125) : 0.1']"));
   EXPECT_EQ(outcome.status, 3);
@@ -74,7 +73,7 @@ TEST_F(FailingRun, AppliedFieldThatIsNotFiniteOnTheWayIsStatusThree) {
   EXPECT_TRUE(contains(outcome.errors, "field.applied, t = 0.125"));
   auto const info = info_of("chain.h5");
   EXPECT_FALSE(info.complete);
-  EXPECT_GT(info.cost.wall_seconds, 0);  // ended, not killed
+  EXPECT_GT(info.cost.wall_seconds, 0);  // the run closed its file
 }
 
 TEST_F(FailingRun, FullDiskIsStatusTwo) {

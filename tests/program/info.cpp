@@ -24,7 +24,7 @@ class Info : public ProgramTest {
 
   std::string info() const { return output_of({"info", "run.h5"}); }
 
-  /// Returns the step in the line on progress, or -1.
+  /// Returns the step in the line "progress", or -1.
   static std::int64_t step(std::string const& output) {
     std::string const before = "\nprogress     step ";
     auto const place = output.find(before);
@@ -60,7 +60,7 @@ TEST_F(Info, SaysHowFarARunIs) {
   auto const first = step(output);
   EXPECT_EQ(first % 1000, 0);
   ASSERT_TRUE(eventually([&] { return step(info()) > first; }));
-  // A file not written for long, but still open: the run is slow.
+  // A file that is still open belongs to a running run, even if it was not written for some time.
   fs::last_write_time(in_folder("run.h5"),
                       fs::file_time_type::clock::now() - std::chrono::minutes(2));
   EXPECT_TRUE(contains(info(), "still running"));
@@ -80,7 +80,7 @@ TEST_F(Info, SaysThatARunWasKilled) {
   EXPECT_FALSE(contains(output, " left\n"));
 }
 
-// A sample is not a step of the method.
+// With adaptive methods samples are not steps, so `info` prints no rate of steps.
 TEST_F(Info, KnowsNoRateOfAdaptiveMethods) {
   auto const process = begin_run(
       "1000000000", set("integrator={method='tsit5',tolerance=1e-6,dt=0.02,steps=1000000000}"));

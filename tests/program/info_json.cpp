@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// cayspin info --json prints the numbers of the file.
+// cayspin info --json prints the values in the file.
 #include "json_output.hpp"
 
 #include <algorithm>

@@ -13,7 +13,7 @@ using Vector = std::array<double, 3>;
 
 class InterfacialDmi : public ProgramTest {
  protected:
-  /// `lattice`, `field`, `integrator` and `initial`: lines of these tables.
+  /// `lattice`, `field`, `integrator` and `initial` are the lines of these tables.
   static std::string scene(double damping, std::string const& lattice, std::string const& field,
                            std::string const& integrator,
                            std::string const& initial = "random = { seed = 3 }") {
@@ -24,7 +24,8 @@ class InterfacialDmi : public ProgramTest {
 };
 
 TEST_F(InterfacialDmi, AFreeSpiralTurnsByItsAngle) {
-  // tan(turn) = D spacing / A about n x e, with open ends, in both precisions.
+  // With open ends the spins turn about n x e by tan(turn) = D spacing / A per site, in both
+  // precisions.
   auto const spiral = scene(1, "shape = [24]\nspacing = [0.5]\n",
                             "exchange = 0.75\ndmi = { interfacial = 0.6, normal = [0, 0, 1] }\n",
                             "method = \"rkmk4\"\ndt = 0.05\nsteps = 20000\n",
@@ -56,7 +57,7 @@ TEST_F(InterfacialDmi, EnergyIsThatOfTheBonds) {
   auto const dot = [](Vector const& a, Vector const& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   };
-  // D / spacing (m_n m'_e - m_e m'_n) of each bond from m to m' along e.
+  // Each bond from m to m' along e adds D / spacing (m_n m'_e - m_e m'_n).
   double expected = 0;
   for (int j = 0; j < ny; ++j)
     for (int i = 0; i < nx; ++i) {

@@ -15,7 +15,7 @@ namespace cayspin::program::test {
 
 using nlohmann::json;
 
-/// Compares what commands print with --json with their files.
+/// Compares what commands print with --json with the values in their files.
 struct JsonOutput : ProgramTest {
   std::string const film = R"toml([system]
 kind = "llg"
@@ -57,7 +57,7 @@ uniform = [1, 0.1, 0.2]
   }
   json info(std::string const& file) const { return json_of({"info", file}); }
 
-  /// Appends the numbers of nested arrays in their order.
+  /// Appends the numbers in nested arrays, in order.
   static void append_numbers(json const& value, std::vector<double>& numbers) {
     if (value.is_array())
       for (auto const& one : value) append_numbers(one, numbers);
@@ -65,7 +65,7 @@ uniform = [1, 0.1, 0.2]
       numbers.push_back(value.get<double>());
   }
 
-  /// Expects that each name has the extents and the numbers of the dataset of that name.
+  /// Expects that each name has the extents and values of the dataset with that name.
   void expect_datasets(json const& object, std::string const& file,
                        std::vector<std::string> const& names,
                        std::string const& group = "/") const {
@@ -84,7 +84,7 @@ uniform = [1, 0.1, 0.2]
     }
   }
 
-  /// Expects that each name has the value of the attribute of that name.
+  /// Expects that each name has the value of the attribute with that name.
   void expect_attributes(json const& object, std::string const& file,
                          std::vector<std::string> const& numbers,
                          std::vector<std::string> const& texts) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// cayspin modes: the standard problem of ferromagnetic resonance, a ferrimagnet, the file and how
-// it ends.
+// cayspin modes: the standard problem of ferromagnetic resonance, a ferrimagnet, wave vectors, the
+// file, and refusals.
 #include "modes_test.hpp"
 
 #include <fmt/format.h>
@@ -13,8 +13,8 @@
 namespace cayspin::program::test {
 namespace {
 
-// Baker et al. 2017: all eigenvalues of the dense matrix, from Newell's tensors in NumPy. A matrix
-// pencil of OOMMF's run in time has four of them, to 4e-4 GHz.
+// Problem of Baker et al. 2017. Expects all eigenvalues of the dense matrix, computed in NumPy with
+// Newell's tensors. A matrix pencil applied to OOMMF's run in time finds four of them, to 4e-4 GHz.
 TEST_F(Modes, OfTheStandardProblemOfResonance) {
   auto const outcome = modes(R"toml(units = "SI"
 [material]
@@ -122,8 +122,8 @@ dt = 0.01
 steps = 1
 )toml";
 
-// A saddle: along the hard axis in the plane the motion grows. From a file of relax the state is
-// its last frame.
+// Modes of the last frame of a file of relax equal those of the scene. At a saddle, along the
+// in-plane hard axis, one mode grows.
 TEST_F(Modes, StartFromFilesAndSaddles) {
   auto const scene = write("scene.toml", film);
   EXPECT_EQ(output_of({"modes", scene, "--count", "2", "--quiet"}), "");
@@ -179,8 +179,8 @@ TEST_F(Modes, OfSpinsThatAreFrozenOrMissing) {
   }
 }
 
-// A field without a constant Hessian: its products are differences. At rest the curvatures are 6 K
-// and 36 K, from E = K sin(theta)^6 cos(6 phi).
+// The hexagonal anisotropy has no constant Hessian, so products with it are finite differences. At
+// rest the curvatures are 6 K and 36 K, from E = K sin(theta)^6 cos(6 phi).
 TEST_F(Modes, OfASpinWithAHexagonalAxis) {
   auto const outcome = modes(
       "[system]\nkind = \"llg\"\ndamping = 0.9\n[lattice]\nshape = [1]\n[field]\n"
@@ -224,7 +224,8 @@ TEST_F(Modes, RefuseWhatHasNone) {
   EXPECT_FALSE(exists("modes.h5"));
 }
 
-// The eighth and the ninth mode belong to one frequency, of which the search sees a part.
+// The eighth and the ninth mode have equal frequencies, so the eight modes searched contain only
+// part of that multiplet.
 TEST_F(Modes, ConvergeWhereALastMultipletIsCut) {
   for (int const seed : {3, 8, 13, 38}) {
     auto const outcome = modes(fmt::format(R"toml([system]
@@ -250,8 +251,8 @@ random = {{ seed = {} }}
 using Branches = std::vector<double>;
 
 struct Bands : Modes {
-  /// Expects the branches at each wave vector of a path, for spins along z; `exact` gives them for
-  /// phases of 2 pi along the vectors of the cell.
+  /// Expects the branches at each wave vector of a path, for spins along z. `exact` returns them
+  /// for the phases 2 pi q along the vectors of the cell.
   template <class Exact>
   void expect_bands(std::string const& lattice_and_field, Exact const& exact) const {
     auto const scene = "[system]\nkind = \"llg\"\ndamping = 0\n" + lattice_and_field +
@@ -336,7 +337,8 @@ TEST_F(Bands, OfKagomeAndBccAndAFerrimagnet) {
       });
 }
 
-// A bond along an axis of one cell joins a spin to itself; elsewhere the lattice may be small.
+// With one cell along an axis, a bond along it would join a spin to itself, which is refused;
+// without such bonds one cell is enough.
 TEST_F(Bands, NeedCellsOnlyWhereBondsReach) {
   std::string const
       head = "[system]\nkind = \"llg\"\ndamping = 0\n[lattice]\nboundary = \"periodic\"\n",

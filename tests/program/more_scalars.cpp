@@ -116,7 +116,7 @@ applied = [[0.5, 0, 0], [0, 0, 1.0]]
             (std::vector<std::string>{"exchange", "anisotropy", "applied"}));
   auto const terms = of("relaxed.h5", "term_energy"), regions = of("relaxed.h5", "region_energy"),
              means = of("relaxed.h5", "region_magnetization");
-  // E = -m_z^2/2 - m.H of each of eight, with m_x = H_x in the first field.
+  // Each of the eight spins has E = -m_z^2/2 - m.H; in the first field m_x = H_x.
   EXPECT_NEAR(terms[1], -8 * 0.5 * 0.75, 1e-9);
   EXPECT_NEAR(terms[2], -8 * 0.25, 1e-9);
   EXPECT_NEAR(regions[0], 4 * (-0.375 - 0.25), 1e-9);
@@ -125,7 +125,7 @@ applied = [[0.5, 0, 0], [0, 0, 1.0]]
   EXPECT_NEAR(terms[5], -8, 1e-9);
 }
 
-// A wall that a stage leaves off the middle continues from its shift, also after a restart.
+// The shift goes on from stage to stage, also after a restart; relaxing does not change it.
 TEST_F(MoreInFiles, GoOnFromStageToStage) {
   auto const scene = wall + R"([[stage]]
 relax.torque = 1e-2
@@ -195,11 +195,11 @@ TEST_F(MoreInFiles, TheShiftIsInTheFileAndGoesOnAfterARestart) {
     EXPECT_EQ(std::vector(all.end() - static_cast<std::ptrdiff_t>(rest.size()), all.end()), rest)
         << name;
   }
-  // Also if the method restarts.
+  // This holds also if the method begins again.
   auto const in_other_field = joined({"--restart", "first.h5"}, set("field.applied=[0,0,0.015]"));
   EXPECT_EQ(run_into("second.h5", wall, in_other_field).status, 0);
   EXPECT_EQ(of("second.h5", "shift").front(), of("first.h5", "shift").back());
-  // A run without following has no shift.
+  // A run without `follow` has no shift, so the shift starts at 0.
   write("wall.toml", wall.substr(0, wall.find("follow")) + wall.substr(wall.find("[field]")));
   output_of(
       {"run", "wall.toml", "--quiet", "--output", "third.h5", "--set", "integrator.steps=100"});

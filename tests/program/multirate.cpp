@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Expensive fields in the program's commands.
+// Expensive fields (multirate) in the program's commands.
 #include "program_test.hpp"
 
 #include <nlohmann/json.hpp>
@@ -66,14 +66,14 @@ TEST_F(MultirateFields, AreChecked) {
   auto const numbers = nlohmann::json::parse(output_of({"check", "scene.toml", "--json"}));
   EXPECT_EQ(numbers.at("order"), 3);
   EXPECT_EQ(numbers.at("evaluations_per_step"), 24);
-  // Order 3 would widen lines, at equal cost.
+  // At small damping, order 3 would broaden resonance lines, and order 4 costs as much.
   auto const at_small_damping = nlohmann::json::parse(
       output_of(joined({"check", "scene.toml", "--json"}, set("system.damping=0.008"))));
   EXPECT_EQ(at_small_damping.at("order"), 4);
   EXPECT_EQ(at_small_damping.at("evaluations_per_step"), 24);
 }
 
-// Evaluated once a step or in each stage: all give equal spins.
+// `trade` tries the expensive field once per step, with several substeps, and in every stage.
 TEST_F(MultirateFields, AreTraded) {
   auto const trade = nlohmann::json::parse(output_of(
       {"trade", "scene.toml", "--json", "--seconds", "0.2", "--precision", "double", "--threads",
@@ -92,14 +92,14 @@ TEST_F(MultirateFields, AreTraded) {
     ASSERT_GE(rungs.size(), 2u);
     EXPECT_LT(rungs.back()["error"].get<double>(), 0.5 * rungs.front()["error"].get<double>());
     for (auto const& rung : rungs) {
-      // Evaluations of the other terms: in two passes except in the first step.
+      // Evaluations of the other terms: two passes in each step, but one in the first.
       auto const steps = std::llround(1 / rung["dt"].get<double>());
       EXPECT_EQ(rung["evaluations"], 4 * substeps * (2 * steps - 1));
     }
   }
 }
 
-// "auto" chooses the faster of one evaluation per step and one per stage.
+// "auto" chooses the faster of evaluating the expensive field once per step and in each stage.
 TEST_F(MultirateFields, AreChosenForAnError) {
   run("exact.h5",
       set("field.slab_demag.multirate=false", "integrator={method='rkmk8',dt=0.01,steps=200}"));
@@ -116,7 +116,7 @@ TEST_F(MultirateFields, AreChosenForAnError) {
       return resolved.substr(method, resolved.find(',', method) - method) +
              (contains(resolved, "multirate = true") ? " multirate" : "");
     };
-    // Uses the earlier choice, and continues to another end.
+    // A restart to a later end keeps the earlier choice.
     run("longer.h5", {"--overwrite", "--restart", "out.h5", "--set",
                       "integrator={method='auto',error=" + error + ",dt=0.1,end=3}"});
     EXPECT_EQ(choice(info_of("longer.h5").header.resolved_scene), choice(header.resolved_scene));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The first commands of a new user: a scene, its check, a run, a picture.
+// The first commands of a new user: writing a scene, checking it, running it, and drawing a
+// picture.
 #include "program_test.hpp"
 
 #include <cstdlib>

@@ -26,7 +26,7 @@ applied = [0.4, 0, 0]
 uniform = [0, 0, 1]
 )toml";
 
-  /// Both ends of a scene, relaxed.
+  /// Writes both ends of a path: the scene relaxed from its start and from -z.
   void write_ends(std::string const& text) const {
     auto const file = write("scene.toml", text);
     expect_status(0, {"relax", file, "--output", "a.h5", "--quiet"});
@@ -45,7 +45,7 @@ uniform = [0, 0, 1]
   }
 };
 
-// Two saddles of equal energy, on both sides of a minimum across the path.
+// From +x to -x the path passes a minimum, with a saddle on either side. Both have one energy.
 TEST_F(PathCommand, PlacesEachSaddleAtItsImage) {
   std::string const cubic = R"toml([system]
 kind = "llg"
@@ -96,17 +96,17 @@ TEST_F(PathCommand, FindsTheBarrierOfAMacrospin) {
   EXPECT_EQ(read_dataset("path.h5", "/zero_modes").values, (std::vector<double>{0, 0, 0}));
 }
 
-// Three spins that act as one: Bessarab's formula for a biaxial particle.
+// Three spins act as one, with the rate of Bessarab's formula for a biaxial particle.
 TEST_F(PathCommand, GivesTheRateOfABiaxialParticle) {
   auto const text = scene + "[output]\nfile = \"path.h5\"\n";
   write_ends(text);
   auto const outcome =
       start(arguments({"--rates", "--torque", "1e-10", "--set", "field.applied=[0, 0, 0]", "--set",
                        "lattice.shape=[1]", "--overwrite"}));
-  EXPECT_EQ(outcome.status, 2);  // the ends have other sites
+  EXPECT_EQ(outcome.status, 2);  // the ends have three sites
   EXPECT_EQ(start(arguments({"--rates", "--set", "field.applied=[0, 0, 0]"})).status, 0);
   double const easy = 1.3, hard = 0.7;
-  // The modes of exchange, 20 and 60 above these, occur equally at the saddle.
+  // At the saddle, too, the exchange modes are 20 and 60 above the uniform ones.
   double rest = 1;
   for (double const stiff : {20.0, 60.0})
     rest *= (stiff + easy) * (stiff + easy + hard) / ((stiff - easy) * (stiff + hard));
@@ -147,7 +147,8 @@ TEST_F(PathCommand, GivesTheRateBesideAFrozenSpin) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(beside[i] / in_field[i], 1, 1e-6) << i;
 }
 
-// In SI, for a particle of one cell: K V, and gamma sqrt(H_K (H_K + H_hard)) / 2 pi.
+// In SI, for a particle of one cell: the barrier is K V, the prefactor gamma sqrt(H_K (H_K +
+// H_hard)) / 2 pi.
 TEST_F(PathCommand, InSi) {
   std::string const text = R"toml(units = "SI"
 [material]
@@ -246,7 +247,8 @@ TEST_F(PathCommand, SaysWhyThereIsNoPath) {
   EXPECT_TRUE(limited.errors.ends_with("; path.h5 has the images as they are\n")) << limited.errors;
 }
 
-// Five images are too few for the saddles of a chain of twenty spins. Sixteen find a higher one.
+// With five images a path of a chain of twenty spins misses the highest saddle and does not settle;
+// with sixteen it has it.
 TEST_F(PathCommand, PrintsTheSaddlesOfAPathThatDoesNotSettle) {
   write_ends(R"toml([system]
 kind = "llg"

@@ -47,7 +47,7 @@ void limit(int resource, long value) {
   ::_exit(122);
 }
 
-// In the form of Outcome::status.
+// Converts a status from wait() to that of Outcome.
 int status_of(int waited) {
   return WIFEXITED(waited) ? WEXITSTATUS(waited) : 128 + WTERMSIG(waited);
 }

@@ -19,7 +19,7 @@ using Arguments = std::vector<std::string>;
 /// Returns both lists in order.
 Arguments joined(Arguments first, Arguments const& more);
 
-/// Returns each text after a "--set".
+/// Returns the texts, with "--set" before each.
 template <class... Texts>
 Arguments set(Texts const&... assignments) {
   Arguments all;
@@ -28,14 +28,14 @@ Arguments set(Texts const&... assignments) {
   return all;
 }
 
-/// The program's default space, and another name for one with equal bits.
+/// The program's default space, and one with equal bits; on the emulated device the only space.
 #if defined(CAYSPIN_HOST_DEVICE)
 inline std::string const default_space = "host_device", another_space = "host_device";
 #else
 inline std::string const default_space = "openmp", another_space = "serial";
 #endif
 
-/// True if the program that `reproduce` starts is built. It computes on hosts.
+/// True if cayspin-reproduce is built. It computes on hosts, so not with the emulated device.
 #if defined(CAYSPIN_HOST_DEVICE)
 inline constexpr bool has_reproduce = false;
 #else
@@ -50,9 +50,9 @@ inline constexpr bool address_sanitizer = false;
 
 /// Result of a run of the program.
 struct Outcome {
-  int status = -1;  // 128 + signal if one killed it
+  int status = -1;  // 128 + signal if a signal ended it
   std::string output, errors;
-  double peak_bytes = 0;  // most memory in use at once
+  double peak_bytes = 0;  // largest resident memory
 };
 
 struct Dataset {
@@ -60,24 +60,24 @@ struct Dataset {
   std::vector<double> values;
 };
 
-/// Limits and interrupts of a run.
+/// Limits and interrupts of a run; -1 is no limit.
 struct Treatment {
-  long file_limit = -1;        // bytes a file may have
-  long memory_limit = -1;      // bytes of address space
-  long seconds_limit = -1;     // of a processor
-  double interrupt_after = 0;  // SIGINT, in seconds after its first frame is in the file
-  std::filesystem::path interrupt_when = {};  // ... of this file
+  long file_limit = -1;                       // largest file, in bytes
+  long memory_limit = -1;                     // bytes of address space
+  long seconds_limit = -1;                    // of processor time
+  double interrupt_after = 0;                 // seconds from interrupt_when to SIGINT
+  std::filesystem::path interrupt_when = {};  // when this file appears; empty: never
   std::filesystem::path program = CAYSPIN_PROGRAM;
 };
 
-/// A separate folder for each test, which is the program's working directory. It has chain.toml and
-/// spin.toml, the scenes below.
+/// Each test has its own folder, which is the program's working directory and contains chain.toml
+/// and spin.toml, the scenes below.
 class ProgramTest : public testing::Test {
  protected:
   ProgramTest();
   ~ProgramTest() override;
 
-  /// Starts the program and waits.
+  /// Starts the program and waits for its end.
   Outcome start(Arguments const& arguments, Treatment const& treatment = {}) const;
 
   /// Starts the program, and expects this status and, unless it is 0, one line on standard error.
@@ -95,7 +95,7 @@ class ProgramTest : public testing::Test {
   /// Sends a signal, unless it is 0, and waits for the end. Returns a status like Outcome::status.
   static int end(pid_t process, int signal);
 
-  /// Waits until something is true, at most a minute. Returns false if it never was.
+  /// Waits until something is true, for at most a minute. Returns false if it never was.
   static bool eventually(std::function<bool()> const& is_so);
 
   /// Writes a scene, and runs it with --quiet into a file in the folder.
@@ -106,7 +106,7 @@ class ProgramTest : public testing::Test {
   /// Runs a scene and returns its last spins. Warnings are allowed.
   std::vector<double> end_of(std::string const& scene, Arguments const& more = {}) const;
 
-  /// Writes FOLDER/name, returns its path.
+  /// Writes FOLDER/name; returns its path.
   std::filesystem::path write(std::string const& name, std::string const& text) const;
   std::filesystem::path in_folder(std::string const& name) const { return folder_ / name; }
   bool exists(std::string const& name) const { return std::filesystem::exists(in_folder(name)); }
@@ -125,13 +125,13 @@ class ProgramTest : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// Returns the largest distance of any spin; infinity for different counts or NaN.
+/// Returns the largest distance between corresponding spins; infinity for different sizes or NaN.
 double distance(std::vector<double> const& a, std::vector<double> const& b);
 
-/// Expects exactly one line, with a line end.
+/// Expects exactly one line, which ends in a newline.
 testing::AssertionResult is_one_line(std::string const& text);
 
-/// Returns the second of two lines; the first must be a warning about integrator.dt.
+/// Returns the second of two lines; expects the first to be a warning about integrator.dt.
 std::string behind_warning(std::string const& errors);
 
 testing::AssertionResult contains(std::string const& text, std::string const& part);

@@ -22,7 +22,7 @@ std::set<std::string> options_in(std::string const& text) {
   return found;
 }
 
-// Returns the lines of each command at the page's head, which end at the next `cayspin`.
+// Returns the synopsis of each command at the head of the page. It ends at the next `cayspin`.
 std::map<std::string, std::string> synopses() {
   std::ifstream page(std::string(CAYSPIN_DOCS) + "/reference/command_line.md");
   std::map<std::string, std::string> all;

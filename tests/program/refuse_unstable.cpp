@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The key integrator.refuse_unstable: a warning about dt becomes an error, and nothing else
-// changes.
+// integrator.refuse_unstable turns a warning about dt into an error, and changes nothing else.
 #include "program_test.hpp"
 
 namespace cayspin::program::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// cayspin relax: an equilibrium, or one for each field of a list, its file, and how it ends.
+// cayspin relax to one equilibrium or to one for each field of a list: its file, and refusals.
 #include "program_test.hpp"
 
 #include <nlohmann/json.hpp>
@@ -47,7 +47,8 @@ TEST_F(Relax, FindsTheStateOfAFilm) {
   EXPECT_TRUE(contains(output_of({"info", "out.h5"}), "at rest      yes, max |m x H| = "));
 }
 
-// The bound on the torque takes several searches where moments differ, which share the evaluations.
+// Where moments differ, relax searches repeatedly until the torque is small enough. All searches
+// share the limit of evaluations.
 TEST_F(Relax, EndsAtAnyLimitOfEvaluations) {
   auto const file = write("scene.toml", R"toml([system]
 kind = "llg"
@@ -75,7 +76,7 @@ random = { seed = 1 }
   EXPECT_LT(converged, 40);
 }
 
-// Along the easy axis a uniform film switches at |h| = K.
+// In a field along its easy axis, a uniform film switches at |h| = K.
 TEST_F(Relax, FollowsAHysteresis) {
   std::string fields;
   for (int i = 10; i >= -10; --i) fields += "[" + std::to_string(0.03 * i) + ", 0, 0.0003], ";
@@ -107,7 +108,7 @@ spacing = 5e-9
 uniform = [1, 0.1, 0.2]
 )toml";
 
-// In SI: a field along z of half of Ms turns a thin film by half: m_z = H / Ms.
+// In SI: a field of Ms / 2 along z tilts a thin film to m_z = H / Ms.
 TEST_F(Relax, InSi) {
   auto const outcome = relax(si_scene + R"toml([field]
 applied = [0.0, 1e-4, 0.502654824574367]
@@ -132,7 +133,7 @@ TEST_F(Relax, SaysWhenItDoesNotConverge) {
   EXPECT_GT(info.cost.relaxed->torque, 1e-6);
 }
 
-// Along the hard axis a film has no torque either.
+// Along the hard axis of a film the torque vanishes, too, but the energy is not least.
 TEST_F(Relax, KeepsASaddleOnDemand) {
   for (bool const keeps : {false, true}) {
     Arguments options{"--overwrite", "--set", "initial={ uniform = [0, 1, 0] }"};
@@ -143,7 +144,7 @@ TEST_F(Relax, KeepsASaddleOnDemand) {
   }
 }
 
-// An earlier run's file next to this one is not taken for its checkpoint.
+// A checkpoint that an earlier run left beside the output is refused, or removed by --overwrite.
 TEST_F(Relax, LeavesNoCheckpointOfAnother) {
   write("out.checkpoint.h5", "of another run");
   EXPECT_EQ(relax(scene).status, 2);
@@ -187,7 +188,8 @@ TEST_F(Relax, IsChecked) {
   ASSERT_EQ(relax(scene, set(list, "lattice.shape=[120, 100]")).status, 0);
   EXPECT_GT(static_cast<double>(std::filesystem::file_size(in_folder("out.h5"))), frames);
 
-  // With or without [integrator], the list decides. Without a list it is a run.
+  // A list of fields makes it a scene for relax, even with [integrator]; without a list it is for
+  // run.
   std::string const integrator = "[integrator]\nmethod = \"rkmk4\"\ndt = 0.1\nsteps = 50\n";
   auto const both = write("scene.toml", scene + integrator);
   EXPECT_TRUE(contains(output_of({"check", both, "--set", list}), "output      3 frames, "));
@@ -213,7 +215,7 @@ TEST_F(Relax, IsRefusedByCheck) {
             "thermal.temperature: an equilibrium has"}}) {
     expect_refused(joined({"check", file}, more), says);
   }
-  // A rigid body is only for `run`.
+  // Rigid bodies cannot be relaxed, so [integrator] is required.
   auto const body = write("body.toml",
                           "[system]\nkind = \"rigid_body\"\ninertia = [1, 2, 3]\n"
                           "[lattice]\nshape = [1]\n[initial]\nuniform = [1, 0, 0]\n");

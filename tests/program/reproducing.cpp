@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// cayspin reproduce: numbers read from its files.
+// cayspin reproduce: values read from the files it writes.
 #include "program_test.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-// Cells in quotes may hold commas.
+// Splits a line of CSV; a quoted cell may contain commas.
 Row cells(std::string const& line) {
   Row row(1);
   bool quoted = false;
@@ -40,7 +40,7 @@ class Reproducing : public ProgramTest {
     return rows;
   }
 
-  /// Returns the number in `column` of the row that starts with these cells.
+  /// Returns the value in `column` of the row that starts with these cells.
   double number(std::string const& name, Row const& begin, std::string const& column) const {
     auto const all = rows(name);
     auto const place = std::ranges::find(all.front(), column) - all.front().begin();
@@ -59,7 +59,7 @@ TEST_F(Reproducing, OrdersOfTheTables) {
     std::string table, bodies, update, dt;
     double low, high;
   };
-  // Orders of means over ten bodies, from the step ten times as large.
+  // Orders from mean errors of ten bodies, at dt and at 10 dt.
   for (auto const& [table, bodies, update, dt, low, high] :
        std::vector<Expected>{{"table2.csv", "triaxial", "F^Eul_def", "0.01", 0.9, 1.1},
                              {"table2.csv", "triaxial", "F^Eul_orth", "0.01", 0.9, 1.1},
@@ -85,7 +85,7 @@ TEST_F(Reproducing, ErrorsOfTheTables) {
     std::string table, update, dt;
     double low, high;
   };
-  // The paper's figure and our median agree within a decade or two.
+  // Ranges around our medians. The paper's values are within a decade or two of these.
   for (auto const& [table, update, dt, low, high] :
        std::vector<Expected>{{"table2.csv", "F^Eul_def", "0.1", 5e-3, 1.5e-2},
                              {"table2.csv", "F^Eul_orth", "0.1", 4e-4, 1.6e-3},
@@ -112,7 +112,7 @@ TEST_F(Reproducing, ErrorsOfTheTables) {
   };
   EXPECT_LT(axisymmetric("table2.csv", "F^Eul_cor"), 1e-15);
   EXPECT_LT(axisymmetric("table3.csv", "F^RK2_ocor"), 1e-10);
-  // The corrections of order 4 vanish there.
+  // For axisymmetric bodies the corrections of order 4 vanish.
   EXPECT_NEAR(axisymmetric("table4.csv", "F^sy4_dcor") / axisymmetric("table4.csv", "F^sy4_def"), 1,
               1e-6);
   EXPECT_NEAR(axisymmetric("table4.csv", "F^sy4_ocor"), axisymmetric("table4.csv", "F^sy4_orth"),

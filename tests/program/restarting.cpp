@@ -11,7 +11,7 @@ namespace {
 
 class Restarting : public ProgramTest {
  protected:
-  /// Runs the first `steps` of the scene's 25 into `file`.
+  /// Runs only `steps` of the scene's 25 steps, into `file`.
   void run_to(char const* steps, char const* file, Arguments const& more = {}) const {
     output_of(joined({"run", "chain.toml", "--quiet", "--output", file, "--set",
                       std::string("integrator.steps=") + steps},
@@ -24,7 +24,7 @@ class Restarting : public ProgramTest {
                   more);
   }
 
-  /// Expects success, with one line that names these keys and ends in `end`.
+  /// Expects success, with a warning that names these keys and ends in `end`.
   void expect_named(Arguments const& more, std::string const& keys,
                     std::string const& end = "") const {
     auto const outcome = start(to_second(more));
@@ -71,7 +71,7 @@ TEST_F(Restarting, IsRefusedForAnotherStateThanTheScenes) {
   expect_refused({}, "first.h5");
 }
 
-// The lattice must be equal, however it is typed.
+// The lattice must be equal, but need not be typed the same way.
 TEST_F(Restarting, IsRefusedOnAnotherLattice) {
   run_to("12", "first.h5");
   auto const expect_key = [&](std::string const& change, std::string const& key) {
@@ -85,7 +85,7 @@ TEST_F(Restarting, IsRefusedOnAnotherLattice) {
   expect_key("lattice.frozen='i==0'", "lattice.frozen");
   expect_key("lattice.moments=[0.5]", "lattice.moments");
   expect_key("lattice.gyromagnetic=[0.5]", "lattice.gyromagnetic");
-  // Typed differently, but equal.
+  // The lattice is typed differently, but is equal.
   output_of(
       to_second(set("lattice={shape=[20,3,1],spacing=[1,1.0,7.5],boundary=['open','open',"
                     "'periodic'],moments=[1.0]}",
@@ -124,11 +124,11 @@ TEST_F(Restarting, NamesWhatElseDiffers) {
   expect_named(set("thermal={temperature=0.01,seed=2}"), "thermal");
   expect_named(set("integrator.dt=0.01"), "integrator.dt");
   EXPECT_EQ(info_of("second.h5").frame_steps.front(), 24);
-  // 1.0 equals 1, and keys of only the new run are not named.
+  // 1.0 equals 1, and keys that only the new run has are not named.
   output_of(to_second(set("field.exchange=1", "output.every=3", "initial={uniform=[0,0,1]}")));
 }
 
-// The method's memory of another motion would be wrong: the energy that it holds, for example.
+// After a change of the field, the method's memory (a previous rate, a step length) would be wrong.
 TEST_F(Restarting, ForgetsTheStepsOfAnotherMotion) {
   for (std::string const method : {"ab2", "dp5"}) {
     SCOPED_TRACE(method);
@@ -137,7 +137,7 @@ TEST_F(Restarting, ForgetsTheStepsOfAnotherMotion) {
     run_to("12", "first.h5", joined(same, {"--overwrite"}));
     auto const other = joined(same, set("field.applied=[3.0,-0.2,0.1]"));
     expect_named(other, "field.applied", "; the method begins again");
-    // By hand: the state as a start.
+    // Without --restart: the stored state is the start of a new run.
     run_to("13", "third.h5",
            joined(other, joined(set("initial={file='first.h5'}"), {"--overwrite"})));
     auto const one = last_spins("second.h5"), other_one = last_spins("third.h5");
@@ -177,7 +177,7 @@ TEST_F(Restarting, NeedsTheCheckpointOfAMethodThatRemembers) {
   auto const checkpoint = in_folder("first.checkpoint.h5");
   std::filesystem::rename(checkpoint, in_folder("kept.h5"));
   expect_refused(ab2, "first.checkpoint.h5 is not there");
-  // From another scene than the file's.
+  // A checkpoint of another scene.
   run_to("7", "other.h5", ab2);
   std::filesystem::rename(in_folder("other.checkpoint.h5"), checkpoint);
   expect_refused(ab2, "is of another scene");
@@ -209,7 +209,7 @@ TEST_F(Restarting, CheckpointsAreStoredWhereTheyAreNeeded) {
   expect_refused({}, "second.checkpoint.h5: cannot write the file: it exists");
 }
 
-// Killed without notice, far from its end.
+// The run is killed by SIGKILL, far from its end.
 TEST_F(Restarting, GoesOnFromTheCheckpointOfAKilledRun) {
   for (std::string const method : {"rkmk4", "ab2", "dp5"}) {
     SCOPED_TRACE(method);
@@ -240,7 +240,7 @@ TEST_F(Restarting, TakesTheMethodThatAutoChoseBefore) {
   };
   run_to("5", "first.h5", set(to("5")));
   auto const first = info_of("first.h5").header.resolved_scene;
-  // Uses the choice in the file, whatever would be chosen now.
+  // The restart uses the choice in the file, whatever would be chosen now.
   auto const before = io::parse_scene(first, "scene.toml").integrator;
   run_to("10", "second.h5", {"--set", to("10"), "--restart", "first.h5"});
   auto const second = info_of("second.h5");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// integrator.until_torque ends a run at a minimum of the energy: the torque is also small at a
-// maximum or a saddle.
+// integrator.until_torque ends a run only at a minimum of the energy, although the torque is also
+// small at a maximum or a saddle.
 #include "program_test.hpp"
 
 #include <array>
@@ -17,7 +17,7 @@ class Rests : public ProgramTest {
   struct Trial {
     std::string scene;
     Arguments more = {};
-    double end_z = 1;  // 0: either
+    double end_z = 1;  // 0: either sign
   };
 
   /// Expects the run to end early, at a minimum.
@@ -44,7 +44,8 @@ class Rests : public ProgramTest {
     return text;
   }
 
-  /// Returns spins at up to an angle from z, each in a random direction.
+  /// Returns an expression for spins near a pole, at about this angle, in directions that vary by
+  /// site.
   static std::string near_pole(double angle, unsigned seed, char const* pole = "-1") {
     std::mt19937 engine(seed);
     std::uniform_real_distribution<double> phase(0, 6.28);
@@ -62,7 +63,7 @@ class Rests : public ProgramTest {
   static constexpr auto film =
       "[lattice]\nshape = [5, 4]\n[field]\nexchange = 0.5\nanisotropy = { constant = 0.5, axis = "
       "[0, 0, 1] }\napplied = [0, 0, 0.8]";
-  // One spin at the top, one moving down.
+  // One spin at the maximum, one moving down.
   static constexpr auto apart = "[lattice]\nshape = [2]\n[field]\napplied = [0, 0, 1]";
 };
 
@@ -74,7 +75,7 @@ TEST_F(Rests, AreNotMaxima) {
     expect_minimum({scene(pair, near_pole(angle, seed + 1))});
     expect_minimum({scene(film, near_pole(angle, seed + 2))});
     expect_minimum({scene(film, near_pole(angle, seed + 3)), {"--precision", "single"}});
-    // One of two uncoupled spins falls from the top long after the other.
+    // Of two uncoupled spins, one leaves the maximum long after the other.
     char start[200];
     std::snprintf(start, sizeof start, "expression = [\"i == 0 ? %g : 1\", \"0\", \"-1\"]", angle);
     expect_minimum({scene(apart, start)});
@@ -82,7 +83,7 @@ TEST_F(Rests, AreNotMaxima) {
 }
 
 TEST_F(Rests, AreNotSaddles) {
-  // A hard axis along x, an easy one along z: y is a saddle, to which damping leads the spins.
+  // The hard axis is x, the easy one z, so y is a saddle, to which damping leads the spins.
   constexpr auto saddle =
       "[lattice]\nshape = [3]\n[field]\nexchange = 1\nanisotropy = [{ constant = 0.4, axis = [0, "
       "0, 1] }, { constant = -0.6, axis = [1, 0, 0] }]";
@@ -94,7 +95,8 @@ TEST_F(Rests, AreNotSaddles) {
 }
 
 TEST_F(Rests, OfAFilmInSi) {
-  // .4 T against the easy axis, more than the .25 T of the anisotropy.
+  // A field of .4 T opposite to the spins exceeds the anisotropy field of .25 T, so +z is a
+  // maximum.
   auto const film = [](double angle) {
     char text[600];
     std::snprintf(
@@ -116,7 +118,7 @@ TEST_F(Rests, ByMethods) {
     expect_minimum({scene(pair, near_pole(1e-9, 7), 0.2, method, 0.05)});
 }
 
-// Nothing moves a spin exactly at the top: the run says where it ended.
+// Nothing moves a spin exactly at the maximum. The run reports where it ended.
 TEST_F(Rests, AtATopAreNamed) {
   write("top.toml", scene(apart, "expression = [\"i\", \"0\", \"-1\"]"));
   auto const outcome = start({"run", "top.toml", "--output", "top.h5"});

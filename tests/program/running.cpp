@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The file of a successful run.
+// Successful runs: the file, messages and warnings.
 #include "program_test.hpp"
 
 #include <cmath>
@@ -102,7 +102,8 @@ TEST_F(Running, DtAboveTheStableOneIsWarnedOf) {
   EXPECT_TRUE(contains(outcome.errors, "warning: spin.toml:12: integrator.dt"));
 }
 
-// Order 8 is stable up to dt 6 in this field. On a chain the fast modes are those of exchange.
+// projected_rk8 is stable up to dt = 6 for this spin, but shorter steps already turn it too far and
+// are warned of. On a chain the exchange limits dt, and no turn below the stable dt is warned of.
 TEST_F(Running, TurnsBelowTheStableDtAreWarnedOfUnlessTheyAreThoseOfExchange) {
   auto const warning = [&](char const* dt, Arguments const& more) {
     auto const method = std::string("integrator={method='projected_rk8',steps=4,dt=") + dt + "}";

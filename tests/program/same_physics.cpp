@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// One scene in different forms must give one trajectory.
+// Different forms of one scene must give one trajectory.
 #include "../scene/hdf5_file.hpp"
 #include "program_test.hpp"
 
@@ -62,7 +62,7 @@ TEST_F(SamePhysics, StartFromFileGoesOn) {
   EXPECT_LT(distance({second.end() - 180, second.end()}, end), 1e-14);
 }
 
-// Exact: m turns about H by |H| t, right-handed. VALIDATION's rotating field is the library's test.
+// The exact solution without damping: m turns about H by |H| t, right-handed.
 TEST_F(SamePhysics, PrecessionIsRightHanded) {
   auto const m = spins(macrospin_scene(), set("system.damping=0", "initial.uniform=[1,0,0]",
                                               "integrator={method='rkmk4',dt=0.01,end=1.0}"));

@@ -32,7 +32,7 @@ TEST_F(SiScene, CheckPrintsBothKindsOfNumbers) {
   EXPECT_EQ(json.at("energy_unit"), units().energy_unit());
   EXPECT_TRUE(contains(output_of(joined({"check", scene}, set("thermal={temperature=300}"))),
                        "temperature 300 K (0.08583"));
-  // The value printed as stable can be typed.
+  // The stable dt that is printed can be used as integrator.dt.
   auto const typed = output_of(
       {"check", scene, "--json", "--set", text("integrator.dt=", double(json.at("stable_dt")))});
   EXPECT_NEAR(nlohmann::json::parse(typed).at("dt"), json.at("stable_dt"), 1e-25);
@@ -142,11 +142,11 @@ TEST_F(SiScene, UntilTorqueIsInTesla) {
   auto const m = last_spins("out.h5");
   double const torque = std::hypot(m[0], m[1]) * 1.0;
   EXPECT_LT(torque, 1e-4);
-  // It falls by exp(-alpha gamma B dt / (1 + alpha^2)) a step.
+  // A step multiplies the torque by this factor, so the run ended at the first small enough one.
   EXPECT_GT(torque, 1e-4 * std::exp(-0.1 * gamma_e * 1.05e-12 / 1.01));
 }
 
-// The chosen method depends on the machine, and so does a warning about dt.
+// The choice of a method depends on the machine, and so does whether a warning about dt appears.
 TEST_F(SiScene, AChosenMethodKeepsTheScenesTimes) {
   auto const run_by = [&](std::string const& text_of_scene, Arguments const& more) {
     auto const spins = end_of(text_of_scene, joined(more, {"--threads", "1"}));

@@ -11,7 +11,7 @@ namespace cayspin::program::test {
 
 inline constexpr double gamma_e = 1.760859e11;
 
-/// Formats with every digit.
+/// Formats numbers with 17 digits.
 template <class... Parts>
 std::string text(Parts const&... parts) {
   std::ostringstream stream;
@@ -20,7 +20,7 @@ std::string text(Parts const&... parts) {
   return stream.str();
 }
 
-/// A film of a material in SI, and one atom.
+/// Scenes in SI: a film of a material, and one atom.
 class SiScene : public ProgramTest {
  protected:
   static std::string film(std::string const& integrator, std::string const& applied) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The files of scenes in SI.
+// The files that runs of scenes in SI write.
 #include "io/ovf.hpp"
 #include "si_scene.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// [[stage]]: one file with the bits of separate runs, which continues from any point.
+// [[stage]]: one file with the bits of separate runs; it can be continued from any point.
 #include "program_test.hpp"
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ integrator = { method = "rkmk4", dt = 0.04, steps = 15 }
     return io::read_spins(in_folder(name), info.header.shape, frame);
   }
 
-  /// Returns the end of a run without stages that continues from a file.
+  /// Continues from a file in a run without stages; returns the last spins.
   std::vector<double> by_hand(std::string const& from, Arguments const& changes) const {
     auto const outcome = start(joined(
         {"run", "chain.toml", "--quiet", "--output", "hand.h5", "--overwrite", "--restart", from},
@@ -62,7 +62,7 @@ TEST_F(Stages, HaveTheBitsOfRunsByHand) {
     auto const second = by_hand(
         "first.h5", joined(same, set(turned, "integrator={method='heun',dt=0.01,steps=80}")));
     EXPECT_EQ(second, spins("out.h5", 6));
-    // A start from a file is normalised, which changes its bits.
+    // relax starts from a file, which is normalised, so bits differ.
     output_of(joined(joined({"relax", "chain.toml", "--quiet", "--output", "relaxed.h5", "--torque",
                              "1e-5", "--overwrite"},
                             same),
@@ -87,7 +87,7 @@ TEST_F(Stages, SeeTheTimeOfTheWholeRun) {
   EXPECT_GT(distance(staged, spins("out.h5", 0)), 1e-3);
 }
 
-// Noise depends on the step of the whole run.
+// Noise depends on the step counted over all stages.
 TEST_F(Stages, GoOnWithTheNoise) {
   auto const heat = set("thermal={temperature=0.01,seed=5}", "field.applied=[0,0,1]");
   run(chain_scene(), heat);
@@ -97,7 +97,7 @@ TEST_F(Stages, GoOnWithTheNoise) {
   EXPECT_EQ(last_spins("out.h5"), whole);
 }
 
-// Shortened stages emulate a run interrupted there.
+// Shortening a stage emulates a run interrupted in it.
 TEST_F(Stages, GoOnInTheStageWhereTheyWereLeft) {
   auto const scene = chain_scene() + three();
   struct Left {
@@ -133,7 +133,7 @@ TEST_F(Stages, GoOnInTheStageWhereTheyWereLeft) {
   }
 }
 
-// A second interruption, in the stage of the first one, and one in the next.
+// The continued run is interrupted in the same stage, and continued once more.
 TEST_F(Stages, GoOnMoreThanOnce) {
   for (std::string const method : {"method='rkmk4'", "method='tsit5',tolerance=1e-9,max_dt=0.1"}) {
     auto const scene = chain_scene() +
@@ -206,7 +206,7 @@ integrator = { method = "rkmk4", dt = 0.1, end = 5.0 }
   EXPECT_EQ(info.frame_steps, (std::vector<std::int64_t>{0, 0, 50}));
   auto const& m = info.frame_scalars[1].magnetization;
   EXPECT_NEAR(m[2], 1, 1e-12);
-  // m_x = tanh(a t), a the damping, from m_x = 0 along z.
+  // With damping a, m_x = tanh(a t) from a start along z.
   EXPECT_NEAR(info.frame_scalars[2].magnetization[0], std::tanh(0.5 * 5), 1e-4);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// cayspin sweep: all combinations in one file, however often it was interrupted.
+// cayspin sweep: all combinations are in one file, however often the sweep was interrupted.
 #include "io/sweep.hpp"
 #include "program_test.hpp"
 
@@ -80,13 +80,13 @@ TEST_F(Sweeping, GoesOnAfterAKill) {
     return fs::exists(io::swept_run_file(file, 2)) && fs::exists(io::swept_run_file(file, 3));
   }));
   EXPECT_EQ(end(sweep_process, SIGKILL), 128 + SIGKILL) << "it ended before it was killed";
-  auto const torn = io::read_sweep(file);  // it is complete
+  auto const torn = io::read_sweep(file);  // the index is readable
   EXPECT_FALSE(torn.complete);
   auto const early = io::read_info(io::swept_run_file(file, 0)).cost.wall_seconds;
   EXPECT_GT(early, 0);
   expect_refused(all("killed.h5.runs/none/killed.h5"), "does not exist");
 
-  // A reader that has it open does not matter.
+  // The sweep continues even if a reader has the file open.
   hid_t const reader = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   auto const output = output_of(all("killed.h5"));
   H5Fclose(reader);
@@ -120,11 +120,11 @@ TEST_F(Sweeping, RefusesADamagedRunUntilItIsDeleted) {
   EXPECT_EQ(end(process, SIGKILL), 128 + SIGKILL);
   auto const right = read_dataset("torn.h5.runs/0000.h5", "/spins").values;
   damage_spins(io::swept_run_file(file, 0), right);
-  auto const outcome = expect_status(2, all);  // the last one ran
+  auto const outcome = expect_status(2, all);  // still runs the last one
   EXPECT_TRUE(contains(outcome.errors, "torn.h5.runs/0000.h5: "));
   EXPECT_TRUE(fs::exists(io::swept_run_file(file, 2)));
   fs::remove(io::swept_run_file(file, 0));
-  fs::resize_file(io::swept_run_file(file, 1), 1000);  // noticed when the sweep continues
+  fs::resize_file(io::swept_run_file(file, 1), 1000);  // the sweep runs a truncated one again
   EXPECT_TRUE(contains(output_of(all), "2 of 2  run 0001"));
   EXPECT_EQ(spins("torn.h5", 0), right);
 }
@@ -158,7 +158,7 @@ TEST_F(Sweeping, RecordsARunThatFails) {
   EXPECT_FALSE(contains(again.output, "of 3  run"));
 }
 
-// The processes of a sweep's runs: the children of its process.
+// Returns the processes of a sweep's runs, which are children of its process.
 std::vector<pid_t> children_of(pid_t process) {
   std::ifstream list(fmt::format("/proc/{0}/task/{0}/children", process));
   return {std::istream_iterator<pid_t>(list), {}};
@@ -193,7 +193,7 @@ TEST_F(Sweeping, AnInterruptKeepsWhatIsDone) {
   EXPECT_FALSE(sweep.complete);
   EXPECT_EQ(sweep.runs[0].status, 0);
   EXPECT_EQ(sweep.runs[1].status, io::SweptRun::not_run);
-  EXPECT_EQ(spins("stopped.h5", 0).size(), 2u * 3 * 20 * 3);  // through its link
+  EXPECT_EQ(spins("stopped.h5", 0).size(), 2u * 3 * 20 * 3);  // by the link in the sweep's file
   EXPECT_TRUE(contains(output_of({"info", "stopped.h5"}), "open"));
 }
 
@@ -202,7 +202,7 @@ TEST_F(Sweeping, TakesWordsWithoutQuotes) {
   EXPECT_EQ(sweep_in("words.h5").header.overrides(0),
             std::vector<std::string>{"integrator.method=\"heun\""});
   EXPECT_NE(spins("words.h5", 0), spins("words.h5", 1));
-  // It is one sweep, however it is typed.
+  // With quotes the sweep is the same one.
   output_of(sweep_into("words.h5", {"--quiet", "--over", "integrator.method=\"heun\",\"rkmk4\""}));
 }
 

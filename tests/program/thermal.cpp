@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// [thermal]: equal bits for any interruption and observation of a run, and the output of `check`.
+// [thermal]: bits do not depend on interruptions or observations of a run; the output of `check`.
 #include "program_test.hpp"
 
 #include <nlohmann/json.hpp>
@@ -96,7 +96,8 @@ TEST_F(Thermal, TemperatureZeroIsNoTemperature) {
   EXPECT_EQ(last_spins("zero.h5"), last_spins("cold.h5"));
 }
 
-// Spins in equilibrium take up energy; numbers that are not finite stop a run as usual.
+// Noise may raise the energy above a start at equilibrium; values that are not finite still stop a
+// run.
 TEST_F(Thermal, TheGuardLetsEnergyRise) {
   Arguments const from_rest = set("initial={uniform=[0,0,1]}", "field={exchange=1.0}");
   end_of("out.h5", from_rest);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// cayspin modes of spins that a current moves: closed forms, a run in time.
+// cayspin modes with the torques of currents, compared with closed forms and with a run in time.
 #include "modes_test.hpp"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ struct TorqueModes : Modes {
       "applied = [0, 0, 0.3]";
 };
 
-// With the polarization along the axis a spin near it obeys
+// With the polarization along the axis, a spin near the axis obeys
 //   dm/dt = -(H + b - damping a) m x z - (damping (H + b) + a) dm.
 TEST_F(TorqueModes, OfAParticleWithAPolarizationAlongItsAxis) {
   double const damping = 0.1, b = 0.05, field = 1.3 + b;
@@ -73,7 +73,7 @@ TEST_F(TorqueModes, AreWavesWithADopplerShiftInACurrent) {
   }
 }
 
-// A small deviation x at equal intervals obeys x'' = 2 e^(-d) cos(w) x' - e^(-2 d) x.
+// Small deviations x, x' and x'' at equal intervals obey x'' = 2 e^(-d) cos(w) x' - e^(-2 d) x.
 TEST_F(TorqueModes, MoveAsInARun) {
   auto const text = scene(
       "shape = [3]\n[field]\nexchange = 2.0\nanisotropy = { constant = 1.0, axis = [0, 0, 1] }"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// `cayspin trade` and `cayspin advise`: their errors are those of the runs that they name.
+// `cayspin trade` and `cayspin advise`: the errors they print are those of the runs they name.
 #include "early_rest.hpp"
 #include "program_test.hpp"
 
@@ -13,7 +13,7 @@
 namespace cayspin::program::test {
 namespace {
 
-/// Returns the arguments of a recommended command, after the scene.
+/// Returns the arguments after the scene of the recommended command.
 Arguments advised_arguments(std::string const& advice) {
   std::istringstream lines(advice);
   Arguments arguments;
@@ -57,7 +57,7 @@ end = 4.0
   std::string advise(std::string const& error, Arguments const& more = {}) const {
     return output_of(joined({"advise", "scene.toml", "--error", error, "--threads", "1"}, more));
   }
-  // Reads from out.h5.
+  // Reads out.h5.
   void expect_equal_times(char const* dataset, double apart, std::size_t count) const {
     auto const times = read_dataset("out.h5", dataset).values;
     ASSERT_EQ(times.size(), count) << dataset;
@@ -90,7 +90,8 @@ TEST_F(Trading, ErrorsFallAndParetoFrontHasNoDominatedPoint) {
     for (auto const& [other, others] : front) EXPECT_FALSE(other <= error && others < seconds);
 }
 
-/// Returns the lines of a text from one with this start to the next empty one, without it.
+/// Returns the lines from the one that starts with the heading (not included) to the next empty
+/// one.
 std::vector<std::string> table_below(std::string const& text, std::string const& heading) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
@@ -137,7 +138,7 @@ TEST_F(Trading, ItsTextHasEveryRungAndJudgesTheAdvice) {
   }
 }
 
-// Error and evaluations equal those of a separate run with that dt.
+// Evaluations equal those of a separate run with that dt, and the error is comparable.
 TEST_F(Trading, ARungIsARunOfTheScene) {
   auto const reference = exact();
   auto const all = trade({"--seconds", "2"});
@@ -151,7 +152,7 @@ TEST_F(Trading, ARungIsARunOfTheScene) {
     exactly << "integrator={method='rkmk4',dt=" << dt << ",steps=" << steps << "}";
     auto const numbers = end(set(exactly.str()));
     EXPECT_EQ(rung["evaluations"], 4 * steps);
-    // The largest of a dozen samples.
+    // The error of a rung is the largest at a dozen times, not only at the end.
     EXPECT_GE(rung["error"].get<double>(), 0.9 * distance(numbers, reference));
     EXPECT_LE(rung["error"].get<double>(), 100 * distance(numbers, reference));
   }
@@ -194,7 +195,7 @@ TEST_F(Trading, AnAdvisedRunHasTheErrorAskedFor) {
 
 /// A scene to advise on, compared at each of its frames.
 struct Watched : Trading {
-  /// Returns the ratio of error to requested error: the largest at any frame.
+  /// Returns the largest error at any frame, divided by the requested error.
   double error(std::string const& text, std::string const& asked) const {
     auto const frames = [&](Arguments const& more) {
       end_of(text, joined(more, {"--threads", "1"}));
@@ -207,8 +208,8 @@ struct Watched : Trading {
   }
 };
 
-// 40 radians in a fourth of the run: steps that long do not converge in an implicit method, which
-// halves them. Runs with 4 and 8 steps then end equally.
+// The spin turns by 40 radians in a quarter of the run. An implicit method halves steps that long,
+// since they do not converge, so runs with 4 and with 8 steps end equally.
 TEST_F(Watched, OneSpinThatTurnsFast) {
   std::string const scene = R"toml([system]
 kind = "llg"
@@ -231,7 +232,7 @@ every = 10
     EXPECT_LT(this->error(scene, error), 2) << error;
 }
 
-// All motion happens in the first fiftieth of the run.
+// Most of the motion happens in the first twentieth of the run.
 TEST_F(Watched, ASlabThatComesToRestEarly) {
   std::string const scene = early_rest(R"toml([integrator]
 method = "rkmk8"
@@ -268,7 +269,8 @@ TEST_F(Trading, AScenesStartAloneIsNoChoice) {
 }
 
 TEST_F(Trading, AnAdvisedRunWarnsOfNothingThatTheAdviceDoesNotSay) {
-  // A constant sigma is fast here, far above the dt that is stable for nearly uniform spins.
+  // A constant sigma is fast here, at a dt far above the one that is stable for nearly uniform
+  // spins.
   std::string const disordered = "lattice={shape=[4,4,4],boundary=\"periodic\"}";
   for (std::string const refuse : {"false", "true"}) {
     auto const advice =
@@ -305,7 +307,7 @@ TEST_F(Trading, AdviseReportsBudgetExceeded) {
   EXPECT_TRUE(contains(outcome.errors, "beyond the budget"));
 }
 
-// Without --precision both are tried: here single precision is among the fastest.
+// Without --precision, both are tried; single precision is among the fastest here.
 TEST_F(Trading, TriesTheOnePrecisionThatIsAskedFor) {
   for (std::string const precision : {"double", "single"}) {
     auto const methods = trade({"--seconds", "0.1", "--precision", precision})["methods"];
@@ -336,7 +338,7 @@ TEST_F(Trading, AnAdviceNamesTheSpaceAndThreadsOfItsTime) {
   EXPECT_TRUE(contains(command, " --space " + another_space)) << command;
   auto const threads = advise("1e-3", {"--precision", "double"});
   EXPECT_TRUE(contains(threads, " --space " + default_space + " --threads 1\n")) << threads;
-  // The scene names no file.
+  // The scene names no output file, so the advice does.
   EXPECT_TRUE(contains(threads, "--set 'output.file=\"scene.h5\"'")) << threads;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Samples, costs and duration of `cayspin trade` and `cayspin advise`.
+// `cayspin trade` and `cayspin advise`: which errors they report, their costs, and their duration.
 #include "early_rest.hpp"
 #include "program_test.hpp"
 
@@ -30,7 +30,7 @@ struct Looks : ProgramTest {
                                  [&](json const& one) { return one.at("method") == name; });
   }
 
-  /// Returns frames at each of so many steps, and of steps `finer` times as fine.
+  /// Returns frames at the times of `steps` equal steps, from a run with `finer` times as many.
   std::vector<double> frames(std::int64_t steps, std::int64_t finer) const {
     std::ostringstream integrator;
     integrator.precision(17);
@@ -42,12 +42,12 @@ struct Looks : ProgramTest {
   }
 };
 
-// At its end the error of this run is a millionth of that during the motion.
+// At the end of this run the error is a millionth of the error during the motion.
 TEST_F(Looks, ErrorsOfTradeAreThoseOfTheMotion) {
   auto const all = trade();
   for (auto const& rung : method(all, "rkmk4").at("rungs")) {
     auto const steps = std::llround(20 / rung.at("dt").get<double>());
-    if (steps < 160 || steps > 400) continue;  // stable, and quick
+    if (steps < 160 || steps > 400) continue;  // keeps to stable and quick runs
     double const largest = distance(frames(steps, 1), frames(steps, 8));
     EXPECT_GT(rung.at("error").get<double>(), 0.3 * largest) << steps;
     EXPECT_LT(rung.at("error").get<double>(), 1.01 * largest) << steps;
@@ -83,7 +83,7 @@ TEST_F(Looks, CostsOfErrorsLieBetweenTheRunsOfALadder) {
   EXPECT_NEAR(ratio, 3.162, 0.3);
 }
 
-// This error of disordered spins once took 40 s.
+// Finding a method for this error with disordered spins once took 40 s.
 TEST_F(Looks, AdviceTakesNoLongerThanItSays) {
   auto const disordered =
       set("lattice={shape=[8,8,8],boundary='periodic'}", "field={exchange=1.0,applied=[0,0,0.5]}",

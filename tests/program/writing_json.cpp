@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// --json of relax, modes and path prints the numbers of their files; that of methods, the table.
+// --json of relax, modes and path prints the values in their files; methods --json prints its
+// table.
 #include "json_output.hpp"
 
 #include <algorithm>

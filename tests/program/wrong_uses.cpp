@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Every wrong use and wrong scene: one line on standard error, status 2, no file.
+// Every wrong use and wrong scene gets one line on standard error and status 2, and no file.
 #include "../scene/hdf5_file.hpp"
 #include "program_test.hpp"
 
@@ -11,14 +11,14 @@ namespace fs = std::filesystem;
 struct WrongUse {
   char const* name;
   Arguments arguments;
-  char const* named;  // words that the line must contain
+  char const* named;  // text that the line must contain
 
   friend std::ostream& operator<<(std::ostream& stream, WrongUse const& use) {
     return stream << use.name;
   }
 };
 
-// Each is appended to "run chain.toml". tests/scene has the messages of single keys.
+// The arguments are appended to "run chain.toml". tests/scene checks the messages of single keys.
 std::vector<WrongUse> wrong_scenes() {
   return {
       {"UnknownKey", set("lattice.spacng=1"), "spacing"},
@@ -99,7 +99,7 @@ TEST_P(WrongCommand, IsOneLineAndStatusTwo) {
 INSTANTIATE_TEST_SUITE_P(Program, WrongCommand, testing::ValuesIn(wrong_commands()),
                          [](auto const& use) { return std::string(use.param.name); });
 
-#if !defined(CAYSPIN_HOST_DEVICE)  // not built with it
+#if !defined(CAYSPIN_HOST_DEVICE)  // cayspin-reproduce is not built with it
 INSTANTIATE_TEST_SUITE_P(
     Siblings, WrongCommand,
     testing::Values(WrongUse{"UnknownPartOfThePaper", {"reproduce", "table9"}, "table1"},
@@ -113,14 +113,14 @@ TEST_F(MissingSibling, IsOneLineAndStatusTwo) {
   auto const folder = in_folder("bin");
   fs::create_directory(folder);
   fs::copy_file(CAYSPIN_PROGRAM, folder / "cayspin");
-  // Its shared library, where it has one.
+  // The program's shared library, if it has one.
   fs::create_directory_symlink(fs::path(CAYSPIN_PROGRAM).parent_path().parent_path() / "lib",
                                in_folder("lib"));
   expect_refused({"reproduce"}, (folder / "cayspin-reproduce").string(),
                  {.program = folder / "cayspin"});
 }
 
-/// Files that a command reads, which its output must not replace.
+/// Files that a command reads must not be replaced by its output.
 struct ReadFiles : ProgramTest {
   void expect_kept(std::string const& file, Arguments const& arguments) const {
     auto const before = text_of(file);
@@ -159,7 +159,7 @@ TEST_F(ReadFiles, AreNotReplacedByTheOutputOfAnyCommand) {
                "--output", "out.h5"});
 }
 
-// The table, and a file that is begun under another name.
+// Other files that a run writes: its table, and the .partial file as which it begins its output.
 TEST_F(ReadFiles, AreNotReplacedByFilesBesideTheOutput) {
   write("chain.txt", chain_scene());
   expect_kept("chain.txt", joined({"run", "chain.txt"}, set("output.table=true")));

@@ -15,7 +15,7 @@ enum class Method { euler, heun, rkmk4, chart, ab2, projected_rk4, midpoint };
 inline constexpr std::array<char const*, 7> method_names{
     "euler", "heun (exponential)", "rkmk4", "rk4 in the chart", "ab2", "projected_rk4", "midpoint"};
 
-/// Random numbers equal for a seed with any standard library.
+/// Random numbers that depend only on the seed, not on the standard library.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : engine_(seed) {}
@@ -35,19 +35,19 @@ class Draw {
   std::mt19937_64 engine_;
 };
 
-/// A random scene, determined by seed and number.
+/// A random scene, determined by its seed and number.
 struct RandomScene {
   std::uint64_t seed;
   std::int64_t number;
   Method method;
   bool single, orthogonal;
   Slab slab;
-  double share;  // of the stable dt, or of 1 / (field bound) without one
+  double share;  // dt over the stable dt, or over 1 / rate if there is none
   int steps;
   unsigned start;
 
   static RandomScene drawn(std::uint64_t seed, std::int64_t number) {
-    // Adjacent seeds and numbers are unrelated.
+    // Hashed so that adjacent seeds and numbers give unrelated scenes.
     Draw draw((seed + 1) * 0x9e3779b97f4a7c15u + static_cast<std::uint64_t>(number) * 1000003u);
     RandomScene scene{};
     scene.seed = seed;
@@ -90,7 +90,7 @@ struct RandomScene {
   }
 
  private:
-  // One in twelve is large enough to be shared between threads.
+  // One lattice in twelve is large enough to be divided among threads.
   static Lattice lattice(Draw& draw) {
     static constexpr std::array<std::int64_t, 3> large[] = {
         {2053, 1, 1}, {2, 1031, 1}, {53, 41, 1}, {1, 7, 307}, {13, 13, 13}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Properties of every scene, on new random scenes in each run: |m| = 1, a falling energy, equal
-// bits on every host space, and reversibility of symmetric methods.
+// Properties of every scene, tested on new random scenes in each run: |m| = 1, a falling energy,
+// equal bits on every host space, and reversibility of symmetric methods.
 #include "../support/backends.hpp"
 #include "random_scene.hpp"
 
@@ -12,7 +12,7 @@
 namespace cayspin::test {
 namespace {
 
-/// Both generators as one type, selected at run time.
+/// Both generators in one type, selected at run time.
 template <class Llg>
 struct EitherGenerator {
   Llg llg;
@@ -35,7 +35,7 @@ struct EitherGenerator {
 template <class Llg>
 EitherGenerator(Llg, bool) -> EitherGenerator<Llg>;
 
-/// The largest observed value, in units of the allowed one, and the number of observations.
+/// The largest observed value, in units of the allowed one, and the number of scenes.
 struct Property {
   std::int64_t scenes = 0;
   double largest = 0;
@@ -51,13 +51,13 @@ struct Property {
   }
 };
 
-/// Space of a second run with equal bits: all threads of a host, or the same device.
+/// Space of a second run, which must give equal bits: all threads of a host, or the same device.
 using Again =
     std::conditional_t<detail::is_host_execution<Space>, Kokkos::DefaultHostExecutionSpace, Space>;
 
 struct Properties {
   Property norm, energy, bits, reversal, red_black;
-  std::int64_t not_reversed = 0;  // by methods that are not symmetric
+  std::int64_t not_reversed = 0;  // runs of methods that are not symmetric
 };
 
 template <class Stepper>
@@ -91,12 +91,14 @@ class Check {
     return scene_.share / rate;
   }
 
-  // The chart loses digits where a stage comes close to -m0, which may happen from 0.85 on.
+  // The chart loses digits where a stage comes close to -m0, which is possible from a share of 0.85
+  // on.
   double share_of_norm() const { return scene_.method == Method::chart ? 0.7 : 1; }
 
-  // The bound holds for nearly uniform states; from others the energy may rarely rise below it,
-  // observed above 0.9 of it at orders 1 and 2. At order 4 the method's own energy error, of (dt
-  // |A|)^5, must stay below the loss by small damping, damping dt |A|. ab2 has no bound.
+  // The stable dt is for nearly uniform states. From other states the energy may rise in rare cases
+  // at shorter steps: at orders 1 and 2 this was observed only above 0.9 of it. At order 4 the
+  // method's own energy error, of (dt |A|)^5, must stay below the loss by damping, of damping dt
+  // |A|. ab2 has no stable dt.
   bool energy_falls() const {
     if constexpr (is_midpoint) return true;
     if (scene_.method == Method::ab2) return false;
@@ -106,7 +108,7 @@ class Check {
     return scene_.share < 0.25 && std::pow(turn, 4) < 5 * damping;
   }
 
-  /// Checks the end, and |m| and E after each step.
+  /// Checks the spins at the end, and |m| and E after each step.
   Field check_steps(Field const& start) {
     auto const source = generator();
     Field spins = copy_of(start);
@@ -128,7 +130,7 @@ class Check {
     return spins;
   }
 
-  // On the threaded space without observers, so that steps may be taken in batches.
+  // Runs on the threaded space without observers, so that steps may be taken in batches.
   void check_bits(Field const& start, Field const& end) {
     Field spins = copy_of(start);
     Stepper stepper(spins);
@@ -149,7 +151,8 @@ class Check {
       all_.not_reversed += away > 1;
   }
 
-  // Steps are solved to 8 epsilon, and adjacent paths diverge at most by the field's rates.
+  // Each step is solved to 8 epsilon; adjacent trajectories diverge at most at the rate of the
+  // field bound.
   double reversal_bound() const {
     double const rate = dt_ * scene_.slab.field_bound();
     return 4 * eps * scene_.steps * std::exp(0.5 * rate * scene_.steps);
@@ -202,8 +205,8 @@ double distance_after_return(RandomScene const& scene, double dt) {
   return largest_distance(spins, start);
 }
 
-/// Returns the distance of an undamped scene from its start after as many red-black steps of -dt as
-/// of dt, in units of the allowed one. The longest part of a step, 1.7 dt at order 4, is short
+/// Takes red-black steps of dt and as many of -dt in an undamped scene. Returns the distance from
+/// the start, in units of the allowed one. The longest part of a step, 1.7 dt at order 4, is short
 /// enough for the iteration of the on-site terms to converge.
 template <class Real>
 double red_black_reversal(RandomScene const& scene) {

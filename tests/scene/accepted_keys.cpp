@@ -15,7 +15,7 @@ std::string page() {
   return text.str();
 }
 
-/// Returns the message for a scene with an unknown key in a table.
+/// Returns the message for an unknown key in a table.
 std::string said_of(std::string_view scene, std::string const& assignment) {
   try {
     parse_scene(std::string(scene), "scene.toml", {assignment});
@@ -75,7 +75,7 @@ TEST(AcceptedKeys, AreTheOnesOfThePage) {
   EXPECT_GE(lists, 15);
 }
 
-// Values passed by a program are named by their kind.
+// A message describes values passed by a program, which have no key or file to name.
 TEST(AcceptedKeys, ArraysWhereNoneIsTakenAreNamed) {
   Given given;
   given.numbers["output"] = std::make_shared<std::vector<double> const>(3, 1.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Cells, sites and bonds in scenes.
+// Cells, sites, bonds and starts of crystals in scenes.
 #include "hdf5_file.hpp"
 #include "io/ovf.hpp"
 #include "scene_file.hpp"
@@ -106,7 +106,7 @@ TEST(Crystals, WordsAreCells) {
   }
 }
 
-// Numbers of neighbours of each site at the first distances.
+// Expects the textbooks' numbers of neighbours of each site at the first distances.
 TEST(Crystals, ShellsHoldTheNeighboursOfTextbooks) {
   struct Case {
     Crystal crystal;
@@ -120,7 +120,7 @@ TEST(Crystals, ShellsHoldTheNeighboursOfTextbooks) {
         Case{Crystal::hcp(), {12, 6, 2, 18, 12}}, Case{Crystal::pyrochlore(), {6, 12, 12}},
         Case{Crystal::honeycomb(), {3, 6, 3, 6, 6}, film}, Case{Crystal::kagome(), {4, 4, 6}, film},
         Case{Crystal::simple_cubic(), {2, 2, 2, 2, 2}, {false, true, false}},
-        // A skew cell of the simple cubic crystal.
+        // A skew cell of the simple cubic crystal
         Case{{{{{1, 0, 0}, {3, 1, 0}, {-5, 2, 1}}}, {{0, 0, 0}}}, {6, 12, 8, 6}}}) {
     std::vector<double> exchange;
     for (std::size_t shell = 0; shell < neighbours.size(); ++shell)
@@ -189,7 +189,7 @@ TEST(Crystals, BondsThatCannotBeListedAreRefused) {
 }
 
 TEST(Crystals, CellsWhosePlanesOverflowAreRefused) {
-  std::int64_t const cells = (std::int64_t{1} << 62) + 1;  // of 4 sites: 4 planes, less 2^64
+  std::int64_t const cells = (std::int64_t{1} << 62) + 1;  // of 4 sites: 4 planes modulo 2^64
   EXPECT_THROW(Crystal::fcc().lattice({1, 1, cells}), std::invalid_argument);
 }
 
@@ -241,12 +241,12 @@ TEST(Crystals, ExpressionsThatFailAreNamed) {
                ": lattice.occupied: leaves no spin; accepted: ");
   expect_holds(later({R"(initial={expression=["0","0","k-1+s"]})"}),
                "the spin of site 1 of cell (0, 0, 0) is (0, 0, 0)");
-  // The spin may be zero where there is none.
+  // The expression may be zero on sites without a spin.
   EXPECT_EQ(later({"lattice.occupied='k==1'", R"(initial={expression=["0","0","k"]})"}),
             "accepted");
 }
 
-// Returns a number for each component that identifies its site.
+// Returns values for `frames` frames of 48 sites that show which component was read.
 std::vector<double> numbered(std::size_t frames) {
   std::vector<double> numbers(frames * 144);
   for (std::size_t n = 0; n < numbers.size(); ++n) numbers[n] = 1 + static_cast<double>(n * n % 89);

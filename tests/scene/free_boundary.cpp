@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The anisotropy of open sides that represents DMI with a free boundary.
+// The anisotropy at open sides by which a scene represents the free boundary of DMI.
 #include "scene_file.hpp"
 
 #include <cayspin/crystal.hpp>
@@ -28,7 +28,7 @@ dt = 0.1
 steps = 1
 )toml";
 
-/// Returns the constants of a scene's terms along an axis, summed.
+/// Returns for each site the sum of the anisotropy constants along an axis.
 std::vector<double> constants_along(Scene const& scene, Triple const& axis) {
   std::vector<double> sum(static_cast<std::size_t>(sites(scene)));
   for (auto const& term : scene.field.anisotropies) {
@@ -39,10 +39,10 @@ std::vector<double> constants_along(Scene const& scene, Triple const& axis) {
   return sum;
 }
 
-// At each open side -D^2/A along the vector of its bonds, where H = A Lap(m).
+// Each open side adds a constant of -D^2/A along the DMI vector of its bonds, where H = A Lap(m).
 TEST(FreeBoundary, IsAHardAxisAtEachOpenSide) {
   auto const scene = scene_of(dmi_film);
-  EXPECT_EQ(scene.field.anisotropies.size(), 2U);  // along z, the normal, there is no interaction
+  EXPECT_EQ(scene.field.anisotropies.size(), 2U);  // no DMI along the normal, z
   auto const of_x = constants_along(scene, {0, 1, 0}), of_y = constants_along(scene, {1, 0, 0});
   double const one = -0.6 * 0.6 / 2;
   for (std::size_t site = 0; site < 24; ++site) {
@@ -57,8 +57,8 @@ TEST(FreeBoundary, IsAHardAxisAtEachOpenSide) {
                   .field.anisotropies.empty());
 }
 
-// The spin beyond the end by the boundary condition, m' = m + h D/A m x d, gives the torque of this
-// anisotropy by its exchange and its interaction, A/h^2 (m' - m) + D/h d x m'.
+// By the boundary condition the spin beyond the end is m' = m + h D/A m x d. The field of its bond,
+// A/h^2 (m' - m) + D/h d x m', has the torque of this anisotropy.
 TEST(FreeBoundary, IsTheTorqueOfATurnedSpin) {
   using cayspin::detail::scalar_product, cayspin::detail::vector_product;
   std::mt19937_64 random(13);
@@ -86,7 +86,7 @@ TEST(FreeBoundary, IsTheTorqueOfATurnedSpin) {
     auto field = sum(Triple{}, D / h, vector_product(d, beyond));
     field = sum(field, A / (h * h), sum(beyond, -1, m));
     auto const difference =
-        sum(field, -K * scalar_product(m, term.axis), term.axis);  // along m, without a torque
+        sum(field, -K * scalar_product(m, term.axis), term.axis);  // parallel to m
     for (double const torque : vector_product(m, difference)) EXPECT_NEAR(torque, 0, 1e-14);
   }
 }
@@ -136,7 +136,7 @@ TEST(FreeBoundary, IsAlsoThatOfVacancies) {
           EXPECT_NEAR(of_x[n], one * (!has(i - 1, j, k) + !has(i + 1, j, k)), 1e-15);
           EXPECT_NEAR(of_y[n], one * (!has(i, j - 1, k) + !has(i, j + 1, k)), 1e-15);
         }
-    // A part of the lattice gives the values of the whole.
+    // The values for a part of the lattice are those of the whole.
     for (auto const& term : scene.field.anisotropies) {
       SiteBox const box{{1, 1, 1}, {2, 2, 1}};
       auto const all = numbers_of_sites(scene, term.factors, "", whole(scene));
@@ -146,7 +146,7 @@ TEST(FreeBoundary, IsAlsoThatOfVacancies) {
   }
 }
 
-// mumax3's mirror spins at open sides equal a hard axis of -D^2/(4 A), a constant Ku.
+// In mumax3, mirror spins at open sides act as a hard axis with Ku = -D^2/(4 A).
 TEST(FreeBoundary, InSiIsThatOfMumax) {
   std::string const si = R"toml(units = "SI"
 [material]
@@ -170,7 +170,7 @@ dt = 1e-14
 steps = 1
 )toml";
   auto const scene = scene_of(si);
-  // Ku = 1 J/m^3 is 2/(mu0 Ms^2): a constant typed in SI, for comparison.
+  // For comparison, a constant typed in SI: it is divided by mu0 Ms^2 / 2.
   double const ku = -9e-6 / (4 * 1.3e-11);
   auto const typed =
       scene_of(si, {"field.anisotropy={constant=" + fmt::format("{}", ku) + ",axis=[0,1,0]}"});

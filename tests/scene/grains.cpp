@@ -22,7 +22,8 @@ std::vector<double> values(Scene const& scene, std::string const& expression) {
   return values(scene, expression, whole(scene));
 }
 
-/// The nearest of all seeds, one at random in each of so many tiles, and of their images.
+/// Finds grains by brute force: each tile has one seed at a random place, and a point belongs to
+/// the nearest of all seeds and their images.
 class NearestOfAll {
  public:
   NearestOfAll(Scene const& scene, std::array<int, 3> tiles, std::uint64_t seed)
@@ -55,7 +56,7 @@ class NearestOfAll {
   }
 
  private:
-  // Not along an axis with one tile.
+  // Distances do not count along an axis with one tile.
   double distance(Triple const& a, Triple const& b) const {
     auto const sites = static_cast<std::int64_t>(lattice_.basis.size());
     Triple away{};
@@ -112,7 +113,7 @@ TEST(Grains, AreThoseOfTheNearestSeed) {
     for (std::size_t site = 0; site < found.size(); ++site)
       wrong += found[site] != nearest.at({x[site], y[site], z[site]});
     EXPECT_EQ(wrong, 0U);
-    // All grains are found if a tile has dozens of sites.
+    // If a tile has dozens of sites, every grain has some.
     auto const count = static_cast<std::size_t>(tiles[0] * tiles[1] * tiles[2]);
     if (found.size() > 50 * count) {
       EXPECT_EQ(std::set<double>(found.begin(), found.end()).size(), count);
@@ -159,7 +160,7 @@ TEST(RandomNumbers, AreUniformAndOfOneGrain) {
     square += noise[site] * noise[site] / 20000;
     product += noise[site] * more[site] / 20000;
   }
-  // Four standard errors.
+  // The limits are four standard errors.
   EXPECT_NEAR(mean, 0.5, 4 / std::sqrt(12 * 20000.0));
   EXPECT_NEAR(square, 1 / 3.0, 4 * std::sqrt(4 / 45.0 / 20000));
   EXPECT_NEAR(product, 0.25, 4 * std::sqrt((1 / 9.0 - 1 / 16.0) / 20000));

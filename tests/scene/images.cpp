@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Site-dependent numbers from the pixels of images.
+// Site-dependent values from the pixels of images.
 #include "scene_file.hpp"
 
 #include <cstdint>
@@ -58,7 +58,7 @@ TEST(Images, WrongKeysAreRefusedInOneLine) {
 }
 
 #if defined(CAYSPIN_HAS_PNG)
-/// Writes pixels of so many bytes, top row first.
+/// Writes pixels in a PNG format, with the top row first.
 void write_png(std::filesystem::path const& path, std::uint32_t width,
                std::vector<std::uint8_t> const& pixels, std::uint32_t format = PNG_FORMAT_GRAY) {
   png_image image{};
@@ -81,7 +81,7 @@ std::vector<int> occupied_by(Folder const& folder, std::string const& keys,
 
 TEST(Images, HaveTheirTopRowAtTheLargestY) {
   Folder const folder;
-  // The letter L of 4 x 3 pixels.
+  // The letter L, in an image of 4 x 3 pixels.
   write_png(folder / "l.png", 4, {0, 255, 255, 255, 0, 255, 255, 255, 127, 10, 0, 128});
   std::vector<int> const plane{1, 1, 1, 0, 1, 0, 0, 0, 1, 0, 0, 0};
   auto both = plane;
@@ -96,7 +96,8 @@ TEST(Images, HaveTheirTopRowAtTheLargestY) {
 
 TEST(Images, OfAnySizeCoverTheLattice) {
   Folder const folder;
-  // The upper left corner is dark, in pixels larger and smaller than cells.
+  // The upper left corner is dark; the pixels are larger than cells in one image and smaller in the
+  // other.
   write_png(folder / "coarse.png", 2, {0, 255, 255, 255});
   std::vector<std::uint8_t> fine(64 * 32, 255);
   for (std::size_t row = 0; row < 16; ++row)
@@ -130,7 +131,7 @@ TEST(Images, GiveTheNumberOfLevelsThatAreReached) {
   std::vector<double> const plane{0, 0, 0, 1, 1, 2, 2, 0, 0, 0, 1, 2};
   EXPECT_EQ(std::vector<double>(numbers.begin(), numbers.begin() + 12), plane);
   EXPECT_EQ(std::vector<double>(numbers.begin() + 12, numbers.end()), plane);
-  // With levels, white is a spin.
+  // With `levels`, white pixels have a spin.
   EXPECT_EQ(occupied_by(folder, "{ image = 'mask.png', levels = [100] }", "shape = [4, 3]"),
             (std::vector<int>{0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 1, 1}));
 }
@@ -183,7 +184,7 @@ TEST(Images, FilesThatAreWrongAreRefusedInOneLine) {
     file << "????";
   }
   folder.write("no picture at all", "text.png");
-  // The header says 1000000 x 1000000 pixels, and the file ends.
+  // The header promises 1000000 x 1000000 pixels, but the file ends after it.
   folder.write(std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\x0f\x42\x40\0\x0f\x42\x40"
                            "\x08\0\0\0\0\x79\x06\x67\xa1\0\0\0\x0aIDAT",
                            41),

@@ -9,7 +9,7 @@ namespace {
 
 constexpr InertiaTensor tensor = {2, 0.5, 0.25, 0.5, 3, -0.125, 0.25, -0.125, 4};
 
-// The product of a tensor and an inverse given as xx, yy, zz, xy, xz, yz.
+// Expects the product of a tensor and its inverse, given as xx, yy, zz, xy, xz, yz, to be 1.
 void expect_inverse(InertiaTensor const& a, std::array<double, 6> const& b) {
   std::array<double, 9> const full = {b[0], b[3], b[4], b[3], b[1], b[5], b[4], b[5], b[2]};
   for (std::size_t row = 0; row < 3; ++row) {
@@ -76,7 +76,7 @@ TEST(Inertia, WrongFilesAreRefusedInOneLine) {
   struct Case {
     std::string file;
     std::string message;
-    bool seen_unread;  ///< by check_files
+    bool seen_unread;  ///< check_files refuses it, too
   };
   for (auto const& wrong : std::vector<Case>{
            {"none.h5", "cannot open the file: No such file or directory", true},

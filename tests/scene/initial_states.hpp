@@ -16,7 +16,7 @@ inline void expect_near(Triple const& m, Triple const& expected, double toleranc
         "({}, {}, {}), not ({}, {}, {})", m[0], m[1], m[2], expected[0], expected[1], expected[2]);
 }
 
-/// The start of a scene whose cells are boxes.
+/// The initial spins of a scene with box-shaped cells.
 struct InitialSpins {
   Lattice lattice;
   std::vector<double> spins;
@@ -41,8 +41,8 @@ struct InitialSpins {
                at(i, j, k));
   }
 
-  /// The topological charge of the plane z = 0, which is periodic: solid angles of triangles over
-  /// 4 pi (Berg and Luescher 1981).
+  /// Returns the topological charge of the plane k = 0 with periodic sides: the solid angles of its
+  /// triangles over 4 pi (Berg and Luescher 1981).
   double charge() const {
     auto const& [nx, ny, nz] = lattice.shape;
     double angle = 0;
@@ -66,7 +66,7 @@ struct InitialSpins {
   }
 };
 
-/// Returns the start for `keys` of [initial] in a small lattice, unless overrides change it.
+/// Returns the initial spins for these keys of [initial], by default on a small lattice.
 inline InitialSpins state_of(std::string const& keys,
                              std::vector<std::string> overrides = {"lattice={shape=[6, 5, 4]}"}) {
   overrides.push_back("initial={" + keys + "}");

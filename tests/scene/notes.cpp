@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Keys of a scene without effect, or that contradict another key.
+// Notes on keys of a scene that have no effect or contradict another key.
 #include "io/notes.hpp"
 
 #include "io/ovf.hpp"
@@ -95,7 +95,7 @@ TEST(Notes, SayWhatActsNowhere) {
   }
 }
 
-// Numbers of other units are far from those of any magnet.
+// Values typed in other units are far from those of any magnet.
 TEST(Notes, NameMagnitudesOfOtherUnits) {
   auto const notes_of = [](std::string const& material, std::string const& more = "") {
     return notes(scene_of(
@@ -134,7 +134,7 @@ TEST(Notes, SayWhereImagesAndBoundariesDiffer) {
             "no images along x, where lattice.boundary is periodic"},
            {{images + "[0,0,0]"}, ""},
            {{images + "[0,2,0]"}, "images along y, where lattice.boundary is open"},
-           {{images + "[0,0,2]"}, ""},  // one cell along z: no other term depends on the end
+           {{images + "[0,0,2]"}, ""},  // one cell along z: the boundary has no effect on others
        }) {
     auto const found = notes_with(overrides);
     SCOPED_TRACE(testing::PrintToString(overrides) + testing::PrintToString(found));
@@ -145,7 +145,7 @@ TEST(Notes, SayWhereImagesAndBoundariesDiffer) {
   }
 }
 
-// Along the vectors of more than one cell, and also along three.
+// There are infinitely many images along periodic axes of more than one cell, even along all three.
 TEST(Dipoles, GoOnForEverAlongPeriodicVectors) {
   auto const images = [](std::string const& lattice) {
     return scene_of(film_with_notes, {"lattice=" + lattice, "field={dipoles=true}"})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Site-dependent numbers from OVF files of one component.
+// Site-dependent values from OVF files of one component.
 #include "io/ovf.hpp"
 #include "scene_file.hpp"
 
@@ -11,7 +11,7 @@ namespace {
 
 std::string const film_scene = std::string(plain_scene) + "[field]\nexchange = 1\n";
 
-// One value at each node.
+// Writes one value for each node.
 void write_scalar_ovf(std::filesystem::path const& path, std::string const& nodes,
                       std::vector<double> const& values) {
   std::istringstream counts(nodes);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Terms and sites that cannot be combined with methods: exactly those of one table, which is
-// printed.
+// Scenes refuse exactly the pairs of terms and methods (or keys) in one table, which this test
+// prints.
 #include "io/refused_pairs.hpp"
 
 #include "io/method.hpp"
@@ -118,7 +118,7 @@ TEST(RefusedPairs, AreThoseOfTheTable) {
       expect_holds(said, pair->accepted);
     }
   }
-  // All except a program's own field, which no text has.
+  // Every row is found except the first, a program's own field, which no text can have.
   for (std::size_t row = 1; row < found.size(); ++row)
     EXPECT_GT(found[row], 0) << refused_pairs()[row].terms << " with " << refused_pairs()[row].with;
 }

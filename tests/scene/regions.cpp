@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Regions, and their numbers, vectors, moments, bonds, sources and temperatures.
+// Regions, and the values, vectors, moments, bonds, sources and temperatures they determine.
 #include "hdf5_file.hpp"
 #include "scene_file.hpp"
 
@@ -32,7 +32,7 @@ Scene layers_with(Overrides const& overrides) {
   return parse_scene(std::string(layers), "scene.toml", overrides);
 }
 
-// Returns the error of reading a scene, or its site-dependent numbers.
+// Returns the error in reading a scene or its site-dependent values.
 std::string refusal_of(Overrides const& overrides) {
   return refusal([&] {
     auto const scene = layers_with(overrides);
@@ -108,7 +108,7 @@ TEST(Regions, HaveBondsBetweenThem) {
   EXPECT_EQ(along_x[15], (Pair{2, 2}));
   EXPECT_EQ(along_z[0], (Pair{0, 1}));
   EXPECT_EQ(along_z[14], (Pair{2, 0}));
-  // The next sites after a box's last ones are in another box.
+  // The bond of the last site of a box leads out of the box.
   EXPECT_EQ(bonds(scene, {{1, 0, 1}, {1, 1, 1}}, 0), std::vector{(Pair{1, 2})});
   EXPECT_EQ(bonds(scene, {{0, 2, 0}, {4, 1, 1}}, 2),
             (std::vector<Pair>{{0, 1}, {0, 1}, {0, 2}, {0, 2}}));

@@ -61,7 +61,7 @@ TEST(RoundedDigits, OfCubicAxesAreTaken) {
   EXPECT_NE(said.find("to 1e-4"), said.npos) << said;
 }
 
-// Rounded vectors give the bonds of exact ones.
+// Rounded vectors of a cell give the same bonds as exact ones.
 TEST(RoundedDigits, OfACellKeepItsShells) {
   double const s = std::sqrt(0.75);
   struct Cell {

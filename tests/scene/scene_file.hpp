@@ -86,7 +86,7 @@ dt = 0.1
 steps = 10
 )toml";
 
-/// A short scene, into which tests type their own keys.
+/// A short scene, to which tests add keys.
 inline constexpr std::string_view plain_scene = R"toml([system]
 kind = "llg"
 damping = 0.1
@@ -108,7 +108,7 @@ inline std::string replaced(std::string_view text, std::string_view from, std::s
   return result.replace(at, from.size(), to);
 }
 
-/// Returns a text as a scene, without files or with a folder for them.
+/// Parses a text as a scene (scene_of), or reads it from a folder that may contain its other files.
 inline Scene scene_of(std::string_view text, std::vector<std::string> const& overrides = {}) {
   return parse_scene(std::string(text), "scene.toml", overrides);
 }
@@ -119,7 +119,7 @@ inline Scene read_text(Folder const& folder, std::string_view text,
 
 inline SiteBox whole(Scene const& scene) { return {{0, 0, 0}, scene.lattice.shape}; }
 
-/// Returns the message of a SceneError from `work`, in one line; "accepted" without one.
+/// Returns the one-line message of the SceneError that `work` throws; "accepted" if there is none.
 template <class Work>
 std::string refusal(Work const& work) {
   try {
@@ -131,7 +131,7 @@ std::string refusal(Work const& work) {
     return message;
   }
 }
-/// Returns the message of reading a scene.
+/// Returns the message of the error in a scene's text, or "accepted".
 inline std::string refusal_of(std::string_view text,
                               std::vector<std::string> const& overrides = {}) {
   return refusal([&] { scene_of(text, overrides); });

@@ -66,7 +66,8 @@ void expect_near(std::vector<double> const& values, std::vector<double> const& e
 TEST(SiCrystals, IronHasItsUnits) {
   auto const scene = iron_with({"thermal={temperature=300}", "material.alpha=0.1",
                                 "material.damping_form='landau_lifshitz'"});
-  // 7.05e-21 J over 2.22 Bohr magnetons, and over k 300 K; by hand.
+  // By hand: the field is 7.05e-21 J over 2.22 Bohr magnetons, the temperature k 300 K over
+  // 7.05e-21 J.
   EXPECT_NEAR(scene.units.field, 342.427, 1e-3);
   EXPECT_NEAR(scene.units.time, 1.65846e-14, 1e-19);
   EXPECT_NEAR(scene.thermal->temperature, 0.587510, 1e-6);
@@ -78,7 +79,7 @@ TEST(SiCrystals, IronHasItsUnits) {
 
 TEST(SiCrystals, VampiresFileIsInJoules) {
   auto const scene = iron_with({"field.couplings={file='" CAYSPIN_TEST_DATA "/bcc_iron.ucf'}"});
-  expect_near(scene.units.energy, 2.22 * mu_B);  // 1 T on a moment
+  expect_near(scene.units.energy, 2.22 * mu_B);  // of a moment in 1 T
   auto const bonds = couplings(scene);
   ASSERT_EQ(bonds.size(), 8U);
   for (auto const& bond : bonds) expect_near(bond.tensor[4], 7.05e-21 / (2.22 * mu_B));
@@ -160,7 +161,7 @@ TEST(SiCrystals, AnisotropiesAreEnergies) {
   expect_near(film.field.anisotropies.at(0).constant, 1000 / pressure);
 }
 
-// mu0 mu^2 / (a^3 J): the moment of the first site counts as 1.
+// The strength is mu0 mu^2 / (a^3 J), where mu is the moment of the first site.
 TEST(SiCrystals, DipolesAreOfTheMoments) {
   auto const scene =
       iron_with({"field.dipoles={strength=0.5}", "material.mu_s={bohr_magnetons=[2.22,1.11]}"});
@@ -229,7 +230,7 @@ TEST(SiScenes, ConstantsOfSitesAreInSi) {
   EXPECT_EQ(field.anisotropies[0].constant, 1);
   EXPECT_EQ(scene.system.damping, 0);
   EXPECT_TRUE(scene.system.gilbert_of_sites);
-  expect_near(scene.units.time, 1 / (gamma * mu0 * 8e5));  // sites apply 1 + alpha^2
+  expect_near(scene.units.time, 1 / (gamma * mu0 * 8e5));  // 1 + alpha^2 differs from site to site
   auto const landau_lifshitz =
       read_text(folder, replaced(text, "\"gilbert\"", "'landau_lifshitz'"));
   EXPECT_FALSE(landau_lifshitz.system.gilbert_of_sites);
@@ -239,7 +240,7 @@ TEST(SiTorques, VelocitiesAreInMetresPerSecond) {
   auto const scene =
       permalloy_with({"torque={zhang_li={velocity=[100,'50*sin(1e9*t)',0],nonadiabaticity=0.04}}"});
   auto const& of = scene.field.torque.zhang_li.value();
-  // Cells per turn of a spin by mu0 Ms, for any form of the damping.
+  // The unit of velocity is one cell per 1 / (gamma mu0 Ms), for either form of the damping.
   double const unit = 4e-9 * gamma * mu0 * 8e5;
   expect_near(std::get<double>(of.velocity[0]), 100 / unit);
   double const t = 1e-9 / scene.units.time;
@@ -250,7 +251,7 @@ TEST(SiTorques, VelocitiesAreInMetresPerSecond) {
   auto const current =
       permalloy_with({"torque={zhang_li={current_density=[1e12,'-1e12*t',0],polarization=0.4}}"});
   double const seconds = 2;
-  // -g mu_B P j / (2 e Ms), by hand.
+  // By hand: u = -g mu_B P j / (2 e Ms).
   EXPECT_NEAR(Expression(std::get<std::string>(current.torque_in_si.zhang_li->velocity[1]),
                          {"t"})(&seconds),
               57.9510, 2e-4);

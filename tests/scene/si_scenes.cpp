@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// units = "SI": conversion of a material to reduced units, and refusals.
+// units = "SI": conversion to reduced units, and refusals.
 #include "io/expression.hpp"
 #include "si_constants.hpp"
 #include "wrong_scenes.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Site-dependent constants: by expressions, and from files.
+// Site-dependent values from expressions and files.
 #include "hdf5_file.hpp"
 #include "scene_file.hpp"
 
@@ -11,7 +11,7 @@ namespace {
 
 std::string const plain_film = std::string(plain_scene) + "[field]\nexchange = 1\n";
 
-// Returns the error of reading a scene, its files or its numbers.
+// Returns the error in reading a scene, its files or its site-dependent values.
 std::string refusal_in(Folder const& folder, std::string const& text) {
   return refusal([&] {
     auto const scene = read_text(folder, text);
@@ -44,7 +44,7 @@ TEST(SiteNumbers, ComeFromExpressionsAndFiles) {
   EXPECT_EQ(file.field.exchange->constant, 1);
   EXPECT_EQ(numbers_of_sites(file, file.field.exchange_factors, "field.exchange", whole(file)),
             stored);
-  // Plane k * 2 + s of a crystal has the sites s of the cells k.
+  // In a crystal of two sites, plane 2 k + s has the sites s of the cells at k.
   auto const crystal = read_text(
       folder,
       replaced(replaced(plain_film, "shape = [4, 3, 2]", "shape = [4, 3, 2]\ncrystal = 'bcc'"),

@@ -147,7 +147,7 @@ TEST(Stages, AreInTheTextAndReachedByOverrides) {
     EXPECT_EQ(stage.system.damping, 0.3);
     EXPECT_EQ(std::get<double>((*stage.field.applied)[2]), 3);
   }
-  // The text of a stage has no stages.
+  // The text of a single stage contains no stages.
   auto const alone = parse_scene(changed.stages[0].scene.text, "stage.toml");
   EXPECT_TRUE(alone.stages.empty());
   EXPECT_EQ(alone.integrator.dt, 0.5);

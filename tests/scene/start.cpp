@@ -89,8 +89,8 @@ TEST(Start, RandomStartsFromThePublishedSequence) {
 }
 
 // On the sphere a component c has <c> = 0, <c^2> = 1/3, <c^4> = 1/5, and <c d> = 0, <c^2 d^2> =
-// 1/15. Means of n sites then scatter by sqrt(1/3n), sqrt((1/5 - 1/9)/n) and sqrt(1/15n); the bound
-// is 5 of each.
+// 1/15 with another component d. Means over n sites then scatter by sqrt(1/3n), sqrt((1/5 - 1/9)/n)
+// and sqrt(1/15n); the bound is five times these.
 TEST(Start, RandomIsUniformOnTheSphere) {
   constexpr std::size_t n = 100000;
   for (std::string const seed : {"1", "2", "3"}) {
@@ -177,7 +177,7 @@ TEST(Start, OvfFileOfVersion1IsRead) {
   for (std::size_t n = 0; n < spins.size(); ++n) EXPECT_NEAR(back[n], spins[n], 2 * eps);
 }
 
-// Both are normalised equally, so the start does not depend on the kind of file.
+// Spins from either kind of file are normalised, so the starts are equal.
 TEST(Start, OvfAndHdf5FilesGiveTheSameBits) {
   Folder const folder;
   auto values = start("{random={seed=9}}");
@@ -223,7 +223,7 @@ TEST(Start, WrongFilesAreRefusedInOneLine) {
   struct Case {
     std::string file;
     std::string message;
-    bool seen_unread;  ///< by check_files
+    bool seen_unread;  ///< check_files refuses it, too
   };
   for (auto const& wrong : std::vector<Case>{
            {"none.h5", "cannot open the file: No such file or directory", true},

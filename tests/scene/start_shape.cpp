@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Zero vectors in the file of a start, as other programs write them for empty sites.
+// Zero vectors in the file of initial spins: other programs write them for empty sites.
 #include "hdf5_file.hpp"
 #include "io/notes.hpp"
 #include "io/ovf.hpp"
@@ -25,7 +25,7 @@ dt = 0.1
 steps = 1
 )toml";
 
-/// Spins of 24 sites, some of them zero.
+/// Returns vectors for 24 sites, zero where `there` is 0.
 std::vector<double> disc(std::vector<unsigned char> const& there) {
   std::vector<double> values(72);
   for (std::size_t site = 0; site < 24; ++site)
@@ -76,7 +76,7 @@ TEST(StartShape, IsWhereTheFileHasSpins) {
       auto const vacant = std::to_string(std::count(there.begin(), there.end(), 0));
       expect_holds(said[0],
                    "initial.file: zero vectors are sites without a spin, " + vacant + " of 24");
-      // The text has it, too: reading it again gives an equal scene without the file.
+      // The scene's text contains the shape, so reading the text again gives an equal scene.
       auto const again = parse_scene(scene.text, scene.path);
       EXPECT_EQ(occupied(again, whole(again)), there);
       EXPECT_EQ(initial_spins(again), spins);
@@ -106,7 +106,7 @@ TEST(StartShape, HasToBeThatOfTheScene) {
   };
   EXPECT_EQ(start_of("'i+4*j+12*k == 0 || i+4*j+12*k == 7 || i+4*j+12*k == 13 ? 0 : 1'"),
             "accepted");
-  EXPECT_EQ(start_of("'i == 2'"), "accepted");  // the file has more
+  EXPECT_EQ(start_of("'i == 2'"), "accepted");  // the file has more spins
   auto const said = start_of("'i < 2'");
   expect_holds(said, "initial.file: is zero on 2 of the 12 sites that lattice.occupied fills");
   expect_holds(said, "lattice.occupied = { file = \"disc.ovf\" }");
@@ -146,7 +146,7 @@ TEST(StartShape, NeedsAMethodThatKnowsVacancies) {
                "integrator.method");
 }
 
-// Shape of a crystal's file: (site, nz, ny, nx, 3).
+// The dataset of a crystal has the extents (site, nz, ny, nx, 3).
 TEST(StartShape, OfACrystalIsThatOfItsSites) {
   Folder const folder;
   std::vector<double> values(3 * 2 * 24, 1.0);

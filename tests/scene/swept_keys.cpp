@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The values of --over, and their grid.
+// The values in --over, and the grid that they make.
 #include "io/scene.hpp"
 #include "io/sweep.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Unit-cell files of Vampire: iron in the format of its own examples, and a honeycomb with tensors
-// in that of other programs.
+// Unit-cell files of Vampire: iron as in Vampire's examples, and a honeycomb with tensors as other
+// programs write it.
 #include "scene_file.hpp"
 
 #include <cmath>
@@ -64,7 +64,8 @@ TEST(UnitCellFile, TensorsKeepTheirSense) {
     EXPECT_NEAR(bond.tensor[0], J, 1e-30);
     EXPECT_NEAR(bond.tensor[8], 1.03 * J, 1e-30);
     if (bond.between[0] != bond.between[1]) continue;
-    // D has the sense of (1, 0), (0, 1) and (-1, -1) for site 0, and the opposite for site 1.
+    // D is positive along (1, 0), (0, 1) and (-1, -1) for site 0, and has the opposite sign for
+    // site 1.
     auto const& [i, j, k] = bond.offset;
     bool const forward = (i == 1 && j == 0) || (i == 0 && j == 1) || (i == -1 && j == -1);
     double const sign = (forward ? 1 : -1) * (bond.between[0] == 0 ? 1 : -1);
@@ -133,7 +134,7 @@ std::string refusal_of_cell(Folder const& folder, std::string const& unit_cell,
   return message.substr(std::min(begin.size(), message.size()));
 }
 
-// A trajectory stores this text, and may be elsewhere than the file.
+// The text contains the cell: a trajectory stores the text, and may be moved away from the file.
 TEST(UnitCellFile, TextOfTheSceneHasTheCell) {
   Folder const folder;
   auto const scene = read_with(folder, text_of("honeycomb_with_dmi.ucf"));
@@ -209,7 +210,7 @@ TEST(UnitCellFile, SitesAreThoseOfTheScene) {
   EXPECT_EQ(refusal_of_cell(folder, iron, "basis = [[0, 0, 0], [0.5, 0.5, 0.5002]]"),
             "10: atom 1 is at (0.5, 0.5, 0.5); accepted: (0.5, 0.5, 0.5002), as in lattice.basis");
   EXPECT_EQ(refusal_of_cell(folder, iron, "basis = [[0, 0, 0], [0.5, 0.5, 0.50009]]"), "accepted");
-  // Another cell of the same crystal has other offsets.
+  // In another cell of the same crystal, bonds have other offsets.
   EXPECT_NE(refusal_of_cell(folder, iron, "basis = [[0, 0, 0], [0.5, 0.5, -0.5]]"), "accepted");
 }
 
@@ -227,7 +228,7 @@ TEST(UnitCellFile, ThatIsNotThereIsNamed) {
   }
 }
 
-// Any fault of a file gives one line.
+// A damaged file is read or refused in one line.
 TEST(UnitCellFile, DamagedFilesAreReadOrRefused) {
   Folder const folder;
   std::mt19937 random(1);

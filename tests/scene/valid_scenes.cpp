@@ -190,7 +190,8 @@ TEST(Scene, EndIsAWholeNumberOfSteps) {
   EXPECT_THROW(steps("0.3", "0.899999999"), SceneError);
 }
 
-// By default the end keeps all bits, which 100 intervals would not: 7 is not 100 times 0.07.
+// The default of 128 samples keeps all bits of the end. With 100 it would not: in doubles, 100
+// times 0.07 is not 7.
 TEST(Scene, AMethodThatChoosesItsStepsLooksAt128EqualTimes) {
   for (std::string const method : {"method='tsit5',tolerance=1e-5", "method='auto',error=1e-3"})
     for (std::string const typed : {"7.0", "60.0", "0.3", "1e-9", "1e300"}) {

@@ -45,7 +45,8 @@ TEST(Methods, HaveTheTraitsThatTheirWordsSay) {
   }
 }
 
-// Detects contradictory rows, which would be refused for any scene.
+// Finds contradictory rows in the table of methods: every scene with such a method would be
+// refused.
 TEST(Methods, AreConsistent) {
   for (auto const* const method : methods()) {
     auto const& word = method->word;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Words of other programs, where their users would type them.
+// Keys and words of other programs, typed where their users would type them.
 #include "io/words_of_others.hpp"
 
 #include "scene_file.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Words that are valid separately and have no meaning together.
+// Words that are valid separately but have no meaning together.
 #include "../support/method_choice.hpp"
 #include "wrong_scenes.hpp"
 
@@ -96,7 +96,8 @@ TEST(Combinations, OfRigidBodiesWithEnergyAreAccepted) {
               "accepted");
 }
 
-// Fields that a program sets in a scene: they replace keys, they do not add to them.
+// A uniform field of the program replaces field.applied; any other field can be added to the
+// scene's.
 TEST(Combinations, OfAProgramsOwnFieldWithThoseOfTheScene) {
   OwnField uniform, nonlocal;
   uniform.uniform = [](double) { return Triple{0, 0, 1}; };

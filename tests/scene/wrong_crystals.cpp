@@ -216,7 +216,7 @@ TEST(WrongCrystal, OfABondTypedTwiceIsNamedByItsLine) {
                                "field.couplings[0]; accepted: each bond once"));
 }
 
-// Refusals of a scene to relax, with and without an integrator.
+// A scene to relax has the same refusals with and without an integrator.
 TEST(WrongCrystal, ToRelaxIsRefused) {
   Folder const folder;
   auto const without =
@@ -226,7 +226,7 @@ TEST(WrongCrystal, ToRelaxIsRefused) {
       return refusal([&] { read_scene_to_relax(folder.write(text), overrides); });
     };
     EXPECT_EQ(refused({}), "accepted");
-    // For cayspin modes; relax and path refuse it.
+    // Torques are accepted here for cayspin modes; relax and path refuse them later.
     EXPECT_EQ(refused({"torque={slonczewski={field_like=1,polarization=[0,0,1]}}"}), "accepted");
     expect_holds(refused({"field.exchange=1"}), ": field.exchange: needs one site in a cell");
   }

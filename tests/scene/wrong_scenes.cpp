@@ -4,7 +4,7 @@
 namespace cayspin::inline v0_2::io::test {
 namespace {
 
-// Text that is not a key of its table, over one line or more.
+// Faults other than a wrong key of a table; some take several lines.
 TEST(WrongScene, ThatIsNoTomlOrHasNoSuchTable) {
   for (auto const& [typed, instead, begins, holds] : std::vector<std::array<std::string_view, 4>>{
            {"damping = 0.05", "damping = = 0.05", ":3: not TOML", "TOML 1.0"},

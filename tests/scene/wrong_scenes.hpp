@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Scenes made wrong by one or more keys, as tables of typed values and messages.
+// Tables of keys that make a scene wrong, with the expected messages.
 #pragma once
 
 #include "scene_file.hpp"
@@ -24,13 +24,13 @@ inline std::vector<std::string> split(std::string_view text, std::string_view at
   return parts;
 }
 
-/// A scene by lines, in which keys are replaced and found again.
+/// The lines of a scene. Replaces keys, and finds their lines.
 class SceneText {
  public:
   explicit SceneText(std::string_view text) : lines_(split(trimmed(text), "\n")) {}
 
-  /// Types "table.key = VALUE", or "name = VALUE" for a whole table or a key above all tables.
-  /// Removes a key without a value.
+  /// Types "table.key = VALUE", or "name = VALUE" for a whole table or a key above all tables. An
+  /// empty VALUE removes the key.
   void type(std::string const& key, std::string const& value) {
     auto const path = split(key, ".");
     if (path.size() == 1) {
@@ -49,8 +49,7 @@ class SceneText {
       lines_.insert(at(begin), typed);
   }
 
-  /// Returns the line that a message about a key names: its own, otherwise that of its table,
-  /// otherwise 1.
+  /// Returns the line that a message about a key names: the key's, or else its table's, or else 1.
   std::size_t line_of(std::string_view key) const {
     auto const path = split(key.substr(0, key.find('[')), ".");
     if (auto const line = find(path[0], 0); line < lines_.size()) return line + 1;
@@ -77,7 +76,8 @@ class SceneText {
     while (line < lines_.size() && !lines_[line].starts_with('[')) ++line;
     return line;
   }
-  /// Returns the line of a key in the table that starts at `begin`, or the number of lines.
+  /// Returns the line of a key in the table that starts at `begin`, or the number of lines if it
+  /// has none.
   std::size_t find(std::string const& name, std::size_t begin) const {
     auto const end = end_of_table(begin);
     for (auto line = begin; line < end; ++line)
@@ -99,10 +99,12 @@ inline std::vector<std::string> rows_of(std::string_view table) {
   return rows;
 }
 
-/// Each row is "key = VALUE; .. | start of the message after its place | text in the message", and
-/// makes the scene wrong. The message's key continues from the last typed one if it starts with one
-/// of ".[:". The message must be one line, name the line of the key, and say what is accepted,
-/// unless a fourth column says that it does not.
+/// Each row has columns separated by " | ":
+/// - keys to type, "key = VALUE; ..", which make the scene wrong;
+/// - the message after the file and line; a start with one of ".[:" continues the last key;
+/// - text that the message contains;
+/// - any fourth column, for a message that does not say what is accepted; others must.
+/// The message must be one line and name the line of the key.
 inline void expect_refused(std::string_view scene, std::string_view table) {
   for (auto const& row : rows_of(table)) {
     SCOPED_TRACE(row);

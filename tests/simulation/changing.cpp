@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A run with changed keys continues from its state like a run of the other scene.
+// A run whose keys are changed continues from its state like a restarted run of the changed scene.
 #include "scenes_of_text.hpp"
 #include "simulation/failure.hpp"
 
@@ -45,7 +45,7 @@ TEST(Changing, GoesOnAsAnotherSceneFromThatState) {
     }
 }
 
-// A field of t is evaluated at the time of the whole run.
+// A time-dependent field sees the time since the start of the run, also after a change.
 TEST(Changing, KeepsTheTime) {
   auto const run = SceneRun::open(llg_scene("0.1", "rkmk4", 40, film), {});
   run->advance(10);
@@ -61,7 +61,7 @@ TEST(Changing, KeepsTheTime) {
   EXPECT_LT(largest_distance(field, packed<double>(beside->field().vectors)), 1e-4);
 }
 
-// After a change, too, an interrupted run has the bits of an uninterrupted one.
+// A run that is stored and continued after a change has the bits of one that is not interrupted.
 TEST(Changing, IsStored) {
   auto const file = fs::path(testing::TempDir()) / fmt::format("changed_{}.h5", ::getpid());
   for (auto const* const integrator :

@@ -51,7 +51,7 @@ inline auto composed_field(CompositionNumbers const& n) {
       SiteDependentSlonczewski{field_of_sites(lattice, n.damping_like_of_sites, 0),
                                field_of_sites(lattice, along_x, 0),
                                is_site_dependent ? n.field_like : 0, n.lambda});
-  // Gyromagnetic ratios do not multiply the torques.
+  // Gyromagnetic ratios do not multiply torques, so these are divided by them beforehand.
   auto per_ratio = n.gyromagnetic_of_sites;
   for (double& ratio : per_ratio) ratio = 1 / ratio;
   ScaledBySite const torques_per_ratio{FieldWithVacancies(torques, occupation),
@@ -59,8 +59,8 @@ inline auto composed_field(CompositionNumbers const& n) {
   return EffectiveField(gradient_per_moment, torques_per_ratio);
 }
 
-/// A generator that turns each spin at a rate: 0 for frozen spins, otherwise its gyromagnetic
-/// ratio.
+/// A generator that multiplies the rate of each spin: by 0 for frozen spins, otherwise by its
+/// gyromagnetic ratio.
 template <class Generator>
 struct TurnsAtRates {
   Generator generator;
@@ -82,7 +82,7 @@ struct TurnsAtRates {
   }
 };
 
-/// Returns the spins after `time`, by RKMK4.
+/// Returns the spins after `time`, computed by RKMK4.
 template <class Field>
 std::vector<double> spins_after(CompositionNumbers const& n, Field const& field,
                                 std::vector<double> const& start, double time) {

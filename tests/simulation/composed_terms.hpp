@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-// Terms of a random composition that the library does not have.
+// Terms of random compositions that the library does not have.
 namespace cayspin::simulation::test {
 
 using Space = Kokkos::DefaultHostExecutionSpace;
@@ -18,7 +18,7 @@ template <class Term>
 using Prepared = decltype(cayspin::detail::prepare_term(
     std::declval<Term const&>(), Space(), std::declval<SpinField<double, Memory> const&>(), 0.0));
 
-/// Returns a field of these numbers, or of `otherwise` if there are none.
+/// Returns a field with these values, or with `otherwise` at every site if there are none.
 inline ScalarField<double, Memory> field_of_sites(Lattice const& lattice,
                                                   std::vector<double> numbers, double otherwise) {
   if (numbers.empty()) numbers.assign(static_cast<std::size_t>(lattice.sites()), otherwise);
@@ -60,7 +60,8 @@ struct SiteDependentApplied {
   }
 };
 
-/// Slonczewski's field with site-dependent a cos(2 t), and p along (along_x, 0.6, 0.8).
+/// Slonczewski's field with a site-dependent strength times cos(2 t), and p along (along_x, 0.6,
+/// 0.8).
 struct SiteDependentSlonczewski {
   ScalarField<double, Memory> damping_like, along_x;
   double field_like, lambda;
@@ -93,7 +94,7 @@ struct SiteDependentSlonczewski {
   }
 };
 
-/// H of a field times site-dependent numbers, with the field's own E.
+/// Multiplies H of a field by site-dependent numbers; E is the field's own.
 template <class Field>
 struct ScaledBySite {
   Field inner;
@@ -120,7 +121,7 @@ struct ScaledBySite {
   }
 };
 
-/// The anisotropy of a crystal with axes z, or x and y, by its polynomials.
+/// The anisotropy of a crystal with axes along z, or x and y, written as polynomials.
 struct CrystalByPolynomials {
   double cubic2, hexagonal;
 
@@ -130,7 +131,7 @@ struct CrystalByPolynomials {
     using Value = typename Stencil::value_type;
     auto const& [x, y, z] = stencil.center();
     Value const a = x * x, b = y * y, c = z * z, two(-2 * cubic2), six(-6 * hexagonal);
-    // Derivatives of Re (y - i x)^6 along x and y, over 6.
+    // The derivatives of Re (y - i x)^6 along x and y, divided by 6.
     Value const along_x = x * (Value(10.0) * a * b - Value(5.0) * b * b - a * a),
                 along_y = y * (b * b - Value(10.0) * a * b + Value(5.0) * a * a);
     return {two * x * b * c + six * along_x, two * y * c * a + six * along_y, two * z * a * b};
@@ -146,7 +147,7 @@ struct CrystalByPolynomials {
   }
 };
 
-/// H and E of a field times 1 + part sin(5 t).
+/// Multiplies H and E of a field by 1 + part sin(5 t).
 template <class Field>
 struct ChangesInTime {
   Field inner;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Random compositions of terms, shapes, site-dependent numbers, methods and precisions, against the
-// library's own composed field. CAYSPIN_COMPOSITIONS: their number.
+// Random compositions of terms, shapes, site-dependent values, methods and precisions, compared
+// with the library's own composed field. CAYSPIN_COMPOSITIONS is their number.
 #include "composed_field.hpp"
 #include "io/method.hpp"
 #include "random_composition.hpp"
@@ -80,7 +80,7 @@ void expect_same(unsigned seed, std::map<std::string, int>& refused) {
         largest =
             std::max(largest, std::abs(numbers.gyromagnetic * found[i] - moves * expected[i]));
     }
-    EXPECT_LT(largest, 64 * epsilon(precision) * numbers.scale);  // H turns spins by that ratio
+    EXPECT_LT(largest, 64 * epsilon(precision) * numbers.scale);  // H is multiplied by that ratio
   }
   if (!scene->field.torque.zhang_li && !scene->field.torque.slonczewski) {
     SpinField<double, Memory> spins("spins", numbers.lattice);

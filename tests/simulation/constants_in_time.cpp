@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Time-dependent constants of exchange, anisotropy and DMI.
+// Time-dependent factors of exchange, anisotropy and DMI.
 #include "io/method.hpp"
 #include "scenes_of_text.hpp"
 
@@ -13,11 +13,11 @@
 namespace cayspin::simulation::test {
 namespace {
 
-// A cone of spins about z turns rigidly, by the integral of the factor.
+// A cone of spins turns rigidly about z, by an angle proportional to the integral of the factor.
 TEST(ConstantsInTime, TurnConesByTheirIntegral) {
   struct Cone {
     std::string shape, field;
-    double frequency;  // over cos(0.7)
+    double frequency;  // of the cone, over cos(0.7)
     std::string q;
   };
   double const A = 2 - 2 * std::cos(2 * pi / 12), D = -2 * 0.3 * std::sin(2 * pi / 12);
@@ -68,7 +68,7 @@ boundary = ["open", "periodic", "open"]
 regions = "i < 7 ? 0 : j % 2 + 1"
 )toml";
 
-/// Returns all terms, with `K` times the constants of anisotropy.
+/// Returns all terms, with the constants of anisotropy multiplied by `K`.
 std::string field_of(std::string const& exchange, std::string const& dmi, double K) {
   return fmt::format(R"toml(
 [field]
@@ -91,7 +91,7 @@ std::string with_method(io::Method const& method) {
       method.word, method.adaptive ? "tolerance = 1e-5\n" : "");
 }
 
-// Constant factors equal multiplied constants, with every method.
+// Constant factors act like multiplied constants, with every method.
 TEST(ConstantsInTime, AreTheConstantsTimesTheirFactors) {
   struct Terms {
     std::string exchange, exchange_half, dmi, dmi_more;
@@ -114,7 +114,7 @@ TEST(ConstantsInTime, AreTheConstantsTimesTheirFactors) {
                          "in_time = { exchange = 0.5, dmi = '2.5', anisotropy = '-2' }\n" +
                          with_method(*method));
         } catch (io::SceneError const&) {
-          continue;  // a method of fewer terms
+          continue;  // the method refuses some of the terms
         }
         auto const other = scene_of(film_of_layers + lattice +
                                     field_of(exchange_half, dmi_more, -2) + with_method(*method));
@@ -139,7 +139,7 @@ TEST(ConstantsInTime, AreTheConstantsTimesTheirFactors) {
   EXPECT_GT(compared, 40);
 }
 
-// Seconds in SI: gamma 2 Ku / Ms times the integral of the factor.
+// In SI, t is in seconds: spins turn by gamma 2 Ku / Ms times the integral of the factor.
 TEST(ConstantsInTime, AreInSecondsInSi) {
   auto const scene = scene_of(R"toml(
 units = "SI"
@@ -173,7 +173,7 @@ TEST(ConstantsInTime, AreLookedAtBeforeTheRun) {
   EXPECT_THROW(make_plan(pole, Precision::double_precision), io::SceneError);
 }
 
-// An energy that rises because a constant does must not stop a run.
+// An energy that rises because a constant rises must not stop a run.
 TEST(ConstantsInTime, MayRaiseTheEnergy) {
   auto const scene = llg_scene(
       "0.1", "heun", 100,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Anisotropies of crystals and DMI of D2d symmetry, against closed forms and the derivative of the
-// energy.
+// Anisotropies of crystals and DMI of D2d symmetry, compared with closed forms and with derivatives
+// of the energy.
 #include "scenes_of_text.hpp"
 
 #include <array>
@@ -18,8 +18,8 @@ Vector cross(Vector const& a, Vector const& b) {
 }
 double dot(Vector const& a, Vector const& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Returns dE/d(angle) as the spin at `site` of 5 x 4 x 3 turns about e, from its energy at 16
-/// angles: exact for energies without harmonics above the seventh.
+/// Returns dE/d(angle) as the spin at `site` of a 5 x 4 x 3 lattice turns about e, from the energy
+/// at 16 angles. This is exact for energies without harmonics above the seventh.
 double slope_about(SceneRun& run, std::vector<double> const& spins, std::size_t site,
                    Vector const& e) {
   Vector const m{spins[3 * site], spins[3 * site + 1], spins[3 * site + 2]};
@@ -84,7 +84,7 @@ TEST(CrystalTerms, AreTheDerivativeOfTheirEnergy) {
     }
 }
 
-// A helix that turns by q about its axis of propagation has m.(m' x e) = -sin(q), for any phase.
+// A helix that turns by q per site about its axis e has m.(m' x e) = -sin(q), for any phase.
 TEST(CrystalTerms, D2dTurnsSpinsToTheLeftAlongXAndToTheRightAlongY) {
   constexpr double D = 0.3;
   auto const energy = [&](std::string const& shape, std::string const& normal,
@@ -105,12 +105,13 @@ TEST(CrystalTerms, D2dTurnsSpinsToTheLeftAlongXAndToTheRightAlongY) {
   EXPECT_NEAR(energy("[1, 16, 1]", "[0, -1, 0]", "[0, 1, 0]"), 16 * of_bond, 1e-13);
   for (std::string const normal : {"[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"})
     EXPECT_NEAR(energy("[1, 1, 16]", normal, "[0, 0, 1]"), 0, 1e-13);
-  // Cycloids have none.
+  // Cycloids have no energy of D2d.
   EXPECT_NEAR(energy("[16, 1, 1]", "[0, 1, 0]", "[1, 0, 0]"), 0, 1e-13);
   EXPECT_NEAR(energy("[16, 1, 1]", "[0, 0, 1]", "[1, 0, 0]"), 0, 1e-13);
 }
 
-// Along each axis it equals that of the bulk, with one sign or the other, also at free boundaries.
+// On a chain along an axis, D2d acts like bulk DMI of one sign or the other, also at free
+// boundaries.
 TEST(CrystalTerms, D2dIsThatOfTheBulkAlongAnAxis) {
   auto const end = [](std::string const& shape, std::string const& dmi, Precision precision) {
     return end_of(llg_scene("0.1", "rkmk4", 100,
@@ -134,7 +135,7 @@ TEST(CrystalTerms, D2dIsThatOfTheBulkAlongAnAxis) {
     }
 }
 
-// Two interfaces of opposite normals, by regions, equal D of two signs.
+// Regions with opposite normals act like regions with D of opposite signs.
 TEST(CrystalTerms, NormalsOfRegionsAreThoseOfTheirInterfaces) {
   auto const end = [](std::string const& dmi) {
     return end_of(scene_of(film_with("regions = 'k % 3'\n", "exchange = 1\ndmi = " + dmi + "\n")));
@@ -168,7 +169,7 @@ TEST(CrystalTerms, HaveTheEnergiesOfTheirDirections) {
     double const phi = degrees * pi / 180, theta = 0.9;
     double const a = std::sin(theta) * std::cos(phi), b = std::sin(theta) * std::sin(phi),
                  half = std::sqrt(0.5);
-    // b is along axis x in_plane, (0, -1, 1).
+    // The component b is along axis x in_plane, which is (0, -1, 1).
     EXPECT_NEAR(
         energy_of_spin(hexagonal, fmt::format("[{:.17g}, {:.17g}, {:.17g}]", std::cos(theta),
                                               (a - b) * half, (a + b) * half)),
@@ -176,7 +177,7 @@ TEST(CrystalTerms, HaveTheEnergiesOfTheirDirections) {
   }
 }
 
-// Small turns about an easy direction: after a period the spin is back.
+// Expects a spin slightly off an easy direction to return after one period.
 void expect_period(std::string const& anisotropy, std::string const& start, double frequency) {
   constexpr int steps = 4000;
   auto const scene = scene_of(fmt::format(
@@ -196,7 +197,7 @@ TEST(CrystalTerms, SpinsTurnAtTheFrequencyOfTheirResonance) {
   constexpr double K = -0.3, K2 = 0.2;
   expect_period("{ cubic = -0.3, constant2 = 0.2, axes = [[1, 0, 0], [0, 1, 0]] }",
                 "[1, 1.0003, 1]", -4.0 / 3 * (K + K2 / 3));
-  // In an easy plane with E = P m_c^2 / 2.
+  // The spin is in an easy plane whose energy is P m_c^2 / 2, with P = of_plane.
   constexpr double of_plane = 0.8, of_six = 0.02;
   expect_period(
       "[{ constant = -0.8, axis = [0, 0, 1] }, { hexagonal = -0.02, axis = [0, 0, 1], in_plane = "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Scenes of crystals, sublattices and currents against closed forms.
+// Scenes of crystals, sublattices and currents, compared with closed forms.
 #include "../support/antiferromagnet.hpp"
 #include "io/method.hpp"
 #include "scenes_of_text.hpp"
@@ -13,14 +13,14 @@
 namespace cayspin::simulation::test {
 namespace {
 
-/// A cone of spins that turns rigidly: phase(t) is the phase of each spin in i, j, k, s.
+/// A cone of spins that turns rigidly; `phase` is the phase of the spin at i, j, k, s.
 struct Cone {
   char const* name;
   std::string scene, phase;
-  double frequency;  // of a full transverse part; times cos(0.7)
+  double frequency;  // times cos(0.7)
 };
 
-// The lattice and the couplings of a scene.
+// Each scene is a lattice and its couplings.
 Cone const cones[] = {
     {"bcc",
      "[lattice]\nshape = [16, 6, 5]\ncrystal = 'bcc'\nboundary = 'periodic'\n"
@@ -73,8 +73,8 @@ TEST(CrystalScenes, ConesTurnAtTheFrequencyOfTheirMagnon) {
     }
 }
 
-// Neel's state of a simple cubic lattice: omega = sqrt((h + K)^2 - (h gamma)^2) at small openings,
-// to the right about the spins up, to the left about those down.
+// In Neel's state of a simple cubic lattice, spins in narrow cones turn at omega = sqrt((h + K)^2 -
+// (h gamma)^2): those up to the right about their axis, those down to the left.
 TEST(CrystalScenes, ConesOfAnAntiferromagnetTurnAtTheFrequencyOfTheirMagnon) {
   constexpr double h = 6 * 0.6, K = 0.3, opening = 0.7, end = 2;
   double const gamma = (std::cos(2 * pi / 8) + std::cos(2 * pi / 6) + std::cos(2 * pi / 4)) / 3;
@@ -137,7 +137,7 @@ random = { seed = 1 }
   }
 }
 
-// H = -(1 / mu) dE/dm: without damping E and the sum of (mu / g) m are conserved.
+// H = -(1 / mu) dE/dm, so without damping E and the sum of (mu / g) m are conserved.
 TEST(CrystalScenes, MomentsConserveEnergyAndAngularMomentum) {
   auto const run = SceneRun::open(llg_scene("0", "rkmk8", 100, R"toml(
 [lattice]
@@ -196,12 +196,12 @@ uniform = [0, 0, 1]
   }
   for (int site : {0, 1}) {
     double const x = site == 0 ? 0.5 : 2, expected = 1 / std::tanh(x) - 1 / x;
-    // 8192 spins, ten nearly independent samples.
+    // A mean over 8192 spins and ten nearly independent samples.
     EXPECT_NEAR(sums[site] / (10 * 8192), expected, 0.01) << site;
   }
 }
 
-// m.p = tanh(a t + atanh(m0.p)).
+// m.p = tanh(I + atanh(m0.p)), where I is the integral of damping_like over time.
 TEST(CrystalScenes, ASpinUnderSlonczewski) {
   auto const scene = llg_scene("0", "rkmk8", 100, R"toml(
 [lattice]
@@ -216,9 +216,9 @@ uniform = [0.6, 0, -0.8]
                 500 * epsilon(precision));
 }
 
-// A wall of width 1 in a current. A free wall moves at (1 + damping xi) u and turns; a hard axis
-// holds its plane below Walker's current, and it moves at (1 + damping^2) (xi / damping) u. Both
-// are exact except for second-order effects of the lattice.
+// A wall of width 1 in a current. A free wall moves at (1 + damping xi) u while its plane turns.
+// Below Walker's current a hard axis holds the plane, and the wall moves at (1 + damping^2) (xi /
+// damping) u. Both velocities are exact up to second-order effects of the lattice.
 TEST(CrystalScenes, AWallUnderACurrent) {
   constexpr double damping = 0.4, xi = 0.25, u = 0.1;
   for (bool const has_hard_axis : {false, true}) {
@@ -278,7 +278,7 @@ random = { seed = 1 }
   for (auto const precision : precisions) expect_same_bits_after_a_break(scene, 17, precision);
 }
 
-// Neel's state of a bcc antiferromagnet in a field below its flop.
+// A bcc antiferromagnet in a field below its flop relaxes to Neel's state.
 TEST(CrystalScenes, Relax) {
   auto const scene = llg_scene("0.5", "heun", 1, R"toml(
 [lattice]
@@ -298,8 +298,8 @@ random = { seed = 4 }
   EXPECT_NEAR(found.energy.value, 120 * -8.0 - 240 * 0.25, 1e-6);
 }
 
-// The descent works with different moments: the energy of a ferrimagnet along its field, and that
-// of a cubic crystal, whose field is not linear.
+// Relaxation works with different moments and with fields that are not linear: a ferrimagnet along
+// its field, and a crystal with cubic anisotropy.
 TEST(CrystalScenes, RelaxMomentsAndCubicAxes) {
   auto const relaxed = [](std::string const& lattice, std::string const& field) {
     auto const run =

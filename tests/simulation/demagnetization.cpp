@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Scenes with a demagnetising field, against the library's.
+// Scenes with a demagnetising field, compared with the library's steppers and with sums over pairs.
 #include "scenes_of_text.hpp"
 #include "simulation/multirate_method.hpp"
 
@@ -69,8 +69,8 @@ TEST(Demagnetization, OfScenesIsThatOfTheLibrary) {
     }
 }
 
-/// The field at each site of the sources on all: a sum over all pairs of cells and their images.
-/// Odd numbers of cells: every pair has one nearest image.
+/// Returns the field of all sources at each site, summed over all pairs of cells and their images.
+/// The number of cells along axes with images has to be odd: each pair then has one nearest image.
 std::vector<double> sum_over_pairs(Lattice const& lattice, std::array<int, 3> const& images,
                                    std::vector<double> const& sources) {
   std::vector<double> field(sources.size());
@@ -103,7 +103,7 @@ std::vector<double> sum_over_pairs(Lattice const& lattice, std::array<int, 3> co
   return field;
 }
 
-// Random moments, a quarter of them 0.
+// A quarter of the random moments is 0.
 TEST(Demagnetization, OfMomentsIsTheSumOverAllPairsOfCells) {
   struct Box {
     std::array<std::int64_t, 3> shape;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Scenes with the dipoles of crystals, against sums over pairs and closed forms.
+// Scenes with dipoles of crystals, compared with sums over pairs and closed forms.
 #include "scenes_of_text.hpp"
 #include "simulation/multirate_method.hpp"
 
@@ -56,7 +56,7 @@ Moments moments_of(io::Scene const& scene, std::vector<double> const& spins) {
   return all;
 }
 
-/// sum mu (3 r (r.m) - m r^2) / (4 pi r^5)
+/// Returns sum mu (3 r (r.m) - m r^2) / (4 pi r^5), with r from the other sites.
 Vec3<double> field_at(Moments const& all, std::size_t site) {
   Vec3<double> h{0, 0, 0};
   for (std::size_t other = 0; other < all.m.size(); ++other) {
@@ -100,7 +100,7 @@ TEST(Dipoles, OfScenesAreSumsOverPairs) {
     }
 }
 
-// Each moment has the field of its couplings divided by the moment, and the unscaled dipolar field.
+// At each site, the field of couplings is divided by the moment, the dipolar field is not.
 TEST(Dipoles, StandBesideCouplings) {
   std::string const lattice = "shape = [3, 4, 2]\ncrystal = 'bcc'\nmoments = [0.5, 2]\n",
                     couplings =
@@ -129,7 +129,7 @@ TEST(Dipoles, AreTheDemagOfCrystalsAndNotOfCells) {
             1e-3);
 }
 
-// Two iron atoms 0.25 nm apart along their moments: mu0 mu / (2 pi r^3) in T.
+// The field of one iron atom on another at 0.25 nm along the moment: mu0 mu / (2 pi r^3) in T.
 TEST(Dipoles, AreInTeslaAndJoules) {
   auto const scene = scene_of(R"toml(
 units = "SI"
@@ -178,7 +178,7 @@ TEST(Dipoles, OfPeriodicCrystalsHaveLorentzsField) {
   }
 }
 
-// A chain of dipoles aligns along itself, with an energy of 2 zeta(3) / (4 pi) each.
+// Dipoles in a chain align along it. Each has an energy of 2 zeta(3) / (4 pi) below zero.
 TEST(Dipoles, OfAChainRelaxAlongIt) {
   auto const scene = with_dipoles("shape = [24]\nboundary = 'periodic'", "dipoles = true");
   auto const run = SceneRun::open(scene, {});
@@ -213,7 +213,7 @@ TEST(Dipoles, GoOnAfterABreak) {
         7, precision);
 }
 
-// Moments of 4 make four times the field, and a method's largest stable step a quarter.
+// Moments of 4 make four times the field, and a quarter of the largest stable step.
 TEST(Dipoles, BoundTheStableStep) {
   auto const stable = [](std::string const& rest) {
     auto const scene = with_dipoles("shape = [4, 4, 4]\ncrystal = 'bcc'\n" + rest,
@@ -234,7 +234,8 @@ TEST(Dipoles, CountTheirMemory) {
     auto const scene = with_dipoles("shape = [16, 16, 16]\ncrystal = 'bcc'", field);
     return make_plan(scene, Precision::double_precision).memory.field;
   };
-  // 17 x 32 x 32 wave numbers with 24 numbers of interactions; 17 x 512 rows of 3 complex ones.
+  // The kernel has 24 values at each of 17 x 32 x 32 wave numbers, the buffer 3 complex values in
+  // each of 17 x 512 rows.
   std::int64_t const expected = 8 * (17 * 32 * 32 * 24 + 2 * 3 * 17 * 512);
   auto const found = bytes("dipoles = true") - bytes("applied = [0, 0, 1]");
   EXPECT_GE(found, expected);

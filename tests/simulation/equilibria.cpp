@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Random scenes of all terms, vacancies, frozen sites and crystals: the derivative of the energy,
-// the torque and the lowest curvature against finite differences and a dense Hessian.
+// Random scenes with all terms, vacancies, frozen sites and crystals. Compares the derivative of
+// the energy, the torque and the lowest curvature with finite differences and a dense Hessian.
 #include "io/scene.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/ranks.hpp"
@@ -117,8 +117,8 @@ class RandomText {
     std::string list;
     std::set<std::array<int, 4>> bonds;
     for (int i = whole(1, 3); i > 0; --i) {
-      // Refused: a coupling that leaves the lattice from every cell, a site with itself, a
-      // duplicate.
+      // Scenes refuse couplings that leave the lattice from every cell, of a site with itself, and
+      // duplicates.
       int const x = extents_[0] > 1 ? 1 : 0, y = extents_[1] > 1 ? i - 2 : 0;
       int const from = whole(0, sites_ - 1), to = whole(0, sites_ - 1);
       if (x == 0 && y == 0 && from == to) continue;
@@ -192,8 +192,8 @@ class Reference {
     return largest;
   }
 
-  /// Returns the energy's derivative as all mobile spins turn at random, by differences minus that
-  /// by H.
+  /// Returns the error of H: the energy's derivative as all mobile spins turn at random, by finite
+  /// differences, minus the derivative by H.
   double error_of_derivative(unsigned seed) const {
     std::mt19937 engine(seed);
     auto v = std::vector<double>(m_.size());
@@ -291,14 +291,14 @@ void expect_right_equilibria(unsigned seed) {
   auto const field = field_of<Spins>(scene, lattice, false).made_for(FieldFor::energy);
   SceneMinimizer<Real, Space> minimizer(spins);
 
-  // At the start, which the search does not leave with any bound on the torque.
+  // Any torque is small enough for this search, so it ends at the start.
   Reference const start(scene, lattice, numbers());
   if (start.mobile() == 0) return;
   auto const eigenvalues = start.curvatures();
   double const largest = eigenvalues.cwiseAbs().maxCoeff();
-  if (largest == 0) return;  // no spin sees a field
+  if (largest == 0) return;  // no spin feels a field
   auto const before = numbers();
-  // Fields that are not affine are differentiated with accuracy epsilon^(2/3).
+  // Derivatives of fields that are not affine have an accuracy of epsilon^(2/3).
   constexpr double part = is_double ? 1e-6 : 2e-3;
   double const allowed = part * (largest + 1e-3);
   auto const at_start =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// One physical system in two forms, with every method that accepts both: with and without the pass
-// for rarely used terms, with fewer sites and with vacant sites, by numbers and by expressions.
+// One physical system in two forms, with every method that accepts both: terms in kernels or in a
+// separate pass, fewer sites or vacant sites, constants or expressions.
 #include "io/method.hpp"
 #include "scenes_of_text.hpp"
 
@@ -13,7 +13,8 @@
 namespace cayspin::simulation::test {
 namespace {
 
-// Every term of plain scenes, evaluated in a pass: moments of 1 request that and change nothing.
+// Every term of plain scenes, also evaluated in a separate pass: moments of 1 cause it and change
+// nothing.
 TEST(FieldInPass, APassIsTheFieldThatKernelsEvaluate) {
   constexpr auto plain = R"toml(
 [system]
@@ -48,7 +49,7 @@ steps = 40
       try {
         usual = scene_of(fmt::format(plain, "", method->word, more));
       } catch (io::SceneError const&) {
-        continue;  // such as one that refuses time-dependent fields
+        continue;  // e.g. a method that refuses time-dependent fields
       }
       try {
         auto const in_pass = scene_of(fmt::format(plain, "moments = [1]", method->word, more));
@@ -69,7 +70,7 @@ steps = 40
   EXPECT_LT(refused, 20);
 }
 
-// Half a film of vacant sites equals half a film, and frozen spins do not move.
+// A film of which one half is vacant acts like half a film, and frozen spins do not move.
 TEST(FieldInPass, SitesWithoutSpinsAreNone) {
   auto const film = [](std::string const& lattice, std::string const& method) {
     return scene_of(fmt::format(R"toml(
@@ -116,8 +117,8 @@ steps = 50
           double const there = large[3 * (19 * j + i) + c];
           largest = std::max(largest, std::abs(there - (i < 9 ? small[3 * (9 * j + i) + c] : 0)));
         }
-    // Stiff steps solve their equation to a fraction of their error, by another solver on each
-    // lattice.
+    // Stiff methods solve a step only to a fraction of its error, and differently on the two
+    // lattices.
     bool const is_rounded = !method->adaptive && !method->word.starts_with("stiff");
     EXPECT_LT(largest, is_rounded ? 1e-13 : 1e-6);
     auto const of_half = SceneRun::open(*half, {})->sample();
@@ -130,7 +131,7 @@ steps = 50
   EXPECT_GE(compared, 19);
 }
 
-// Uniform expressions equal constants, and a jump of the exchange is that of the library.
+// Expressions that are uniform act like constants.
 TEST(FieldInPass, NumbersOfSites) {
   auto const scene = [](std::string const& damping, std::string const& field) {
     return llg_scene(damping, "rkmk4", 50,
@@ -158,7 +159,7 @@ TEST(FieldInPass, NumbersOfSites) {
                   SceneRun::open(by_site, {.precision = precision})->sample().energy.value,
                   1e4 * epsilon(precision));
     }
-  // Spins without damping keep their m_z in a field, the others do not.
+  // Spins without damping keep their m_z in the field; the others do not.
   auto const run = SceneRun::open(scene("'0.2*(i<9)'", "applied = [0, 0, 1]"), {});
   auto const before = spins_of(*run);
   run->advance(50);

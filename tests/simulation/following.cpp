@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Lattices that follow a wall or a skyrmion, against lattices long enough not to need it.
+// Lattices that follow a wall or a skyrmion, compared with lattices that are long enough without.
 #include "scenes_of_text.hpp"
 #include "simulation/plan.hpp"
 
@@ -16,8 +16,8 @@ namespace {
 constexpr double spacing = 0.25, dt = 0.01, hard = 2, damping = 0.1,
                  applied = 0.5 * damping * hard / 2;
 
-// Walker's wall, at half of his limit: m_z = 1 on its left, moving along +x in a field along z. The
-// easy axis is z, the hard axis y.
+// Walker's wall in half of Walker's limiting field, along z. It has m_z = 1 on its left and moves
+// along +x. The easy axis is z, the hard axis y.
 std::string wall(int cells, std::string const& method, int steps) {
   auto const x = fmt::format("{}*(i - {} + 0.5)", spacing, cells / 2);
   return fmt::format(R"toml(
@@ -43,7 +43,7 @@ steps = {}
 
 std::vector<std::string> const following = {"lattice.follow={axis='x',quantity='mz'}"};
 
-// Counts the cells that point up.
+// Returns the wall's position: the mean of m_z gives the cells that point up; the shift is added.
 double place_of_wall(SceneRun& run, int cells) {
   auto const mean = run.sample().magnetization.z;
   return spacing * (0.5 * cells * (1 + mean) + static_cast<double>(run.shift()));
@@ -63,12 +63,12 @@ TEST(Following, AWallGoesAsFastAsInALongStrip) {
     run->advance(steps - begin, {.period = 10});
     velocities[follows] = (place_of_wall(*run, cells) - from) / (dt * (steps - begin));
     if (!follows) continue;
-    // It left the few cells in which it started.
+    // The wall has left the cells in which it started.
     EXPECT_GT(run->shift(), few / 2);
     EXPECT_LT(std::abs(run->sample().magnetization.z), 4.0 / few);
   }
   EXPECT_NEAR(velocities[1], velocities[0], 1e-8 * velocities[0]);
-  double const sine = 2 * applied / (damping * hard);  // of twice the angle to the x axis
+  double const sine = 2 * applied / (damping * hard);  // of twice the wall's angle to the x axis
   double const square = (1 - std::sqrt(1 - sine * sine)) / 2;
   double const width = 1 / std::sqrt(1 + hard * square);
   double const closed = (1 + damping * damping) / damping * applied * width;
@@ -80,7 +80,7 @@ TEST(Following, MovesSpinsByWholeCells) {
   for (auto const& [axis, shape, k] :
        {std::tuple{"x", "[24, 3, 2]", "i"}, {"y", "[3, 24, 2]", "j"}, {"z", "[2, 3, 24]", "k"}}) {
     SCOPED_TRACE(axis);
-    // No field, no motion: a wall five cells off the middle.
+    // There is no field, so nothing moves the wall, which is five cells off the middle.
     auto const scene = scene_of(fmt::format(R"toml(
 system = {{ kind = "llg", damping = 0.1 }}
 lattice = {{ shape = {}, follow = {{ axis = "{}", quantity = "my" }} }}
@@ -125,14 +125,15 @@ integrator = {{ method = "rkmk4", dt = 0.02, steps = 3 }}
   }
 }
 
-// The energy of a damped run only falls, except for entering cells.
+// The energy of a damped run falls, except where cells enter. This must not stop the run.
 TEST(Following, IsNotTakenForAnEnergyThatRises) {
   auto const scene = scene_of(wall(160, "method = \"heun\"", 1500), following);
   auto const run = SceneRun::open(scene, {});
   auto const first = run->sample().energy.value;
   run->advance(1500, {.period = 1});
   EXPECT_GT(run->shift(), 10);
-  // The energy of entering cells equals that of the field's turns in a long strip.
+  // On a long strip the energy would fall further, since the wall's motion turns spins into the
+  // field.
   EXPECT_LT(first - run->sample().energy.value, applied * static_cast<double>(run->shift()));
 }
 
@@ -202,7 +203,7 @@ TEST(Following, WhatStandsStillIsRefused) {
   refused("lattice.follow.quantity='charge'", "the charge is that of planes along x and y");
   refused("lattice.follow.value=1.5", "lattice.follow.value: ");
   refused("lattice.follow=true", "lattice.follow: ");
-  // Uniform along the axis.
+  // These values are uniform along the axis.
   auto const alike =
       scene_of(text, {following[0], "lattice.shape=[80,2]", "lattice.regions='j'",
                       "field.exchange='1 + y'", "field.sources=[{profile=['y',0,0]}]"});

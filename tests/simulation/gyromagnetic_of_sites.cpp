@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Site-dependent gyromagnetic ratios, against closed forms. Statistical limits are five standard
-// errors of fixed seeds.
+// Site-dependent gyromagnetic ratios, compared with closed forms. Seeds are fixed; statistical
+// limits are five standard errors.
 #include "scenes_of_text.hpp"
 
 #include <cayspin/units.hpp>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double ratios[] = {1, 0.5, 2.5};
 
-// About z by g H t, and towards it by damping g H t.
+// A spin turns about z by g H t; the tangent of half its angle to z falls by exp(-damping g H t).
 TEST(GyromagneticOfSites, TurnsSpinsByTheirOwn) {
   constexpr double H = 0.7, damping = 0.2, t = 60 * 0.02;
   auto const scene = llg_scene("0.2", "rkmk4", 60,
@@ -51,7 +51,7 @@ integrator = { method = "euler", rotation = "exponential", dt = 1e-13, steps = 5
   }
 }
 
-// A list for the cell's sites gives an equal result, also with torques.
+// A list for the sites of a cell acts like an expression of s, also with torques.
 TEST(GyromagneticOfSites, IsThatOfTheSitesOfACell) {
   auto const crystal = [](std::string const& gyromagnetic, std::string const& method) {
     return scene_of(fmt::format(R"toml(
@@ -88,7 +88,8 @@ steps = 20
           << method;
 }
 
-// In SI, too, the ratio multiplies fields but not the torques of currents, however it is given.
+// In SI, too, the ratio multiplies fields but not the torques of currents, in whichever form it is
+// typed.
 TEST(GyromagneticOfSites, LeavesTorquesInSi) {
   auto const torques = [](std::string const& gyromagnetic, std::string const& more) {
     return scene_of(fmt::format(R"toml(
@@ -110,7 +111,7 @@ integrator = {{ method = "rkmk4", dt = 1e-14, steps = 40 }}
         << more;
 }
 
-// The field and the torque at rest do not depend on the ratio.
+// Neither the field nor the torque of an equilibrium depends on the ratio.
 TEST(GyromagneticOfSites, IsNoPartOfTheField) {
   for (std::string const ratio : {"1", "0.01", "'0.01'", "'0.01 + 0*i'"}) {
     double const g = ratio == "1" ? 1 : 0.01;
@@ -139,7 +140,7 @@ struct MeanOfRegion {
   double error() const { return std::sqrt((of_squares / count - value() * value()) / count); }
 };
 
-// Free spins lose their direction by exp(-2 damping g T t).
+// The mean of free spins decays as exp(-2 damping g T t).
 TEST(GyromagneticOfSites, TakesPartInTheNoise) {
   auto const end = end_of(llg_scene(
       "0.5", "heun", 100,
@@ -153,7 +154,8 @@ TEST(GyromagneticOfSites, TakesPartInTheNoise) {
                 5 * means[kind].error());
 }
 
-// The equilibrium depends neither on damping nor on the gyromagnetic ratio, also in Gilbert's form.
+// The mean at equilibrium depends neither on damping nor on the gyromagnetic ratio, also in
+// Gilbert's form.
 TEST(GyromagneticOfSites, KeepsLangevinsMean) {
   auto const end = end_of(scene_of(R"toml(
 units = "SI"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The cache file of a demagnetising field's tensors: found again, and verified.
+// The cache file of a demagnetising field's tensors is found again, and verified.
 #include "simulation/interactions_file.hpp"
 
 #include <gtest/gtest.h>
@@ -75,7 +75,7 @@ TEST_F(InteractionsFiles, AreNotWrittenWhereTheyWereSoonFound) {
   EXPECT_FALSE(fs::exists(path));
 }
 
-// Any byte changed, and any end cut off.
+// Damages each byte in turn, and cuts the file off at each of them.
 TEST_F(InteractionsFiles, AreComputedAgainWhereDamaged) {
   of("cells 2");
   auto const whole = text();

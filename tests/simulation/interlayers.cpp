@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Bonds between layers act on the spins at the face: gradient and energy, and the saturation of
-// thick layers against the continuum.
+// Bonds between layers act on the spins at the interface, extrapolated from the cells: the gradient
+// of the energy, the energy, and the saturation of thick layers compared with the continuum.
 #include "scenes_of_text.hpp"
 
 #include <cmath>
@@ -19,7 +19,7 @@ dt = 0.01
 steps = 1
 )toml";
 
-// Harmonics of any order: by differences, with error h^4.
+// Compares H with differences of the energy, whose error is h^4: it has harmonics of any order.
 void expect_gradient(io::Scene const& scene, std::vector<std::size_t> const& sites) {
   auto const run = SceneRun::open(scene, {});
   auto const spins = spins_of(*run);
@@ -28,7 +28,7 @@ void expect_gradient(io::Scene const& scene, std::vector<std::size_t> const& sit
   for (std::size_t const site : sites) {
     double const* const m = &spins[3 * site];
     double const* const h = &field[3 * site];
-    auto const energy_at = [&](double angle) {  // turned about z
+    auto const energy_at = [&](double angle) {  // with the spin turned about z
       auto turned = spins;
       double const c = std::cos(angle), s = std::sin(angle);
       turned[3 * site] = c * m[0] - s * m[1];
@@ -69,7 +69,7 @@ interlayer = [ {{ between = [0, 1], J = -0.15, biquadratic = 0.025 }}, {{ betwee
   }
 }
 
-// Across one vacant plane along x, and across one or two vacant rows along the periodic y.
+// The spacer is one vacant plane along x, and one or two vacant rows along y, which is periodic.
 TEST(Interlayers, AcrossSpacersSeeTheGradientOfTheEnergy) {
   for (std::string const exchange : {"exchange = { regions = [0.5, 0.7, 0.9] }", ""}) {
     auto const scene = scene_of(fmt::format(R"toml(
@@ -120,9 +120,9 @@ steps = 1
   };
   auto const turned = R"(["i == 0 ? 1 : 0.6", "i == 0 ? 0 : 0.8", "0"])";
   EXPECT_NEAR(energy("", turned), -0.04 * 0.6 - 0.02 * 0.36, 1e-15);
-  // Parallel spins are also parallel at the face.
+  // Parallel spins are also parallel at the interface.
   EXPECT_NEAR(energy("exchange = 1", R"(["1", "0", "0"])"), -0.06, 1e-15);
-  // Across a site without a spin.
+  // The bond is across a site without a spin.
   for (auto const& name : {"x", "y", "z"}) {
     auto const along = [&](std::string const& shape) {
       auto const scene = scene_of(fmt::format(R"toml(
@@ -150,7 +150,8 @@ steps = 1
                 -0.04 * 0.6 - 0.02 * 0.36, 1e-15)
         << name;
   }
-  // Stiff cells hold them, to the torque squared over k of two half cells, k = 2 A over d^2.
+  // Stiff exchange holds the spins at the interface near those of the cells: the energy falls by
+  // the torque squared over k = 2 A / d^2, the stiffness of two half cells.
   double const torque = 0.04 * 0.8 + 2 * 0.02 * 0.6 * 0.8, k = 2 * 1e3 / 0.25;
   EXPECT_NEAR(energy("exchange = 1e3", turned), -0.04 * 0.6 - 0.02 * 0.36 - torque * torque / k,
               1e-10);
@@ -166,8 +167,8 @@ steps = 1
       "times the exchange of half a cell");
 }
 
-// Two thick layers with an antiferromagnetic bond saturate along B where 2 A k tanh(k d) = 2 |J|,
-// k^2 = Ms B / (2 A).
+// Two thick layers with an antiferromagnetic bond saturate in a field B where 2 A k tanh(k d) = 2
+// |J|, with k^2 = Ms B / (2 A).
 TEST(Interlayers, OfThickLayersSaturateWhereTheContinuumDoes) {
   constexpr double A = 1.5e-11, Ms = 1e6, J = 1.5e-3, thickness = 2e-8;
   auto const excess = [](double B) {
@@ -219,7 +220,7 @@ steps = 1
     }
 }
 
-// Vacant cells in between only separate the layers.
+// Vacant cells between layers act only as a spacer.
 TEST(Interlayers, AcrossASpacerAreThoseOfLayersThatTouch) {
   auto const layers = [](int spacer, std::string const& axis, std::string const& method) {
     std::string const other = fmt::format("({0} < 4 ? {0} : {0} - {1})", axis, spacer);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Moments, sources and temperatures that differ from site to site, against closed forms.
-// Statistical limits are three standard errors of fixed seeds. Both precisions have the same noise,
-// so at most one seed in 46 puts any of the 8 numbers beyond its limit.
+// Site-dependent moments, sources and temperatures, compared with closed forms. Statistical limits
+// are three standard errors of fixed seeds. Both precisions have the same noise, so at most one
+// seed in 46 puts any of the 8 values beyond its limit.
 #include "scenes_of_text.hpp"
 
 #if defined(CAYSPIN_HAS_FFTW)
@@ -18,7 +18,7 @@
 namespace cayspin::simulation::test {
 namespace {
 
-// Each moment in its own field H = B + 2 K/Ms (m.e) e, with m_z kept: a turn by gamma H t.
+// Each moment turns by gamma H t in its own field H = B + 2 K/Ms (m.e) e, and keeps its m_z.
 TEST(MomentsOfSites, PrecessInTheFieldOfTheirOwnMagnetization) {
   auto const scene = scene_of(R"toml(
 units = "SI"
@@ -135,7 +135,7 @@ TEST(MomentsOfSites, SeeTheGradientOfTheEnergyWithTheDemagnetizingField) {
   expect_gradient(all_terms + demag + rest);
 }
 
-// The library's convolution of moment times spin.
+// The field is the library's convolution of moment times spin.
 TEST(MomentsOfSites, MakeTheDemagnetizingField) {
   auto const lattice_text = std::string(R"toml(
 [system]
@@ -170,7 +170,7 @@ demag = { strength = 1.5, multirate = false }
 }
 #endif
 
-// Regions with equal numbers equal the plain scene.
+// Regions with equal values act like the scene without regions.
 TEST(MomentsOfSites, ThatAreAlikeAreOneMoment) {
   auto const film = [](std::string const& Ms, std::string const& Ku, std::string const& field) {
     return scene_of(fmt::format(R"toml(
@@ -218,9 +218,8 @@ struct Mean {
   double error() const { return std::sqrt((of_squares / count - value() * value()) / count); }
 };
 
-// Independent moments of three kinds, with their own damping and their own temperature: the means
-// of m_z and of its square. Each site's mean over six times is one sample, and sites are
-// independent.
+// Independent moments of three kinds, each with its own damping and temperature: the means of m_z
+// and of its square. One sample is a site's mean over six times; sites are independent.
 TEST(MomentsOfSites, HaveLangevinsMeansAtTheirTemperature) {
   auto const scene = scene_of(R"toml(
 [system]
@@ -275,7 +274,7 @@ steps = 1000
   }
 }
 
-// Free spins lose their direction by exp(-2 damping times the integral of the temperature).
+// The mean of free spins decays as exp(-2 damping times the integral of the temperature).
 TEST(MomentsOfSites, DiffuseByATemperatureInTimeAndOfSites) {
   auto const scene = scene_of(R"toml(
 [system]
@@ -314,8 +313,8 @@ TEST(MomentsOfSites, ATemperatureInTimeThatIsOneNumberIsThatNumber) {
   expect_refused([&] { return chain("'0.5-t'", ""); }, "thermal.temperature: is negative");
 }
 
-// A spin in a field along z that changes in time turns by its integral. Sources of one time add up,
-// and mu0 multiplies all.
+// A spin turns by the integral of a time-dependent field along z. Sources with one time dependence
+// add up, and mu0 multiplies all.
 TEST(Sources, TurnSpinsByTheirIntegral) {
   auto const scene = scene_of(R"toml(
 [system]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Magnetization and energy of regions, and energies of terms, against sums over the spins.
+// Magnetization and energy of regions, and energies of terms, compared with sums over the spins.
 #include "scenes_of_text.hpp"
 #include "simulation/single_terms.hpp"
 
@@ -24,7 +24,7 @@ regions = true
 terms = true
 )toml";
 
-// Seven regions, to need more than one pass; the fifth has no spin.
+// With seven regions, more than one pass is needed; the fifth region has no spin.
 std::string const film = R"toml(
 [system]
 kind = "llg"
@@ -97,7 +97,7 @@ TEST(MoreOfSamples, EnergiesOfRegionsAndOfTermsAddUpToTheWhole) {
   }
 }
 
-// Each end has half of its bonds, and all energy of its axis and its field.
+// A site has half of the energy of each of its bonds, and all of its anisotropy and field.
 TEST(MoreOfSamples, ASitesEnergyIsItsOwn) {
   auto const scene = scene_of(R"toml(
 system = { kind = "llg", damping = 0.1 }

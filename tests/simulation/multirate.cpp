@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Expensive fields in scenes: orders, counts, bits of interrupted runs, and refusals.
+// Expensive (multirate) fields in scenes: orders, counts, bits of interrupted runs, and refusals.
 #include "scenes_of_text.hpp"
 
 #include <cmath>
@@ -49,7 +49,7 @@ TEST(MultirateFields, OfScenesHaveOrderThreeOrFour) {
   }
 }
 
-// Also with terms that are evaluated for all spins at once.
+// Expensive fields also work beside terms that are evaluated for all spins at once.
 TEST(MultirateFields, BesideCurrentsAndSitesOfTheirOwn) {
   std::vector<std::string> const others{
       "torque={ zhang_li = { velocity = [0.2, 0, 0], nonadiabaticity = 0.1 } }",
@@ -93,7 +93,7 @@ TEST(MultirateFields, OfAProgramAreEvaluatedOnceAStep) {
   auto const run =
       SceneRun::open(with_own_field("method='rkmk4'\nsubsteps=3\ndt=0.1\nsteps=100", calls), {});
   run->advance(1);
-  int const looks = 1;  // of the guard, at the start
+  int const looks = 1;  // by energy_guard, at the start
   EXPECT_EQ(*calls, looks + 2 + 3 * 4);
   *calls = 0;
   run->advance(20);
@@ -160,7 +160,7 @@ TEST(MultirateFields, AreRefusedInOneLine) {
     SCOPED_TRACE(integrator);
     expect_refused([&] { return film_on_host(integrator, overrides); }, message);
   }
-  // Terms that are computed together are expensive together.
+  // A field that is computed together with the program's own is multirate, too.
   auto scene = with_own_field(rkmk4 + "substeps=2", std::make_shared<int>(0));
   scene.field.slab_demag = io::SlabDemagnetization{.on_host = true, .multirate = true};
   EXPECT_NO_THROW(make_plan(scene, Precision::double_precision));

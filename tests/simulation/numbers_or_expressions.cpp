@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A constant acts the same as one number and as an expression, in everything that is computed of a
-// scene; and what depends on several terms at once.
+// A constant acts the same as a number and as an expression, in all that is computed from a scene.
+// Some tests are of results that depend on several terms.
 #include "scenes_of_text.hpp"
 
 #include <random>
@@ -16,7 +16,7 @@ struct NumbersOrExpressions : testing::Test {
   }
 };
 
-// Returns the scene with each of these constants as a number, or as an expression of that value.
+// Returns the tables with each of these constants as a number or as an expression.
 std::string tables_of(std::vector<std::pair<std::string, double>> const& constants,
                       std::vector<bool> const& as_expression, std::string tables) {
   for (std::size_t i = 0; i < constants.size(); ++i) {
@@ -85,7 +85,7 @@ TEST_F(NumbersOrExpressions, GiveTheSameMotionEnergyAndModes) {
   EXPECT_GT(with_modes, 15);
 }
 
-// The total, which the field's own kernel sums, is that of the terms one by one.
+// The total energy, which the field's own kernel sums, is the sum of the terms' energies.
 TEST_F(NumbersOrExpressions, TermsAddUpWithFreeBoundaries) {
   for (std::string const dmi : {"bulk = 0.5", "interfacial = 0.4, normal = [0, 0, 1]", "d2d = 0.3"})
     for (std::string const shape : {"[4]", "[5, 3]", "[3, 2, 4]"})
@@ -105,7 +105,7 @@ TEST_F(NumbersOrExpressions, TermsAddUpWithFreeBoundaries) {
       }
 }
 
-// The hard axes of a chain's two ends: D^2/(2A) (m.d)^2 each with E of exchange A/2.
+// With free boundaries, each end of a chain has a hard axis of energy D^2/(2A) (m.d)^2.
 TEST_F(NumbersOrExpressions, TheEndsOfAChainWithBulkDmiHaveAnAnisotropy) {
   auto const run =
       SceneRun::open(llg_scene("0.1", "rkmk4", 1,
@@ -121,7 +121,7 @@ TEST_F(NumbersOrExpressions, TheEndsOfAChainWithBulkDmiHaveAnAnisotropy) {
   EXPECT_NEAR(found, exact, 1e-15);
 }
 
-// m_z = tanh(gamma a t) for a spin that starts across p.
+// m_z = tanh(gamma a t) for a spin that starts perpendicular to p.
 TEST_F(NumbersOrExpressions, ATorqueInTeslaTurnsSpinsByTheirOwnGamma) {
   for (std::string const gamma : {"2.5e11", "'2.5e11 + 0*x'"}) {
     auto const run =

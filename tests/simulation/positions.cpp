@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Positions of a crystal's sites in a file.
+// Positions of a crystal's sites in files.
 #include "io/relax.hpp"
 #include "simulation/run_files.hpp"
 #include "simulation/scene_minimizer.hpp"

@@ -13,7 +13,7 @@ namespace {
 
 using cayspin::test::RandomPulses;
 
-/// Returns a scene of one damped spin at equilibrium along z, and a pulse normal to it.
+/// Returns a scene of one damped spin at equilibrium along z, with a pulse normal to it.
 std::string pulse_scene(std::string const& integrator,
                         std::string const& across = "t>500 && t<501.5 ? 1.0 : 0") {
   return "system = { kind = 'llg', damping = 0.5 }\nlattice = { shape = [1] }\n"
@@ -34,7 +34,7 @@ TEST(Pulses, AtRestAreNotMissed) {
 
 TEST(Pulses, OfAnySmallPartOfARunAreFound) {
   for (double const width : {1e-9, 1e-6, 1e-3, 1.0}) {
-    // A shorter pulse is stronger, with constant area.
+    // A shorter pulse is stronger, so that its area is constant.
     auto const text = fmt::format("t>500.25 && t<{:.17g} ? {:.17g} : 0", 500.25 + width, 1 / width);
     auto const scene = scene_of(pulse_scene("method = 'tsit5', tolerance = 1e-6, end = 502", text));
     auto const features = make_plan(scene, Precision::double_precision).features;
@@ -55,7 +55,7 @@ TEST(Pulses, AreLookedForWhereTheFieldDependsOnTime) {
   EXPECT_FALSE(plan.features->shortest);
 }
 
-// Errors against a reference whose steps end at all corners.
+// Errors are against a reference whose steps end at all corners of the field.
 TEST(Pulses, RandomOnesAreFollowedToTheTolerance) {
   static constexpr char const* methods[] = {"tsit5", "dp5", "bs3", "projected_dp5",
                                             "stiff2_adaptive"};
@@ -145,7 +145,7 @@ TEST(Pulses, OfCurrentsAreFoundToo) {
   EXPECT_EQ(plan.options.steps.bounds.size(), 2u);
 }
 
-// A run with spins at equilibrium does not end before a pulse.
+// A run whose spins are at equilibrium does not end before a pulse.
 TEST(Pulses, AreWaitedForByRunsThatEndAtRest) {
   auto const scene = scene_of(
       "system = { kind = 'llg', damping = 0.5 }\nlattice = { shape = [1] }\n"

@@ -18,8 +18,8 @@
 
 namespace cayspin::simulation::test {
 
-/// The numbers of a composition's terms; 0 for missing ones. Vectors have an element for each site,
-/// or are empty.
+/// The constants of a composition's terms, 0 for terms that are missing. Vectors have an element
+/// for each site, or are empty.
 struct CompositionNumbers {
   Lattice lattice;
   double exchange = 0, interfacial = 0, bulk = 0, cubic = 0, moment = 1, gyromagnetic = 1;
@@ -38,8 +38,8 @@ struct CompositionNumbers {
   double scale = 0;  // bound on |H|
 };
 
-/// A random composition of terms, shape and site-dependent numbers, as the text of a scene and as
-/// numbers.
+/// A random composition of terms, shape and site-dependent values, both as the text of a scene and
+/// as numbers.
 class Composition {
  public:
   explicit Composition(unsigned seed) : engine_(seed) {
@@ -64,7 +64,7 @@ class Composition {
 
  private:
   double uniform(double least, double most) { return least + (most - least) * engine_() * 0x1p-32; }
-  /// Returns a number with four digits, as typed.
+  /// Returns a number with four decimal places, as it is typed.
   double number(double least, double most) { return std::round(1e4 * uniform(least, most)) / 1e4; }
   Vec3<double> vector(double size) {
     return {number(-size, size), number(-size, size), number(0.1 * size, size)};
@@ -89,7 +89,7 @@ class Composition {
     auto& shape = numbers.lattice.shape;
     shape = {one_of(extents), one_of(extents), one_of(extents)};
     if (chance(0.1)) shape = {one_of(std::to_array<std::int64_t>({256, 271, 600})), 3, 2};
-    if (seed % 97 == 5) shape = {70, 50, 30};  // exceeds the caches: stages in sweeps
+    if (seed % 97 == 5) shape = {70, 50, 30};  // exceeds the caches, so steps are sweeps
     if (shape[0] * shape[1] * shape[2] == 1) shape[0] = 7;
     auto const open = [&] { return chance(0.5); };
     for (auto& boundary : numbers.lattice.boundary)

@@ -15,7 +15,7 @@
 
 namespace cayspin::simulation::test {
 
-/// Returns a number from the environment.
+/// Returns a number from the environment, or `usual`.
 inline std::int64_t setting(char const* name, std::int64_t usual) {
   char const* const asked = std::getenv(name);
   return asked ? std::atoll(asked) : usual;
@@ -24,7 +24,7 @@ inline std::uint64_t random_seed() {
   return static_cast<std::uint64_t>(setting("CAYSPIN_SEED", 1));
 }
 
-/// The tables of a small scene.
+/// A small lattice, its field and its initial spins; [system] and [integrator] are missing.
 inline constexpr char const* chain_of_nine =
     "lattice = { shape = [9] }\nfield = { exchange = 1.0 }\n"
     "initial = { random = { seed = 4 } }\n";
@@ -140,7 +140,7 @@ class RandomRun {
 
  public:
   static constexpr std::int64_t steps = 40;
-  bool numbers_of_sites = true;  ///< true: scenes may have them
+  bool numbers_of_sites = true;  ///< allows site-dependent values
 
  private:
   std::mt19937_64 engine_;

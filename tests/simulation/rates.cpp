@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Prefactors of harmonic transition state theory and Langer's: a biaxial particle, the skyrmion of
-// Pd/Fe/Ir(111) of UppASD's tests.
+// Prefactors of harmonic transition state theory and of Langer's theory, for a biaxial particle,
+// for chains, and for the skyrmion of Pd/Fe/Ir(111) in UppASD's tests.
 #include "simulation/failure.hpp"
 #include "simulation/transition_rates.hpp"
 
@@ -68,7 +68,7 @@ TEST_F(Rates, OfABiaxialParticle) {
   }
 }
 
-// Smith and de Rozario (1976): the motion at the saddle grows by the positive root of a quadratic.
+// Smith and de Rozario (1976): at the saddle, the motion grows at the positive root of a quadratic.
 TEST_F(Rates, OfABiaxialParticleWithDamping) {
   double const easy = 1.3;
   for (double const hard : {0.01, 0.7, 5.0})
@@ -85,8 +85,8 @@ TEST_F(Rates, OfABiaxialParticleWithDamping) {
     }
 }
 
-// Stiff modes of exchange contribute as in the undamped theory, if they are fast compared with the
-// motion at the barrier.
+// Stiff exchange modes contribute as without damping, if they are fast compared with the motion
+// over the barrier.
 TEST_F(Rates, OfAStiffChainWithDamping) {
   double const easy = 1.3, hard = 0.7, damping = 0.3;
   auto const lattice = cayspin::Lattice::chain(3);
@@ -100,16 +100,16 @@ TEST_F(Rates, OfAStiffChainWithDamping) {
   EXPECT_NEAR(found.rates.langer_forward / exact, 1, 1e-3);
 }
 
-// By the easy plane at the saddle spins may turn: a zero mode of which the volume is that of a
-// turn.
+// At the saddle the spin may turn freely about the axis: a zero mode, whose volume is that of a
+// full turn.
 TEST_F(Rates, FindARotationOfAllSpins) {
   auto const found =
       rate(UniaxialAnisotropy(1, {0, 0, 1}), cayspin::Lattice::chain(1), {0, 0, 1}, {0, 0, -1});
   EXPECT_EQ(found.rates.zero_modes, (std::array<std::int64_t, 3>{0, 1, 0}));
   EXPECT_NEAR(found.rates.volumes[1], 2 * std::numbers::pi, 1e-6);
-  EXPECT_LT(found.rates.prefactor_forward, 1e-6);  // no precession leads across
+  EXPECT_LT(found.rates.prefactor_forward, 1e-6);  // no precession leads over the barrier
   EXPECT_LT(found.rates.langer_forward, 1e-6);
-  // Damping does: Brown (1963).
+  // Damping does lead over it: Brown (1963).
   for (double const damping : {0.01, 1.0}) {
     auto const damped = rate(UniaxialAnisotropy(1, {0, 0, 1}), cayspin::Lattice::chain(1),
                              {0, 0, 1}, {0, 0, -1}, damping);
@@ -117,11 +117,12 @@ TEST_F(Rates, FindARotationOfAllSpins) {
   }
 }
 
-// The cosine z of the angle to the axis diffuses by damping kT (1 - z^2) in -K z^2 / 2 - h z. The
-// probability flux over the top at z = -h / K gives the rate of one spin,
+// Brown's diffusion: the cosine z of the angle to the axis diffuses with damping kT (1 - z^2) in
+// the potential -K z^2 / 2 - h z. The flux of probability over the top at z = -h / K gives the rate
+// of one spin,
 //   damping (1 - z^2) sqrt(K / 2 pi kT) (K +- h).
-// In a chain each mode of exchange contributes the ratio of its curvatures in the well and at the
-// top, where it has one along the ring of saddles and one across it.
+// In a chain, each exchange mode multiplies this by a ratio of its curvatures in the well and at
+// the top. At the top it has one along the ring of saddles and one across it.
 TEST_F(Rates, InAFieldAlongTheEasyAxis) {
   double const k = 1.3, damping = 0.4, exchange = 8;
   for (double const h : {0.0, -0.2, 0.6, 1.1})
@@ -136,7 +137,7 @@ TEST_F(Rates, InAFieldAlongTheEasyAxis) {
           for (double const c : {axis.x, axis.y, axis.z}) up.push_back(c), down.push_back(-c);
         auto const found = rate(field, lattice, up, down, damping);
         double const square = 1 - h * h / (k * k);
-        auto const exact = [&](double curvature) {  // of the well
+        auto const exact = [&](double curvature) {  // in the well
           double factor = damping * square * std::sqrt(k / (2 * std::numbers::pi)) * curvature *
                           std::sqrt(static_cast<double>(count));
           for (std::int64_t mode = 1; mode < count; ++mode) {
@@ -154,7 +155,8 @@ TEST_F(Rates, InAFieldAlongTheEasyAxis) {
       }
 }
 
-// tests/regressionGNEB of UppASD, in mRy: 9 shells of exchange of von Malottki et al. (2017).
+// Parameters in mRy and results from tests/regressionGNEB of UppASD: 9 shells of exchange by von
+// Malottki et al. (2017).
 TEST_F(Rates, OfASkyrmionOfPdFeIr) {
   std::int64_t const n = 40;
   cayspin::Lattice const lattice{
@@ -193,7 +195,7 @@ TEST_F(Rates, OfASkyrmionOfPdFeIr) {
   EXPECT_NEAR(found.path.saddle().curvature, -2.45602087, 1e-7);
   EXPECT_EQ(found.rates.zero_modes, (std::array<std::int64_t, 3>{2, 0, 0}));
   EXPECT_NEAR(found.rates.volumes[0], 15.1529267, 0.02);
-  // In 1/s and 1/(s K), of moments of 3 Bohr magnetons.
+  // Converts to 1/s and 1/(s K), for moments of 3 Bohr magnetons.
   double const time = 2.00231930 / 4.837769e-14 / 3, kelvin = 6.333623e-6 * 1e3;
   EXPECT_NEAR(found.rates.prefactor_forward * time * kelvin / 4.19766298e12, 1, 2e-3);
   EXPECT_NEAR(found.rates.prefactor_backward * time / 8.71839224e14, 1, 2e-3);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Which ensembles are columns of a lattice, and that these move, are sampled and fail as runs of
-// their own. tests/program/ensembles.cpp compares their bits in files.
+// Which ensembles are stepped as columns of one lattice, and that their replicas move, are sampled
+// and fail like separate runs. tests/program/ensembles.cpp compares their bits in files.
 #include "scenes_of_text.hpp"
 #include "simulation/ensemble_run.hpp"
 #include "simulation/failure.hpp"
@@ -82,7 +82,7 @@ TEST(ReplicaColumns, AreSampledAndRelaxedAsRunsOfTheirOwn) {
     EXPECT_DOUBLE_EQ(run.time(), 11 * 0.02);
     EXPECT_EQ(run.evaluations(), 40 * own[0]->evaluations());
   }
-  // From here each has a run of its own.
+  // After relaxing, each replica has a run of its own.
   auto const cold =
       scene_of(llg_scene("0.1", "heun", 40, chains).text, {"field.applied=[0.3,0.1,0]"});
   EnsembleRun run(cold, {}, false);
@@ -98,7 +98,7 @@ TEST(ReplicaColumns, AreSampledAndRelaxedAsRunsOfTheirOwn) {
   EXPECT_EQ(run.steps(), 16);
 }
 
-// An interrupt lets some replicas go on and not others; afterwards all meet at the same step.
+// An interrupt stops some replicas before others; afterwards all continue to the same step.
 TEST(ReplicaColumns, MeetAfterAnInterrupt) {
   auto const columns = llg_scene("0.1", "heun", 400, chains + noise);
   for (auto const& scene :
@@ -147,7 +147,7 @@ TEST(ReplicaColumns, AreReadWithoutTheListsOfAll) {
   EXPECT_EQ(replica.text, io::replica_of(scene, 17).text);
 }
 
-// The field makes the steps unstable.
+// In this field the steps are unstable.
 TEST(ReplicaColumns, FailAsRunsOfTheirOwn) {
   auto const scene =
       scene_of(llg_scene("0.1", "classical_euler", 4000, chains).text, {"field.applied=[0,0,30]"});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A stored and continued run equals an uninterrupted one: equal bits and counts, with every method.
-// A run interrupted early says so.
+// A run that is stored and continued equals one that is not interrupted, in bits and counts, with
+// every method. A run that is interrupted early says so.
 #include "random_run.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/failure.hpp"
@@ -73,8 +73,8 @@ TEST(Restarting, BeginsAnewAfterSpinsWereGiven) {
   fs::remove(file);
 }
 
-// A poll that returns true, such as for Python's signals, hands the request to the run, which must
-// then stop.
+// When a poll returns true, for example for one of Python's signals, the request is passed to the
+// run, which then has to stop.
 TEST(Interrupting, IsNotAskedAfterTheLastStep) {
   auto scene = llg_scene("0.1", "rkmk4", 40, chain_of_nine);
   auto const wait = std::make_shared<std::chrono::milliseconds>(0);
@@ -84,7 +84,7 @@ TEST(Interrupting, IsNotAskedAfterTheLastStep) {
   };
   auto const run = SceneRun::open(scene, {});
   run->advance(1);
-  *wait = std::chrono::milliseconds(30);  // not before the plan's evaluation
+  *wait = std::chrono::milliseconds(30);  // after the plan's evaluation of the field
   for (std::int64_t const count : {1, 2, 3}) {
     bool said_yes = false;
     auto const ended =

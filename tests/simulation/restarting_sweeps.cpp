@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Continued runs on lattices large enough for sweeps (cayspin::Path), with fields that prevent
-// sweeps and fields that allow them. CAYSPIN_RANDOM_RESTARTS: their number; few by default, and 0
-// means each method with each field once.
+// Continued runs on lattices that are large enough for sweeps (cayspin::Path), with fields that
+// allow and fields that prevent sweeps. CAYSPIN_RANDOM_RESTARTS is their number, few by default; 0
+// means each method once with each field and precision.
 #include "random_run.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/failure.hpp"
@@ -31,8 +31,7 @@ constexpr KindOfField fields[] = {
 #endif
 };
 
-// Steps of two stages or more sweep on twice these sites: their fields exceed the caches of all
-// cores.
+// Returns enough planes for four fields to exceed the caches of all cores.
 std::int64_t least_planes(Precision precision, std::int64_t sites_of_plane) {
   auto const cores = static_cast<std::size_t>(expected_threads());
   std::size_t const number = precision == Precision::single_precision ? 4 : 8;
@@ -40,7 +39,7 @@ std::int64_t least_planes(Precision precision, std::int64_t sites_of_plane) {
   return 1 + static_cast<std::int64_t>(sites) / sites_of_plane * 5 / 4;
 }
 
-/// Returns false when the scene is invalid, or its numbers fail.
+/// Returns false if the scene is invalid or the run fails with numbers that are not finite.
 bool gives_the_bits_of_passes(Variant const& variant, KindOfField const& field, Precision precision,
                               RandomRun& random) {
   static constexpr std::int64_t planes[][2] = {{40, 36}, {67, 21}, {128, 16}};
@@ -85,7 +84,7 @@ TEST(RestartingSweeps, GivesTheBitsOfARunWithoutABreak) {
     for (std::int64_t draw = 0; done < asked && draw < 50 * asked && !HasFailure(); ++draw) {
       RandomRun random(random_seed() + 77, draw);
       auto const& variant = *suitable[static_cast<std::size_t>(random.below(std::ssize(suitable)))];
-      // Half of them with methods that store a residual.
+      // Half of the runs are with methods that store a residual.
       if (draw % 2 == 0 && !variant.compensated) continue;
       auto const& field = fields[random.below(std::ssize(fields))];
       done += gives_the_bits_of_passes(variant, field, precisions[random.below(2)], random);

@@ -32,7 +32,8 @@ inline io::Scene scene_of(std::string const& text, std::vector<std::string> cons
   return io::parse_scene(text, "scene.toml", overrides);
 }
 
-/// Returns a scene of spins with steps of 0.02. `tables`: all but [system] and [integrator].
+/// Returns a scene of spins with steps of 0.02. `tables` are all tables but [system] and
+/// [integrator].
 inline io::Scene llg_scene(std::string_view damping, std::string_view method, int steps,
                            std::string const& tables) {
   return scene_of(
@@ -58,8 +59,8 @@ inline double largest_distance(std::vector<double> const& a, std::vector<double>
   return largest;
 }
 
-/// Expects a run that is stored after `cut` steps, and one continued from there to the scene's end,
-/// to have the bits and counts of an uninterrupted run.
+/// Expects equal bits and counts of a run that is not interrupted, of one that is stored after
+/// `cut` steps, and of one that continues from there to the scene's end.
 inline void expect_same_bits_after_a_break(io::Scene const& scene, std::int64_t cut,
                                            Precision precision = Precision::double_precision) {
   auto const file =
@@ -84,8 +85,8 @@ inline void expect_same_bits_after_a_break(io::Scene const& scene, std::int64_t 
   std::filesystem::remove(file);
 }
 
-/// Expects the scene that `make` returns to be refused, by it or the plan, in one line with these
-/// words.
+/// Expects the scene that `make` returns to be refused, by `make` or by the plan, in one line with
+/// these words.
 template <class Make>
 void expect_refused(Make const& make, std::string const& words) {
   try {

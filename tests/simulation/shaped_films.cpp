@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Random discs, balls, rings, layers and films with holes, from random and uniform starts: each
-// search converges to a minimum. CAYSPIN_SHAPED_FILMS: their number.
+// Random discs, balls, rings, layers and films with holes: from random and uniform starts each
+// search converges to a minimum. CAYSPIN_SHAPED_FILMS is their number.
 #include "io/scene.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/scene_field.hpp"
@@ -75,7 +75,7 @@ class ShapedText {
       axes += fmt::format("{{ cubic = {:.4f}, axes = [[1, 0, 0], [0, 1, 0]] }}, ", uniform(-1, 1));
     if (!axes.empty()) field_ += "anisotropy = [" + axes + "]\n";
     if (chance(0.4)) field_ += fmt::format("demag = {{ strength = {:.4f} }}\n", uniform(0.2, 1.5));
-    // Along no axis, so that no mode is free.
+    // The field is along no axis, so that no mode is free.
     field_ += fmt::format("applied = [{:.4f}, {:.4f}, {:.4f}]\n", uniform(0.02, 0.1),
                           uniform(0.02, 0.1), uniform(-0.3, 0.3));
   }

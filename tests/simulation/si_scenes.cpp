@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Scenes in SI against equal physics in reduced units, and against numbers computed by hand.
+// Scenes in SI, compared with equal physics in reduced units and with numbers computed by hand.
 #include "scenes_of_text.hpp"
 
 #include <cmath>
@@ -11,11 +11,11 @@
 namespace cayspin::simulation::test {
 namespace {
 
-// Independent of the library's values.
+// Typed here, so that tests do not depend on the library's values.
 constexpr double mu0 = 1.25663706127e-6, gamma = 1.760859e11, mu_B = 9.2740100657e-24,
                  meV = 1.602176634e-22, boltzmann = 1.380649e-23, pi = std::numbers::pi;
 
-// Units of a reduced scene.
+// The units of a reduced scene.
 struct Reduced {
   double energy, field, time;
 };
@@ -47,7 +47,7 @@ void expect_same_physics(std::string const& si_text, std::string const& reduced_
   }
 }
 
-// Replaces `{NAME}` in a text by its number, with all digits.
+// Replaces `{NAME}` in a text by the number of that name, with all digits.
 std::string with_numbers(std::string_view text, std::map<std::string, double> const& numbers) {
   std::string made(text);
   for (auto const& [name, number] : numbers)
@@ -57,7 +57,7 @@ std::string with_numbers(std::string_view text, std::map<std::string, double> co
 }
 
 TEST(SiScenes, AFerrimagnetHasTheFieldsOfItsReducedScene) {
-  // In units of 1 meV and 1 Bohr magneton.
+  // The units are 1 meV and 1 Bohr magneton.
   double const alpha = 0.1, field = meV / mu_B, time = (1 + alpha * alpha) / (gamma * field),
                dt = 2e-15;
   std::string const usual = R"toml(
@@ -207,8 +207,8 @@ std::string iron(std::string const& couplings) {
          "integrator = { method = 'rkmk4', dt = 1e-17, steps = 1 }\n";
 }
 
-// 8 neighbours of 7.05e-21 J on 2.22 Bohr magnetons: 2739.42 T, by hand. Vampire agrees; its file
-// lists each bond from both ends.
+// By hand: 8 neighbours of 7.05e-21 J on 2.22 Bohr magnetons make 2739.42 T. Vampire agrees; its
+// file lists each bond from both ends.
 TEST(SiScenes, IronHasTheExchangeFieldOfItsEightNeighbours) {
   for (auto const& couplings : {std::string("{ shells = [7.05e-21] }"),
                                 std::string("{ shells = { meV = [44.00263897494837]} }"),
@@ -231,8 +231,8 @@ TEST(SiScenes, IronHasTheExchangeFieldOfItsEightNeighbours) {
     }
 }
 
-// A current moves a spiral of 24 cells. If xi equals Gilbert's damping it keeps its shape and moves
-// with the electrons, at 28.9755 m/s sin(q a) / (q a) for 1e12 A/m^2.
+// A current moves a spiral of 24 cells. If xi equals Gilbert's damping, the spiral keeps its shape
+// and moves with the electrons, at 28.9755 m/s sin(q a) / (q a) for 1e12 A/m^2.
 TEST(SiScenes, ASpiralOfPermalloyMovesWithTheElectrons) {
   auto const text = [](double alpha) {
     return fmt::format(R"toml(units = "SI"
@@ -258,7 +258,7 @@ integrator = {{ method = "rkmk4", dt = 1e-12, steps = 200 }}
     }
 }
 
-// Uncoupled spins: each moves as in a scene with its damping.
+// Uncoupled spins move as in scenes with their own damping.
 TEST(SiScenes, GilbertsDampingMayDifferFromSiteToSite) {
   auto const end = [](std::string const& alpha, std::string const& form, Precision precision) {
     return end_of(scene_of("units = 'SI'\nmaterial = { Ms = 8e5, alpha = " + alpha +

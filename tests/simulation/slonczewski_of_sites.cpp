@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Slonczewski's torque with an angular dependence, and with site-dependent strengths and
-// polarizations, against closed forms.
+// Slonczewski's torque with an angular dependence and with site-dependent strengths and
+// polarizations, compared with closed forms.
 #include "scenes_of_text.hpp"
 
 #include <cayspin/units.hpp>
@@ -39,8 +39,8 @@ TEST(SlonczewskiOfSites, TurnsAFreeSpinByItsImplicitForm) {
   }
 }
 
-// Near m = z or -z a small tilt decays by damping (K + b) + a c, c = 1 or L^2: it grows from the
-// threshold on.
+// Near m = z or -z a small tilt decays at the rate damping (K + b) + a c, with c = 1 or L^2. Beyond
+// the threshold, where this is 0, the tilt grows.
 TEST(SlonczewskiOfSites, HasTheThresholdOfItsAngle) {
   constexpr double damping = 0.05, K = 0.8, b = 0.1, L = 1.5, tilt = 1e-3, t = 40 * 0.02;
   for (double const side : {1.0, -1.0})
@@ -112,7 +112,7 @@ steps = 1
   }
 }
 
-// Equal site-dependent numbers act as one number, also with other terms and other sites.
+// Site-dependent values that are equal act like one number, also with other terms and vacancies.
 TEST(SlonczewskiOfSites, ThatAreAlikeAreOneTorque) {
   auto const film = [](std::string const& method, std::string const& torque,
                        std::string const& more) {
@@ -157,7 +157,7 @@ steps = 20
       }
 }
 
-// Half the step, a quarter of the error.
+// With half the step, the error is a quarter.
 TEST(SlonczewskiOfSites, GoesWithStiffMethods) {
   auto const end = [](std::string const& method, int halvings) {
     return end_of(scene_of(fmt::format(R"toml(
@@ -195,7 +195,7 @@ polarization = ["x - 0.5", "y - 0.4", 1]
                                  5);
 }
 
-// The bound on the step: a is largest opposite to p.
+// The bound on the step uses the largest a, which is at m = -p.
 TEST(SlonczewskiOfSites, BoundTheStep) {
   auto const plan_of = [](std::string const& torque) {
     return make_plan(llg_scene("0.1", "heun", 1,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The name "serial" means the host's space with one thread.
+// The space "serial" is the host's space with one thread.
 #include "random_run.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/failure.hpp"
@@ -22,7 +22,7 @@ io::Scene chain() { return llg_scene("0.1", "rkmk4", 1, chain_of_nine); }
 }
 
 TEST(SerialSpace, StartsKokkosWithOneThread) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");  // in a process without Kokkos
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // in a process that has not started Kokkos
   EXPECT_EXIT(exit_with_threads_of_serial(), testing::ExitedWithCode(1), "");
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The shipped scenes of muMAG's standard problems, on coarse cells.
-// docs/reports/standard_problems.md has figures of finer ones.
+// docs/reports/standard_problems.md has results on finer ones.
 #include "io/relax.hpp"
 #include "scenes_of_text.hpp"
 
@@ -30,7 +30,7 @@ void expect_magnetization(SceneRun& run, Vec3<double> const& theirs, double limi
   EXPECT_NEAR(m.z, theirs.z, limit);
 }
 
-// Walls stick to cells of 40 nm, so that -50 mT need not reverse it all.
+// Walls stick to cells of 40 nm, so -50 mT need not reverse the whole film.
 TEST(StandardProblems, OneIsReversedAlongItsLongAxis) {
   auto const run =
       open("1", {"field.applied=[0, 0, 0]", "lattice.shape=[50, 25, 1]", "lattice.spacing=40e-9"});
@@ -43,7 +43,7 @@ TEST(StandardProblems, OneIsReversedAlongItsLongAxis) {
   EXPECT_LT(along(-100e-3), -0.95);
 }
 
-// Donahue et al. 2000: Hc of a small particle is 0.057069478 Ms. Along (1, 1, 1).
+// Donahue et al. 2000: in a field along (1, 1, 1) a small particle has Hc = 0.057069478 Ms.
 TEST(StandardProblems, TwoHasTheCoercivityOfASmallParticle) {
   auto const run = open("2", {"field.applied=[0, 0, 0]", "lattice.spacing=0.01"});
   auto const along = [&](double field) {
@@ -57,7 +57,7 @@ TEST(StandardProblems, TwoHasTheCoercivityOfASmallParticle) {
   EXPECT_LT(along(-0.05709), 0);
 }
 
-// Half a loop of a larger particle, the jump among its states; on cells of 3 and 1.5 l_ex.
+// Half a hysteresis loop of a larger particle, including its jump, on cells of 3 and 1.5 l_ex.
 TEST(StandardProblems, TwoTakesFewEvaluationsAState) {
   for (std::string const cells : {"lattice={ shape = [50, 10, 1], spacing = [3, 3, 3] }",
                                   "lattice={ shape = [100, 20, 1], spacing = [1.5, 1.5, 3] }"}) {
@@ -72,7 +72,8 @@ TEST(StandardProblems, TwoTakesFewEvaluationsAState) {
   }
 }
 
-// Rave, Fabian and Hubert 1998: equal at 0.3027 Km in a cube of 8.47. The flower is a saddle.
+// Rave, Fabian and Hubert 1998: in a cube with edges of 8.47 l_ex the two have one energy, 0.3027
+// Km. The flower is a saddle.
 TEST(StandardProblems, ThreeHasAFlowerAndAVortexOfOneEnergy) {
   for (std::string const cells : {"10", "20"}) {
     std::string const shape = "lattice.shape=[" + cells + "," + cells + "," + cells + "]";
@@ -95,17 +96,18 @@ TEST(StandardProblems, ThreeHasAFlowerAndAVortexOfOneEnergy) {
   }
 }
 
-// On 200 x 50 cells <m_x> is first zero at 0.1385 ns in OOMMF.
+// In OOMMF on 200 x 50 cells, <m_x> first vanishes at 0.1385 ns.
 TEST(StandardProblems, FourCrossesZero) {
   auto const run = open("4", {"lattice.shape=[100, 25, 1]", "lattice.spacing=[5e-9, 5e-9, 3e-9]"});
   relax(*run, {.applied = {{0, 0, 0}}});
-  run->advance(108);  // of 1.25 ps
+  run->advance(108);  // steps of 1.25 ps
   EXPECT_GT(run->sample().magnetization.x, 0);
   run->advance(4);
   EXPECT_LT(run->sample().magnetization.x, 0);
 }
 
-// mumax3's test standardproblem5.mx3, whose tensor differs; its u is smaller by 1 + xi^2.
+// Values of mumax3's test standardproblem5.mx3. Its tensor differs, and its u is smaller by a
+// factor of 1 + xi^2.
 TEST(StandardProblems, FiveIsAsInMumax3) {
   std::vector<std::string> const size{"lattice.shape=[32, 32, 4]",
                                       "lattice.spacing=[3.125e-9, 3.125e-9, 2.5e-9]"};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Runs at a temperature have equal bits in pieces, for any observation, and after a restart, with
+// Runs at a temperature have equal bits in pieces, with any observation and after a restart, with
 // every one-step method.
 #include "random_run.hpp"
 #include "scenes_of_text.hpp"
@@ -20,7 +20,8 @@ class ThermalRuns : public testing::Test {
   ThermalRuns() { fs::create_directories(folder_); }
   ~ThermalRuns() override { fs::remove_all(folder_); }
 
-  /// Repeats the run in other ways. Returns false when the scene is invalid.
+  /// Repeats the run in pieces, after a restart, and step by step. Returns false if the scene is
+  /// invalid or its numbers fail.
   bool holds(std::string const& text, Precision precision, RandomRun& random) const {
     std::optional<io::Scene> scene;
     std::unique_ptr<SceneRun> whole;
@@ -68,7 +69,8 @@ TEST_F(ThermalRuns, HaveTheSameBitsInRandomScenes) {
   std::set<std::string_view> methods;
   for (std::int64_t draw = 0; scenes < wanted && draw < 50 * wanted && !HasFailure(); ++draw) {
     RandomRun random(random_seed(), draw);
-    // Steps by a prime larger than the number of variants, so that each is drawn once per round.
+    // Draws are spaced by a prime larger than the number of variants, so that each variant is drawn
+    // once per round.
     auto const& variant = variants()[(10007 * static_cast<std::size_t>(draw)) % variants().size()];
     auto const text =
         random.scene(variant) + fmt::format("[thermal]\ntemperature = {}\nseed = {}\n",
@@ -99,7 +101,7 @@ TEST(ThermalPlan, RefusesMethodsThatRememberSteps) {
 
 std::int64_t fences_of_noise = 0;
 
-// Between two observations nothing waits for noise.
+// Only observations wait for noise; nothing does between two of them.
 TEST_F(ThermalRuns, WaitForNoiseOnlyAtLooks) {
   namespace tools = Kokkos::Tools::Experimental;
   auto const run = SceneRun::open(thermal_chain(), {});
@@ -111,7 +113,7 @@ TEST_F(ThermalRuns, WaitForNoiseOnlyAtLooks) {
   EXPECT_EQ(fences_of_noise, 10);
 }
 
-// A program's field that throws once: the step is repeated, with its noise.
+// A field of the program throws once; the step is then repeated with its noise.
 TEST_F(ThermalRuns, GoOnAfterAFieldThatFailed) {
   auto const run_of = [&](int failing_call) {
     auto scene = thermal_chain();

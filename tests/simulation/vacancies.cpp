@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Methods that divide by the length of a spin, in scenes with vacant sites: compared with a lattice
-// of that shape, and, for a site of the cell without a spin, with the scene without that site.
+// Methods that divide by the length of a spin, in scenes with vacant sites. These are compared with
+// a lattice of the remaining shape; or, if one site of the cell has no spin, with a cell without
+// that site.
 #include "random_run.hpp"
 #include "scenes_of_text.hpp"
 
@@ -20,7 +21,7 @@ bool divides_by_length(Variant const& variant) {
   return method.stiff || variant.in_chart || (method.is_baseline() && method.keeps_length);
 }
 
-/// `lattice`: its keys.
+/// `lattice`: the keys of its table.
 io::Scene scene_with(Variant const& variant, std::string const& lattice, std::string const& field,
                      Precision precision) {
   MethodChoice choice{.method = variant.method};
@@ -29,7 +30,7 @@ io::Scene scene_with(Variant const& variant, std::string const& lattice, std::st
   auto keys = choice.keys();
   for (auto& c : keys)
     if (c == ',') c = '\n';
-  // Without damping stiff methods solve to round-off.
+  // Without damping, stiff methods solve their equation to round-off.
   return scene_of(fmt::format(
       "[system]\nkind = 'llg'\ndamping = {}\n[lattice]\n{}\n[field]\n{}\n[initial]\n"
       "expression = ['cos(0.7*i + 1.1*j)', 'sin(0.9*j - 0.4*i)', '0.4 + 0.3*k']\n"
@@ -84,7 +85,8 @@ TEST(Vacancies, LeaveTheMotionOfTheShapeAlone) {
   EXPECT_GT(compared, 40);
 }
 
-/// Returns a film of moments 10, with so many hundredths of the largest noise that a step may have.
+/// Returns a film with moments of 10, whose noise is this many hundredths of the largest that a
+/// step may have.
 io::Scene film_of_moments(std::string const& lattice, std::string const& couplings,
                           int hundredths) {
   constexpr double damping = 0.5, dt = 0.02;
@@ -97,7 +99,7 @@ io::Scene film_of_moments(std::string const& lattice, std::string const& couplin
                   lattice, couplings, 0.01 * hundredths * 10 / (damping * dt)));
 }
 
-// The constants of an empty site do not make dt too large either.
+// Nor do the constants of an empty site reduce the largest dt.
 TEST(Vacancies, AMomentOfZeroIsNoSite) {
   std::string const bond = "{ offset = [1, 0, 0], J = 4, D = [0, 0, 1] }";
   auto const film = [&](int hundredths) {
