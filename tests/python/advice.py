@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""trade and advise as records, through the program."""
+"""trade and advise run the program and return records."""
 
 import json
 import os

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Truths, numbers, words and sequences of any kind: NumPy's mean what Python's do, and what means
-something else is refused with one line."""
+"""Truth values, numbers, words and sequences as arguments: NumPy's mean the same as Python's, and
+other kinds are refused with one line."""
 
 import decimal
 import fractions
@@ -104,7 +104,7 @@ class Observers(PackageTest):
 
 
 class Calls(PackageTest):
-    """Each argument of each function with things of each kind."""
+    """Passes values of each kind to each argument of each function."""
 
     def accepted(self, call, things):
         for thing in things:

@@ -66,7 +66,7 @@ class Browser(ScriptTest):
         return self.driver.execute_script("return document.body.dataset.shown") or ""
 
     def shown(self):
-        """The number of the frame that is drawn."""
+        """Returns the number of the frame that is drawn."""
         return int(self.shown_text().split()[0]) if self.shown_text() else None
 
     def pull(self, slider, value):
@@ -86,7 +86,7 @@ class Browser(ScriptTest):
         return np.round(255 * png[..., :3]).astype(int)
 
     def assert_colors(self, expected, tolerance=4):
-        """Compares the colours in the middle of cells, in rows from the bottom up."""
+        """Compares the colours in the middle of cells; `expected` has rows from the bottom up."""
         pixels, (rows, columns) = self.pixels(), expected.shape[:2]
         up, right = ((np.arange(count) + 0.5) / count for count in (rows, columns))
         found = pixels[np.ix_((pixels.shape[0] * (1 - up)).astype(int),

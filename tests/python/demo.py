@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The demo's files are those that the program writes: demo.py DEMO PROGRAM SCENE."""
+"""The demo writes the files that the program writes: demo.py DEMO PROGRAM SCENE."""
 
 import pathlib
 import subprocess
@@ -39,7 +39,7 @@ class Demo(unittest.TestCase):
         for name, expected in there.items():
             self.assertEqual((here[name].dtype, here[name].shape), (expected.dtype, expected.shape))
             if name.endswith("checksum"):
-                continue  # of numbers that differ in their last bits
+                continue  # the values differ in their last bits
             size = max(1, abs(expected[:]).max())
             difference = abs(here[name][:] - expected[:]).max()
             self.assertLessEqual(difference, steps * np.finfo(float).eps * size, name)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Energies of point dipoles: closed forms, known lowest states of lattices, and the checks that
-other programs hold themselves to. Unit of energy: mu^2/(4 pi a^3), that of most papers."""
+"""Energies of point dipoles, compared with closed forms, known lowest states of lattices, and tests
+of other programs. The unit of energy is mu^2/(4 pi a^3), as in most papers."""
 
 import itertools
 import math
@@ -25,7 +25,7 @@ def energy_per_site(lattice, initial, dipoles=True):
 
 
 def direct_energy(places, moments):
-    """Energy of moments at positions, summed over pairs."""
+    """Returns the energy of moments at positions, summed over pairs."""
     total = 0.0
     for i in range(1, len(places)):
         r = places[i] - places[:i]
@@ -36,8 +36,8 @@ def direct_energy(places, moments):
 
 
 class ClosedForms(PackageTest):
-    # LAMMPS issue 4717: two spins along x, parallel and antiparallel, and across; in meV and
-    # Angstrom mu0 mu_B^2 / (4 pi) is 0.053681.
+    # Two spins on the x axis: along it, parallel and antiparallel, and across it (LAMMPS issue
+    # 4717). In meV and Angstrom mu0 mu_B^2 / (4 pi) is 0.053681.
     def test_two_spins(self):
         apart, moment, meV = 3.0, 2.2, 1.602176634e-22
         pair = moment**2 * 0.0536814 / apart**3
@@ -51,7 +51,7 @@ class ClosedForms(PackageTest):
                           "damping_form": "gilbert"})
             self.assertAlmostEqual(sim.energy() / meV, expected * pair, delta=1e-5 * pair)
 
-    # Along the ring, each pair at an angle of f has -(3 + cos f) / (2 r^3).
+    # Spins point along the ring: a pair at an angle f has -(3 + cos f) / (2 r^3).
     def test_rings(self):
         for count in (3, 6, 11):
             f = 2 * np.pi * np.arange(count) / count
@@ -62,7 +62,7 @@ class ClosedForms(PackageTest):
             found = energy_per_site({"shape": [1, 1, 1], "basis": basis.tolist()}, spins)
             self.assertAlmostEqual(found / expected, 1, delta=1e-13)
 
-    # An open chain, and the whole one: -2 zeta(3).
+    # Open chains, and the infinite one, which has -2 zeta(3) per site.
     def test_chains(self):
         for count in (2, 9):
             expected = -2 * sum((count - n) / n**3 for n in range(1, count)) / count
@@ -81,8 +81,8 @@ class LowestStates(PackageTest):
             found.append(4 * math.pi * sim.energy() / (sim.spins**2).sum())
         return min(found)
 
-    # Luttinger and Tisza, Phys. Rev. 70, 954 (1946), per n mu^2 with n dipoles in a^3: spheres of
-    # antiparallel dipoles, and -2 pi/3 of long needles.
+    # Lowest states by Luttinger and Tisza, Phys. Rev. 70, 954 (1946), per n mu^2 with n dipoles in
+    # a^3: antiparallel dipoles in spheres, and parallel ones in long needles with -2 pi/3.
     def test_three_dimensions(self):
         cells = {"shape": [2, 2, 2], "boundary": "periodic"}
         sphere = {"demagnetizing_factors": [1 / 3] * 3}
@@ -93,7 +93,8 @@ class LowestStates(PackageTest):
         self.assertAlmostEqual(self.lowest(bcc) / 2, -2 * math.pi / 3, delta=1e-10)
         fcc = {**cells, "crystal": "fcc"}
         self.assertAlmostEqual(self.lowest(fcc) / 4, -2 * math.pi / 3, delta=1e-10)
-        # The lowest of a sphere: planes along (1, 1, 1), to and fro, of dipoles that lie in them.
+        # The lowest state of an fcc sphere has dipoles in (1, 1, 1) planes, opposite in adjacent
+        # planes.
         basis = cayspin.Scene(system={"kind": "llg", "damping": 0.5}, lattice=fcc, field={},
                               initial={"uniform": [1, 0, 0]}).basis
         of_cell = np.indices((2, 2, 2)).sum(0)
@@ -101,7 +102,7 @@ class LowestStates(PackageTest):
         planes = (1 - 2 * (plane % 2))[..., None] * [1.0, -1.0, 0.0]
         self.assertAlmostEqual(energy_per_site(fcc, planes, sphere) / 4, -1.808, delta=1e-3)
 
-    # A square lattice -2.549, a triangular one -(11.034)/4, both with all images.
+    # With all images a square lattice has -2.549, and a triangular one -11.034/4.
     def test_planes(self):
         square = {"shape": [2, 2], "boundary": "periodic"}
         self.assertAlmostEqual(self.lowest(square), -2.549, delta=6e-4)
@@ -111,8 +112,8 @@ class LowestStates(PackageTest):
 
 
 class OtherPrograms(PackageTest):
-    # Sunny's test_ewald.jl: one dipole in a cube has -1/6 without a surface, and so has each of
-    # several cells; a surface adds M.N M / (2 V).
+    # Sunny's test_ewald.jl: one dipole in a cube has -1/6 without a surface, and so does each of
+    # several cells. A surface adds M.N M / (2 V).
     def test_sunny(self):
         for shape in ([1, 1, 1], [2, 3, 4]):
             lattice = {"shape": [max(2, n) for n in shape], "boundary": "periodic"}
@@ -139,8 +140,9 @@ class OtherPrograms(PackageTest):
                                    delta=1e-12)
         self.assertAlmostEqual(energies[2, True], energies[4, True], delta=1e-12)
 
-    # Spirit's physics_ddi: two atoms in an oblique cell (pull request 486 mended their places),
-    # open, and along the first vector with four images on each side and with all.
+    # Spirit's physics_ddi: two atoms in an oblique cell (its pull request 486 corrected their
+    # positions). The sample is open, or has images along the first vector: four on each side, or
+    # all.
     def test_spirit(self):
         cell = np.array([[3, 0, -1], [0, 1, 0], [0.3, -2, 1]], float)
         basis = np.array([[0, 0, 0], [0.5, 0.2, 0.7]])
@@ -159,7 +161,8 @@ class OtherPrograms(PackageTest):
                              images and {"periodic_images": [images, 0, 0]} or True)
             return 4 * math.pi * sim.energy()
 
-        # For pairs at most five cells apart: the nearest image, and four more on each side.
+        # For each pair of cells, the nearest image along the first vector and four more on each
+        # side.
         total, n = 0.0, 5
         for shift in range(-2 - 4 * n, 3 + 4 * n):
             for a, b in itertools.product(range(n), repeat=2):
@@ -176,7 +179,7 @@ class OtherPrograms(PackageTest):
                         * np.einsum("jc,ijc->ij", v, r) / d**5
                 total += pairs[d > 0].sum() / 2
         self.assertAlmostEqual(with_images(4), total, delta=1e-10 * abs(total))
-        # The sum beyond n images falls with n^-2.
+        # The sum beyond n images falls as n^-2.
         off = [with_images(images) - with_images(None) for images in (50, 100)]
         self.assertAlmostEqual(off[0] / off[1], 4, delta=0.1)
         self.assertLess(abs(off[1] / total), 1e-4)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Files of ensembles, as the package reads and draws them."""
+"""Reading and drawing files of ensembles with the package."""
 
 import os
 import pathlib

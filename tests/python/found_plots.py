@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Pictures and movies of files of paths and of modes, drawn as a user does."""
+"""Pictures and movies of files of paths and modes, drawn by the script that users run."""
 
 import sys
 import unittest

@@ -15,8 +15,8 @@ CELLS = (41, 40, 39)
 
 
 def sphere(parts):
-    """An octahedron's faces, cut in parts^2 and put on the unit sphere; seen from outside their
-    corners are counter-clockwise."""
+    """Returns triangles: an octahedron's faces, each cut into parts^2 and projected onto the unit
+    sphere. Seen from outside their corners are counter-clockwise."""
     found = []
     for signs in itertools.product((1, -1), repeat=3):
         corners = np.diag(signs).astype(float)
@@ -37,7 +37,7 @@ def sphere(parts):
 
 
 def stl(triangles):
-    """A binary STL file's bytes."""
+    """Returns the bytes of a binary STL file."""
     return bytes(80) + struct.pack("<I", len(triangles)) + b"".join(
         struct.pack("<12fH", 0, 0, 0, *triangle.ravel(), 0) for triangle in triangles)
 
@@ -50,7 +50,7 @@ class Meshes(PackageTest):
         k, j, i = np.indices(occupied.shape)
         r = 0.06 * np.sqrt((i - 20)**2 + (j - 19.5)**2 + (k - 19)**2)
         inside = r < 1
-        # The faces are flat: between their corners up to 2.5e-3 inside the sphere.
+        # The triangles are flat: between their corners they are up to 2.5e-3 inside the sphere.
         self.assertLess(np.abs(r[occupied != inside] - 1).max(initial=0), 2.5e-3)
         scaled = cayspin.occupied_of_mesh(surface, CELLS, (6e-11, 6e-11, 6e-11), scale=1e-9)
         np.testing.assert_array_equal(scaled, occupied)
@@ -70,7 +70,7 @@ class Meshes(PackageTest):
         right = cayspin.occupied_of_mesh(one + [1.8, 1, 1], (56, 40, 40), 0.05, center=False)
         np.testing.assert_array_equal(wide, left | right)
 
-    # Edges of the surface are at middles of cells, corners at theirs.
+    # With odd sizes, the faces and corners of the box are at centres of cells.
     def test_a_box_along_the_cells(self):
         corners = np.array(list(itertools.product((0, 1), repeat=3)), float)
         faces = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7),

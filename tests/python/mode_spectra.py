@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Structure factors of normal modes beside the inverse of the Hessian and linear theory."""
+"""Structure factors of normal modes, compared with the inverse Hessian and with linear theory."""
 
 import unittest
 
@@ -14,7 +14,7 @@ class OfModes(PackageTest):
     FREQUENCY = np.linspace(-12, 12, 4801)
 
     def ellipses(self, damping):
-        """Modes that are stiffer by 0.5 along x."""
+        """Returns modes of a chain that is stiffer by 0.5 along x."""
         return modes_of(chain(
             system={"kind": "llg", "damping": damping},
             field={"exchange": 1.0, "anisotropy": [{"constant": 1.0, "axis": [0, 0, 1]},

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Test scripts of mumax3 as scenes, with the numbers that they expect and their tolerances.
+"""Test scripts of mumax3 as scenes, with the values that they expect and their tolerances.
 
 Each test has the name of a script. mumax3 computes in single precision, and its tensors of the
-demagnetising field are integrated to DemagAccuracy = 6: where that is more than the tolerance of
-the script, the limit here is wider and says so. With std5b's DemagAccuracy of 29 it is not."""
+demagnetising field are integrated with DemagAccuracy = 6. Where this error exceeds the tolerance
+of the script, the limit here is wider and a comment gives theirs; for std5b, with 29, it is not."""
 
 import math
 import os
@@ -15,18 +15,18 @@ from package_test import PackageTest
 
 MU0 = 4e-7 * math.pi
 PERMALLOY = {"Ms": 8e5, "A": 1.3e-11}
-# Standard problem 4 on the cells of their scripts.
+# Standard problem 4, on the cells of the scripts
 FILM = {"shape": [128, 32, 1], "spacing": [500e-9 / 128, 125e-9 / 32, 3e-9]}
 TILTED = {"uniform": [1, 0.1, 0]}
 TO_SWITCH = [-24.6e-3, 4.3e-3, 0]
 
 
-# For tests that take some seconds each.
+# For tests that take some seconds each
 long = unittest.skipUnless(os.environ.get("CAYSPIN_ALL_TESTS"), "long")
 
 
 def scene(lattice, material, initial, **tables):
-    """A scene with the defaults of mumax3."""
+    """Returns a scene with the defaults of mumax3."""
     return cayspin.Scene(
         units="SI", system={"kind": "llg"}, lattice=lattice, initial=initial,
         material={"gamma": 1.7595e11, "damping_form": "gilbert", "alpha": 0.1, **material},
@@ -62,10 +62,10 @@ class Mumax3Tests(PackageTest):
             sim = cayspin.Simulation(one_cell(
                 {"anisotropy": {"cubic": first, "axes": [[1, 0, 0], [0, 1, 0]],
                                 "constant2": second}}, {"uniform": m}, Ms=1e6))
-            # Theirs is within 1e-2 of that, but its closed form is not: 35254.001.
+            # mumax3 is within 1e-2 of these values, but the closed form, 35254.001, is not.
             self.assertAlmostEqual(sim.energy() / 1e-27 / joules_per_volume, 1, delta=1e-6)
 
-    # Cubic and both uniaxial terms: a wrong factor of one would show as an oscillation.
+    # Cubic and both uniaxial terms: if one had a wrong factor, the energy would oscillate.
     def test_anisenergyconservation2(self):
         sim = cayspin.Simulation(scene(
             {"shape": [1, 1, 1], "spacing": 1e-9},
@@ -78,7 +78,7 @@ class Mumax3Tests(PackageTest):
             sim.run(until=i * 1e-11)
             self.assertAlmostEqual(sim.energy() / start, 1, delta=1e-5)
 
-    # A uniform body: energy that damping takes in a nanosecond, and that no damping keeps.
+    # A uniform body: damping takes energy in a nanosecond, and without damping it is conserved.
     def test_anisenergy2(self):
         def change(alpha):
             sim = cayspin.Simulation(scene(
@@ -106,7 +106,7 @@ class Mumax3Tests(PackageTest):
         self.assertAlmostEqual((turned[0] - parallel[0]) / -1e-3 / 1e-16, 1, delta=1e-12)
         self.assertAlmostEqual(turned[1] - parallel[1], -1e-3 * 1e-16, delta=1e-20)
 
-    # Three regions of one saturation magnetization, a film that is not infinite.
+    # Three regions with one saturation magnetization, in a film that is not infinite.
     def test_demagRegion(self):
         for index, tesla in enumerate((0, 0, -2)):
             expected, tolerance = [1e-15] * 3, [1e-8] * 3
@@ -120,7 +120,7 @@ class Mumax3Tests(PackageTest):
             for found, wanted, limit in zip(mean, expected, tolerance):
                 self.assertAlmostEqual(found, wanted, delta=limit)
 
-    # Half of the film has no magnetization: the other half is as if there were nothing.
+    # One half of the film has no magnetization, so the other half behaves as if it were the whole.
     def test_msatzero(self):
         ends = {}
         for columns in (16, 8):
@@ -136,7 +136,8 @@ class Mumax3Tests(PackageTest):
             self.assert_mean(sim, mean, 1e-12)
         np.testing.assert_allclose(ends[16], ends[8], atol=1e-5)
 
-    # Their 10 ns with a damping of 3 end at rest, in this state of several. 1e-5 there.
+    # mumax3 runs 10 ns with a damping of 3, and ends in this one of several equilibria. Its script
+    # allows 1e-5.
     def test_interexchange(self):
         sim = cayspin.Simulation(scene(
             {**FILM, "regions": "y > 0.5 ? 1 : 2"}, {**PERMALLOY, "alpha": 3.0}, TILTED,
@@ -146,7 +147,7 @@ class Mumax3Tests(PackageTest):
         sim.relax()
         self.assert_mean(sim, [0, 0.114170685410499, 0], 2e-5)
 
-    # 1e-3 there; OOMMF has 0.12745 for the second component.
+    # The script allows 1e-3; OOMMF has 0.12745 for the second component.
     @long
     def test_interexchange2(self):
         sim = cayspin.Simulation(scene(
@@ -170,8 +171,8 @@ class Mumax3Tests(PackageTest):
         sim.run()
         self.assert_mean(sim, [0.14497971, 0.248994603, 0.002248812], 1e-4)
 
-    # A vortex wall between domains head to head, on its way in a field: the lattice follows it.
-    # Charges at the ends, here as there one for each cell's face, are taken away by their field.
+    # A vortex wall between head-to-head domains moves in a field, and the lattice follows it. As in
+    # the script, a field removes the charges at the ends; there is one charge on each cell's face.
     def test_centerwall(self):
         j, i = np.mgrid[:32, :128] + 0.5
         of_charges = np.zeros((1, 32, 128, 3))
@@ -187,7 +188,8 @@ class Mumax3Tests(PackageTest):
             {"expression": ["abs(i-63.5) < 16 ? 15.5-j : 63.5-i", "abs(i-63.5) < 16 ? i-63.5 : 0",
                             "(i-63.5)^2 + (j-15.5)^2 < 9 ? 30 : 0"]},
             field={"demag": True, "applied": [0, 0.01, 0], "nonlocal": lambda m, t: of_charges},
-            # The own field's energy is that of one linear in the spins, so it says nothing here.
+            # The energy of an own field is computed as if it were linear in the spins, which is
+            # wrong for this field, so energy_guard is off.
             integrator={**steps_to(1e-9, 4e-12), "energy_guard": False}))
         sim.run()
         self.assertAlmostEqual(sim.magnetization()[1], 0.0633, delta=1e-3)
@@ -195,7 +197,7 @@ class Mumax3Tests(PackageTest):
         sim.run()
         self.assertAlmostEqual(sim.magnetization()[0], 0, delta=0.1)
 
-    # An anisotropy that is a sine in time, everywhere or in a region that has all cells.
+    # The anisotropy is a sine of time, in the whole film or in a region of all cells.
     def test_timedep(self):
         for Ku, regions in ((1e5, "0"), ({"regions": [0, 1e5]}, "1")):
             sim = cayspin.Simulation(scene(
@@ -207,7 +209,7 @@ class Mumax3Tests(PackageTest):
             sim.run()
             self.assert_mean(sim, [0, 0.9909376502037048, 0], 1e-5)
 
-    # A field that turns in time, uniform or as two sources with masks. 1e-5 there.
+    # A field turns in time: it is uniform, or two sources with masks. The script allows 1e-5.
     def test_timedep3(self):
         sine, cosine = "0.01*sin(2*pi*1e9*t)", "0.01*cos(2*pi*1e9*t)"
         for field in ({"applied": [sine, cosine, 0]},
@@ -223,7 +225,8 @@ class Mumax3Tests(PackageTest):
             self.assert_mean(sim, [0.6773565132629695, 0.7201919931496306, 0.02121575360227688],
                              1e-4)
 
-    # The field of a wire makes a vortex. Theirs has its core down; both are equilibria.
+    # The field of a wire makes a vortex. Its core is down in mumax3; up and down are both
+    # equilibria.
     def test_b_ext_add(self):
         r = "max(((i-63.5)*5e-9)^2 + ((j-31.5)*5e-9)^2, 1e-30)"
         of_wire = f"0.1*{MU0}/(2*pi*{r})*(sqrt({r}) < 50e-9 ? {r}/2.5e-15 : 1)"
@@ -237,7 +240,7 @@ class Mumax3Tests(PackageTest):
         np.testing.assert_allclose([x, y, -abs(z)], [0, 0, -0.001], atol=1e-3)
         np.testing.assert_allclose(np.abs(sim.spins[0, 31:33, 63:65, 2]), 0.75, atol=0.25)
 
-    # Three interfacial DMIs: the energy falls.
+    # With three values of interfacial DMI, the energy falls.
     @long
     def test_dmienergy_vardmi(self):
         sim = cayspin.Simulation(scene(
@@ -253,7 +256,7 @@ class Mumax3Tests(PackageTest):
         self.assertLess(energies[1], energies[0])
         self.assertLess(energies[2], energies[0])
 
-    # Currents with Lambda and EpsilonPrime. The expected numbers are OOMMF's; mumax3 allows 1e-5.
+    # Currents with Lambda and EpsilonPrime. The expected values are OOMMF's; mumax3 allows 1e-5.
     @long
     def test_std5b_and_std5c(self):
         for initial, end, torque, expected, limit in (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Executes the notebooks, which hold assertions of their own: notebooks.py FOLDER."""
+"""Executes the notebooks, which contain assertions: notebooks.py FOLDER."""
 
 import os
 import pathlib

@@ -11,7 +11,7 @@ from package_test import PackageTest, random_spins, scene
 
 
 def texture(ny, nx, radius, winding=1, helicity=0.0):
-    """About the centre of a film (ny, nx, 3): down, and up from `radius` on."""
+    """Returns a film (ny, nx, 3) that is down at its centre, and up from `radius` on."""
     x, y = np.meshgrid(np.arange(nx) - nx / 2 + 0.3, np.arange(ny) - ny / 2 + 0.4)
     t = np.pi * np.maximum(0, 1 - np.hypot(x, y) / radius)
     p = winding * np.arctan2(y, x) + helicity
@@ -81,8 +81,8 @@ class TopologicalCharge(PackageTest):
 
 
 def wave(shape, frames, dt, numbers, turns, amplitude=0.01, positions=((0, 0, 0),)):
-    """A spin wave of wave vector numbers / shape, (frame, site, nz, ny, nx, 3): about z it turns
-    `turns` times in all, with the right hand where that is above 0, and runs along its vector."""
+    """Returns a spin wave of wave vector numbers / shape, (frame, site, nz, ny, nx, 3). It turns
+    about z `turns` times in all, right-handed if that is positive, and runs along its vector."""
     nx, ny, nz = shape
     z, y, x = np.meshgrid(np.arange(nz), np.arange(ny), np.arange(nx), indexing="ij")
     time = np.arange(frames) * dt
@@ -100,7 +100,7 @@ class Dispersions(PackageTest):
     FULL = [(-0.5, 0, 0), (0, 0, 0), (0.5, 0, 0)]
 
     def peak(self, found):
-        """Wave vector and frequency of the largest intensity, which stands out."""
+        """Returns wave vector and frequency of the largest intensity; expects no other near it."""
         place = np.unravel_index(found.intensity.argmax(), found.intensity.shape)
         there = np.abs(found.frequency - found.frequency[place[1]]) < 2.5 * found.resolution
         rest = found.intensity.copy()
@@ -118,7 +118,7 @@ class Dispersions(PackageTest):
                 self.assertLessEqual(abs(frequency - w), found.resolution / 2 + 1e-9)
 
     def test_a_spin_in_a_field_has_a_positive_frequency(self):
-        # The library's own motion: m' = -m x H.
+        # In the library's own motion, m' = -m x H.
         w = 0.5
         of = scene(system={"kind": "llg", "damping": 0.0}, lattice={"boundary": "open"},
                    field={"exchange": None, "anisotropy": None, "slab_demag": None, "mu0": None,
@@ -139,7 +139,7 @@ class Dispersions(PackageTest):
             sums = ((m[..., 0] - 1j * m[..., 1]) * phase).sum((1, 2, 3))
             expected = (np.abs(sums)**2 * window**2).sum() / (window**2).sum() / 60
             self.assertAlmostEqual(found.intensity[number].sum() / expected, 1, delta=1e-12)
-        # Two equal sites at one place: twice the sum, over twice the sites.
+        # Two equal sites at one place have twice the sum, which is normalised by twice the sites.
         twice = cayspin.dispersion(np.stack((m, m), 1), 0.1, [(0, 0, 0), (0.4, 0, 0)],
                                    positions=np.zeros((2, 3)), about=(0, 0, 1))
         np.testing.assert_allclose(twice.intensity, 2 * found.intensity, rtol=1e-12)
@@ -176,13 +176,14 @@ class Dispersions(PackageTest):
                                    np.linalg.norm(np.diff(cartesian, axis=0), axis=1))
         self.assertEqual(found.intensity.shape, (len(expected), 6))
         self.assertTrue((np.diff(found.frequency) > 0).all())
-        # Hexagonal: from the centre of the zone to M and K.
+        # From M to the centre of a hexagonal zone, and on to K.
         hexagonal = [[1, 0, 0], [0.5, math.sqrt(0.75), 0], [0, 0, 1]]
         found = cayspin.dispersion(m, 1.0, [(0.5, 0, 0), (0, 0, 0), (2 / 3, 1 / 3, 0)],
                                    cell=hexagonal)
         np.testing.assert_allclose(np.diff(found.corners),
                                    [2 * np.pi / math.sqrt(3), 4 * np.pi / 3])
-        # Corners between the lattice's wave vectors are on the axis, and not in the list.
+        # A corner between the lattice's wave vectors has a place on the axis but is not in the
+        # list.
         odd = cayspin.dispersion(m[..., :9, :], 1.0, [(0, 0, 0), (0.5, 0, 0), (0, 0, 0)])
         self.assertEqual([round(9 * k) for k in odd.wave_vectors[:, 0]],
                          [0, 1, 2, 3, 4, 4, 3, 2, 1, 0])
@@ -190,7 +191,7 @@ class Dispersions(PackageTest):
 
     def test_components(self):
         m, w = wave((16, 1, 1), 64, 0.25, (3, 0, 0), 8)
-        along_x = m[..., [2, 0, 1]]  # the same about x
+        along_x = m[..., [2, 0, 1]]  # the same wave, turning about x
         path = self.FULL
         about_x = cayspin.dispersion(along_x, 0.25, path)
         np.testing.assert_allclose(about_x.intensity, cayspin.dispersion(m, 0.25, path).intensity,
@@ -204,7 +205,8 @@ class Dispersions(PackageTest):
         self.assertLess(abs(both.peak()[8 - 3] + w), both.resolution)
 
     def test_open_ends_are_windowed(self):
-        # Half a wave more than fits: across a jump it would be seen everywhere.
+        # 5.5 waves fit in: without a window, the jump between the ends would show at all wave
+        # vectors.
         m, _ = wave((32, 1, 1), 64, 0.25, (5.5, 0, 0), 8)
         up, open_along_x = (0, 0, 1), (False, True, True)
         sharp = cayspin.dispersion(m, 0.25, self.FULL, periodic=open_along_x, about=up)
@@ -236,7 +238,7 @@ class Dispersions(PackageTest):
 
 
 def correlated(count, factor, generator):
-    """Numbers of variance 1, each `factor` times the one before and noise: AR(1)."""
+    """Returns numbers of variance 1, each `factor` times the previous one plus noise: AR(1)."""
     noise = generator.standard_normal(count) * math.sqrt(1 - factor**2)
     values, value = np.empty(count), generator.standard_normal()
     for i in range(count):
@@ -270,7 +272,7 @@ class Averages(PackageTest):
         self.assertIsInstance(one.mean, float)
 
     def test_few_and_equal_values(self):
-        mean, error, block = cayspin.average(np.arange(64.0))  # of one long drift
+        mean, error, block = cayspin.average(np.arange(64.0))  # one long drift
         self.assertEqual((mean, block), (31.5, 0))
         self.assertTrue(math.isnan(error))
         self.assertTrue(math.isnan(cayspin.average([3.0]).error))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Files of UppASD and Spirit: energies of the scenes, compared with sums over the files by hand."""
+"""Files of UppASD and Spirit: energies of the scenes, compared with sums over the files' bonds."""
 
 import itertools
 import unittest
@@ -21,7 +21,7 @@ def text_of(rows):
 
 
 def spiral(lattice, shape, turns, normal):
-    """Spins of a crystal that turn about `normal` by 2 pi q.r, and q in cells."""
+    """Returns spins of a crystal that turn about `normal` by 2 pi q.r, and q per cell."""
     q = np.array(turns) / shape
     side = np.cross(normal, [0.3, -0.7, 0.2])
     first = side / np.linalg.norm(side)
@@ -32,7 +32,7 @@ def spiral(lattice, shape, turns, normal):
 
 
 def energy(tables, shape, spins, **further):
-    """The energy of a site."""
+    """Returns the energy per site."""
     of_scene = cayspin.Scene(
         system={"kind": "llg", **({} if "units" in further else {"damping": 0.0})},
         lattice={**tables["lattice"], "shape": list(shape), "boundary": "periodic",
@@ -60,7 +60,7 @@ class UppasdEnergies(Files):
         self.assertEqual(tables["material"], {"mu_s": {"bohr_magnetons": [2.2, 2.1]}})
         spins = np.broadcast_to([0.0, 0, 1], (2, 3, 4, 5, 3))
         si = {"units": "SI", "material": {**tables["material"], "alpha": 0.0}}
-        # Both orders of 8 neighbours and of 6.
+        # Bonds to 8 and to 6 neighbours, each in both orders
         self.assertAlmostEqual(energy(tables, (5, 4, 3), spins, **si) / MRY, -(8 * 1.3 + 6 * 0.7),
                                delta=1e-12)
         field = {**tables["field"], "applied": [0, 0, 10.0]}
@@ -68,7 +68,7 @@ class UppasdEnergies(Files):
                                -(8 * 1.3 + 6 * 0.7) - 2.15 * MU_B * 10 / MRY, delta=1e-11)
 
     def test_spirals_of_all_ways_to_write_bonds(self):
-        """E of a site is -sum over all r of J(r) cos(q.r) + n.D(r) sin(q.r), q in radians."""
+        """The E of a site is -sum over all r of J(r) cos(q.r) + n.D(r) sin(q.r), q in radians."""
         random = np.random.default_rng(5)
         cell, shape = HEXAGONAL, (4, 6, 3)
         basis = np.array([[0, 0, 0], [1 / 3, 1 / 3, 0.25]])  # of two types
@@ -102,7 +102,7 @@ class UppasdEnergies(Files):
                     self.assertLess(abs(found - expected), 1e-12 * abs(expected))
 
     def test_the_handedness_of_one_bond(self):
-        """D along z lowers the energy of x and then y by 2 D, both orders."""
+        """A chain that turns from x to y has 2 D less energy per site, as both orders count."""
         along, back = "1 1 1 0 0 0 0 0.3\n", "1 1 -1 0 0 0 0 -0.3\n"
         for sign, expected in ((-1, -0.6), (1, 0.6)):
             tables = cayspin.read_uppasd(
@@ -140,7 +140,7 @@ class UppasdFiles(Files):
         self.assertEqual(found, [{"between": [0, 1], "offset": [0, 0, 0], "J": 1.0}])
 
     def test_positions_and_vectors_of_few_digits(self):
-        """A row of atoms at up to 0.02 from whole numbers, and vectors of whole numbers."""
+        """Atoms in a row are up to 0.02 off whole numbers, and the vectors are whole numbers."""
         places = np.arange(40) + np.random.default_rng(3).uniform(-0.02, 0.02, 40)
         posfile = self.file(text_of((n + 1, 1, place, 0, 0) for n, place in enumerate(places)),
                             "posfile")
@@ -235,7 +235,7 @@ class Spirit(Files):
                                            "D": [0, 0, 1.5]}])
 
     def test_the_energy_of_a_spiral(self):
-        """E is -sum over pairs of J cos(q.r) + n.D sin(q.r), over two sites of a cell."""
+        """The E of a cell is -sum over pairs of J cos(q.r) + n.D sin(q.r); it has two sites."""
         basis = [[0, 0, 0], [0.25, 0.5, 0.125]]
         tables = {"lattice": {"cell": HEXAGONAL.tolist(), "basis": basis},
                   "field": {"couplings": self.read(PAIRS, unit=1)}}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""A program's own field with each term of a scene: they add up, and it can replace the term."""
+"""A program's own field adds to each term of a scene, and can replace it."""
 
 import unittest
 
@@ -29,7 +29,7 @@ def slab(spins, t):
 
 
 def term_of(field):
-    """A term that is linear in the spins as a function of them, by its matrix."""
+    """Returns a term that is linear in the spins as a function of them, which uses its matrix."""
     sim = cayspin.Simulation(scene(field))
     numbers = 3 * np.prod(SHAPE)
     matrix = np.empty((numbers, numbers))
@@ -107,7 +107,7 @@ class OwnFields(PackageTest):
                 ("demag", {**TABLES["lattice"], "occupied": "i + j != 3"}, TABLES["integrator"])):
             for precision, limit in (("double", 1e-13), ("single", 1e-5)):
                 if precision == "single" and "tolerance" in integrator:
-                    continue  # other steps
+                    continue  # the steps would differ
                 one, other = self.exchanged(whole, lattice, precision, integrator=integrator)
                 for sim in (one, other):
                     sim.run()

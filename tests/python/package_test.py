@@ -28,7 +28,7 @@ TABLES = {
 
 
 def scene(**tables):
-    """The scene of TABLES, with keys of its tables replaced; None removes a key."""
+    """Returns the scene of TABLES, with keys of its tables replaced; None removes a key."""
     changed = {**TABLES}
     for name, table in tables.items():
         if isinstance(table, dict) and name != "initial":
@@ -44,14 +44,14 @@ def random_spins(shape, seed):
 
 
 def stepped(of_scene, steps, precision="double"):
-    """The spins after so many steps."""
+    """Returns the spins after so many steps."""
     sim = cayspin.Simulation(of_scene, precision)
     sim.step(steps)
     return sim.spins
 
 
 class PackageTest(unittest.TestCase):
-    programs = 0  # that ran
+    programs = 0  # runs of the program so far
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -59,7 +59,7 @@ class PackageTest(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
 
     def written(self, of_scene, name="scene.toml"):
-        """The file of a scene."""
+        """Writes a scene, and returns its file."""
         file = self.folder / name
         file.write_text(of_scene.text, encoding="utf-8")
         return file
@@ -84,6 +84,6 @@ class PackageTest(unittest.TestCase):
             self.assertNotIn("\n", message)
 
     def assert_all_refused(self, error, calls):
-        """Checks the messages of {part of the message: call}."""
+        """Checks the error that each call of {part of the message: call} raises."""
         for part, call in calls.items():
             self.assert_refused(error, part, call)

@@ -12,9 +12,10 @@ HARD = {"Ms": 1 / MU0, "A": 1e-11, "Ku": 1e6}
 SOFT = {"Ms": 0.25 / MU0, "A": 2.5e-12, "Ku": 1e5}
 LETTERS = {"Ms": "j", "A": "a", "Ku": "k"}  # a case names what jumps
 
-# Relative errors of the equations of 80 cells of 1 nm: the fold of their solutions by Newton's
-# method. Case a and aj are above 2 %: the soft half's walls are as narrow as sqrt(A/K) = 1.6 cells.
-# An exact solution between the two cells at the boundary would make that 8 %, not less.
+# Relative errors of the discrete equations for 80 cells of 1 nm: Newton's method finds the fold of
+# their solutions. Cases a and aj exceed 2 %, since walls in the soft half have a width of only
+# sqrt(A/K) = 1.6 cells. An exact solution between the two cells at the boundary would have an error
+# of 8 %.
 OF_EQUATIONS = {"k": 0.00477, "a": 0.02072, "ak": 0.01456, "akj": 0.00427, "aj": 0.03152,
                 "kj": 0.00311}
 
@@ -29,7 +30,7 @@ def closed_form(case):
 
 
 def error(case, cells, cell):
-    """Error of the largest field that holds the wall, by bisection of searches for equilibria."""
+    """Returns the error of the largest field that holds the wall, by bisection with relax()."""
     of_regions = {key: {"regions": [ratio(case, key) * value, value]}
                   for key, value in HARD.items()}
     sim = cayspin.Simulation(cayspin.Scene(
@@ -67,7 +68,7 @@ class Pinning(unittest.TestCase):
                 self.assertAlmostEqual(found, expected, delta=1e-5)
                 self.assertLess(found, {"a": 0.021, "aj": 0.032}.get(case, 0.02))
 
-    # Chains of 120 nm, whose ends are too far away to matter.
+    # The chains of 120 nm are long enough for their ends not to matter.
     def test_the_error_is_of_order_two_in_the_cell(self):
         for case in OF_EQUATIONS:
             with self.subTest(case):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Runs the scripts that draw, as a user does."""
+"""Runs the drawing scripts as users do."""
 
 import os
 import resource
@@ -148,7 +148,7 @@ class PlotTexture(ScriptTest):
                                         "a file that cayspin wrote\n")
 
     def test_a_full_disk(self):
-        """As a limit on the size of files makes one."""
+        """A limit on the size of files acts like a full disk."""
         def limit():
             resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192))
 
@@ -181,7 +181,7 @@ class PlotTexture(ScriptTest):
             self.assertEqual(set(self.folder.iterdir()), before)
 
     def test_a_picture_that_is_replaced(self):
-        """A link stays one, and the picture keeps its permissions."""
+        """A link stays a link, and the picture keeps its permissions."""
         picture, link = self.folder / "film.png", self.folder / "link.png"
         picture.write_text("before\n")
         picture.chmod(0o640)
@@ -268,7 +268,7 @@ class PlotDemo(ScriptTest):
 
 
 class PlotPaper(ScriptTest):
-    """Tables as `cayspin reproduce figures` writes them, of a few rows each."""
+    """Draws tables like those of `cayspin reproduce figures`, with a few rows each."""
 
     def setUp(self):
         super().setUp()
@@ -329,7 +329,7 @@ class CorruptFile(ScriptTest):
         self.file = write(self.folder / "a.h5")
 
     def assert_file_refused(self, part="cannot read the trajectory: "):
-        """In this process: starting Matplotlib for each of many files takes its time."""
+        """Reads in this process, since starting Matplotlib for each of many files takes long."""
         with self.assertRaises(SystemExit) as caught:
             read_trajectory(self.file)
         self.assertNotIn("\n", caught.exception.code)

@@ -63,7 +63,7 @@ class Relaxing(PackageTest):
             self.assertEqual(file.attrs["evaluations"], found.evaluations)
             self.assertEqual(file.attrs["torque"], found.torque)
 
-    # Kittel's frequency of the film: curvatures K in the plane and K + 1 across it.
+    # Kittel's frequency of the film, with curvatures K in the plane and K + 1 across it.
     def test_the_modes_of_the_program(self):
         sim = cayspin.Simulation(scene(initial={"uniform": [1, 0, 0]}))
         modes = sim.modes(3)
@@ -84,7 +84,8 @@ class Relaxing(PackageTest):
                                 lambda count=count: sim.modes(count))
         self.assert_refused(cayspin.CayspinError, "tolerance", lambda: sim.modes(tolerance=2.0))
 
-    # A polarization along the spins adds a to the decay and -damping a to both stiffnesses.
+    # With the polarization along the spins, the torque adds a to the decay and -damping a to both
+    # stiffnesses.
     def test_a_torque_makes_modes_grow(self):
         torque = {"slonczewski": {"damping_like": -0.2, "polarization": [1, 0, 0]}}
         film = {"torque": torque, "lattice": {"shape": [4, 3]}}
@@ -96,7 +97,7 @@ class Relaxing(PackageTest):
         self.assert_refused(cayspin.NumbersFailed, "not at rest", lambda: moving.modes(1))
         self.assert_refused(cayspin.SceneError, "torque", moving.relax)
 
-    # Along the easy axis a uniform film switches at |h| = K.
+    # In a field along its easy axis, a uniform film switches at |h| = K.
     def test_hysteresis(self):
         fields = [[0.03 * i, 0, 0.0003] for i in range(10, -11, -1)]
         start = {"uniform": [1, 0.02, 0]}

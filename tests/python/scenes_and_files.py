@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Scenes from tables and files, fields and observers of the program, trajectory files."""
+"""Scenes from tables and files, fields and observers of a program, and trajectory files."""
 
 import importlib.util
 import math
@@ -133,7 +133,7 @@ class OwnFields(PackageTest):
                 raise ZeroDivisionError("at half past")
             return 0, 0, 1
 
-        endless = {"steps": None}  # with an end, the field is first sampled up to there
+        endless = {"steps": None}  # with an end, the field would be sampled up to it first
         sim = cayspin.Simulation(scene(field={"applied": failing}, integrator=endless))
         self.assert_refused(ZeroDivisionError, "at half past", sim.step, 40)
         self.assertEqual(sim.steps, 10)
@@ -199,7 +199,7 @@ class Files(PackageTest):
                                    np.testing.assert_array_equal(here[name], node, name))
 
     def test_regions_terms_and_the_shift(self):
-        # A wall three cells from the middle comes into it.
+        # The lattice follows a wall that starts three cells off the middle.
         of = scene(lattice={"shape": [12, 4], "spacing": 1.0, "boundary": "open",
                             "regions": "j % 2", "follow": {"axis": "x", "quantity": "mz"}},
                    field={"anisotropy": {"constant": 2.0, "axis": [0, 0, 1]}, "applied": None,

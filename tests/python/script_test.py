@@ -32,7 +32,7 @@ def dimensions(png):
 
 
 class ScriptTest(unittest.TestCase):
-    fonts = tempfile.TemporaryDirectory()  # Matplotlib makes a list of them once
+    fonts = tempfile.TemporaryDirectory()  # Matplotlib lists the fonts there once
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -47,7 +47,7 @@ class ScriptTest(unittest.TestCase):
                 data[name] = values
 
     def film(self):
-        """A film of 10 x 8 with +x at the lower left, -x at the lower right, -z above and one
+        """Writes a film of 10 x 8: +x at the lower left, -x at the lower right, -z above and one
         empty site; +y in the first frame."""
         spins = np.zeros((20, 1, 8, 10, 3))
         spins[..., :4, :5, 0], spins[..., :4, 5:, 0], spins[..., 4:, :, 2] = 1, -1, -1
@@ -58,7 +58,7 @@ class ScriptTest(unittest.TestCase):
         return file, spins
 
     def text_file(self, name="text.h5"):
-        """No trajectory."""
+        """Returns a file that is no trajectory."""
         file = self.folder / name
         file.write_text("not a trajectory\n")
         return file

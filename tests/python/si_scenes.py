@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Scenes in SI: times in s, fields in T, energies in J, also of functions and of files."""
+"""Scenes in SI: times in s, fields in T, energies in J, also in functions and in files."""
 
 import math
 import unittest
@@ -40,7 +40,8 @@ class SiScenes(PackageTest):
         self.assert_refused(cayspin.CayspinError, "t = 7.2e-12", sim.run, until=7.131e-12)
 
     def test_field_is_in_tesla(self):
-        # Parallel spins: exchange adds nothing, and to round-off no multiple of the spin.
+        # Parallel spins: to round-off, exchange adds nothing to the field, not even a multiple of
+        # the spin.
         sim = cayspin.Simulation(film({"applied": list(FIELD)}))
         sim.spins = [0.0, 0.6, 0.8]
         np.testing.assert_allclose(sim.field(), np.broadcast_to(FIELD, (1, 5, 6, 3)), atol=1e-13)

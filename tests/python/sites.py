@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Arrays of crystals, without the module: sites.py PATH_OF_SITES."""
+"""Arrays of crystals' sites, tested without the module: sites.py PATH_OF_SITES."""
 
 import importlib.util
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Structure factors of arrays with known answers, and of thermal runs beside linear theory."""
+"""Structure factors of arrays with known answers, and of thermal runs against linear theory."""
 
 import unittest
 
@@ -127,7 +127,7 @@ class Runs(PackageTest):
 
 
 class Thermal(PackageTest):
-    """32 replicas of a chain in equilibrium at a low temperature."""
+    """Uses replicas of a chain in thermal equilibrium at a low temperature."""
 
     @classmethod
     def setUpClass(cls):
@@ -155,15 +155,15 @@ class Thermal(PackageTest):
         linear = (self.linear.integrated["xx"] + self.linear.integrated["yy"])[0, 0]
         np.testing.assert_allclose(linear, 2 * TEMPERATURE / w, rtol=1e-10)
         measured = (self.found.integrated["xx"] + self.found.integrated["yy"])[0, 0]
-        # The intensity of a mode is distributed exponentially, and forgets itself as
-        # exp(-2 damping w t). An integral has the mean of those of k and -k.
+        # The intensity of a mode has an exponential distribution, and its correlation falls as
+        # exp(-2 damping w t). `integrated` has the mean of the modes k and -k.
         apart = np.abs(np.subtract.outer(np.arange(FRAMES), np.arange(FRAMES))) * DT
         variance = np.array([self.share @ np.exp(-2 * DAMPING * one * apart) @ self.share
                              for one in w]) / REPLICAS
         k = self.found.wave_vectors[0, 0, :, 0]
         variance[(k != 0) & (k != -0.5)] /= 2
         off = (measured / linear - 1) / np.sqrt(variance)
-        once = off[k <= 0]  # those of k and -k are equal
+        once = off[k <= 0]  # values at k and -k are equal
         self.assertLess(np.abs(once).max(), 4)
         self.assertLess((once**2).mean(), 1 + 4 * np.sqrt(2 / len(once)))
         weights = 1 / variance[k <= 0]
@@ -177,7 +177,7 @@ class Thermal(PackageTest):
         self.assertLess(np.abs(peaks - magnons(self.found)).max(), 1.5 * self.step)
 
     def test_lines_are_those_of_linear_theory(self):
-        # What the window of the run makes of the linear lines.
+        # The lines of linear theory, as the window of the run broadens them.
         fine = self.linear.frequency
         lines = (self.linear.intensity["xx"] + self.linear.intensity["yy"])[0, 0]
         waves = self.hann[:, None] * np.exp(-1j * np.outer(np.arange(FRAMES) * DT, fine))
@@ -186,7 +186,8 @@ class Thermal(PackageTest):
         expected = lines @ seen.T * (fine[1] - fine[0])
         inside = (self.found.frequency > 0) & (expected > 0.1 * expected.max(1, keepdims=True))
         ratio = self.across[inside] / expected[inside]
-        # Exponential, with correlations 4/9 and 1/36 to the next bins of Hann's window.
+        # Intensities have an exponential distribution, and correlations of 4/9 and 1/36 with the
+        # next bins of Hann's window.
         error = np.sqrt((1 + 2 * (4 / 9 + 1 / 36)) / (REPLICAS * inside.sum()))
         self.assertLess(4 * error, 0.07)
         self.assertLess(abs(ratio.mean() - 1), 4 * error)

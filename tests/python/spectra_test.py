@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Anisotropic chains, their linear theory and the sum rule: what tests of spectra share."""
+"""Shared code of the tests of spectra: anisotropic chains, their linear theory, the sum rule."""
 
 import cayspin
 import numpy as np
@@ -9,7 +9,7 @@ SITES, REPLICAS, FRAMES, DT = 32, 32, 256, 0.4
 
 
 def chain(**tables):
-    """A periodic chain with an easy axis along z."""
+    """Returns a periodic chain with an easy axis along z."""
     return cayspin.Scene(**{
         "system": {"kind": "llg", "damping": DAMPING},
         "lattice": {"shape": [SITES], "boundary": "periodic"},
@@ -20,7 +20,7 @@ def chain(**tables):
 
 
 def magnons(found, exchange=EXCHANGE, anisotropy=ANISOTROPY):
-    """The frequencies of linear theory at the wave vectors along x."""
+    """Returns the frequencies of linear theory at the wave vectors along x."""
     k = 2 * np.pi * found.wave_vectors[0, 0, :, 0]
     return 2 * exchange * (1 - np.cos(k)) + anisotropy
 
@@ -30,7 +30,7 @@ def sum_rule(found):
 
 
 def modes_of(made):
-    """All modes of a scene, and its equilibrium."""
+    """Returns all modes of a scene, and its equilibrium."""
     sim = cayspin.Simulation(made)
     sim.relax()
     return sim.modes(int(np.prod(made.shape))), sim.spins

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Views of the spins, starts and fields as arrays, energies of terms."""
+"""Views of the spins, initial spins and fields as arrays, and energies of terms."""
 
 import gc
 import unittest
@@ -119,7 +119,7 @@ class Setting(PackageTest):
 
 
 def by_hand(m):
-    """H and the energy of each term of TABLES, with numpy in double precision."""
+    """Returns H and the energy of each term of TABLES, by NumPy in double precision."""
     m = m.astype(float)
     field = TABLES["field"]
     laplacian = np.zeros_like(m)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Simulation.set: a run with keys changed on the way equals the program's run in stages."""
+"""Simulation.set: a run whose keys are changed equals the program's run in stages."""
 
 import os
 import unittest
@@ -62,7 +62,7 @@ class Stages(PackageTest):
         self.assertEqual(sim.energy(), other.energy())
         sim.step(5)
         other.step(5)
-        np.testing.assert_allclose(sim.spins, other.spins, rtol=0, atol=1e-14)  # set and normalised
+        np.testing.assert_allclose(sim.spins, other.spins, rtol=0, atol=1e-14)  # set, so normalised
         np.testing.assert_array_equal(view, before)
 
     def test_a_restart_after_it(self):
@@ -98,7 +98,7 @@ class Stages(PackageTest):
         np.testing.assert_allclose(sim.spins, other.spins, rtol=0, atol=1e-14)
 
     def assert_replaced(self, table, old, key, new, **tables):
-        """Setting `key` of the scene's `table` from `old` to `new` leaves nothing of what it was."""
+        """Setting `key` of the scene's `table` from `old` to `new` keeps nothing of the old value."""
         first, _, inner = key.partition(".")
         expected = {**old, first: {**old[first], inner: new} if inner else new}
         with self.subTest(key=key, new=new):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Simulation gives the bits of the program, complete steps after Ctrl-C, and runs while other
-threads do."""
+"""Simulation has the bits of the program, ends with a complete step after Ctrl-C, and runs while
+other threads do."""
 
 import os
 import signal

@@ -15,7 +15,7 @@ from cayspin_plots.sweep import read_sweep
 
 PROGRAM = sys.argv[2]
 
-# m_z = tanh(damping t) from the equator: closed form of one damped spin.
+# One damped spin from the equator has m_z = tanh(damping t).
 SCENE = """
 [system]
 kind = "llg"
@@ -48,7 +48,7 @@ class Sweep(ScriptTest):
         return file
 
     def plot(self, file, *options, rows=1):
-        """The pixels of its picture."""
+        """Returns the pixels of the picture of a sweep."""
         png = file.with_suffix(".png")
         result = self.run_script("plot_sweep.py", file, *options)
         self.assert_drawn(png, (11, 0.5 + 4.2 * rows), (), result)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The rate of a particle across its barrier in thermal runs, compared with that of cayspin.path and
-the lowest eigenvalue of Brown's equation, whose only approximation is its basis."""
+"""The rate of a particle across its barrier in thermal runs, compared with cayspin.path and the
+lowest eigenvalue of Brown's equation, which is approximated only by a finite basis."""
 
 import unittest
 
@@ -12,7 +12,7 @@ EASY, DAMPING = 1.0, 0.5
 
 
 def brown(barrier, functions=24):
-    """The lowest eigenvalue of odd functions, of -[(1 - x^2) f']' - 2 barrier x (1 - x^2) f'."""
+    """Returns the lowest eigenvalue of -[(1 - x^2) f']' - 2 barrier x (1 - x^2) f' for odd f."""
     x, weight = np.polynomial.legendre.leggauss(200)
     weight = weight * np.exp(barrier * (x**2 - 1))
     degrees = 2 * np.arange(functions) + 1
@@ -30,7 +30,7 @@ def scene(shape, **tables):
 
 class SwitchingRates(PackageTest):
     def langer(self, barrier):
-        """The rate of cayspin.path where the barrier is so many kT."""
+        """Returns the rate of cayspin.path for a barrier of so many kT."""
         up = np.array([[[[0, 0, 1.0]]]])
         path = cayspin.path(scene([1]), up, -up, torque=1e-9, rates=True)
         self.assertEqual(path.zero_modes, (0, 1, 0))
@@ -41,7 +41,7 @@ class SwitchingRates(PackageTest):
         return 0.5 * DAMPING * (0.5 * EASY / barrier) * brown(barrier)
 
     def test_high_barriers(self):
-        # The next term of the ratio is 1 / barrier.
+        # The ratio is 1 + 1 / barrier up to terms of higher order.
         for barrier in (12, 20):
             self.assertAlmostEqual(self.langer(barrier) / self.exact(barrier), 1 + 1 / barrier,
                                    delta=4 / barrier**2)
@@ -52,7 +52,7 @@ class SwitchingRates(PackageTest):
             sim = cayspin.Simulation(scene(
                 [256, 256], thermal={"temperature": temperature, "seed": 7},
                 integrator={"method": "heun", "dt": 0.025}))
-            sim.run(until=10.0, output=False)  # inside a well all is at rest
+            sim.run(until=10.0, output=False)  # each well is in equilibrium
             first = sim.spins[..., 2].ravel().copy()
             sim.run(until=10.0 + end, output=False)
             last = sim.spins[..., 2].ravel()

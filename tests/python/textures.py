@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Pictures of spins: colours, keys, arrows, planes, charges, and what is refused."""
+"""Pictures of spins: colours, keys, arrows, planes, charges, and refusals."""
 
 import unittest
 
@@ -21,7 +21,7 @@ NAMED = {(1, 0, 0): (1, 0, 0), (-1, 0, 0): (0, 1, 1), (0, 1, 0): (0.5, 1, 0),
 
 
 def skyrmion(sites=40, radius=8.0):
-    """A core down among spins up, (1, sites, sites, 3): all the same at the rim."""
+    """Returns a core down among spins up, (1, sites, sites, 3); all spins at the rim are equal."""
     x, y = np.meshgrid(*(np.arange(sites) - (sites - 1) / 2,) * 2)
     r = np.hypot(x, y)
     angle = np.where(r < 2 * radius, np.pi * (1 - r / (2 * radius)), 0)
@@ -41,7 +41,7 @@ class TextureTest(PackageTest):
 class Colors(TextureTest):
     def test_known_directions(self):
         m = np.array(list(NAMED), float)
-        for length in (1, 0.2, 7):  # which rigid bodies have
+        for length in (1, 0.2, 7):  # rigid bodies have any length
             axes = texture.draw(texture.Texture(length * np.stack((m, m))[None]))
             np.testing.assert_allclose(drawn(axes), [list(NAMED.values())] * 2, atol=1e-6)
 
@@ -161,7 +161,7 @@ class Charge(TextureTest):
         self.assertLess(values.max(), 1e-12)
 
     def test_every_plane(self):
-        m = skyrmion()[0]  # turned, so that x is y, y is z and z is x, and once more
+        m = skyrmion()[0]  # turned so that x becomes y, y z and z x, once and twice
         about_x = m[..., [2, 0, 1]][:, :, None]
         about_y = m[..., [1, 2, 0]].swapaxes(0, 1)[:, None]
         for spins, plane in ((about_x, "x=0"), (about_y, "y=0")):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Two threads open scenes, run them, write files and read them, all at the same time, and observers
-open scenes. CAYSPIN_ROUNDS: how often. A hang ends the test with a failure."""
+open scenes. CAYSPIN_ROUNDS is the number of rounds. A hang ends the test with a failure."""
 
 import faulthandler
 import os
@@ -12,19 +12,19 @@ import numpy as np
 from package_test import PackageTest, scene
 
 ROUNDS = int(os.environ.get("CAYSPIN_ROUNDS", 60))
-LONGEST = 120  # seconds of a round, on a machine however busy
+LONGEST = 120  # seconds for a round, even on a busy machine
 
 
 class Course:
-    """One thread's scene, its file, and what comes of them."""
+    """The scene and the file of one thread, and the results."""
 
     def __init__(self, folder, name, initial, precision, **tables):
         self.file, self.precision, self.spins, self.energy = folder / name, precision, None, None
         self.tables = {"initial": initial, "output": {"every": 1}, **tables}
 
     def round(self):
-        """The spins at the end, those that h5py reads, those that a scene reads, and the energies
-        that an observer saw of scenes that it opened."""
+        """Returns the last spins, those that h5py reads, those that a scene reads, and the energies
+        of the scenes that an observer opened."""
         seen = []
 
         def look(sim):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Runs the scripts that draw trades and write their tables, as a user does."""
+"""Runs the scripts that draw `cayspin trade --json` and write tables, as users do."""
 
 import json
 import math
@@ -8,12 +8,12 @@ import unittest
 
 from script_test import ScriptTest
 
-import trade_report  # from the folder of scripts
+import trade_report  # in the folder of scripts
 from cayspin_plots import trade_costs, trade_figure
 
 
 class PlotTrade(ScriptTest):
-    """Returns `cayspin trade --json` of five methods, the third never near the front."""
+    """Draws `cayspin trade --json` of five methods, of which the third is never near the front."""
 
     FIRST, SECOND, GREY = (0x00, 0x72, 0xB2), (0xD5, 0x5E, 0x00), (0x8B, 0x91, 0x99)
     PANEL = (7.5, 5.5)
@@ -34,7 +34,7 @@ class PlotTrade(ScriptTest):
         per_step = evaluations or cost
 
         def costs(error):
-            dt = 0.95 * (error / 0.1)**0.25  # not the power law through the runs
+            dt = 0.95 * (error / 0.1)**0.25  # off the power law through the runs
             known = dt > 0.04
             return {"error": error, "seconds": 1e-3 * cost / dt if known else None,
                     "evaluations": 40 * per_step / dt if known else None}

@@ -18,7 +18,7 @@ from texture.colors import hue_colors, map_colors
 UP, LEFT, HOME = "\ue013", "\ue012", "\ue011"  # keys of WebDriver
 RENDERER = """const gl = document.createElement("canvas").getContext("webgl2");
 return gl.getParameter(gl.getExtension("WEBGL_debug_renderer_info").UNMASKED_RENDERER_WEBGL);"""
-# Frames that appear within so many milliseconds while the slider is dragged.
+# Frames per second that appear while the slider is dragged for so many milliseconds.
 RATE = """const [milliseconds, done] = arguments, frame = document.getElementById("frame");
 let count = -1;
 const next = () => {
@@ -118,7 +118,7 @@ class Pictures(Browser):
         self.open(file)
         pixels = self.pixels()
         low, high = places.min(0), places.max(0)
-        edge = 0.7 * 1.2  # of a chain of cells
+        edge = 0.7 * 1.2  # the margin around a chain of cells
         part = (places - low + edge) / (high - low + 2 * edge)
         colors = 255 * hue_colors(spins[19].reshape(-1, 3))
         for (right, up), color in zip(part, colors):
@@ -203,7 +203,7 @@ class Controls(Browser):
         self.wait(lambda: self.shown() > 2)  # it follows by itself
         self.element("pause").click()
         self.wait(lambda: self.element("state").text == "paused")
-        shown = self.shown_at_last()  # frames that are written appear
+        shown = self.shown_at_last()  # the frames written so far appear
         self.assertEqual(self.element("pause").text, "Go on")
         self.element("pause").click()
         self.wait(lambda: self.shown() > shown)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Data that `cayspin view` sends to its page, and requests that it refuses."""
+"""The data that `cayspin view` sends to its page, and the requests that it refuses."""
 
 import os
 import pathlib
@@ -227,7 +227,7 @@ class Data(ScriptTest):
             data["checksum"][20] = checksum.of_frame(
                 data["step"][20], [*numbers, *data["magnetization"][20]], data["spins"][20])
             data.flush()
-            # It may be half written at first.
+            # The frame may be half written at first.
             self.assertEqual(page.news(20, 20)["times"], [])
             news = page.news(20, 20)
             self.assertEqual((news["times"], len(news["rows"])), ([2.5], 1))
@@ -294,7 +294,7 @@ class Steering(ScriptTest):
         page = Page(self, "scene.toml")
         page.ask("/steer", "POST", action="pause")
         self.assertEqual(page.close()[0], 0)
-        with h5py.File(self.folder / "long.h5") as data:  # nobody writes it
+        with h5py.File(self.folder / "long.h5") as data:  # no run writes it any more
             self.assertEqual(data.attrs["complete"], 0)
             self.assertGreater(data.attrs["wall_seconds"], 0)
 

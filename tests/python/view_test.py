@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Shared code of tests of the page in the browser: TEST.py FOLDER_OF_SCRIPTS WRITER PROGRAM."""
+"""Shared code of the tests of `cayspin view`: TEST.py FOLDER_OF_SCRIPTS WRITER PROGRAM."""
 
 import http.client
 import json
@@ -58,7 +58,7 @@ class Page:
         self.token = urllib.parse.parse_qs(parts.query).get("token", [""])[0]
 
     def ask(self, path, method="GET", headers=None, **query):
-        """The answer to a path as it is; `query` has the token unless it is given."""
+        """Returns the answer to a path, which is not quoted. Adds the token unless it is given."""
         query = urllib.parse.urlencode({"token": self.token, **query})
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=20)
         try:

@@ -57,7 +57,7 @@ class Views(PackageTest):
         end = time.monotonic() + 20
         while True:
             try:
-                with cayspin.open(output) as run:  # nobody writes it any more
+                with cayspin.open(output) as run:  # no run writes it any more
                     self.assertFalse(run.complete)
                     break
             except cayspin.CayspinError as error:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A small trajectory for the scripts to draw: write_trajectory FILE.h5 SITES LENGTH CELL_SITES. All
-// spins have that length and turn about z, each with its own phase.
+// Writes a small trajectory for the scripts to draw: write_trajectory FILE.h5 SITES LENGTH
+// CELL_SITES. All spins have this length and turn about z, each with its own phase.
 #include "io/trajectory.hpp"
 
 #include <cmath>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Wrong calls of the package: each raises CayspinError with one line, and leaves what was there."""
+"""Wrong calls of the package: each raises CayspinError with one line, and changes nothing."""
 
 import math
 import unittest
@@ -10,7 +10,7 @@ from package_test import TABLES, PackageTest, scene, stepped
 
 SHAPE = (2, 3, 7, 3)
 UP = np.broadcast_to([0.0, 0.0, 1.0], SHAPE)
-ROW = np.dtype([("flag", "u1"), ("m", "f8", 3)])  # 25 bytes: no vector lies where a double may
+ROW = np.dtype([("flag", "u1"), ("m", "f8", 3)])  # 25 bytes, so vectors are not aligned
 
 
 def vectors_in_rows(values):
@@ -182,7 +182,7 @@ class Calls(PackageTest):
                 self.assert_refused(cayspin.CayspinError, "null character", call, "a\0b.h5")
                 for wrong in ("", self.folder, self.folder / "no" / "run.h5",
                               self.folder / "text.h5"):
-                    if (name, wrong) != ("save", self.folder / "text.h5"):  # save replaces it
+                    if (name, wrong) != ("save", self.folder / "text.h5"):  # save may replace it
                         self.assert_refused(cayspin.CayspinError, str(wrong), call, wrong)
         self.assertEqual((self.folder / "text.h5").read_text(encoding="utf-8"), "no run")
         self.assertEqual(sim.steps, 0)

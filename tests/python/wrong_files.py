@@ -40,7 +40,7 @@ class FilesTest(PackageTest):
 
 class WrongFiles(FilesTest):
     def damaged(self, file, dataset):
-        """A copy of a file with a flipped bit in the header of a dataset."""
+        """Returns a copy of a file with a flipped bit in the header of a dataset."""
         with h5py.File(file) as open_file:
             place = h5py.h5o.get_info(open_file[dataset].id).addr
         content = bytearray(file.read_bytes())

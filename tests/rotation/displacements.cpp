@@ -11,7 +11,7 @@ template <class Real>
 class Displacements : public ::testing::Test {};
 TYPED_TEST_SUITE(Displacements, Precisions, PrecisionName);
 
-// In long double the difference of two spins is accurate to 1e-19.
+// The reference is the difference of two spins in long double, accurate to 1e-19.
 template <class Real, class Map, class Exact>
 void expect_digits(char const* name, bool tangent, Map const& displacement, Exact const& exact) {
   double const shortest = sizeof(Real) == sizeof(double) ? 0.01 : 1e-7;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The exponential's own sine and cosine, through every range and branch of detail/half_angle.hpp.
+// Tests the exponential's own sine and cosine in every range and branch of detail/half_angle.hpp.
 #include "reference.hpp"
 
 namespace cayspin::test {
@@ -26,7 +26,8 @@ class ExponentialMap : public ::testing::Test {
     return {value, up, down, value * Real(1 + 8 * eps), value * Real(1 - 8 * eps)};
   }
 
-  /// exp(f) e_x has its y and z only from sin|f|/|f| f: compared relative to their own size.
+  /// The y and z of exp(f) e_x come only from sin|f|/|f| f x e_x, so they are compared relative to
+  /// their own size.
   static void expect_small_angle(Real size) {
     for (auto const& [f, along] :
          {std::pair{Vec3<Real>{0, 0, size}, size}, std::pair{Vec3<Real>{0, -size, 0}, size},
@@ -55,7 +56,7 @@ TYPED_TEST(ExponentialMap, SmallAnglesToFullRelativePrecision) {
   using Real = TypeParam;
   for (long double size = this->is_double ? 1e-300L : 1e-36L; size < 0.5L; size *= 1.7L)
     this->expect_small_angle(static_cast<Real>(size));
-  // Below it the length is not resolved and the sine is replaced by its argument.
+  // Below `tiny` the length is not resolved, and the sine is replaced by its argument.
   Real const tiny = this->is_double ? Real(0x1p-500) : Real(0x1p-60);
   for (Real const size : this->around(tiny)) this->expect_small_angle(size);
 }
@@ -72,7 +73,8 @@ TYPED_TEST(ExponentialMap, KnownAnglesToFullPrecision) {
   }
 }
 
-// Half of |f| is reduced by multiples of pi, to -pi/2 .. pi/2: odd multiples of pi switch branch.
+// Half of |f| is reduced by multiples of pi to -pi/2 .. pi/2, so odd multiples of pi switch
+// branches.
 TYPED_TEST(ExponentialMap, ThroughMultiplesOfPi) {
   using Real = TypeParam;
   long double const pi = 3.14159265358979323846264338L;
@@ -85,13 +87,13 @@ TYPED_TEST(ExponentialMap, ThroughMultiplesOfPi) {
                            seed + 3);
       seed += 3;
     }
-  // A dense sweep, so that each range of the polynomials is met.
+  // A dense sweep meets every range of the polynomials.
   for (int i = 0; i < 4000; ++i)
     this->expect_rotated(narrow<Real>((i * 0.01L) * direction(i)), i + 1);
 }
 
-// If the square of |f| overflows, f is scaled first: the angle has no meaning there, but the axis
-// and the sphere have.
+// If the square of |f| overflows, f is scaled first. The angle then has no meaning, but the axis
+// and the length of the spin are kept.
 TYPED_TEST(ExponentialMap, LargeCoordinatesKeepTheAxisAndTheSphere) {
   using Real = TypeParam;
   auto sizes = this->around(this->is_double ? Real(0x1p500) : Real(0x1p60));
@@ -111,14 +113,14 @@ TYPED_TEST(ExponentialMap, LargeCoordinatesKeepTheAxisAndTheSphere) {
   }
 }
 
-// Through |f| = 1/2, where the series is replaced by the closed form, and on to 6.
+// From 0 through |f| = 1/2, where the closed form replaces the series, to 6.
 TYPED_TEST(ExponentialMap, InverseTangentThroughItsSwitch) {
   using Real = TypeParam;
   unsigned seed = 0;
   auto const check = [&](Vec3<Real> const& f) {
     auto const y = narrow<Real>(direction(++seed));
     Long const expected = exponential_inverse_tangent(widen(f), widen(y));
-    // The coefficient depends ever more on errors of its angle towards 2 pi.
+    // The nearer |f| is to 2 pi, the more the coefficient depends on errors of its angle.
     long double const n = norm(widen(f)), to_pole = 6.2831853L - n;
     EXPECT_LE(largest(widen(Exponential::inverse_differential(f, y)) - expected),
               this->eps * (4 + 8 * n * n / (to_pole * to_pole)))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Properties of the maps independent of their formulas: inverses, lengths, and differentials
+// Properties of the maps that do not depend on their formulas: inverses, lengths, and differentials
 // compared with differences of the maps.
 #include "reference.hpp"
 
@@ -11,7 +11,7 @@ class Laws : public ::testing::Test {
  protected:
   static constexpr double eps = epsilon<Real>;
 
-  /// Calls check(f, x, y) for |f| from 1e-30 to `largest_size`, x and y unit vectors.
+  /// Calls check(f, x, y) for |f| from 1e-30 to `largest_size`; x and y are unit vectors.
   template <class Check>
   static void sweep(double largest_size, Check const& check) {
     unsigned seed = 1;
@@ -28,7 +28,7 @@ class Laws : public ::testing::Test {
     sweep(largest_size, [](auto const& f, auto const& x, auto const&) {
       auto const there = Rotation::rotate(f, x);
       EXPECT_NEAR(norm(widen(there)), norm(widen(x)), 6 * eps) << norm(widen(f));
-      // Each rotation adds up to 2 m, by a factor with an error of 3 eps.
+      // Each rotation adds up to 2 m, times a factor with an error of 3 eps.
       EXPECT_LE(largest(widen(Rotation::rotate(opposite(f), there)) - widen(x)), 12 * eps)
           << norm(widen(f));
     });
@@ -71,8 +71,8 @@ Long derivative(Map const& map, Long const& f, Long const& g, Long const& x) {
   return (1 / (12 * s)) * (8 * (at(1) - at(-1)) - (at(2) - at(-2)));
 }
 
-// d/ds R(f) x = (dR_f f') x R(f) x, right-trivialised; the left-trivialised map has f with the
-// opposite sign, which these differences must refute.
+// The differential is right-trivialised: d/ds R(f) x = (dR_f f') x R(f) x. The left-trivialised one
+// is that of -f, and must not agree with the differences.
 TYPED_TEST(Laws, CayleyTangentIsTheDerivative) {
   using Real = TypeParam;
   this->sweep(30, [&](auto const& f, auto const& x, auto const& g) {

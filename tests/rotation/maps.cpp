@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The maps against 32-digit values; packs.cpp compares packs with these numbers. In float the
-// inputs are rounded (and clamped to the range) first, and the formulas in long double are the
-// reference.
+// The maps compared with 32-digit values; packs.cpp compares packs with single numbers. In float
+// the inputs are first rounded (and clamped to the range), and the reference is computed in long
+// double.
 #include "../support/oracles.hpp"
 #include "reference.hpp"
 
@@ -16,7 +16,7 @@ struct MapCase {
   bool has_exponential;
 };
 
-// Float holds 1e-45 .. 3e38.
+// Clamps lengths to the range of float, 1e-45 .. 3e38.
 template <class Real>
 Long in_range(Long const& f) {
   long double const size = largest(f);
@@ -108,7 +108,7 @@ TYPED_TEST(Maps, Exponential) {
   }
 }
 
-// The limit of the tests above is a flag in the file.
+// The file flags the cases whose inverse tangent overflows double, as the tests above need to know.
 TEST(Maps, TheInverseTangentIsCheckedWhereItFits) {
   for (auto const& entry : oracles("maps")) {
     auto const value = read_long(entry.at("dcayinv_f_y"));
@@ -118,7 +118,7 @@ TEST(Maps, TheInverseTangentIsCheckedWhereItFits) {
   }
 }
 
-// The formulas that replace the file in float give the file's values in long double.
+// The formulas in long double, which replace the file in float, agree with the file.
 TEST(Maps, TheReferenceAgreesWithTheFile) {
   for (auto const& one : map_cases<double>()) {
     Long const f = widen(one.f), x = widen(one.x), y = widen(one.y);

@@ -10,7 +10,7 @@
 #include <array>
 #include <cmath>
 
-// The maps in long double, from their definitions and by other formulas than the library's.
+// The maps in long double, from their definitions and with other formulas than the library's.
 namespace cayspin::test {
 
 using Long = std::array<long double, 3>;
@@ -53,7 +53,7 @@ inline Long cayley_inverse_tangent(Long const& f, Long const& y) {
   return y - 0.5L * outer(f, y) + (inner(f, y) / 4) * f;
 }
 
-/// Rodrigues' rotation about f by |f|.
+/// Rodrigues' rotation: about f, by the angle |f|.
 inline Long exponential(Long const& f, Long const& x) {
   long double const n = norm(f);
   if (n == 0) return x;
@@ -71,7 +71,7 @@ inline Long exponential_inverse_tangent(Long const& f, Long const& y) {
   return y - 0.5L * c + exponential_coefficient(norm(f)) * outer(f, c);
 }
 
-/// Returns a direction for a case number, normalised in long double.
+/// Returns a direction for the number of a case, normalised in long double.
 inline Long direction(unsigned seed) {
   auto const d = random_directions(1, seed);
   Long const a{d[0], d[1], d[2]};

@@ -17,7 +17,7 @@ namespace {
 struct Cone {
   char const* name;
   std::string scene, phase;
-  double frequency;  // times cos(0.7)
+  double frequency;  // of the cone, over cos(0.7)
 };
 
 // Each scene is a lattice and its couplings.

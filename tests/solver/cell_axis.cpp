@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Interpolation and restriction along an axis of a multigrid hierarchy, against closed forms.
+// Interpolation and restriction along an axis of a multigrid hierarchy, compared with closed forms.
 #include <cayspin/solver/cell_axis.hpp>
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 namespace cayspin::detail {
 namespace {
 
-// A set-up that is quadratic in the cells would take hours.
+// A set-up whose time is quadratic in the number of cells would take hours.
 TEST(CellAxis, OfMillionsOfCellsIsThatOfAFew) {
   for (bool const periodic : {true, false})
     for (std::size_t const odd : {0U, 1U}) {
@@ -28,7 +28,7 @@ TEST(CellAxis, OfMillionsOfCellsIsThatOfAFew) {
     }
 }
 
-// Interpolation has weights of sum 1, so its transpose keeps the sum over cells.
+// The weights of an interpolation add up to 1, so its transpose keeps the sum over cells.
 TEST(CellAxis, RestrictionKeepsSums) {
   for (std::size_t const cells : {2U, 3U, 5U, 8U, 13U})
     for (bool const periodic : {true, false}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Approximations to (c + b K)^-1, against K applied site by site in double.
+// Approximations to (c + b K)^-1, compared with K applied site by site in double.
 #include "problems.hpp"
 
 #include <cayspin/solver/helmholtz.hpp>
@@ -64,7 +64,7 @@ class Helmholtz : public ::testing::Test {
     numbers[i] = v.x, numbers[i + 1] = v.y, numbers[i + 2] = v.z;
   }
 
-  /// Spins that turn by a tenth of a radian along each axis.
+  /// Spins that turn by a tenth of a radian over each axis.
   static Numbers turning_spins(Lattice const& lattice) {
     Numbers spins(static_cast<std::size_t>(3 * lattice.sites()));
     for (std::int64_t site = 0; site < lattice.sites(); ++site) {
@@ -88,7 +88,8 @@ class Helmholtz : public ::testing::Test {
     return vectors;
   }
 
-  /// Returns d + b K d normal to m, where i stands for m x, for d = v x m; then turned back.
+  /// Applies 1 + b K in the planes normal to the spins m, where i in b stands for m x. This acts on
+  /// d = v x m, and the result is turned back.
   static Numbers applied_about(Problem const& problem, Numbers const& spins, Number b,
                                Numbers const& v) {
     Numbers d(v.size());
@@ -197,7 +198,7 @@ TYPED_TEST(Helmholtz, LinesAreSolvedToRoundOff) {
   }
 }
 
-// Devices, and hosts without packs, solve lines along x number by number.
+// Devices, and hosts without packs, solve lines along x number by number, without packs.
 TYPED_TEST(Helmholtz, LinesOfSingleNumbersFindTheRowsOfPaddedPlanes) {
   using Real = typename TypeParam::Real;
   using Field = SiteField<Real, 3, Kokkos::HostSpace>;

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-// Linear systems on lattices, and the residuals that a solver leaves.
+// Linear systems on lattices, and the residuals that solvers leave.
 namespace cayspin::test {
 
 using Number = std::complex<double>;
@@ -29,7 +29,7 @@ inline Lattice closed(Lattice lattice) {
   return lattice;
 }
 
-/// Lattices of any size, with open and periodic axes, where two or three axes couple.
+/// Lattices of many sizes with open and periodic axes, where two or three axes couple.
 inline std::vector<Problem> grids() {
   auto mixed = Lattice::cubic(9, 14, 5);
   mixed.boundary[1] = Boundary::periodic;
@@ -42,7 +42,7 @@ inline std::vector<Problem> grids() {
           {"weak", Lattice::square(12, 11), {1e-3, 1e-3, 0}}};
 }
 
-/// Lattices where one axis couples.
+/// Lattices where only one axis couples.
 inline std::vector<Problem> lines() {
   std::vector<Problem> problems;
   for (std::int64_t const n : {2, 3, 4, 5, 100})

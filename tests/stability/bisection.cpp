@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The true limit, bisected with the stiffest mode of chains, planes and blocks of spins along a
-// field, against the prediction, which is exact there.
+// Bisects the true limit with the stiffest mode of chains, planes and blocks of spins along a
+// field, and compares it with the prediction, which is exact there.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -49,8 +49,8 @@ double across(Spins const& spins) {
   return std::sqrt(square);
 }
 
-/// Returns the first dt at which the mode grows, near `guess`; above it there may be others at
-/// which it does not.
+/// Returns the first dt near `guess` at which the mode grows; the mode may decay again at some
+/// larger dt.
 template <class Stepper, class Generator>
 double bisected(Generator const& generator, Spins const& start, double guess, double sigma) {
   double stable = 0.98 * guess, unstable = 0.99 * guess;
@@ -80,13 +80,13 @@ void expect_limits(char const* method) {
         std::printf("    %-10s %-6s damping %-4g %-18s limit %.6f, predicted %.6f\n", method, name,
                     damping, what, found, limit);
         EXPECT_GT(found / limit, 0.995) << method << ' ' << name << ' ' << what;
-        // With a sigma another mode may be the first to grow.
+        // With a sigma, another mode may be the first to grow.
         if (sigma == 0) {
           EXPECT_LT(found / limit, 1.005) << method << ' ' << name << ' ' << what;
         }
       };
       expect("orthogonal", orthogonal(natural), 0, 0);
-      // Its part along the spin is the field's.
+      // The default generator's component along the spin is the field's, which acts like a sigma.
       expect("default", natural, 0, applied);
       expect("orthogonal, sigma", orthogonal(natural), -1.5, -1.5);
     }

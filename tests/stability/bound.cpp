@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The a-priori bound: the exchange's largest eigenvalue, and the step limit of every method.
+// The a-priori bound: the largest eigenvalue of the exchange, and the step limit of every method.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -55,13 +55,14 @@ TEST(ExchangeBound, IsTheLargestEigenvalue) {
     }
 }
 
-/// Returns y of largest_stable_step = y / field_bound, at a bound other than 1.
+/// Returns y of largest_stable_step = y / field_bound, computed with a field bound other than 1.
 template <class Stepper>
 double scaled_limit(double damping, bool precession = true) {
   return 7 * largest_stable_step<Stepper>(7, damping, {.precession = precession});
 }
 
-// |R(y (-damping + i))| = 1, R the stability polynomial of order 1, 2, 4; roots found in 30 digits.
+// The table solves |R(y (-damping + i))| = 1, where R is the stability polynomial of order 1, 2 or
+// 4; roots were found in 30 digits.
 struct Row {
   double damping;
   char const *euler, *heun, *rk4;
@@ -148,7 +149,8 @@ struct FieldOfModes {
   }
 };
 
-/// Returns the largest |amplitude after a step / before| over modes of small turns about the field.
+/// Returns the largest |amplitude after a step / before| of the modes, which turn spins a little
+/// off the field.
 template <class Stepper>
 double amplification(double largest, double damping, double sigma, double dt) {
   auto const generator = orthogonal(LandauLifshitz{EffectiveField{FieldOfModes{largest}}, damping});
@@ -192,12 +194,13 @@ TEST(StepLimit, ConstantSigmaOfHigherOrders) {
 }
 
 TEST(StepLimit, NoneAndZero) {
-  // Past (1 + lambda^2) s the generator turns a spin faster than it moves: stable at any step.
+  // With a sigma beyond (1 + lambda^2) s, spins are turned about themselves faster than they move:
+  // any step is stable.
   using Stepper = LieEuler<Spins, isotropy::Constant>;
   EXPECT_EQ(largest_stable_step<Stepper>(7, 0.05, {.sigma = 7.1}), infinity);
   EXPECT_EQ(largest_stable_step<LieEuler<Spins>>(0, 0.05), infinity);
   EXPECT_EQ(largest_stable_step<LieEuler<Spins>>(7, 0, {.precession = false}), infinity);
-  // Undamped precession: Euler and Heun amplify at every step.
+  // Euler and Heun amplify undamped precession at every step.
   EXPECT_EQ(largest_stable_step<LieEuler<Spins>>(7, 0), 0);
   EXPECT_EQ(largest_stable_step<ClassicalHeun<Spins>>(7, 0), 0);
   EXPECT_NEAR(7 * largest_stable_step<Rkmk4<Spins>>(7, 0), std::sqrt(8), 1e-9);

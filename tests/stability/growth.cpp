@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Noise about a uniform state decays just below the measured limits and grows just above them; the
-// a-priori bound is below.
+// Noise about a uniform state decays just below the measured limits and grows just above them. The
+// a-priori bound is lower than these limits.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -36,7 +36,7 @@ Slab slab_of(Measured const& row) {
           .damping = row.damping};
 }
 
-/// The stable state (1, 0, 0), the stiffest mode at 1e-6, and noise at 1e-9.
+/// The stable state (1, 0, 0) with the stiffest mode, of amplitude 1e-6, and noise of 1e-9.
 Spins disturbed(Lattice const& lattice) {
   std::mt19937_64 engine(1);
   std::normal_distribution<double> noise(0, 1e-9);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// mumax3's quadrature of the demagnetising tensor, in examples/standard_problem_4.
+// The demagnetising tensor by mumax3's quadrature, as in examples/standard_problem_4.
 #include "../../examples/standard_problem_4/quadrature.hpp"
 
 #include <gtest/gtest.h>
