@@ -98,7 +98,7 @@ class Stages(PackageTest):
         np.testing.assert_allclose(sim.spins, other.spins, rtol=0, atol=1e-14)
 
     def assert_replaced(self, table, old, key, new, **tables):
-        """Setting `key` of the scene's `table` from `old` to `new` keeps nothing of the old value."""
+        """Changing `key` of `table` from `old` to `new` keeps nothing of the old value."""
         first, _, inner = key.partition(".")
         expected = {**old, first: {**old[first], inner: new} if inner else new}
         with self.subTest(key=key, new=new):

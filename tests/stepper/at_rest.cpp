@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Spins at equilibrium with moving ones, and spins whose rate passes through zero: sigma has no
+// Spins at equilibrium beside moving ones, and spins whose rate passes through zero: sigma is never
 // 0/0, and spins at equilibrium keep their bits.
 #include "../support/backends.hpp"
 #include "../support/landau_lifshitz.hpp"
@@ -18,7 +18,7 @@ class AtRest : public ::testing::Test {
  protected:
   using Field = SpinField<Real, Space::memory_space>;
 
-  /// Calls check for every method with its own sigma.
+  /// Calls check for each method, with the sigma of each kind.
   template <class Check>
   static void for_each(Field const& like, Check const& check) {
     using namespace isotropy;
@@ -31,7 +31,7 @@ class AtRest : public ::testing::Test {
 };
 TYPED_TEST_SUITE(AtRest, Precisions, PrecisionName);
 
-// Every third spin is along the field's axis, and uncoupled.
+// Every third spin is uncoupled and along the axis of the field.
 TYPED_TEST(AtRest, StaysToTheBitBesideMovingSpins) {
   using Field = typename TestFixture::Field;
   auto const lattice = Lattice::chain(37);
@@ -73,7 +73,7 @@ TYPED_TEST(AtRest, BodiesInTheirPrincipalAxes) {
   check("series as printed", Series4Paper(start, energy));
 }
 
-// The middle spin is along its field at the start; its neighbours move, and then it does.
+// The middle spin is along its field at the start. It moves only after its neighbours have.
 TYPED_TEST(AtRest, RateThatPassesZero) {
   using Field = typename TestFixture::Field;
   auto const lattice = Lattice::chain(3);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// integrate() and minimize() return the spins in their original memory, with any method, and
-// steppers continue from there with the bits of separate steps.
+// integrate() and minimize() return the spins in their original memory, with any method. Steppers
+// continue from there with the bits of separate steps.
 #include "../support/backends.hpp"
 #include "every_stepper.hpp"
 
@@ -28,7 +28,7 @@ class CallersMemory : public ::testing::Test {
 };
 TYPED_TEST_SUITE(CallersMemory, Precisions, PrecisionName);
 
-/// Expects the spins in their original memory, seen by arrays taken before.
+/// Expects spins in their original memory, where a handle from before still sees them.
 template <class Field>
 class WhereTheyLie {
  public:
@@ -65,7 +65,7 @@ TYPED_TEST(CallersMemory, IsWhereEveryIntegrationEnds) {
       EXPECT_EQ(copy_to_host(spins), copy_to_host(by_hand)) << what;
       before.expect_same(spins, what);
     }
-    // A stepper of another kind uses these spins.
+    // A stepper of another kind moves these spins in between.
     Rkmk4 other(spins);
     integrate(Host(), other, generator, spins, Times{0, dt, 1});
     integrate(Host(), stepper, generator, spins, Times{0, dt, 3});
@@ -100,7 +100,7 @@ TYPED_TEST(CallersMemory, IsWhereAMinimizationEnds) {
   }
 }
 
-// A copy of a stepper would share its fields, and not its numbers.
+// A copy of a stepper would share its fields, but not its numbers.
 TYPED_TEST(CallersMemory, SteppersAreMovedAndNotCopied) {
   using Field = typename TestFixture::Field;
   auto const like = this->start();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A stepper restored from another one's checkpoint continues with its bits and counts, and a
-// continued run has the bits of a single run.
+// A stepper restored from the checkpoint of another continues with the other's bits and counts, and
+// a continued run has the bits of a single run.
 #include "../order/chain.hpp"
 
 #include <cmath>
@@ -51,8 +51,8 @@ std::tuple<std::int64_t, std::int64_t> counts(Stepper const& stepper) {
     return {0, 0};
 }
 
-// Interrupted at every step, including the first ones of a multistep method, and within adaptive
-// steps.
+// The run is interrupted at every step, including the first ones of multistep methods and within
+// adaptive steps.
 TYPED_TEST(Checkpoints, GoOnAsTheRunWouldHave) {
   static_assert(remembers_steps<TypeParam>);
   using Spins = typename TypeParam::spins_type;
@@ -79,7 +79,7 @@ TYPED_TEST(Checkpoints, GoOnAsTheRunWouldHave) {
     Spins second = start();
     copy_from_host(copy_to_host(whole), second);
     TypeParam other = made_like<TypeParam>(second);
-    Spins elsewhere = start();  // its memory of another run is replaced
+    Spins elsewhere = start();  // the memory of another run, which is replaced
     go(other, elsewhere, 0, 5);
     serialize(other, checkpoint);
     go(first, whole, cut, steps);
@@ -90,7 +90,7 @@ TYPED_TEST(Checkpoints, GoOnAsTheRunWouldHave) {
   }
 }
 
-/// A checkpoint that changes the number of one name.
+/// A checkpoint that changes the number stored under one name.
 class Altered final : public Checkpoint {
  public:
   Altered(Checkpoint& right, std::string name, double value)

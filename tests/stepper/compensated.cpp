@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Compensated sums: round-off that does not grow with the number of steps.
+// With compensated sums, round-off does not grow with the number of steps.
 #include "../support/backends.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
@@ -18,7 +18,7 @@ struct Compensation : ::testing::Test {
 };
 TYPED_TEST_SUITE(Compensation, Precisions, PrecisionName);
 
-// Knuth's theorem: sum and residual are the two numbers themselves.
+// By Knuth's theorem, sum and residual add up exactly to the two numbers.
 TYPED_TEST(Compensation, SumAndResidualAreTheTwoNumbers) {
   using Real = TypeParam;
   std::mt19937_64 engine(7);
@@ -32,7 +32,8 @@ TYPED_TEST(Compensation, SumAndResidualAreTheTwoNumbers) {
       auto const both = detail::rounded_sum(a, b);
       for (auto const c : {&Vec3<Real>::x, &Vec3<Real>::y, &Vec3<Real>::z}) {
         EXPECT_EQ(both.sum.*c, a.*c + b.*c);
-        // Exact: the remainder after the larger one is a multiple of the last digit of the smaller.
+        // This difference is exact: sum minus larger is a multiple of the last digit of the
+        // smaller.
         bool const a_larger = std::abs(a.*c) > std::abs(b.*c);
         Real const larger = a_larger ? a.*c : b.*c, smaller = a_larger ? b.*c : a.*c;
         EXPECT_EQ(both.residual.*c, smaller - (both.sum.*c - larger));
@@ -42,7 +43,8 @@ TYPED_TEST(Compensation, SumAndResidualAreTheTwoNumbers) {
   EXPECT_GT(rounded, 500);
 }
 
-/// Error of `steps` steps through one radian, of spins that turn about a constant field.
+/// Returns the error of `steps` steps through one radian, for spins that turn about a constant
+/// field.
 template <class Stepper>
 double error_of_precession(std::int64_t steps) {
   using Field = typename Stepper::spins_type;
@@ -88,7 +90,7 @@ Slab const rounded_slab{.lattice = {{9, 7, 1}},
                         .applied = {0.5, -0.7, 0.9},
                         .damping = 0.1};
 
-/// Distance, in epsilon of float, of a run in float from the same steps in double.
+/// Returns the distance of a run in float from the same steps in double, in epsilons of float.
 template <template <class> class Method, template <class> class Sums>
 double round_off(std::int64_t steps) {
   auto const start = random_spins<SpinsOf<float>>(rounded_slab.lattice, 3);

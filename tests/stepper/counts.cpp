@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Evaluations counted by integrate(), against fields that count their calls.
+// Compares the evaluations that integrate() counts with those that fields count.
 #include "../support/backends.hpp"
 #include "every_stepper.hpp"
 
 namespace cayspin::test {
 namespace {
 
-/// H = m.z / 2 along z, by host code.
+/// H = m.z / 2 along z, computed by host code that counts its calls.
 struct CountingSolver {
   static constexpr int degree = 2;
   std::int64_t* calls;
@@ -18,7 +18,7 @@ struct CountingSolver {
   }
 };
 
-/// A term that counts how often kernels evaluate it, once for each pack.
+/// A term that counts its evaluations by kernels, one for each pack.
 struct CountingTerm {
   static constexpr int degree = 2;
   std::int64_t* calls;
@@ -41,7 +41,7 @@ class Counts : public ::testing::Test {
   using Field = SpinField<Real, Kokkos::HostSpace>;
   Lattice lattice = Lattice::chain(2);
 
-  /// `evaluations` counts all calls so far.
+  /// `evaluations` returns the number of calls so far.
   template <class Make, class Generator, class Calls>
   void expect_counted(std::string const& what, Make const& make, Generator const& generator,
                       Calls const& evaluations) {

@@ -13,12 +13,12 @@
 
 namespace cayspin::test {
 
-/// Inputs that a stepper accepts besides Landau-Lifshitz with local terms.
+/// Says whether a stepper accepts nonlocal fields, and counts evaluations of the whole field.
 struct Takes {
   bool nonlocal = true, counts_fields = true;
 };
 
-/// Calls visit(name, make, takes) for one stepper of each kind: make(like) is a new one.
+/// Calls visit(name, make, takes) for one stepper of each kind; make(like) returns a new one.
 template <class Field, class Visit>
 void for_each_stepper(Visit const& visit) {
   visit(

@@ -8,7 +8,7 @@
 namespace cayspin::test {
 namespace {
 
-/// H = 9 m.z along z, until a number of calls.
+/// H = 9 m.z along z, computed by host code that throws after a number of calls.
 struct FailingSolver {
   static constexpr int degree = 2;
   int* left;
@@ -42,7 +42,7 @@ TYPED_TEST(FailingFields, LeaveTheSpinsAsTheyWere) {
       left = calls;
       try {
         stepper.step(Host(), generator, spins, dt / 64, dt);
-        return;  // so many calls are a step
+        return;  // the step takes no more calls
       } catch (std::runtime_error const&) {
         EXPECT_EQ(copy_to_host(spins), before) << name << ", fails at call " << calls;
       }
@@ -52,7 +52,7 @@ TYPED_TEST(FailingFields, LeaveTheSpinsAsTheyWere) {
   for_each_stepper<Field>([&](std::string const& name, auto const& make, Takes takes) {
     if (takes.nonlocal) fails_everywhere(name, make, 0.05);
   });
-  // Steps that are halved: the second half fails, too.
+  // This step is halved, and its second half fails, too.
   fails_everywhere(
       "StiffGauss2, halved", [](Field const& like) { return StiffGauss2(like); }, 0.6);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The equation of an implicit step: roots by fixed point and by Newton's method, and no root.
+// The equation of an implicit step: roots by fixed-point iteration and by Newton's method, and no
+// root.
 #include "../support/backends.hpp"
 #include "../support/evaluate.hpp"
 #include "../support/landau_lifshitz.hpp"
@@ -23,7 +24,7 @@ class ImplicitStep : public ::testing::Test {
                   .damping = 0.2};
   Field const start = random_spins<Field>(slab.lattice, 3);
 
-  // The tolerance, and dt |A| < 6 times the rounding of A.
+  // Adds the tolerance of the solver and the rounding of A, which dt |A| < 6 multiplies.
   static constexpr double bound = 50 * epsilon<Real>;
 
   static ImplicitLieEuler<Field> euler(Field const& like, ImplicitOptions options = {}) {
@@ -37,7 +38,7 @@ class ImplicitStep : public ::testing::Test {
     return spins;
   }
 
-  /// Largest |m1 - cay(dt A(p)) m0|, p = m1 or half way.
+  /// Returns the largest |m1 - cay(dt A(p)) m0|, where p is m1 or the midpoint.
   double residual(Field const& end, double dt, bool middle) const {
     std::vector<double> point = numbers_of(end), from = numbers_of(start);
     if (middle)
@@ -95,7 +96,7 @@ TYPED_TEST(ImplicitStep, WithoutRootLeavesTheSpins) {
       EXPECT_NE(std::string(error.what()).find("dt = 3"), std::string::npos) << error.what();
     }
     EXPECT_EQ(copy_to_host(spins), before);
-    // The stepper still works.
+    // The stepper can still be used.
     stepper.step(Space{}, this->slab.natural(), spins, 0, 0.01);
     EXPECT_NE(copy_to_host(spins), before);
   };

@@ -31,7 +31,7 @@ Slab without_own_terms(double damping, Lattice const& lattice = block) {
   return slab;
 }
 
-/// Errors at time 1 against a converged run of RKMK4, over 10 .. 80 steps.
+/// Expects the orders of errors at time 1, in 10 to 80 steps, relative to a converged run of RKMK4.
 template <class Generator>
 void expect_orders(std::string const& what, Generator const& generator) {
   Spins const start = random_spins(block, 3);
@@ -70,7 +70,7 @@ TEST(RedBlackOrder, InAFieldThatChanges) {
                                slab.damping));
 }
 
-/// Exchange and a cubic on-site field in one term, which does not declare its parts.
+/// Exchange and a cubic on-site field in one term that does not declare its parts.
 struct Blended {
   Exchange exchange;
 
@@ -90,8 +90,8 @@ TEST(RedBlackOrder, OfATermThatSaysNothingAboutItself) {
   expect_orders("blended term", LandauLifshitz(EffectiveField{Blended{{block, 1}}}, 0.1));
 }
 
-/// An antisymmetric coupling to neighbours. It replaces missing ones, and does not declare that all
-/// of it comes from neighbours.
+/// An antisymmetric coupling to neighbours. It has its own substitute for missing ones, and does
+/// not declare that it depends only on neighbours.
 struct OpenBonds {
   static constexpr int degree = 2;
 
@@ -127,7 +127,7 @@ TEST(RedBlackOrder, OnALatticeWithVacancies) {
     EXPECT_EQ(length(spin(start, site) - spin(end, site)) == 0, site % 6 == 1) << site;
 }
 
-// tan(theta/2) shrinks by exp(-damping |h| t), the azimuth turns by |h| t.
+// tan(theta/2) shrinks by exp(-damping |h| t), and the azimuth turns by |h| t.
 struct Macrospin {
   Vector axis, across, third;
   long double strength, theta;
@@ -166,7 +166,7 @@ void expect_exact_macrospin() {
                           .precession = precession};
           auto const start =
               make_spins<Field>(slab.lattice, [&](auto, auto, auto) { return from; });
-          // For the numbers that the field and dt have in this precision.
+          // The exact solution has field and dt as rounded to this precision.
           Macrospin const exact({double(Real(h.x)), double(Real(h.y)), double(Real(h.z))},
                                 spin(start, 0));
           double const t = static_cast<double>(static_cast<Real>(dt));
@@ -174,8 +174,8 @@ void expect_exact_macrospin() {
           auto const where = testing::Message() << "damping " << damping << " dt " << dt
                                                 << " precession " << precession << " " << from.x;
           EXPECT_NEAR(length(end), 1, 8 * eps) << where;
-          // Beyond 1/eps the angle is lost, and the direction opposite to the field becomes ever
-          // less sharp.
+          // Over many turns the angle is lost to round-off, so only the component along the field
+          // is compared. Errors grow for a start near the direction opposite to the field.
           double const turn = precession ? 1.3 * t : 0;
           double const start_error = 1 + 1 / std::sqrt(1 + dot(from, exact.axis) / length(from));
           if (turn < 1e3)

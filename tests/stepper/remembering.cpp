@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Steppers that store a field from one step to the next, and the bound on sigma by differences.
+// Steppers that store a field from one step to the next, and the cap on finite-difference sigmas.
 #include "../support/evaluate.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
@@ -51,7 +51,7 @@ TYPED_TEST(Forgetting, StartsAnewAfterReset) {
   EXPECT_EQ(copy_to_host(spins), fresh);
 }
 
-// A first step from a given earlier state equals the second step from it.
+// A first step from the spins and from the state before them equals the second step of a run.
 TYPED_TEST(Remembering, StateBefore) {
   Spins const start = random_spins(chain.lattice, 5);
   Spins const after_one = run<TypeParam>(chain.natural(), start, 0.05, 1);
@@ -62,7 +62,7 @@ TYPED_TEST(Remembering, StateBefore) {
   EXPECT_EQ(copy_to_host(spins), copy_to_host(run<TypeParam>(chain.natural(), start, 0.05, 2)));
 }
 
-/// A field that throws from a given time on.
+/// A field that throws after a given time.
 struct FieldUntil {
   static constexpr bool depends_on_time = true;
   double end;
@@ -85,7 +85,7 @@ TYPED_TEST(Remembering, AFirstStepThatFailedIsTakenAgain) {
   EXPECT_EQ(copy_to_host(spins), copy_to_host(run<TypeParam>(generator(1), start, 0.05, 1)));
 }
 
-/// n pairs of steps, of one and two thirds of the mean.
+/// Takes pairs of steps, of one and two thirds of the length of a pair.
 template <class Stepper>
 Spins unequal_steps(Slab const& of, int pairs, double end_time) {
   Spins spins = random_spins(of.lattice, 5);
@@ -115,7 +115,7 @@ TEST(UnequalSteps, KeepTheOrder) {
   });
 }
 
-// F = dt w + clamp(dt sigma) m, sigma written out.
+// F = dt w + clamp(dt sigma) m, with sigma written out.
 TEST(FiniteDifference, CapOfTheTurn) {
   constexpr double dt = 0.1;
   Space const exec;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Evaluation times of the generator: with only a field H(t), A = H(t) for any spin, and the
-// coordinates of a step are an explicit sum.
+// Times at which steps evaluate the generator. With only a field H(t), A = H(t) for any spin, so
+// the coordinates of a step are an explicit sum.
 #include "../support/landau_lifshitz.hpp"
 
 #include <cayspin_paper/analytic_sigma.hpp>
@@ -42,8 +42,8 @@ TEST(Times, OfEvaluations) {
                                   0.5 * dt * (3.0 * h(t) - h(t - dt)));
 }
 
-// sigma = -<w', w x m> / |w|^2 of w = H - (m.H) m, with w' in the direction of H' and along the
-// flow.
+// For w = H - (m.H) m, sigma = -<w', w x m> / |w|^2, with w' along the derivative of H and along
+// the flow.
 TEST(Times, OfTheFieldsDerivative) {
   Spins const like("like", Lattice::chain(1));
   auto const normal = [](Vector const& a, Vector const& to) { return a - dot(to, a) * to; };
@@ -63,7 +63,7 @@ TEST(Times, OfTheFieldsDerivative) {
     LieEuler stepper(spins, isotropy::Analytic{});
     stepper.step(Space{}, generator, spins, t, step);
     Vector const f = step * w - (step * dot(turn, cross(w, m)) / dot(w, w)) * m;
-    // The derivative of H by differences: relative error about (w dt)^4 / 1e5.
+    // H is differentiated numerically, with a relative error of about (w dt)^4 / 1e5.
     EXPECT_LT(length(spin(spins, 0) - Cayley::rotate(f, m)), 1e-4 * std::pow(3 * step, 4) * step);
   }
 }

@@ -12,7 +12,7 @@ namespace {
 using Stepper = AdaptiveStiffGauss2<Spins>;
 constexpr double end_time = 2;
 
-/// Returns the largest error at early and late times, half of them in the first quarter.
+/// Returns the largest error at the times end_time / 2^8, ..., end_time / 2 and end_time.
 double error_of(Stepper& stepper, Slab const& slab, std::vector<Spins> const& exact) {
   auto spins = smooth_start(slab.lattice);
   double largest = 0, t = 0;
@@ -51,11 +51,12 @@ TEST(AdaptiveStiff, TheErrorFollowsTheTolerance) {
                 static_cast<long>(stepper.accepted_steps()));
     EXPECT_LT(errors.back(), tolerance);
   }
-  // A step of dt has an error of dt^3, and all of them together one of dt^2.
+  // A step of dt has an error of dt^3, limited by the tolerance; errors of all steps add up to
+  // dt^2.
   expect_order("error over tolerance", fitted_order(tolerances, errors), 2.0 / 3, 0.15);
 }
 
-// Without damping A is constant, and the whole error is that of the rotation.
+// Without damping A is constant, so the whole error is that of the rotation.
 TEST(AdaptiveStiff, APrecessingSpinFollowsTheTolerance) {
   auto const lattice = Lattice::chain(1);
   auto const start = make_spins(lattice, [](auto...) { return Vector{0.6, 0, 0.8}; });
@@ -92,10 +93,10 @@ TEST(AdaptiveStiff, LooksWithinStepsAreAsGood) {
     largest = std::max(largest, largest_distance(spins, exact));
   }
   EXPECT_LT(stepper.accepted_steps(), looks / 2);
-  expect_below("at any look", largest, 1e-3);  // 1.4e-3 by a constant A
+  expect_below("at any look", largest, 1e-3);  // with A constant in a step: 1.4e-3
 }
 
-// A run ten times as long takes hardly more steps: spins are at equilibrium.
+// At equilibrium steps lengthen: a run ten times as long takes at most four times the evaluations.
 TEST(AdaptiveStiff, RestTakesFewSteps) {
   for (std::int64_t const cells : {100, 400}) {
     SCOPED_TRACE(cells);
@@ -125,7 +126,7 @@ TEST(AdaptiveStiff, AFieldSwitchedOnAtRestIsFollowed) {
   expect_below("after the jump", largest_distance(spins, exact), 30 * tolerance);
 }
 
-// Corrections of spins at equilibrium are round-off, which must not affect the step.
+// Near equilibrium, corrections are round-off, which must not determine the length of steps.
 TEST(AdaptiveStiff, ShortStepsAtRestAreTakenAndLeftAgain) {
   auto const lattice = Lattice::chain(1);
   Vector const field{0.14205055664220612, 0.17394872326938271, 1};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Equal bits on every host space and for any number of threads.
+// Bits are equal on every host space and with any number of threads.
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>

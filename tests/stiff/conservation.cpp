@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Without damping stiff steps conserve energy, length and, if exchange is the only term, the total
-// spin.
+// Without damping, stiff steps conserve the energy, the lengths of spins and, with exchange only,
+// the total spin.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -77,7 +77,8 @@ TYPED_TEST(Conservation, OfRandomScenes) {
     Vector const spin = sum();
     TypeParam stepper(spins);
     advance(stepper, generator, spins, scene.dt, steps);
-    // Each step leaves a few epsilons of the rotation vector, against a force of the field's size.
+    // Each step leaves an error of a few epsilons of the rotation vector; the force is of the
+    // field's size.
     double const rounding = 16 * epsilon * steps * TypeParam::stages;
     EXPECT_NEAR(energy(exec, generator, spins, 0).value, before,
                 rounding * sites * scene.slab.field_bound());

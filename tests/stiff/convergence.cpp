@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Numbers of evaluations of stiff steps, and the behaviour at dt that are too large.
+// Numbers of evaluations in stiff steps, and what happens if dt is too large.
 #include "../support/figures.hpp"
 #include "../support/unit_slab.hpp"
 
@@ -15,7 +15,7 @@ TYPED_TEST_SUITE(StiffGaussOn, Fields);
 
 TYPED_TEST(StiffGaussOn, FinerMeshesTakesNoMoreEvaluations) {
   for (std::int64_t const cells : {100, 400, 1600}) {
-    // In single precision the differences of neighbours are round-off there.
+    // In single precision, differences between neighbours are round-off on finer meshes.
     constexpr bool is_single = std::is_same_v<typename TypeParam::value_type, float>;
     if (is_single && cells > 400) continue;
     SCOPED_TRACE(cells);
@@ -32,7 +32,8 @@ TYPED_TEST(StiffGaussOn, FinerMeshesTakesNoMoreEvaluations) {
   }
 }
 
-// Its first correction is not the whole rotation, which would require smaller ones.
+// The second step starts from a prediction, so its corrections need not add up to the whole
+// rotation.
 TYPED_TEST(StiffGaussOn, TheSecondStepTakesFewerCorrections) {
   Slab const film{.lattice = Lattice::square(64, 64), .exchange = 2, .demag = 1, .damping = 0.05};
   auto const start = make_spins<TypeParam>(film.lattice, [](auto i, auto j, auto) {
@@ -53,7 +54,7 @@ TYPED_TEST(StiffGaussOn, TheSecondStepTakesFewerCorrections) {
 }
 
 TEST(StiffGauss, ErrorDoesNotDependOnTheMesh) {
-  // Explicit steps would have to be 1100 times shorter on the finest of these.
+  // On the finest of these meshes, explicit steps would have to be 1100 times shorter.
   double first = 0;
   for (std::int64_t const cells : {50, 200, 800}) {
     Slab const slab = thin_slab(cells, 0.05);
@@ -75,7 +76,7 @@ TYPED_TEST(StiffGaussOn, HotSpinsHalveStepsThatAreTooLarge) {
                   .applied = {0.3, 0, 1},
                   .damping = 0.1};
   auto const start = random_spins<TypeParam>(slab.lattice, 7);
-  // A short time, for which an accurate solution exists: other roots would be far from it.
+  // For this short time an accurate solution exists, and other roots would be far from it.
   double const end_time = 0.1;
   auto const exact =
       run<Rkmk4<Spins>>(slab.natural(), random_spins(slab.lattice, 7), end_time / 4000, 4000);
@@ -99,7 +100,7 @@ TYPED_TEST(StiffGaussOn, StepWithoutSolutionLeavesTheSpins) {
   StiffGauss4<TypeParam> stepper(spins, {.halvings = 2});
   EXPECT_THROW(advance(stepper, slab.natural(), spins, 5.0, 1), NotConverged);
   EXPECT_EQ(copy_to_host(spins), before);
-  // This stepper continues from there.
+  // The stepper can still be used.
   EXPECT_NO_THROW(advance(stepper, slab.natural(), spins, 1e-3, 5));
 }
 

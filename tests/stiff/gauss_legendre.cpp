@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The stages of Gauss's method on one site.
+// The stages of the Gauss method, on one site.
 #include "../support/backends.hpp"
 
 #include <cayspin/stepper/gauss_legendre.hpp>
@@ -66,7 +66,7 @@ TYPED_TEST(GaussLegendreOn, KeepsTheLength) {
 }
 
 TYPED_TEST(GaussLegendreOn, ConstantFieldsTurnByPadesAngle) {
-  // (1 + z/2 + z^2/12) / (1 - z/2 + z^2/12) at z = i |f|, by Gauss's method of two stages.
+  // By the two-stage Gauss method: (1 + z/2 + z^2/12) / (1 - z/2 + z^2/12) at z = i |f|.
   using Real = TypeParam;
   for (double const size : {0.01, 0.5, 2.0, 3.0}) {
     Vec3<Real> const f[2] = {{0, 0, Real(size)}, {0, 0, Real(size)}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Steps that divide by the length of a spin, on lattices with vacant sites, whose spins are zero:
-// against a lattice of that shape.
+// Steps that divide by the length of a spin, which is zero on vacant sites, compared with steps on
+// a lattice of the remaining shape.
 #include "../support/backends.hpp"
 #include "../support/coefficients.hpp"
 #include "../support/figures.hpp"
@@ -28,7 +28,7 @@ struct Shape {
     return field;
   }
 
-  /// Random spins that are zero on vacant sites.
+  /// Returns random spins that are zero on vacant sites.
   template <class Field>
   Field start(unsigned seed) const {
     auto numbers = copy_to_host(random_spins<Field>(box, seed));
@@ -78,13 +78,14 @@ void expect_vacant_spins_are_zero(Field const& spins, Shape const& shape) {
   }
 }
 
-/// Compares steps of `Stepper` in a box with vacant surroundings and on the film by itself.
+/// Compares steps of a film in a box, with vacant sites around it, with steps of the film by
+/// itself.
 template <class Stepper>
 void expect_that_of_the_film_alone(char const* name, double tolerance) {
   using Field = typename Stepper::spins_type;
   using Real = typename Field::value_type;
   SCOPED_TRACE(name);
-  // At the low ends, so that rows are cut into equal packs.
+  // The film is at the low ends of the box, so that its rows are cut into equal packs.
   Lattice const film{{13, 7, 3}}, box{{21, 11, 4}};
   auto const within = [](auto i, auto j, auto k) { return i < 13 && j < 7 && k < 3; };
   auto const shape = shape_of(box, within);
@@ -127,7 +128,7 @@ TYPED_TEST_SUITE(Vacancies, Precisions, PrecisionName);
 
 template <class Field>
 using Chart4 = StereographicRungeKutta<Field, tableau::Classical4>;
-/// A generator whose increments are not recovered from spins.
+/// A method in the chart whose increments are not recovered from spins.
 template <class Field>
 using ChartOfThreeEighths = StereographicRungeKutta<Field, tableau::ThreeEighths4>;
 
@@ -142,7 +143,7 @@ TYPED_TEST(Vacancies, GiveTheBitsOfTheFilmAloneByProjectionAndInTheChart) {
   expect_that_of_the_film_alone<Compensated<Chart4<Field>>>("chart, compensated", 0);
 }
 
-/// Steps solved to round-off.
+/// A stiff stepper whose steps are solved to round-off.
 template <class Stepper>
 struct Solved : Stepper {
   explicit Solved(typename Stepper::spins_type const& like)
@@ -157,7 +158,7 @@ TYPED_TEST(Vacancies, GiveTheFilmAloneByStiffSteps) {
   expect_that_of_the_film_alone<Solved<StiffGauss4<Field>>>("stiff4", 10 * 64);
 }
 
-/// At a tolerance of so many epsilons.
+/// An adaptive stepper with a tolerance of 1e-4.
 template <class Stepper>
 struct WithinTolerance : Stepper {
   using Real = typename Stepper::spins_type::value_type;

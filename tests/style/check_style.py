@@ -26,7 +26,7 @@ def tracked_files(pattern):
 
 
 def commands(tools, fix):
-    """Each tool with its files."""
+    """Yields the command of each tool with its files."""
     clang_format, cmake_format, typos = (
         str(tools / "bin" / name) for name in ("clang-format", "cmake-format", "typos"))
     yield [clang_format, *(["-i"] if fix else ["--dry-run", "--Werror"]), *tracked_files(SOURCES)]
@@ -35,7 +35,7 @@ def commands(tools, fix):
 
 
 def differing_pins():
-    """Pins of requirements.txt that pre-commit's configuration does not have."""
+    """Returns the pins of requirements.txt that .pre-commit-config.yaml does not have."""
     hooks = (ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8")
     pins = (HERE / "requirements.txt").read_text(encoding="utf-8").split()
     return [pin for pin in pins if pin not in hooks]

@@ -7,18 +7,18 @@
 namespace cayspin::test {
 
 /// A spin wave of two sublattices, one along the axis of the anisotropy and one opposite to it.
-/// Both turn rigidly about the axis, in opposite phases, at any opening.
+/// Both turn rigidly about the axis in opposite phases, at any opening angle.
 struct AntiferromagneticCone {
   double smaller;    ///< the sine of the angle of the sublattice that opens less
-  double frequency;  ///< of the right hand about the spins that open more
+  double frequency;  ///< right-handed about the spins that open more
 
-  /// Returns the wave for the field `exchange` of one sublattice on the other at equilibrium, times
-  /// gamma in (0, 1] for the wave, and the on-site `anisotropy`. `opening`: the angle of the other
-  /// sublattice.
+  /// Returns the wave in which the other sublattice has the angle `opening`. `exchange` is the
+  /// field of one sublattice on the other at equilibrium, which the wave multiplies by gamma in (0,
+  /// 1]; `anisotropy` is on-site.
   static AntiferromagneticCone of(double exchange, double anisotropy, double gamma,
                                   double opening) {
     double const sin_a = std::sin(opening), cos_a = std::cos(opening), wave = exchange * gamma;
-    // For rigid rotation, the field's component normal to the axis is along the spin's.
+    // Spins turn rigidly where the field's component normal to the axis is along the spin's.
     auto const rate_a = [&](double b) {
       return exchange * std::cos(b) + anisotropy * cos_a - wave * std::sin(b) * cos_a / sin_a;
     };

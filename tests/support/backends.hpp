@@ -12,7 +12,7 @@
 
 namespace cayspin::test {
 
-/// A precision and an execution space that typed tests run with.
+/// A precision and an execution space, for typed tests.
 template <class RealType, class ExecType>
 struct Backend {
   using Real = RealType;
@@ -26,8 +26,8 @@ struct BothPrecisions {
   using type = ::testing::Types<Backend<float, Spaces>..., Backend<double, Spaces>...>;
 };
 
-/// Both precisions on the default space of the host and on that of a device; with
-/// CAYSPIN_BUILD_ALL_TESTS on every compiled space; on an emulated device only on that.
+/// Both precisions on the default host space and on the default space of a device; with
+/// CAYSPIN_BUILD_ALL_TESTS on every compiled space; with an emulated device only on that one.
 #if defined(CAYSPIN_HOST_DEVICE)
 using Backends = typename BothPrecisions<void, HostDevice>::type;
 #else
@@ -72,7 +72,7 @@ struct BackendName {
   }
 };
 
-/// Typed tests on a backend.
+/// Fixture of typed tests on a backend.
 template <class Backend>
 struct OnBackend : ::testing::Test {
   using Real = typename Backend::Real;
@@ -92,7 +92,7 @@ struct PrecisionName {
 template <class Real>
 inline constexpr double epsilon = std::numeric_limits<Real>::epsilon();
 
-/// Returns `count` unit vectors, equal for a seed everywhere.
+/// Returns `count` unit vectors, which depend only on the seed, not on the platform.
 inline std::vector<double> random_directions(std::int64_t count, unsigned seed) {
   std::mt19937 engine(seed);
   auto const uniform = [&] { return engine() * 0x1p-31 - 1; };

@@ -23,8 +23,8 @@ auto numbers_on(Lattice const& lattice, Value const& value) {
   return field;
 }
 
-/// Returns numbers between `least` and `most`, equal for a seed everywhere; every `zeros`-th is
-/// zero.
+/// Returns random numbers between `least` and `most`, which depend only on the seed, not on the
+/// platform; every `zeros`-th is zero.
 template <class Spins>
 auto random_numbers_on(Lattice const& lattice, double least, double most, unsigned seed,
                        int zeros = 0) {

@@ -10,7 +10,8 @@
 
 namespace cayspin::test {
 
-/// While in scope, C++ and, if localedef can make a locale, C write 1.234,5 for 1234.5.
+/// While an object exists, C++ writes 1234.5 as 1.234,5, and so does C if localedef can make a
+/// locale.
 class DecimalComma {
  public:
   explicit DecimalComma(std::filesystem::path const& folder)
@@ -30,7 +31,7 @@ class DecimalComma {
     ::unsetenv("LOCPATH");
   }
 
-  /// True if the locale of C has it, too.
+  /// True if C does, too.
   bool has_c = false;
 
  private:

@@ -11,7 +11,7 @@
 
 namespace cayspin::test {
 
-/// Functor that writes source.field(stencil) or, for a generator, source(stencil) at every site.
+/// Functor that writes source.field(stencil), or for a generator source(stencil), at every site.
 template <class Source, class Real>
 struct Evaluate {
   Source source;

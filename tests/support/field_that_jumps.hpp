@@ -5,7 +5,7 @@
 
 namespace cayspin::test {
 
-/// A uniform field that jumps to another value.
+/// A uniform field that jumps to another value at a given time.
 struct FieldThatJumps {
   static constexpr bool depends_on_time = true;
   double when;

@@ -11,7 +11,7 @@
 
 namespace cayspin::test {
 
-/// A printed reference figure, and half a unit of its last digit.
+/// A reference figure as printed, and half a unit of its last digit.
 struct Printed {
   explicit Printed(std::string const& digits) : text(digits), value(std::atof(digits.c_str())) {
     auto const exponent = digits.find('e');
@@ -25,8 +25,8 @@ struct Printed {
   double value, half_unit = 0;
 };
 
-/// Prints a figure next to the reference and expects agreement within `relative` and the rounding
-/// of its last digit.
+/// Prints a figure next to its reference, and expects agreement within `relative` and the rounding
+/// of the reference's last digit.
 inline void expect_figure(std::string const& what, double figure, std::string const& reference,
                           double relative = 0.01) {
   Printed const printed(reference);
@@ -56,7 +56,7 @@ inline void expect_order(std::string const& what, double order, double expected,
   EXPECT_NEAR(order, expected, tolerance) << what;
 }
 
-/// Returns the order of error(steps, dt) in dt = end_time / steps, over a ladder of steps.
+/// Expects the order of error(steps, dt) in dt = end_time / steps, over a ladder of steps.
 template <class Ladder, class Error>
 void expect_convergence(std::string const& what, double end_time, Ladder const& ladder,
                         double expected, double tolerance, Error const& error) {

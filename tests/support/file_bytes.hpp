@@ -18,7 +18,7 @@ inline void write_bytes(std::filesystem::path const& path, std::string const& by
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// Overwrites an existing file from `place` on, like a writer or a fault.
+/// Overwrites an existing file from `place` on, as a writer or a fault would.
 inline void overwrite(std::filesystem::path const& path, std::size_t place,
                       std::string const& bytes) {
   std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
@@ -26,7 +26,7 @@ inline void overwrite(std::filesystem::path const& path, std::size_t place,
   file << bytes;
 }
 
-/// Returns the bytes of a number in memory and in files.
+/// Returns the bytes of a number, as they are in memory and in files.
 inline std::string bytes_of(double number) {
   std::string bytes(sizeof number, '\0');
   std::memcpy(bytes.data(), &number, sizeof number);

@@ -24,7 +24,7 @@ using Spins = SpinField<double, Space::memory_space>;
 
 inline double length(Vector const& v) { return std::hypot(v.x, v.y, v.z); }
 
-/// The Landau-Lifshitz equation with every term of the slab; terms of 0 have no effect.
+/// The Landau-Lifshitz equation with all terms of a slab; those with constant 0 have no effect.
 struct Slab {
   Lattice lattice;
   double exchange = 0, anisotropy = 0;

@@ -29,7 +29,8 @@ struct MethodChoice {
     return method.takes(rotation) && method.takes(generator) && method.takes(isotropy, kind);
   }
 
-  /// Returns KEY=VALUE overrides; a baseline has only its own name.
+  /// Returns KEY=VALUE overrides; for a baseline only the method and, if it is adaptive, a
+  /// tolerance.
   std::vector<std::string> overrides() const {
     auto const word = [](auto value) { return "'" + std::string(to_string(value)) + "'"; };
     std::vector<std::string> all{"integrator.method='" + std::string(method.word) + "'"};
@@ -43,7 +44,7 @@ struct MethodChoice {
   }
 };
 
-/// Calls work for each combination of the methods on the group, and for each baseline.
+/// Calls work for each combination with the methods on the group, and for each baseline.
 template <class Work>
 void for_each_method_choice(Work const& work) {
   for (auto const* const method : io::methods())

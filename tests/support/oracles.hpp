@@ -11,8 +11,8 @@
 
 namespace cayspin::test {
 
-/// Returns a list of tests/data/oracles.json: inputs are doubles, results decimal strings of 32
-/// digits from 70-digit arithmetic.
+/// Returns a list of tests/data/oracles.json. Inputs are doubles; results are decimal strings of 32
+/// digits, computed with 70 digits.
 inline nlohmann::json oracles(std::string const& list) {
   std::string const path = CAYSPIN_TEST_DATA "/oracles.json";
   std::ifstream file(path);
@@ -27,7 +27,7 @@ inline long double decimal(nlohmann::json const& digits) {
   return std::strtold(digits.get<std::string>().c_str(), nullptr);
 }
 
-/// Returns every number of an array, nested or not, in order.
+/// Returns all numbers of an array in order, whether it is nested or not.
 inline std::vector<double> decimals(nlohmann::json const& array) {
   std::vector<double> numbers;
   for (auto const& entry : array.is_array() ? array : nlohmann::json::array({array})) {

@@ -12,8 +12,8 @@
 
 namespace cayspin::test {
 
-/// Returns the largest defect of the order conditions of weights w at fraction s of a step, of one
-/// order up to 6.
+/// Returns the largest defect of the conditions of one order, up to 6, for weights w at fraction s
+/// of a step.
 template <class Tableau, class Weight>
 double defect(int of_order, double s, Weight const& w) {
   constexpr int n = Tableau::stages;
@@ -32,7 +32,7 @@ double defect(int of_order, double s, Weight const& w) {
   one.fill(1);
   c = times_a(one);
   Column const cc = by(c, c), ac = times_a(c), ccc = by(cc, c), acc = times_a(cc);
-  std::vector<std::pair<Column, double>> conditions;  // and the density of the tree
+  std::vector<std::pair<Column, double>> conditions;  // with the density of the tree
   if (of_order == 1) conditions = {{one, 1}};
   if (of_order == 2) conditions = {{c, 2}};
   if (of_order == 3) conditions = {{cc, 3}, {ac, 6}};
@@ -74,8 +74,8 @@ double defect(int of_order, double s, Weight const& w) {
   return largest;
 }
 
-/// Expects weights to satisfy the conditions up to `order` (at most 6) to `exact`, and those of the
-/// next order not even to `missed`.
+/// Expects weights to satisfy the conditions up to `order` (at most 6) within `exact`, and to miss
+/// those of the next order by more than `missed`.
 template <class Tableau, class Weight>
 void expect_conditions(char const* name, int order, double exact, double missed, Weight const& w,
                        double s = 1) {
@@ -88,7 +88,7 @@ void expect_conditions(char const* name, int order, double exact, double missed,
       EXPECT_GT(largest, missed);
   }
 }
-/// Checks a tableau's steps at its own order.
+/// Checks the steps of a tableau at its own order.
 template <class Tableau>
 void expect_conditions(char const* name, double exact, double missed = 1e-3) {
   expect_conditions<Tableau>(name, Tableau::order, exact, missed,

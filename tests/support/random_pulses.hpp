@@ -13,14 +13,14 @@
 
 namespace cayspin::test {
 
-/// Part of a component of H: its text in a scene, its value, and its points that are not smooth.
+/// A part of a component of H: its text in a scene, its value, and its corners.
 struct TimeShape {
   enum Kind { square, trapezoid, gaussian, sinc, step, train };
   static constexpr int kinds = 6;
 
   Kind kind;
   double height, middle, width;
-  int pulses = 1;  // of a train, each as wide, five widths apart
+  int pulses = 1;  // in a train; each is `width` wide, at distances of five widths
 
   static std::string number(double x) {
     char text[32];
@@ -78,7 +78,8 @@ struct TimeShape {
     return 0;
   }
 
-  /// Returns corners in ascending order: beyond the first and the last it hardly changes.
+  /// Returns the corners in ascending order. Before the first and after the last the value hardly
+  /// changes.
   std::vector<double> corners() const {
     std::vector<double> all;
     switch (kind) {
@@ -106,7 +107,8 @@ struct TimeShape {
   }
 };
 
-/// One damped spin in a field that changes at random times within 1e-6 of its run or more.
+/// One damped spin in a field with changes at random times, each of which takes 1e-6 of the run or
+/// more.
 class RandomPulses {
  public:
   using Triple = std::array<double, 3>;
@@ -133,7 +135,7 @@ class RandomPulses {
     return h;
   }
 
-  /// Returns the tables of the scene except [integrator].
+  /// Returns all tables of the scene but [integrator].
   std::string tables() const {
     auto const number = TimeShape::number;
     auto const triple = [&](auto const& of) {
@@ -156,7 +158,8 @@ class RandomPulses {
            " }\n";
   }
 
-  /// Returns the shortest pulse that rises and falls within the run; infinite without one.
+  /// Returns the width of the shortest pulse that rises and falls within the run; infinity if there
+  /// is none.
   double shortest() const {
     double least = std::numeric_limits<double>::infinity();
     for (auto const& shapes : shapes_)
@@ -165,8 +168,8 @@ class RandomPulses {
     return least;
   }
 
-  /// Returns true if two overlap in one component. If one jumps on the flank of the other, their
-  /// sum may have a pulse that is shorter than both.
+  /// Returns true if two pulses overlap in one component. If one jumps on a flank of the other,
+  /// their sum may have a pulse shorter than both.
   bool overlap() const {
     return std::ranges::any_of(shapes_, [](auto const& shapes) {
       if (shapes.size() < 2) return false;
@@ -175,7 +178,7 @@ class RandomPulses {
     });
   }
 
-  /// Returns the end state, by classical Runge-Kutta steps that end at all corners.
+  /// Returns the spin at the end, from classical Runge-Kutta steps that end at all corners.
   Triple exact() const {
     auto m = start;
     auto const all = corners();
@@ -183,7 +186,7 @@ class RandomPulses {
       double const begin = all[i], length = all[i + 1] - begin;
       auto const steps = static_cast<std::int64_t>(std::ceil(length / longest_step(begin, length)));
       double const dt = length / static_cast<double>(steps);
-      // Where H jumps, uses the values on this side.
+      // At a jump of H, uses the value on the side of this interval.
       double const aside = 1e-4 * dt;
       for (std::int64_t n = 0; n < steps; ++n) {
         double const t = begin + static_cast<double>(n) * dt;
@@ -201,7 +204,7 @@ class RandomPulses {
   }
 
  private:
-  /// A sinc has lobes on both sides of its middle.
+  /// A sinc also has lobes before and after the main one.
   bool is_within(TimeShape const& shape) const {
     if (shape.kind == TimeShape::step) return false;
     if (shape.kind == TimeShape::sinc) return shape.middle + 5 * shape.width < end;

@@ -6,7 +6,7 @@
 
 namespace cayspin::test {
 
-/// Reads HDF5 files like the program: faults of HDF5 stay in a child.
+/// Reads HDF5 files as the program does: in a child process, to which faults of HDF5 are confined.
 inline bool const reads_in_child = [] {
   io::set_trial(program::try_in_child);
   return true;

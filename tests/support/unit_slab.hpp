@@ -7,7 +7,7 @@
 
 namespace cayspin::test {
 
-/// Returns 100 spins across a slab with normal x, all coefficients 1.
+/// Returns a slab of 100 spins with normal x, in which all coefficients are 1.
 inline Slab unit_slab(Vector const& applied, double damping, bool precession = true,
                       Vector const& axis = {0, 0, 1}, double spacing = 1) {
   return {.lattice = Lattice::chain(100, spacing),
@@ -20,7 +20,8 @@ inline Slab unit_slab(Vector const& applied, double damping, bool precession = t
           .precession = precession};
 }
 
-/// Returns a slab of thickness 1 in so many cells: its fastest spin wave has frequency 4 cells^2.
+/// Returns a slab of thickness 1 in so many cells. Its fastest spin wave has a frequency of 4
+/// cells^2.
 inline Slab thin_slab(std::int64_t cells, double damping) {
   Slab slab = unit_slab({0.05, 0.05, 0}, damping);
   slab.lattice = Lattice::chain(cells, 1 / static_cast<double>(cells));

@@ -11,7 +11,7 @@
 
 namespace cayspin::test {
 
-/// Fails the program after two minutes without progress: a hang, even on a busy machine.
+/// Fails the program after two minutes without progress, which even on a busy machine are a hang.
 class Watchdog {
  public:
   explicit Watchdog(std::string what) : what_(std::move(what)) {}

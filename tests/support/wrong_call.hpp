@@ -10,7 +10,7 @@
 
 namespace cayspin::test {
 
-/// Returns the error message of a call.
+/// Returns the error message of a call, or "taken".
 template <class Error = std::invalid_argument>
 std::string refusal(std::function<void()> const& call) {
   try {
@@ -21,7 +21,7 @@ std::string refusal(std::function<void()> const& call) {
   }
 }
 
-/// A call that must be refused by an exception of one line.
+/// A call that must be refused by an exception with a message of one line.
 struct WrongCall {
   std::string name;
   std::function<void()> call;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The simple cubic Heisenberg model with J = 1: averages against those of a heat bath, which has no
-// step length, and its critical temperature, 1.443 (K. Chen, A. Ferrenberg and D. Landau, Phys.
-// Rev. B 48, 3249, 1993), where the Binder cumulants of two sizes cross. Seeds are fixed.
+// The simple cubic Heisenberg model with J = 1. Its averages are compared with those of a heat
+// bath, which has no step length; and its critical temperature is 1.443 (K. Chen, A. Ferrenberg and
+// D. Landau, Phys. Rev. B 48, 3249, 1993), where the Binder cumulants of two sizes cross. Seeds are
+// fixed.
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -30,7 +31,7 @@ class Averages {
       sums_[block][i] += values[i] / static_cast<double>(per_block_);
   }
 
-  /// Returns a function of the means, and its standard error from leaving out each block.
+  /// Returns a function of the means, and its standard error found by leaving out each block.
   template <class Of>
   std::pair<double, double> estimate(Of const& of) const {
     std::array<double, 4> all{};
@@ -61,7 +62,7 @@ Lattice cube(std::int64_t extent) {
   return Lattice::cubic(extent, extent, extent, 1, Boundary::periodic);
 }
 
-/// Runs red-black steps and noise: a sample every 1.6, without the first fifth.
+/// Runs red-black steps with noise. Samples are taken every 1.6, after the first fifth of the run.
 template <class Real>
 Averages by_noise(std::int64_t extent, double temperature, double dt, std::int64_t looks,
                   std::uint64_t seed) {
@@ -76,7 +77,7 @@ Averages by_noise(std::int64_t extent, double temperature, double dt, std::int64
   Averages averages(looks);
   auto const sites = static_cast<double>(lattice.sites());
   auto const look = [&](auto const& exec, Spins const& now) {
-    // Exchange energies are relative to parallel spins.
+    // The energy of exchange is relative to parallel spins, which have -3 per site.
     averages.add(energy(exec, field, now).value / sites - 3, magnetization(exec, now));
   };
   Kokkos::DefaultHostExecutionSpace const exec;
@@ -97,7 +98,8 @@ Averages by_noise(std::int64_t extent, double temperature, double dt, std::int64
   return averages;
 }
 
-/// Sweeps of a heat bath: redraws each spin by Boltzmann's weights in the field of its neighbours.
+/// Runs sweeps of a heat bath, which draw each spin anew by Boltzmann's weights in the field of its
+/// neighbours.
 Averages by_heat_bath(std::int64_t extent, double temperature, std::int64_t looks) {
   auto const n = static_cast<std::size_t>(extent), sites = n * n * n;
   auto const numbers = random_directions(static_cast<std::int64_t>(sites), 9);
@@ -140,7 +142,7 @@ Averages by_heat_bath(std::int64_t extent, double temperature, std::int64_t look
   return averages;
 }
 
-// Below, at and above the critical temperature. The step adds up to 5e-3.
+// Temperatures are below, near and above the critical one. The length of steps adds up to 5e-3.
 TEST(HeisenbergModel, HasTheAveragesOfAHeatBath) {
   for (double const temperature : {1.2, 1.44, 1.8}) {
     auto const noise = by_noise<double>(8, temperature, 0.05, 2000, 3);
@@ -177,7 +179,7 @@ TEST(HeisenbergModel, DISABLED_BinderCumulantsCrossAtTheCriticalTemperature) {
     difference[t] = found[1].first - found[0].first;
     error[t] = std::hypot(found[0].second, found[1].second);
   }
-  // The zero of the line through both differences.
+  // The crossing is the zero of the line through both differences.
   double const share = difference[0] / (difference[0] - difference[1]);
   double const apart = temperatures[1] - temperatures[0];
   double const crossing = temperatures[0] + share * apart;
@@ -203,7 +205,7 @@ TEST(HeisenbergModel, HasTheSpinWavesOfLowTemperatures) {
   double const temperature = 0.05;
   auto const [found, error] =
       by_noise<double>(extent, temperature, 0.05, 800, 8).estimate(Averages::magnetization);
-  // Interactions of spin waves are of second order.
+  // The interaction of spin waves is of second order in T.
   EXPECT_NEAR((1 - found) / temperature, sum, 5 * error / temperature + temperature * sum);
 }
 

@@ -23,7 +23,7 @@ class Thermal : public ::testing::Test {
   using Half = typename Noise::Half;
   typename Backend::Exec exec;
 
-  /// Runs independent spins in a field, from +z, for `steps` steps to equilibrium.
+  /// Runs independent spins in a field from +z to equilibrium, in `steps` steps.
   template <class Field>
   Spins at_rest(Field const& field, double temperature, double dt, int steps) {
     Spins spins("spins", Lattice::square(256, 64));
@@ -46,12 +46,12 @@ TYPED_TEST(Thermal, DirectionsAreForgottenAtTheRateOfDiffusion) {
   auto const start = random_directions(lattice.sites(), 3);
   auto const spins = spins_of<Spins>(lattice, start);
   ThermalNoise<Spins> const noise(spins, 0.5, {.temperature = 0.4, .seed = 5});
-  double const dt = 4, u = 0.5 * 0.4 * dt;  // large enough to show the term u^2/12
+  double const dt = 4, u = 0.5 * 0.4 * dt;  // large enough for u^2/12 to show
   for (auto const half : {Half::before, Half::after}) noise.turn(this->exec, 1, half, dt, spins);
   this->exec.fence();
   auto const now = numbers_of(spins);
   auto const sites = static_cast<double>(lattice.sites());
-  std::array<double, 3> mean{};  // of products of components, and of neighbours' turns
+  std::array<double, 3> mean{};  // of 3 m_c m_0c for each component
   double largest_defect = 0;
   for (std::size_t i = 0; i < now.size(); i += 3) {
     double square = 0;
@@ -61,14 +61,14 @@ TYPED_TEST(Thermal, DirectionsAreForgottenAtTheRateOfDiffusion) {
     }
     largest_defect = std::max(largest_defect, std::abs(square - 1));
   }
-  // Each of three components keeps an equal part: variance below 3 <(m m_0)^2> <= 9/5.
+  // <3 m_c m_0c> is the same for all components c. The variance is below 9 <(m_c m_0c)^2> <= 9/5.
   double const kept = std::pow(kept_of_direction(u), 2);
   for (double const of_component : mean)
     EXPECT_NEAR(of_component, kept, 5 * std::sqrt(1.8 / sites));
   EXPECT_LT(largest_defect, 8 * epsilon<typename TypeParam::Real>);
 }
 
-// <m_z> = coth x - 1/x in a field of x temperatures; <m_z^2> = 1 - 2 <m_z> / x.
+// With x = field / temperature, <m_z> = coth x - 1/x and <m_z^2> = 1 - 2 <m_z> / x.
 TYPED_TEST(Thermal, SpinsInAFieldFollowLangevin) {
   double const temperature = 0.5, field = 1, x = field / temperature;
   double const langevin = 1 / std::tanh(x) - 1 / x, square = 1 - 2 * langevin / x;
@@ -80,7 +80,7 @@ TYPED_TEST(Thermal, SpinsInAFieldFollowLangevin) {
   EXPECT_NEAR(m.x, 0, 5 * std::sqrt((1 - square) / 2 / static_cast<double>(spins.sites())));
 }
 
-// E = -K m_z^2 / 2 or so: <m_z^2> by Simpson's rule over Boltzmann's weights.
+// E is linear in m_z^2. Finds <m_z^2> by Simpson's rule, with Boltzmann's weights.
 TYPED_TEST(Thermal, AUniaxialSpinFollowsBoltzmann) {
   using Spins = typename TypeParam::Spins;
   double const temperature = 0.4, constant = 1;
@@ -89,7 +89,7 @@ TYPED_TEST(Thermal, AUniaxialSpinFollowsBoltzmann) {
     auto const one = spins_of<Spins>(Lattice::chain(1), {std::sqrt(1 - z * z), 0, z});
     return energy(this->exec, EffectiveField(term), one).value;
   };
-  double const slope = (energy_of(1) - energy_of(0)) / temperature;  // of z^2
+  double const slope = (energy_of(1) - energy_of(0)) / temperature;  // with respect to z^2
   double weights = 0, squares = 0, fourths = 0;
   constexpr int intervals = 200;
   for (int i = 0; i <= intervals; ++i) {
@@ -110,8 +110,8 @@ TYPED_TEST(Thermal, AUniaxialSpinFollowsBoltzmann) {
   EXPECT_NEAR(found / sites, expected, 5 * error + 5e-4);
 }
 
-// E = -(m_x^2 + 2 m_z^2) / 2: hard, medium and easy axis. <m_x^2> and <m_z^2> by the midpoint rule
-// over the sphere.
+// E = -(m_x^2 + 2 m_z^2) / 2 has a hard, a medium and an easy axis. Finds <m_x^2> and <m_z^2> by
+// the midpoint rule over the sphere.
 TYPED_TEST(Thermal, ABiaxialSpinFollowsBoltzmann) {
   double const temperature = 0.4;
   EffectiveField const field(UniaxialAnisotropy(1, {1, 0, 0}), UniaxialAnisotropy(2, {0, 0, 1}));
@@ -141,7 +141,8 @@ TYPED_TEST(Thermal, ABiaxialSpinFollowsBoltzmann) {
   }
 }
 
-// A turn's round-off repeats in each step: uncorrected, 1e5 of them add up to 400 epsilon.
+// The round-off of a turn repeats in each step. Without a correction 1e5 turns add up to 400
+// epsilon.
 TYPED_TEST(Thermal, LengthsDoNotDrift) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::chain(40);
@@ -154,7 +155,8 @@ TYPED_TEST(Thermal, LengthsDoNotDrift) {
   EXPECT_LT(norm_defect(this->exec, spins), 8 * epsilon<typename TypeParam::Real>);
 }
 
-// A run in one piece and in two: the noise depends on the number of the step.
+// Noise depends only on the number of the step, so a run in pieces has the bits of one in one
+// piece.
 TYPED_TEST(Thermal, BitsDoNotDependOnWhereARunIsCut) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::cubic(21, 6, 5);
@@ -196,7 +198,7 @@ TEST(ThermalBits, AreThoseOfEveryHostSpace) {
   EXPECT_EQ(run(Kokkos::Serial()), run(Kokkos::DefaultHostExecutionSpace()));
 }
 
-// A run that an observer stops and that is then continued equals an uninterrupted run.
+// A run that an observer stops, and that is continued, equals one that is not interrupted.
 TYPED_TEST(Thermal, BitsDoNotDependOnWhereARunIsStopped) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::square(21, 6);
@@ -226,7 +228,7 @@ TYPED_TEST(Thermal, BitsDoNotDependOnWhereARunIsStopped) {
     for (bool const at_once : {false, true}) EXPECT_EQ(run(stop, at_once), whole) << stop;
 }
 
-// A copy has separate turns, for its length of step.
+// A copy has its own turns, for its own length of steps.
 TYPED_TEST(Thermal, CopiesTakeStepsOfOtherLengths) {
   using Spins = typename TypeParam::Spins;
   using Noise = typename TestFixture::Noise;
@@ -244,7 +246,7 @@ TYPED_TEST(Thermal, CopiesTakeStepsOfOtherLengths) {
   EXPECT_NE(turned(copy, 0.2), expected);
   EXPECT_EQ(turned(noise, 0.1), expected);
   EXPECT_EQ(turned(copy, 0.1), expected);
-  // With spins that do not move there are also turns of a cell's sites.
+  // The same holds with a field of mobile sites, which needs further turns, and after assignments.
   ScalarField<typename TypeParam::Real, typename TypeParam::MemorySpace> const moves("moves",
                                                                                      lattice, 1);
   Noise const moving(like, 0.5, {.temperature = 0.4, .seed = 3}, moves);
@@ -256,7 +258,7 @@ TYPED_TEST(Thermal, CopiesTakeStepsOfOtherLengths) {
   EXPECT_EQ(turned(assigned, 0.1), expected);
 }
 
-// Its number in the bound of a step is 0, and so is its turn.
+// A site without a spin does not turn, and does not count in the bound on a step.
 TYPED_TEST(Thermal, ASiteWithoutASpinHasNoNoise) {
   using Spins = typename TypeParam::Spins;
   using Noise = typename TestFixture::Noise;
@@ -293,7 +295,7 @@ TEST(ThermalNoiseUses, AreRefusedInOneSentence) {
   EXPECT_THROW(noise.turn(exec, 1, Half::before, 1.1, spins), std::invalid_argument);
   EXPECT_THROW(noise.turn(exec, 1, Half::before, std::nan(""), spins), std::invalid_argument);
   EXPECT_THROW(noise.turn(exec, 1, Half::before, 0.1, others), std::invalid_argument);
-  // By the largest turn of a cell's sites.
+  // The bound is for the largest turn of the sites of a cell.
   ThermalNoise<Spins> const slow(spins, 0.5, {.temperature = 2, .cell_sites = {0.5}});
   EXPECT_THROW(slow.turn(exec, 1, Half::before, 2.1, spins), std::invalid_argument);
   EXPECT_NO_THROW(slow.turn(exec, 1, Half::before, 1.9, spins));

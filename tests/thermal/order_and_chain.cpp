@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The Heisenberg chain at a temperature against Fisher's solution (Am. J. Phys. 32, 343, 1964), and
-// the second-order error of its energy due to the length of steps. Seeds are fixed; statistical
-// limits are five standard errors.
+// The Heisenberg chain in thermal equilibrium, compared with Fisher's solution (Am. J. Phys. 32,
+// 343, 1964), and the error of its energy due to the step length, which is of second order. Seeds
+// are fixed; statistical limits are five standard errors.
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double temperature = 0.5, damping = 0.5;  // J = 1
 
-/// <m_i, m_i+1>
+/// Returns <m_i . m_(i+1)>.
 double fisher() { return 1 / std::tanh(1 / temperature) - temperature; }
 
 /// Runs a periodic chain from random spins, and calls look(energy per site, spins) every 1.6 from t
@@ -51,7 +51,7 @@ TYPED_TEST(ThermalChain, FollowsFisher) {
     m = numbers_of(spins);
   });
   double const neighbors = fisher(), square = 1 - 2 * neighbors * temperature;
-  // Bonds are independent. The step adds 1e-4 to the energy.
+  // Bonds are independent. The step length adds 1e-4 to the energy.
   double const error = std::sqrt((square - neighbors * neighbors) / sites);
   EXPECT_NEAR(last_energy, 1 - neighbors, 5 * error + 2e-4);
   for (int distance = 1; distance <= 4; ++distance) {
@@ -60,7 +60,7 @@ TYPED_TEST(ThermalChain, FollowsFisher) {
       for (int c = 0; c < 3; ++c)
         sum += m[static_cast<std::size_t>(3 * i + c)] *
                m[static_cast<std::size_t>(3 * ((i + distance) % sites) + c)];
-    // Pairs that share bonds are correlated: at most 2 distance - 1 with each.
+    // A pair is correlated with at most 2 distance - 1 pairs, with which it shares bonds.
     double const limit = 5 * std::sqrt((2 * distance - 1.0) / sites) / std::sqrt(3) + 5e-4;
     EXPECT_NEAR(sum / sites, std::pow(neighbors, distance), limit) << distance;
   }

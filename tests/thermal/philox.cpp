@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The known answers for Philox4x32-10 that its authors publish with Random123.
+// Philox4x32-10 has the known answers that its authors publish with Random123.
 #include <cayspin/detail/philox.hpp>
 
 #include <Kokkos_Core.hpp>

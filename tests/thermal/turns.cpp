@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The distribution of the random turns: moments of all 32 cases, their frequencies, independence of
-// sites and halves, and equal bits for a single site and in a register. Seeds are fixed;
-// statistical limits are five standard errors.
+// The distribution of the random turns: moments over all 32 cases, their frequencies, independence
+// of sites and halves, and equal bits for single sites and packs. Seeds are fixed; statistical
+// limits are five standard errors.
 #include "../support/backends.hpp"
 #include "kept_of_direction.hpp"
 
@@ -18,7 +18,7 @@ namespace {
 using Vector = std::array<double, 3>;
 using Columns = std::array<Vector, 3>;
 
-/// Returns v of the rotation exp(v) with these columns, by less than half a turn.
+/// Returns v of the rotation exp(v) with these columns; v is less than half a turn.
 Vector logarithm(Columns const& columns) {
   Vector v;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -31,7 +31,7 @@ Vector logarithm(Columns const& columns) {
   return v;
 }
 
-/// Returns the product of the odd numbers below an even power: the moments of a normal number.
+/// Returns a moment of a normal number: for an even power the product of the odd numbers below it.
 double normal_moment(int power) {
   if (power % 2 == 1) return 0;
   double product = 1;
@@ -51,7 +51,7 @@ TYPED_TEST(ThermalTurns, HaveTheMomentsOfNormalNumbersUpToTheFifth) {
     Columns columns;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       auto const unit = [&](std::size_t c) { return TypeParam(c == axis ? 1 : 0); };
-      // The bits of the other half must have no effect.
+      // The bits that belong to the other half must have no effect.
       auto const bits = static_cast<typename detail::RandomTurn<TypeParam, true>::Bits>(code << 5U);
       auto const m = turn.template turned<5>(bits | 0xfc1fU, Vec3{unit(0), unit(1), unit(2)});
       columns[axis] = {m.x, m.y, m.z};
@@ -70,7 +70,7 @@ TYPED_TEST(ThermalTurns, HaveTheMomentsOfNormalNumbersUpToTheFifth) {
       }
 }
 
-// Diffusion keeps exp(-u); an error of third order in u corresponds to weak order 2.
+// Diffusion multiplies the mean by exp(-u). An error of third order in u gives weak order 2.
 TEST(ThermalTurn, IsDiffusionToTheThirdOrder) {
   double last = 0;
   for (double const u : {0.1, 0.05, 0.025, 0.0125}) {
@@ -83,7 +83,7 @@ TEST(ThermalTurn, IsDiffusionToTheThirdOrder) {
   }
 }
 
-/// 0 for no turn, 1 to 6 for one about an axis, 7 to 14 for one about a diagonal.
+/// Returns 0 for no turn, 1 to 6 for one about an axis, and 7 to 14 for one about a diagonal.
 std::size_t kind_of(Vector const& v, double s) {
   auto const sign = [&](std::size_t c) { return std::size_t{v[c] < 0}; };
   double const length = std::hypot(v[0], v[1], v[2]);
@@ -131,7 +131,8 @@ TYPED_TEST(ThermalSites, TurnIndependently) {
     return kinds;
   };
   auto const after = turns_of(5, Half::after);
-  // Pairs that should be independent: halves, steps, and sites so far apart.
+  // These pairs should be independent: the two halves, two steps, and sites `apart` from each
+  // other.
   auto const expect_independent = [&](auto const& first, auto const& second, std::size_t apart) {
     std::vector<double> found(225);
     for (std::size_t i = 0; i < sites; ++i) ++found[15 * first[i] + second[(i + apart) % sites]];
@@ -146,12 +147,12 @@ TYPED_TEST(ThermalSites, TurnIndependently) {
   expect_independent(turns_of(6, Half::before), after, 0);
   expect_independent(turns_of(5, Half::before), after, 0);
   expect_independent(turns_of(6, Half::after), after, 0);
-  // Words, halves of words, counters, registers and rows.
+  // Sites at these distances differ in words, halves of words, counters, registers or rows.
   for (std::size_t const apart : {1, 2, 8, 16, 32, 64, 128, 77, 77 * 31})
     expect_independent(after, after, apart);
 }
 
-/// Expects the turns of sites one by one, as on devices, to be those of packs.
+/// Expects sites one by one, as on devices, to have the turns that packs have.
 template <class Real, class Turns, class Numbers>
 void expect_turns_of_packs(Turns const& turns, Numbers const& numbers) {
   using Spins = SpinField<Real, Kokkos::HostSpace>;
@@ -184,7 +185,7 @@ TYPED_TEST(ThermalTurns, OfSitesOneByOneAreThoseOfPacks) {
   expect_turns_of_packs<TypeParam>(turn, detail::NumbersOfColumns{{seed, draw}, 16});
 }
 
-// Processors look the cases up if they can, and compute them otherwise.
+// Some processors look the cases up, others compute them.
 TYPED_TEST(ThermalTurns, AreTheSameLookedUpAndComputed) {
   using Value = detail::Pack<TypeParam>;
   constexpr int lanes = detail::host_lanes<TypeParam>;

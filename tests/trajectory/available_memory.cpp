@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Available memory of a process, in a tree of files that replaces /proc and /sys.
+// Available memory of a process, read from a tree of files that replaces /proc and /sys.
 #include "files/available_memory.hpp"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ class AvailableMemory : public ::testing::Test {
 
 TEST_F(AvailableMemory, OfTheMachine) {
   EXPECT_EQ(bytes(), 8000 * 1024);
-  write("proc/self/cgroup", "0::/\n");  // no group has a limit
+  write("proc/self/cgroup", "0::/\n");  // a group without a limit
   EXPECT_EQ(bytes(), 8000 * 1024);
   write("proc/meminfo", "MemTotal: 1 kB\n");
   EXPECT_EQ(bytes(), std::numeric_limits<std::int64_t>::max());
@@ -61,7 +61,7 @@ TEST_F(AvailableMemory, OfAJob) {
   write("sys/fs/cgroup/system.slice/job_7/memory.stat",
         "anon 10000\nfile 60000\ninactive_file 40000\nactive_file 15000\n");
   EXPECT_EQ(bytes(), 985000);
-  // The tightest of the groups decides, or the machine if it has less.
+  // The tightest group decides, or the machine if it has less.
   group_2("system.slice/", "500000", "450000");
   EXPECT_EQ(bytes(), 50000);
   group_2("system.slice/", "20000000", "0");
@@ -72,7 +72,7 @@ TEST_F(AvailableMemory, OfAJob) {
 }
 
 TEST_F(AvailableMemory, OfAContainer) {
-  // Its groups are in the folder itself, even if their name is that of the host.
+  // The groups of a container are in the folder itself, even if they are named as on the host.
   group_2("", "1000000", "100000");
   for (auto const* const name : {"0::/\n", "0::/docker/4f2a\n", "0::/../outside\n"}) {
     write("proc/self/cgroup", name);

@@ -97,7 +97,7 @@ TEST_F(TrajectoryTest, AttributeOfSeveralValuesIsRefused) {
                        "cannot read attribute threads: it is not one value"));
 }
 
-// Everything in a checkpoint is verified when it is opened, both numbers and fields.
+// Numbers and fields of a checkpoint are all verified when it is opened.
 TEST_F(TrajectoryTest, NumberOfACheckpointThatIsNoneIsRefused) {
   auto const path = folder_ / "a.checkpoint.h5";
   double number = 0.25;
@@ -206,7 +206,7 @@ TEST_F(TrajectoryTest, HeadOfTheFileIsOfVersionTwo) {
 
 using cayspin::program::try_in_child;
 
-/// Readings are tried in a child, as in the program.
+/// Reads are tried in a child process, as in the program.
 class Guard : public testing::Test {
  protected:
   Guard() { set_trial(try_in_child); }
@@ -263,7 +263,7 @@ TEST_F(Guard, EndsAChildThatWaits) {
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);
 }
 
-// HDF5 works in the child, whatever other threads do at the moment of the fork.
+// HDF5 works in the child, whatever other threads do with it at the moment of the fork.
 TEST_F(Guard, WaitsForOtherThreadsThatUseHdf5) {
   std::atomic<bool> done = false;
   std::thread other([&] {

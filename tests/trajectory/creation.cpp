@@ -93,8 +93,8 @@ TEST_F(TrajectoryTest, NameTooLong) {
   EXPECT_TRUE(contains(error_line(path, [&] { create(path); }), "too long"));
 }
 
-// Root may write anywhere: it drops to an ordinary user, in a child. `withheld`: permissions
-// removed from new files.
+// Root may write anywhere, so as root the child becomes an ordinary user. `withheld`: permissions
+// that new files do not get.
 int create_without_permission(fs::path const& path, mode_t withheld, bool overwrite) {
   if (::geteuid() == 0 && ::seteuid(65534) != 0) return 2;
   ::umask(withheld);
@@ -120,7 +120,7 @@ TEST_F(TrajectoryTest, ProtectedFileIsKept) {
   EXPECT_EQ(names_in(folder_), std::vector<std::string>{"a.h5"});
 }
 
-// It can be created and written, but not read, which HDF5 needs.
+// The new file can be written but not read, which HDF5 needs.
 TEST_F(TrajectoryTest, FileThatHdf5CannotOpenIsRemoved) {
   ASSERT_EQ(::chmod(folder_.c_str(), 0777), 0);
   EXPECT_EXIT(std::_Exit(create_without_permission(folder_ / "a.h5", 0444, false)),

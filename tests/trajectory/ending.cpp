@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Files of runs, however they end.
+// Files of runs that end in different ways.
 #include "hdf5/handle.hpp"
 #include "trajectory_test.hpp"
 
@@ -34,7 +34,7 @@ TEST_F(TrajectoryTest, ReservedRoomIsGivenBack) {
   EXPECT_LT(std::filesystem::file_size(path), 300000u);
 }
 
-// 100 frames pass the points where HDF5 splits a node of its index.
+// With 100 frames, HDF5 has split a node of its index.
 TEST_F(TrajectoryTest, KilledRunLeavesWholeFrames) {
   auto const path = folder_ / "a.h5";
   auto const die = [&] {

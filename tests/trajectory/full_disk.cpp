@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The disk fills up or fails during a run. Everything happens in child processes, whose exit status
-// also shows that HDF5 could close.
+// The disk fills up or fails during a run. The runs are child processes, whose exit status also
+// shows whether HDF5 could close.
 #include "hdf5/handle.hpp"
 #include "io/scene.hpp"
 #include "trajectory/format.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Exceeding this limit kills unless its signal is ignored.
+// A process that exceeds the limit is killed, unless it ignores the signal.
 void limit_file_size(rlim_t bytes) {
   rlimit const limit{bytes, bytes};
   if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) std::exit(9);
@@ -27,7 +27,7 @@ void limit_file_size(rlim_t bytes) {
   exit_after([&] { write_frames(path, 1000000, {.sync = sync}); });
 }
 
-/// Tests on a disk that is too small for the coverage data of a program.
+/// These tests use a disk that is too small for the coverage data of a program.
 class SmallDisk : public TrajectoryTest {
  protected:
   void SetUp() override {
@@ -81,7 +81,7 @@ TEST_F(SmallDisk, FullDiskAtOverwritingKeepsTheOldFile) {
   });
 }
 
-// Space is also reserved before the last samples are written.
+// Space is reserved for the last samples, too.
 TEST_F(SmallDisk, FullDiskAtTheEndKeepsTheFrames) {
   auto const path = folder_ / "a.h5";
   EXPECT_EXIT(end_on_full_disk(path), testing::ExitedWithCode(3),
@@ -91,7 +91,7 @@ TEST_F(SmallDisk, FullDiskAtTheEndKeepsTheFrames) {
   EXPECT_EQ(info.frames, 5);
 }
 
-// Makes every later write to `path` fail, as a broken disk would.
+// Makes all later writes to `path` fail, as on a broken disk.
 void make_read_only(fs::path const& path) {
   for (auto const& entry : fs::directory_iterator("/proc/self/fd")) {
     std::error_code error;
@@ -116,7 +116,7 @@ void make_read_only(fs::path const& path) {
 }
 
 TEST_F(TrajectoryTest, FailedWriteIsReportedAndLeavesTheFileAsItWas) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");  // HDF5 must not have started before
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // in a process where HDF5 has not started
   auto const path = folder_ / "a.h5";
   EXPECT_EXIT(write_to_broken_disk(path), testing::ExitedWithCode(3),
               "a.h5: cannot write .*: Bad file descriptor$");
@@ -125,7 +125,7 @@ TEST_F(TrajectoryTest, FailedWriteIsReportedAndLeavesTheFileAsItWas) {
   EXPECT_EQ(info.frames, 5);
 }
 
-// The journal has the frame that could not be written to the file.
+// The journal contains the frame that could not be written to the file.
 TEST_F(TrajectoryTest, FailedWriteOfASyncedFileIsReportedAndLosesNothing) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   auto const path = folder_ / "a.h5";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The file as other tools see it, through HDF5's own interface.
+// The file as other tools see it, read by HDF5's own functions.
 #include "hdf5/handle.hpp"
 #include "trajectory/format.hpp"
 #include "trajectory_test.hpp"
@@ -66,7 +66,7 @@ TEST_F(TrajectoryTest, SpinsAreInChunksOfAPageOrMore) {
   }
 }
 
-// A uniform state, so that compression shows.
+// The state is uniform, so that compression is effective.
 TEST_F(TrajectoryTest, SpinsAreCompressedAndCutWhereAsked) {
   auto header = small_header();
   header.shape = {64, 32, 10};
@@ -98,7 +98,8 @@ TEST_F(TrajectoryTest, ChunksOfFramesLeaveLittleOfPagesEmpty) {
   EXPECT_EQ(frames_of_chunk(most_chunk_bytes, 10 * most_chunks), 1);
 }
 
-// As many chunks of planes as there are planes in all frames.
+// There can be at most `most_chunks` chunks: with as many frames of three planes, a chunk has one
+// plane of each of three frames.
 TEST_F(TrajectoryTest, ManyPlannedFramesShareChunks) {
   auto header = small_header();
   header.shape = {32, 16, 3};  // three pages a plane
@@ -174,7 +175,7 @@ TEST_F(TrajectoryTest, LongSceneIsKept) {
   EXPECT_EQ(read_info(path).header.scene_text, header.scene_text);
 }
 
-// 2048 x 1024 x 100 spins in double are 4.7 GiB, of which a chunk has 256 MiB at most.
+// 2048 x 1024 x 100 spins in double are 4.7 GiB; a chunk has at most 256 MiB.
 TEST_F(TrajectoryTest, FrameAboveTheChunkLimitIsSplit) {
   auto const path = folder_ / "a.h5";
   auto header = small_header();

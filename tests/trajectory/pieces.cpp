@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Frames and fields too large for memory: written by planes, read by boxes.
+// Frames and fields too large for memory are written plane by plane, and read by boxes.
 #include "io/checkpoint.hpp"
 #include "io/run_output.hpp"
 #include "trajectory/fletcher32.hpp"
@@ -92,7 +92,7 @@ TEST_F(TrajectoryTest, PiecesAreWholeChunks) {
   constexpr std::size_t plane_bytes = 3 * 8 * 4 * 3;
   auto const last_is_short = frame_pieces(odd_shape, 8, {.chunk = 2});
   EXPECT_EQ(last_is_short.bytes, 8 * plane_bytes);
-  EXPECT_EQ(last_is_short.copied, 2 * 7 * 2 * plane_bytes);  // 7 frames fill a page
+  EXPECT_EQ(last_is_short.copied, 2 * 7 * 2 * plane_bytes);  // a page holds 7 frames
   EXPECT_EQ(frame_pieces({64, 32, 7}, 8, {}).copied, 0U);
   EXPECT_EQ(frame_pieces(odd_shape, 8, {.compression = 1, .chunk = 2}).copied, 2 * 2 * plane_bytes);
 }
@@ -123,7 +123,7 @@ TEST_F(TrajectoryTest, PiecesOutOfOrderAreRefused) {
   EXPECT_EQ(file.frames(), 1);
 }
 
-// A run that ends within a frame: only earlier frames count.
+// In a run that ends within a frame, only the earlier frames count.
 TEST_F(TrajectoryTest, FramesThatWereNotEndedDoNotCount) {
   auto const path = folder_ / "a.h5";
   {

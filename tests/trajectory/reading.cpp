@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file of another program: one dataset.
+// Writes a file with one dataset, as another program would.
 void write_file(fs::path const& path, char const* name, Extents const& extents,
                 hid_t type = H5T_IEEE_F64LE) {
   FileHandle const file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The files of a run, written by a separate thread.
+// The files of a run, written by a thread of their own.
 #include "io/run_output.hpp"
 
 #include "trajectory/scalar_table.hpp"
@@ -61,7 +61,7 @@ TEST_F(TrajectoryTest, OutputHoldsWhatWasHandedOver) {
   write_and_expect<float>(folder_ / "single.h5", "single");
 }
 
-// Frames of one chunk bypass HDF5's filters, others use them.
+// Frames that are one chunk bypass HDF5's filters; others use them.
 TEST_F(TrajectoryTest, OutputIsTheSameWithAndWithoutChunks) {
   auto const whole = folder_ / "whole.h5", cut = folder_ / "cut.h5";
   for (auto const& [path, chunk] : {std::pair{whole, 0}, {cut, 1}}) {
@@ -72,7 +72,8 @@ TEST_F(TrajectoryTest, OutputIsTheSameWithAndWithoutChunks) {
   }
 }
 
-// Sums of a frame of zeros, of ones in all bits, and of more words than are added between folds.
+// Checksums of a frame of zeros, of one with all bits set, and of more words than are added between
+// folds.
 TEST_F(TrajectoryTest, ChecksumsAreThoseThatHdf5Expects) {
   auto header = small_header("single");
   header.shape = {100, 100, 100};
@@ -102,12 +103,12 @@ TEST_F(TrajectoryTest, OutputThatIsDroppedWritesWhatWasHandedOver) {
   EXPECT_EQ(std::ranges::count(read_bytes(folder_ / "a.txt"), '\n'), 22);
 }
 
-// A reader sees samples before the next frame.
+// Samples reach the file before the next frame.
 TEST_F(TrajectoryTest, OutputHandsOverManySamplesWithoutAFrame) {
   RunOutput output(folder_ / "a.h5", small_header(), {.table = true});
   for (int sample = 0; sample < 1024; ++sample)
     output.write_scalars(sample, sample, numbered_scalars(sample));
-  EXPECT_EQ(output.frames(), 0);  // all queued data have been written
+  EXPECT_EQ(output.frames(), 0);  // waits until all is written
   EXPECT_EQ(std::ranges::count(read_bytes(folder_ / "a.txt"), '\n'), 1 + 1024);
 }
 
@@ -213,7 +214,7 @@ TEST_F(TrajectoryTest, TableGivesTheDoublesBack) {
             (std::vector<double>{1 / 7., 0.1, 1 - 1e-16, -1e300, -1 / 3., 5e-324}));
 }
 
-// Samples that do not fit completely are removed: a table has no torn line.
+// Lines that do not fit completely are removed, so a table never ends in part of a line.
 TEST_F(TrajectoryTest, TableOnAFullDiskKeepsWholeLines) {
   auto const path = folder_ / "a.txt";
   ScalarTable table(path, false, false);
@@ -249,7 +250,7 @@ TEST_F(TrajectoryTest, TableThatCannotBeOpenedAgain) {
               "");
 }
 
-// Beyond 1000 frames the file is written once a second, and at the end.
+// Beyond 1000 frames, the XDMF file is written once a second and at the end.
 TEST_F(TrajectoryTest, XdmfDescribesTheLastOfManyFrames) {
 #if defined(__SANITIZE_ADDRESS__)
   GTEST_SKIP() << "it writes a file a thousand times: minutes with the sanitizer";
@@ -280,7 +281,7 @@ TEST_F(TrajectoryTest, XdmfDescribesEveryFrameThatIsInTheFile) {
   for (auto const* const part : {"Dimensions=\"2 3 4\"/>", ">1 0.5 0.25</", ">2 1 0.5</",
                                  "Precision=\"4\"", "a&amp;b.h5:/spins", "<Time Value=\"0.2\"/>"})
     EXPECT_TRUE(contains(text, part));
-  // Start of a frame in /spins, its strides and its extents.
+  // The start of a frame in /spins, its strides and its extents.
   std::string numbers;
   std::istringstream last(text.substr(text.rfind("Format=\"XML\">") + 13));
   for (std::string word; last >> word && word.front() != '<';) numbers += word + ' ';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Files of runs in stages: the stage of a frame, and its start.
+// Files of runs in stages: the stage of each frame, and the start of each stage.
 #include "hdf5/dataset.hpp"
 #include "hdf5/handle.hpp"
 #include "io/checkpoint.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Files with sync and their journals. tests/damage/power_cuts.cpp cuts the power.
+// Files with sync, and their journals. tests/damage/power_cuts.cpp cuts the power.
 #include "trajectory_test.hpp"
 
 #include <sys/stat.h>
@@ -22,7 +22,7 @@ class Synced : public TrajectoryTest {
     return write_frames(path, frames, {.sync = true}, overwrite);
   }
 
-  // As after a power cut: a sector that the last frame overwrote is missing.
+  // Returns a file as after a power cut: a sector that the last frame overwrites is missing.
   fs::path half_written(std::string const& name, int frames) const {
     auto const whole = folder_ / ("whole_" + name), path = folder_ / name;
     auto file = begin(whole, frames);
@@ -109,7 +109,8 @@ TEST_F(Synced, AJournalThatIsNotWholeIsNotNeeded) {
   EXPECT_FALSE(fs::exists(journal_of(path)));
 }
 
-// Root may write any file. Without exit handlers, because a sanitizer's would need the rights.
+// Root may write any file, so as root the child becomes an ordinary user. It ends without exit
+// handlers, since those of a sanitizer would need root's rights.
 [[noreturn]] void read_without_rights(fs::path const& path) {
   if (::geteuid() == 0 && ::seteuid(65534) != 0) std::_Exit(1);
   try {

@@ -21,8 +21,8 @@ using cayspin::test::overwrite;
 using cayspin::test::read_bytes;
 using cayspin::test::write_bytes;
 
-/// A separate folder for each test, removed afterwards. Children of the test, including restarted
-/// ones, use it, too.
+/// A separate folder for each test, removed afterwards. Child processes of the test use it, too,
+/// even if they are started anew.
 class TrajectoryTest : public testing::Test {
  protected:
   TrajectoryTest() {
@@ -57,7 +57,7 @@ inline TrajectoryHeader small_header(std::string const& precision = "double") {
   return header;
 }
 
-/// Distinct numbers that no rounding of another frame gives.
+/// Returns distinct numbers, which differ from those of other frames by more than rounding.
 template <class Real>
 std::vector<Real> numbered_spins(TrajectoryHeader const& header, int frame) {
   std::vector<Real> spins(3 * header.shape[0] * header.shape[1] * header.shape[2]);
@@ -98,7 +98,7 @@ std::string error_line(std::filesystem::path const& path, Call const& call) {
   return "";
 }
 
-/// Ends a child of a test: with 3 and the message on standard error if `call` throws
+/// Ends a child process of a test: with status 3 and the message on standard error if `call` throws
 /// std::runtime_error, otherwise with 0.
 template <class Call>
 [[noreturn]] void exit_after(Call const& call) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A file that another process is writing.
+// Reading a file while another process writes it.
 #include "trajectory_test.hpp"
 
 #include <sys/stat.h>
@@ -67,7 +67,7 @@ TEST_F(TrajectoryTest, IsReadWhileAnotherProcessWritesIt) {
   EXPECT_FALSE(info.complete);
   EXPECT_EQ(info.cost.evaluations, 0);
   EXPECT_EQ(is_being_written(path), true);
-  EXPECT_THROW(read_info(path), std::runtime_error);  // would take a lock
+  EXPECT_THROW(read_info(path), std::runtime_error);  // it would need a lock
 
   for (char const what : {'f', 'e'}) writer.order(what);
   EXPECT_EQ(is_being_written(path), false);
@@ -75,7 +75,7 @@ TEST_F(TrajectoryTest, IsReadWhileAnotherProcessWritesIt) {
   EXPECT_TRUE(whole.complete);
   EXPECT_EQ(whole.frames, 3);
   EXPECT_EQ(whole.samples, 3);
-  EXPECT_FALSE(whole.last_sample);  // of the last frame
+  EXPECT_FALSE(whole.last_sample);  // the last frame has it
   EXPECT_EQ(whole.cost.wall_seconds, 2.5);
   EXPECT_EQ(read_info(path).frames, 3);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Wrong uses of the writers: each gives one line and leaves the file unchanged.
+// Wrong uses of the writers give one line, and leave the file unchanged.
 #include "../support/wrong_call.hpp"
 #include "io/checkpoint.hpp"
 #include "io/run_output.hpp"
@@ -17,7 +17,7 @@ using test::WrongCall;
 
 constexpr auto most = std::numeric_limits<std::int64_t>::max();
 
-/// Returns invalid headers, with what is wrong.
+/// Returns invalid headers, each with its fault.
 std::vector<std::pair<std::string, TrajectoryHeader>> impossible_headers() {
   std::vector<std::pair<std::string, TrajectoryHeader>> headers;
   for (auto const* const precision : {"half", "", "Double"})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The figures of docs/guide/units.md, and refusals.
+// Conversions give the figures of docs/guide/units.md, and refuse wrong input.
 #include "../support/figures.hpp"
 
 #include <cayspin/units.hpp>
@@ -17,7 +17,7 @@ units::Micromagnetic permalloy(units::Damping const& damping) {
 
 TEST(Units, PermalloyHasTheFiguresOfTheGuide) {
   auto const material = permalloy(units::gilbert(0.02));
-  constexpr double exact = 0;  // to the printed digits
+  constexpr double exact = 0;  // as exact as the printed digits
   expect_figure("exchange", material.exchange(1.3e-11), "1.2931", exact);
   expect_figure("anisotropy", material.anisotropy(500), "1.2434e-3", exact);
   expect_figure("dmi", material.dmi(3e-3), "0.74604", exact);
@@ -45,7 +45,7 @@ TEST(Units, AtomisticFigures) {
   EXPECT_EQ(material.dmi(1e-21), 1);
 }
 
-// g mu_B P j / (2 e Ms) and hbar P j / (2 e Ms d) by hand; electrons move against the current.
+// By hand: g mu_B P j / (2 e Ms) and hbar P j / (2 e Ms d). Electrons move against the current.
 TEST(Units, CurrentsComeToVelocitiesAndFields) {
   units::PolarizedCurrent drift{.density = 1e12, .polarization = 0.4, .Ms = 8e5};
   EXPECT_NEAR(units::drift_velocity(drift), -28.9755, 5e-5);
@@ -79,7 +79,7 @@ TEST(Units, GoThereAndBack) {
   expect_back(material.joules(material.energy(0.7)));
   expect_back(material.kelvin(material.temperature(0.7)));
   expect_back(material.per_second(material.rate(0.7)));
-  // A field of Ms is the unit.
+  // The unit of the field is Ms.
   EXPECT_NEAR(material.applied_from_ampere_per_metre(8e5), 1, eps);
   EXPECT_NEAR(material.rate(1 / material.time_unit()), 1, eps);
   EXPECT_EQ(material.damping(), 0.3);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Spins stepped in reduced units and compared in SI: every expected number comes from formulas in
-// SI that do not use the library's units.
+// Spins stepped in reduced units are compared with motion in SI: all expected values are from
+// formulas that do not use the library's units.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -31,7 +31,7 @@ class UnitsInMotion : public ::testing::Test {
   using Field = SpinField<Real, Space::memory_space>;
   static constexpr bool in_double = std::is_same_v<Real, double>;
   static constexpr int steps_taken = 2000;
-  /// Tolerance of angles after the steps.
+  /// Tolerance of angles after all steps.
   static constexpr double tolerance = steps_taken * double(std::numeric_limits<Real>::epsilon());
 
   /// Returns the spins after so many seconds.
@@ -41,7 +41,7 @@ class UnitsInMotion : public ::testing::Test {
     return run<Rkmk4<Field>>(generator, start, units.time(seconds) / steps, steps);
   }
 
-  /// Returns by how much the spin of a site has turned about z.
+  /// Returns the angle by which the spin of a site has turned about z.
   static double turn(Field const& spins, Field const& start, std::int64_t site = 0) {
     auto const a = spin(start, site), b = spin(spins, site);
     return std::remainder(std::atan2(b.y, b.x) - std::atan2(a.y, a.x), 2 * pi);
@@ -67,7 +67,7 @@ TYPED_TEST(UnitsInMotion, AFreeSpinTurnsAt28GigahertzPerTesla) {
     auto const end = this->after(seconds, units, generator, start);
     double const frequency = this->turn(end, start) / (2 * pi * seconds);
     EXPECT_NEAR(frequency * slower, gamma_e / (2 * pi), this->tolerance * gamma_e);
-    // The angle to the field decreases like tan(theta / 2).
+    // The tangent of half the angle to the field decreases exponentially.
     double const theta = 2 * std::atan(std::tan(0.5 * std::acos(0.8)) *
                                        std::exp(-damping.alpha() * gamma_e * seconds / slower));
     EXPECT_NEAR(spin(end, 0).z, std::cos(theta), this->tolerance);
@@ -92,7 +92,7 @@ TYPED_TEST(UnitsInMotion, AFilmPrecessesAtKittelsFrequency) {
   EXPECT_NEAR(std::remainder(phase - 4, 2 * pi), 0, TestFixture::in_double ? 1e-8 : 1e-3);
 }
 
-// Returns B = mu0 H of a spin in a block with open ends, in T.
+// Returns B = mu0 H in T, of a spin in a block with open ends.
 Vector tesla_at(std::vector<Vector> const& m, Lattice const& lattice, std::int64_t site,
                 Vector const& applied) {
   auto const& n = lattice.shape;
@@ -157,7 +157,8 @@ TYPED_TEST(UnitsInMotion, EnergyInJoulesIsTheDirectSum) {
         auto const stiff = [&](Vector const& next, double d) {
           add(A * volume / (d * d) * dot(next - m, next - m));
         };
-        // D (m_z d_e m_e - m_e d_e m_z), with m the mean of both ends and d_e m their difference.
+        // The interaction is D (m_z d_e m_e - m_e d_e m_z), where m is the mean of both ends and
+        // d_e m their difference.
         if (i < 3) {
           auto const next = at(i + 1, j, k);
           stiff(next, cell[0]);
@@ -197,7 +198,7 @@ TYPED_TEST(UnitsInMotion, AtomisticEnergyIsTheDirectSum) {
     if (i == 8) continue;
     auto const next = spin(spins, i + 1);
     add(-J * dot(m, next));
-    add(J);  // counted from parallel spins
+    add(J);  // relative to parallel spins
     add(bond_dmi * (m.z * next.x - m.x * next.z));
   }
   double const joules = units.joules(energy(Space{}, field, spins).value);

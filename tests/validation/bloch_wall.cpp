@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A Bloch wall relaxed on ever finer chains: energy and profile against the continuum.
+// A Bloch wall, relaxed on finer and finer chains: energy and profile, compared with the continuum.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Damping: the energy falls in every step, up to near the a-priori limit of the step.
+// With damping the energy falls in every step, for steps up to almost the a-priori limit.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 

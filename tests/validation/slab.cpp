@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The switching slab of Lewis and Nigam 2002: one spin's path against a converged one, the length
-// of spins, steady states.
+// The switching slab of Lewis and Nigam 2002: the path of one spin compared with a converged one,
+// lengths of spins, and steady states.
 #include "../support/figures.hpp"
 #include "../support/unit_slab.hpp"
 
@@ -18,7 +18,8 @@ struct Path {
   Spins end;
 };
 
-/// The observed spin at equally spaced times, and the largest norm defect at those times.
+/// Returns the observed spin at equally spaced times, the largest norm defect at these times, and
+/// all spins at the end.
 template <class Stepper, class Generator, class... Options>
 Path path(Generator const& generator, double end_time, double dt, Options const&... options) {
   Space const exec;
@@ -41,7 +42,7 @@ double distance(Path const& a, Path const& b) {
   return largest;
 }
 
-/// The backward difference with the paper's sign of sigma.
+/// The backward difference, with the sign that sigma has in the paper.
 struct PrintedDifference : detail::BackwardDifference {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> operator()(detail::TwoPoints<Value>& p) const {
@@ -97,8 +98,8 @@ TEST_F(Precessing, Euler) {
   expect<ClassicalEuler<Spins>>("Euler, dt 1e-3", a, 1e-3, ".0469", "3.753e-2");
   auto const fine = expect<ClassicalEuler<Spins>>("Euler, dt 1e-4", a, 1e-4, ".0045", "3.699e-3");
 
-  // mean ln|m| = (dt/2) ((P + lambda^2)/lambda) (E_start - E_end) / N, with energies of the exact
-  // path.
+  // The mean of ln|m| is (dt/2) ((P + lambda^2)/lambda) (E_start - E_end) / N, with energies on the
+  // exact path.
   Space const exec;
   double const fall = energy(exec, slab_.field(), slab_start()).value -
                       energy(exec, slab_.field(), reference_.end).value;

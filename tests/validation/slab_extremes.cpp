@@ -10,7 +10,8 @@ namespace {
 
 Vector const strong{5, 0, 0}, weak{0.05, 0.05, 0}, along_x{1, 0, 0}, along_z{0, 0, 1};
 
-// Checks torque and energy: above the stability limit a run may end in an energy maximum.
+// Checks torque and energy, since beyond the stability limit a run may end at a maximum of the
+// energy.
 void expect_rest(char const* what, Slab const& slab, std::array<char const*, 3> const& figures) {
   Space const exec;
   Spins spins = slab_start();
@@ -75,7 +76,7 @@ TEST(Slab, NormDriftOfClassicalRk4) {
     std::string const name = std::string("classical rk4, damping ") + row.name;
     double const coarse = drift(0.01);
     expect_figure(name + ", dt .01, max ||m| - 1|", coarse, row.drift);
-    // Near damping .05 and 10 the drift is not a single power at this dt.
+    // For damping near .05 and 10, the drift at this dt is not a single power of dt.
     if (row.damping == 1)
       expect_figure(name + ", ratio to half the dt", coarse / drift(0.005), "16", 0.05);
   }

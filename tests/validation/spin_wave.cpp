@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Standing spin waves about a uniform state: the frequency is known exactly on the lattice.
+// Standing spin waves about a uniform state, whose frequencies on the lattice are known exactly.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -17,7 +17,7 @@ struct Wave {
   Lattice lattice;
   std::array<int, 3> mode;
   double demag, frequency;
-  std::array<char const*, 3> errors;  // reference, at 50, 100, 200 steps per period
+  std::array<char const*, 3> errors;  // at 50, 100 and 200 steps per period
 };
 
 Lattice const chain = Lattice::chain(16, 0.5);
@@ -52,7 +52,7 @@ double shape(Wave const& wave, std::array<std::int64_t, 3> const& site) {
   return v;
 }
 
-/// Returns the relative error of the frequency, from the phase after 10.25 periods.
+/// Returns the relative error of the frequency, found from the phase after 10.25 periods.
 double frequency_error(Wave const& wave, int steps_per_period) {
   double const s = stiffness(wave), omega = std::sqrt(s * (s + wave.demag));
   double const dt = 2 * pi / omega / steps_per_period;

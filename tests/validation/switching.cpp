@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The switching field of a uniaxial particle, after Stoner and Wohlfarth.
+// The switching field of a uniaxial particle, by Stoner and Wohlfarth.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -12,8 +12,8 @@ namespace {
 
 constexpr double anisotropy = 1.3;
 
-/// Returns true if a spin near +z reverses in a field at the angle psi to -z that is ramped up and
-/// held.
+/// Returns true if a spin near +z reverses in a field at an angle of psi to -z, which is ramped up
+/// and then held.
 bool switches(double strength, double psi) {
   auto const under = [&](double h) {
     return Slab{.lattice = Lattice::chain(1),

@@ -13,7 +13,7 @@
 
 namespace cayspin::test {
 
-/// A user's wrapper with only the required members.
+/// A wrapper as a user might write it, with only the required members.
 template <class Inner>
 class Named : public Forwarding<Named<Inner>, Inner> {
  public:
@@ -46,7 +46,7 @@ class Named : public Forwarding<Named<Inner>, Inner> {
   Inner inner_;
 };
 
-/// H = 0.7 m.z along z.
+/// H = 0.7 m.z along z, computed by host code.
 struct AlongZ {
   static constexpr int degree = 2;
   template <class Field>
@@ -68,7 +68,7 @@ Setting<Real> random_setting(unsigned seed) {
   on.lattice = {{extent(5), extent(3), 2 * extent(2)}, {1.25, 0.75, 1}, {end(), end(), end()}};
   on.lattice.cell_sites = 2;
   auto const sites = on.lattice.sites();
-  // Numbers that both precisions hold exactly.
+  // These numbers are exact in both precisions.
   auto const rounded = [](std::vector<double> numbers) {
     for (double& number : numbers) number = static_cast<float>(number);
     return numbers;
@@ -133,7 +133,7 @@ inline constexpr bool sees_vacant_spins =
     detail::holds<PairCouplings, Term>() || detail::holds<detail::SeesAllSpins, Term>();
 
 /// Calls visit(name, wrapped, factors, is_alone) for each of the library's wrappers around a term,
-/// and for some around each other. `is_alone`: it behaves like the term.
+/// and for some wrappers around others. `is_alone`: the wrapped term behaves like the term.
 template <class Real, class Term, class Visit>
 void for_each_wrapper(Setting<Real> const& on, std::string const& name, Term const& term,
                       std::vector<double> const& factors, Visit const& visit) {
@@ -166,7 +166,7 @@ template <class Real, class Wrapped, class Term>
 void expect_answers(std::string const& name, Wrapped const& wrapped, Term const& inside,
                     Setting<Real> const& on) {
   auto found = answers(wrapped, on), expected = answers(inside, on);
-  // User wrappers have no derivatives; using these does not compile.
+  // User wrappers have no derivatives; code that uses these does not compile.
   found.conservative = expected.conservative = true;
   if (name.starts_with("Named(")) {
     found.linear = expected.linear = true;
@@ -175,7 +175,7 @@ void expect_answers(std::string const& name, Wrapped const& wrapped, Term const&
   EXPECT_TRUE(found == expected) << name << " answers otherwise than its inside";
 }
 
-/// Calls visit for each term, each wrapper around it, and one wrapper around one of those.
+/// Checks the members of each term, and of each wrapper that for_each_wrapper makes of it.
 template <class Real>
 void expect_all_members(Setting<Real> const& on) {
   int count = 0;

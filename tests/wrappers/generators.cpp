@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Landau-Lifshitz generators around wrapped terms: A from H only, and a step of a method that
+// Landau-Lifshitz generators around wrapped terms: A computed from H, and a step of a method that
 // evaluates rows.
 #include "compositions.hpp"
 
@@ -14,7 +14,7 @@ class WrappedGenerators : public ::testing::Test {
   using Field = SpinField<Real, Kokkos::HostSpace>;
   static constexpr double damping = 0.3;
 
-  /// A by hand from the field's H.
+  /// Returns A computed by hand from the H of a term.
   template <class Term>
   static Vectors generator_of(Term const& term, Field const& spins, double t) {
     auto all = field_of(term, spins, t);

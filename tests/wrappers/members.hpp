@@ -15,12 +15,12 @@
 #include <type_traits>
 #include <vector>
 
-// Every member of a term, against numbers made only from `field` and `energy_density`.
+// Every member of a term, compared with values that use only `field` and `energy_density`.
 namespace cayspin::test {
 
 using Vectors = std::vector<Vec3<double>>;
 
-/// Spins and vectors on a lattice, and factors g / mu of its sites.
+/// Spins and other vectors on a lattice, with moments and gyromagnetic ratios of its sites.
 template <class Real>
 struct Setting {
   using Field = SpinField<Real, Kokkos::HostSpace>;
@@ -48,7 +48,7 @@ inline std::vector<double> combined(std::vector<double> const& a, double factor,
   return sum;
 }
 
-/// Results of a prepared term at each site.
+/// What the members of a prepared term return at each site.
 struct Said {
   Vectors field, added, turning, added_turning, neighbor, local, other_local;
   std::vector<double> energy, magnitude, sum_of_terms, magnitude_of_terms;
@@ -112,7 +112,7 @@ template <class Prepared, class Field>
   return all;
 }
 
-/// A term with only H at every site.
+/// Returns a term's H at every site.
 template <class Term, class Field>
 Vectors field_of(Term const& term, Field const& spins, double t) {
   auto const prepared = detail::prepare_term(term, Host(), spins, t);
@@ -128,7 +128,7 @@ double energy_of(Term const& term, Field const& spins, double t) {
   return sum;
 }
 
-/// Answers that a wrapper must forward from its inside.
+/// What a wrapper must answer as the term inside it does.
 struct Answers {
   bool linear, derivative, affine, conservative, depends_on_time, stationary, by_time;
   int energy_terms;
@@ -153,7 +153,7 @@ Answers answers(Term const& term, Setting<Real> const& on) {
 
 class Members {
  public:
-  /// `precision`: epsilon. Numbers are of the order of 10.
+  /// `precision` is an epsilon; the values compared are of the order of 10.
   Members(std::string what, double precision) : what_(std::move(what)), bound_(300 * precision) {}
 
   void expect_same(Vectors const& found, Vectors const& expected, char const* member,
@@ -171,7 +171,7 @@ class Members {
       off = std::max(off, std::abs(found[i] - expected[i]));
     EXPECT_LE(off, bound_) << what_ << ": " << member;
   }
-  /// Up to a multiple of the spin.
+  /// Compares vectors up to a multiple of the spin.
   void expect_turns(Vectors found, Vectors expected, std::vector<double> const& m,
                     char const* member) const {
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -204,7 +204,7 @@ auto derivative(Function const& f, double h) {
   return (1 / (12 * h)) * (8.0 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h)));
 }
 
-/// `factors`: H is -dE/dm times the site's factor; empty: 1.
+/// `factors`: H is -dE/dm times the factor of the site; empty: times 1.
 template <class Real, class Term>
 void expect_members(std::string const& name, Term const& term, Setting<Real> const& on,
                     std::vector<double> const& factors = {}) {
@@ -228,7 +228,7 @@ void expect_members(std::string const& name, Term const& term, Setting<Real> con
   is.expect_turns(here.turning, field, m, "turning_field");
   is.expect_turns(here.added_turning, with_added, m, "add_turning_field");
 
-  // In two parts; the neighbour field does not depend on the spin itself.
+  // Two parts make up the field, and the neighbour field does not depend on the spin itself.
   if constexpr (detail::comes_in_parts<Prepared, Stencil>()) {
     is.expect_turns(here.neighbor - (-1.0 * here.local), field, m,
                     "neighbor_field and local_field");
@@ -248,7 +248,7 @@ void expect_members(std::string const& name, Term const& term, Setting<Real> con
       is.expect_same(here.other_local, here.local, "local_field_varies");
   }
 
-  // Times and spins at which it may be used.
+  // Prepared terms may be used at other times and with other spins, as the term says.
   Vectors const later = field_of(term, others, on.t + 0.3);
   Said const of_others = said(prepared, others);
   if (detail::is_stationary(term, exec, spins))

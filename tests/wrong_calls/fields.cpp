@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Functions other than steppers that take a field made elsewhere: copies, sums, terms, observers.
+// Functions other than those of steppers that take a field made elsewhere: copies, sums, terms and
+// observers.
 #include "wrong_calls.hpp"
 
 namespace cayspin::test {
@@ -15,7 +16,7 @@ struct NoField {
 
 std::vector<Coupling> const one_bond{Coupling::of({0, 0}, {1, 0, 0}, 1)};
 
-/// Calls every function for the energy of a term or generator.
+/// Returns calls of every function for the energy of a term or generator.
 template <class Source>
 std::vector<WrongCall> sums_of(Source const& source, Spins const& spins) {
   return {{"energy", [=] { energy(Exec(), source, spins); }},
@@ -230,7 +231,7 @@ TEST(WrongCallsOfCopies, NoField) {
     });
 }
 
-// Every layout of a View works, with any strides.
+// Views may have any layout and any strides.
 TEST(Copies, OfStridedViews) {
   Lattice const lattice = Lattice::square(4, 3);
   std::vector<double> numbers(12 * 8, -1);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Steppers refuse other fields and generators, in every call, and their own memory as spins.
+// In every call, steppers refuse fields and generators of other lattices, and their own memory as
+// spins.
 #include "wrong_calls.hpp"
 
 #include <cayspin_paper/analytic_sigma.hpp>
@@ -11,7 +12,7 @@
 namespace cayspin::test {
 namespace {
 
-/// Calls visit(name, make), where make(like) is a new stepper, for one of each kind.
+/// Calls visit(name, make) for one stepper of each kind; make(like) returns a new one.
 template <class Visit>
 void for_each_stepper(Visit const& visit) {
   visit("LieEuler", [](Spins const& like) { return LieEuler(like); });
@@ -36,7 +37,7 @@ void for_each_stepper(Visit const& visit) {
 #endif
 }
 
-/// Makes each call of a stepper with these spins and this generator.
+/// Returns all calls of a stepper with these spins and this generator.
 template <class Make>
 std::vector<WrongCall> calls_of(std::string const& what, Make const& make, Lattice const& own,
                                 Spins spins, Generator const& generator) {
@@ -115,8 +116,9 @@ TEST(WrongCallsOfSteppers, BatchesOfNoSteps) {
   }
 }
 
-// A step swaps the memory of the spins with the stepper's own. A second handle on the original
-// memory is then the stepper's: it is refused, or the steps are as right as with the first.
+// A step swaps the memory of the spins with the stepper's own, so a second handle on the original
+// memory is then a handle on the stepper's. It is refused, or steps with it are as correct as with
+// the first handle.
 TEST(WrongCallsOfSteppers, ASecondHandleOnTheSpins) {
   for_each_stepper([](std::string const& name, auto const& make) {
     Lattice const own = own_lattices[0];

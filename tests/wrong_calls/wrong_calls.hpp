@@ -22,8 +22,8 @@ Field moved_from(Lattice const& lattice) {
   return field;
 }
 
-/// Returns lattices that differ from this one: in shape, in shape with as many sites, in boundaries
-/// and in spacings.
+/// Returns lattices that differ from this one: in shape, in shape with equally many sites, in
+/// boundaries, and in spacings.
 inline std::vector<std::pair<std::string, Lattice>> lattices_of_others(Lattice const& own) {
   auto wider = own, turned = own, closed = own, coarser = own;
   wider.shape[0] += 1;
@@ -36,7 +36,7 @@ inline std::vector<std::pair<std::string, Lattice>> lattices_of_others(Lattice c
   return lattices;
 }
 
-/// Returns fields on these, and empty fields.
+/// Returns fields on such lattices, and empty fields.
 template <class Field>
 std::vector<std::pair<std::string, Field>> fields_of_others(Lattice const& own) {
   std::vector<std::pair<std::string, Field>> fields{{"default-constructed", Field()},
@@ -49,8 +49,7 @@ std::vector<std::pair<std::string, Field>> fields_of_others(Lattice const& own) 
 /// A default-constructed Lattice is a single site, and thus equals the lattice of an empty field.
 inline std::vector<Lattice> const own_lattices{Lattice::square(6, 4), Lattice()};
 
-/// Expects each call to be refused, since `who` was made for another lattice than that of the
-/// spins.
+/// Expects each call to be refused, because `who` was made for another lattice than the spins.
 inline void expect_made_for_another(std::string const& who, Lattice const& made_for,
                                     Lattice const& of_spins, std::vector<WrongCall> const& calls) {
   auto const sites = [](Lattice const& lattice) {
