@@ -5,8 +5,8 @@
 
 namespace cayspin::program::test {
 
-/// Returns the scene of a chain that is practically at equilibrium after a tenth of its run to t =
-/// 20, followed by the tables given.
+/// Returns the scene of a chain that comes to rest early in a run to t = 20, followed by the given
+/// tables.
 inline std::string early_rest(std::string const& integrator_and_output) {
   return R"toml([system]
 kind = "llg"

@@ -152,7 +152,7 @@ scalars_every = 5
     if (start({"check", "all.toml"}).status != 0) continue;  // e.g. a method that refuses noise
     Arguments const same{"--precision", one_of({"double", "single"}), "--threads",
                          one_of({"1", "2"})};
-    // Some runs print a warning, for example of a large dt.
+    // Some runs print a warning, for example of a large dt, so only the status is checked.
     write("all.toml",
           scene + noise +
               vary(varies ? "\"thermal.temperature\" = { from = 0, to = 0.3 }\n" : "", many));

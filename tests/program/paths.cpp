@@ -45,7 +45,8 @@ uniform = [0, 0, 1]
   }
 };
 
-// From +x to -x the path passes a minimum, with a saddle on either side. Both have one energy.
+// From +x to -x the path passes a minimum, with a saddle on either side. Both saddles have the same
+// energy.
 TEST_F(PathCommand, PlacesEachSaddleAtItsImage) {
   std::string const cubic = R"toml([system]
 kind = "llg"
@@ -147,7 +148,7 @@ TEST_F(PathCommand, GivesTheRateBesideAFrozenSpin) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(beside[i] / in_field[i], 1, 1e-6) << i;
 }
 
-// In SI, for a particle of one cell: the barrier is K V, the prefactor gamma sqrt(H_K (H_K +
+// In SI: a particle of one cell has a barrier of K V, and a prefactor of gamma sqrt(H_K (H_K +
 // H_hard)) / 2 pi.
 TEST_F(PathCommand, InSi) {
   std::string const text = R"toml(units = "SI"
@@ -248,7 +249,7 @@ TEST_F(PathCommand, SaysWhyThereIsNoPath) {
 }
 
 // With five images a path of a chain of twenty spins misses the highest saddle and does not settle;
-// with sixteen it has it.
+// with sixteen it finds it.
 TEST_F(PathCommand, PrintsTheSaddlesOfAPathThatDoesNotSettle) {
   write_ends(R"toml([system]
 kind = "llg"

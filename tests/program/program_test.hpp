@@ -28,7 +28,8 @@ Arguments set(Texts const&... assignments) {
   return all;
 }
 
-/// The program's default space, and one with equal bits; on the emulated device the only space.
+/// The program's default space, and one that gives equal bits; with the emulated device there is
+/// only one space.
 #if defined(CAYSPIN_HOST_DEVICE)
 inline std::string const default_space = "host_device", another_space = "host_device";
 #else

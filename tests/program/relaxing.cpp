@@ -188,8 +188,8 @@ TEST_F(Relax, IsChecked) {
   ASSERT_EQ(relax(scene, set(list, "lattice.shape=[120, 100]")).status, 0);
   EXPECT_GT(static_cast<double>(std::filesystem::file_size(in_folder("out.h5"))), frames);
 
-  // A list of fields makes it a scene for relax, even with [integrator]; without a list it is for
-  // run.
+  // A list of fields makes this a scene for relax, even with [integrator]; without a list it is one
+  // for run.
   std::string const integrator = "[integrator]\nmethod = \"rkmk4\"\ndt = 0.1\nsteps = 50\n";
   auto const both = write("scene.toml", scene + integrator);
   EXPECT_TRUE(contains(output_of({"check", both, "--set", list}), "output      3 frames, "));

@@ -128,7 +128,8 @@ TEST_F(Restarting, NamesWhatElseDiffers) {
   output_of(to_second(set("field.exchange=1", "output.every=3", "initial={uniform=[0,0,1]}")));
 }
 
-// After a change of the field, the method's memory (a previous rate, a step length) would be wrong.
+// After a change of the field, the method's memory (a previous rate, a step length) would be wrong,
+// so the method begins again.
 TEST_F(Restarting, ForgetsTheStepsOfAnotherMotion) {
   for (std::string const method : {"ab2", "dp5"}) {
     SCOPED_TRACE(method);

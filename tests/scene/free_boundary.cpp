@@ -58,7 +58,7 @@ TEST(FreeBoundary, IsAHardAxisAtEachOpenSide) {
 }
 
 // By the boundary condition the spin beyond the end is m' = m + h D/A m x d. The field of its bond,
-// A/h^2 (m' - m) + D/h d x m', has the torque of this anisotropy.
+// A/h^2 (m' - m) + D/h d x m', exerts the torque of this anisotropy.
 TEST(FreeBoundary, IsTheTorqueOfATurnedSpin) {
   using cayspin::detail::scalar_product, cayspin::detail::vector_product;
   std::mt19937_64 random(13);

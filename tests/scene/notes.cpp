@@ -134,7 +134,7 @@ TEST(Notes, SayWhereImagesAndBoundariesDiffer) {
             "no images along x, where lattice.boundary is periodic"},
            {{images + "[0,0,0]"}, ""},
            {{images + "[0,2,0]"}, "images along y, where lattice.boundary is open"},
-           {{images + "[0,0,2]"}, ""},  // one cell along z: the boundary has no effect on others
+           {{images + "[0,0,2]"}, ""},  // one cell along z: no other term sees this boundary
        }) {
     auto const found = notes_with(overrides);
     SCOPED_TRACE(testing::PrintToString(overrides) + testing::PrintToString(found));

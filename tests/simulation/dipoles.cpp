@@ -178,7 +178,7 @@ TEST(Dipoles, OfPeriodicCrystalsHaveLorentzsField) {
   }
 }
 
-// Dipoles in a chain align along it. Each has an energy of 2 zeta(3) / (4 pi) below zero.
+// Dipoles in a chain align along it. Each has an energy of -2 zeta(3) / (4 pi).
 TEST(Dipoles, OfAChainRelaxAlongIt) {
   auto const scene = with_dipoles("shape = [24]\nboundary = 'periodic'", "dipoles = true");
   auto const run = SceneRun::open(scene, {});

@@ -117,8 +117,8 @@ class RandomText {
     std::string list;
     std::set<std::array<int, 4>> bonds;
     for (int i = whole(1, 3); i > 0; --i) {
-      // Scenes refuse couplings that leave the lattice from every cell, of a site with itself, and
-      // duplicates.
+      // Scenes refuse couplings that leave the lattice from every cell, couplings of a site with
+      // itself, and duplicates.
       int const x = extents_[0] > 1 ? 1 : 0, y = extents_[1] > 1 ? i - 2 : 0;
       int const from = whole(0, sites_ - 1), to = whole(0, sites_ - 1);
       if (x == 0 && y == 0 && from == to) continue;

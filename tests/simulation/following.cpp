@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Lattices that follow a wall or a skyrmion, compared with lattices that are long enough without.
+// Lattices that follow a wall or a skyrmion, compared with lattices that are long enough not to.
 #include "scenes_of_text.hpp"
 #include "simulation/plan.hpp"
 

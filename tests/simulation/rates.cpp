@@ -68,7 +68,8 @@ TEST_F(Rates, OfABiaxialParticle) {
   }
 }
 
-// Smith and de Rozario (1976): at the saddle, the motion grows at the positive root of a quadratic.
+// Smith and de Rozario (1976): the rate at which the motion grows at the saddle is the positive
+// root of a quadratic.
 TEST_F(Rates, OfABiaxialParticleWithDamping) {
   double const easy = 1.3;
   for (double const hard : {0.01, 0.7, 5.0})

@@ -258,7 +258,7 @@ integrator = {{ method = "rkmk4", dt = 1e-12, steps = 200 }}
     }
 }
 
-// Uncoupled spins move as in scenes with their own damping.
+// An uncoupled spin moves as in a scene with the damping of its site.
 TEST(SiScenes, GilbertsDampingMayDifferFromSiteToSite) {
   auto const end = [](std::string const& alpha, std::string const& form, Precision precision) {
     return end_of(scene_of("units = 'SI'\nmaterial = { Ms = 8e5, alpha = " + alpha +

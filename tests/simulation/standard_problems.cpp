@@ -72,8 +72,8 @@ TEST(StandardProblems, TwoTakesFewEvaluationsAState) {
   }
 }
 
-// Rave, Fabian and Hubert 1998: in a cube with edges of 8.47 l_ex the two have one energy, 0.3027
-// Km. The flower is a saddle.
+// Rave, Fabian and Hubert 1998: in a cube with edges of 8.47 l_ex flower and vortex have equal
+// energies, 0.3027 Km. The flower is a saddle.
 TEST(StandardProblems, ThreeHasAFlowerAndAVortexOfOneEnergy) {
   for (std::string const cells : {"10", "20"}) {
     std::string const shape = "lattice.shape=[" + cells + "," + cells + "," + cells + "]";

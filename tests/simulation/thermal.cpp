@@ -21,7 +21,7 @@ class ThermalRuns : public testing::Test {
   ~ThermalRuns() override { fs::remove_all(folder_); }
 
   /// Repeats the run in pieces, after a restart, and step by step. Returns false if the scene is
-  /// invalid or its numbers fail.
+  /// invalid, or the run fails with values that are not finite.
   bool holds(std::string const& text, Precision precision, RandomRun& random) const {
     std::optional<io::Scene> scene;
     std::unique_ptr<SceneRun> whole;

@@ -99,7 +99,7 @@ io::Scene film_of_moments(std::string const& lattice, std::string const& couplin
                   lattice, couplings, 0.01 * hundredths * 10 / (damping * dt)));
 }
 
-// Nor do the constants of an empty site reduce the largest dt.
+// The constants of an empty site do not reduce the largest dt.
 TEST(Vacancies, AMomentOfZeroIsNoSite) {
   std::string const bond = "{ offset = [1, 0, 0], J = 4, D = [0, 0, 1] }";
   auto const film = [&](int hundredths) {
