@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Truth values, numbers, words and sequences as arguments: NumPy's mean the same as Python's, and
-other kinds are refused with one line."""
+unsuitable ones are refused with one line."""
 
 import decimal
 import fractions

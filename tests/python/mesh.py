@@ -70,7 +70,7 @@ class Meshes(PackageTest):
         right = cayspin.occupied_of_mesh(one + [1.8, 1, 1], (56, 40, 40), 0.05, center=False)
         np.testing.assert_array_equal(wide, left | right)
 
-    # With odd sizes, the faces and corners of the box are at centres of cells.
+    # If the size is an odd number of cells, faces and corners of the box are at centres of cells.
     def test_a_box_along_the_cells(self):
         corners = np.array(list(itertools.product((0, 1), repeat=3)), float)
         faces = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7),

@@ -2,8 +2,8 @@
 """Test scripts of mumax3 as scenes, with the values that they expect and their tolerances.
 
 Each test has the name of a script. mumax3 computes in single precision, and its tensors of the
-demagnetising field are integrated with DemagAccuracy = 6. Where this error exceeds the tolerance
-of the script, the limit here is wider and a comment gives theirs; for std5b, with 29, it is not."""
+demagnetising field are integrated with DemagAccuracy = 6. Where this error exceeds the tolerance of
+a script, the limit here is wider and a comment gives the script's. std5b, with 29, needs no more."""
 
 import math
 import os

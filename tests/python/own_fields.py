@@ -29,7 +29,7 @@ def slab(spins, t):
 
 
 def term_of(field):
-    """Returns a term that is linear in the spins as a function of them, which uses its matrix."""
+    """Returns a term that is linear in the spins, as a function that multiplies by its matrix."""
     sim = cayspin.Simulation(scene(field))
     numbers = 3 * np.prod(SHAPE)
     matrix = np.empty((numbers, numbers))

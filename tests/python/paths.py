@@ -68,7 +68,7 @@ class Paths(PackageTest):
         self.assertAlmostEqual(path.langer_forward / exact, growth / np.sqrt(EASY * HARD),
                                delta=1e-9)
 
-    # The test of Spirit's solvers, in meV.
+    # Spirit's own test of its solvers, in meV.
     def test_the_collapse_of_a_skyrmion(self):
         skyrmion = cayspin.Scene(
             system={"kind": "llg", "damping": 0.1},

@@ -14,8 +14,8 @@ LETTERS = {"Ms": "j", "A": "a", "Ku": "k"}  # a case names what jumps
 
 # Relative errors of the discrete equations for 80 cells of 1 nm: Newton's method finds the fold of
 # their solutions. Cases a and aj exceed 2 %, since walls in the soft half have a width of only
-# sqrt(A/K) = 1.6 cells. An exact solution between the two cells at the boundary would have an error
-# of 8 %.
+# sqrt(A/K) = 1.6 cells. With an exact solution between the two cells at the boundary the error
+# would be 8 %.
 OF_EQUATIONS = {"k": 0.00477, "a": 0.02072, "ak": 0.01456, "akj": 0.00427, "aj": 0.03152,
                 "kj": 0.00311}
 

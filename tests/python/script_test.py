@@ -32,7 +32,7 @@ def dimensions(png):
 
 
 class ScriptTest(unittest.TestCase):
-    fonts = tempfile.TemporaryDirectory()  # Matplotlib lists the fonts there once
+    fonts = tempfile.TemporaryDirectory()  # where Matplotlib lists the fonts, only once
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()

@@ -16,7 +16,7 @@ struct MapCase {
   bool has_exponential;
 };
 
-// Clamps lengths to the range of float, 1e-45 .. 3e38.
+// Scales vectors for float, which holds 1e-45 .. 3e38, to components of 1e-40 .. 1e37.
 template <class Real>
 Long in_range(Long const& f) {
   long double const size = largest(f);
@@ -108,7 +108,7 @@ TYPED_TEST(Maps, Exponential) {
   }
 }
 
-// The file flags the cases whose inverse tangent overflows double, as the tests above need to know.
+// The tests above skip inverse tangents that overflow. The file flags those that overflow double.
 TEST(Maps, TheInverseTangentIsCheckedWhereItFits) {
   for (auto const& entry : oracles("maps")) {
     auto const value = read_long(entry.at("dcayinv_f_y"));

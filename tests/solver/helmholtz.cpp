@@ -198,7 +198,7 @@ TYPED_TEST(Helmholtz, LinesAreSolvedToRoundOff) {
   }
 }
 
-// Devices, and hosts without packs, solve lines along x number by number, without packs.
+// Devices, and hosts without packs, solve lines along x number by number.
 TYPED_TEST(Helmholtz, LinesOfSingleNumbersFindTheRowsOfPaddedPlanes) {
   using Real = typename TypeParam::Real;
   using Field = SiteField<Real, 3, Kokkos::HostSpace>;

@@ -13,7 +13,7 @@
 
 namespace cayspin::test {
 
-/// Says whether a stepper accepts nonlocal fields, and counts evaluations of the whole field.
+/// Says whether a stepper accepts nonlocal fields, and whether it counts evaluations of the field.
 struct Takes {
   bool nonlocal = true, counts_fields = true;
 };

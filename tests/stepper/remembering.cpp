@@ -51,7 +51,7 @@ TYPED_TEST(Forgetting, StartsAnewAfterReset) {
   EXPECT_EQ(copy_to_host(spins), fresh);
 }
 
-// A first step from the spins and from the state before them equals the second step of a run.
+// A first step that is given the state before it equals the second step of a run.
 TYPED_TEST(Remembering, StateBefore) {
   Spins const start = random_spins(chain.lattice, 5);
   Spins const after_one = run<TypeParam>(chain.natural(), start, 0.05, 1);

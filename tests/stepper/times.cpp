@@ -42,8 +42,7 @@ TEST(Times, OfEvaluations) {
                                   0.5 * dt * (3.0 * h(t) - h(t - dt)));
 }
 
-// For w = H - (m.H) m, sigma = -<w', w x m> / |w|^2, with w' along the derivative of H and along
-// the flow.
+// For w = H - (m.H) m, sigma = -<w', w x m> / |w|^2, where w' includes dH/dt and the motion of m.
 TEST(Times, OfTheFieldsDerivative) {
   Spins const like("like", Lattice::chain(1));
   auto const normal = [](Vector const& a, Vector const& to) { return a - dot(to, a) * to; };

@@ -31,7 +31,7 @@ class DecimalComma {
     ::unsetenv("LOCPATH");
   }
 
-  /// True if C does, too.
+  /// True if C uses the comma, too.
   bool has_c = false;
 
  private:

@@ -11,7 +11,7 @@
 
 namespace cayspin::test {
 
-/// Fails the program after two minutes without progress, which even on a busy machine are a hang.
+/// Fails the program after two minutes without progress, which is a hang even on a busy machine.
 class Watchdog {
  public:
   explicit Watchdog(std::string what) : what_(std::move(what)) {}

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The simple cubic Heisenberg model with J = 1. Its averages are compared with those of a heat
-// bath, which has no step length; and its critical temperature is 1.443 (K. Chen, A. Ferrenberg and
-// D. Landau, Phys. Rev. B 48, 3249, 1993), where the Binder cumulants of two sizes cross. Seeds are
-// fixed.
+// bath, which has no step length. Its critical temperature, where the Binder cumulants of two sizes
+// cross, is compared with 1.443 (K. Chen, A. Ferrenberg and D. Landau, Phys. Rev. B 48, 3249,
+// 1993). Seeds are fixed.
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>

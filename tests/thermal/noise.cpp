@@ -246,7 +246,7 @@ TYPED_TEST(Thermal, CopiesTakeStepsOfOtherLengths) {
   EXPECT_NE(turned(copy, 0.2), expected);
   EXPECT_EQ(turned(noise, 0.1), expected);
   EXPECT_EQ(turned(copy, 0.1), expected);
-  // The same holds with a field of mobile sites, which needs further turns, and after assignments.
+  // The same holds with a field of mobile sites, and after an assignment.
   ScalarField<typename TypeParam::Real, typename TypeParam::MemorySpace> const moves("moves",
                                                                                      lattice, 1);
   Noise const moving(like, 0.5, {.temperature = 0.4, .seed = 3}, moves);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The switching field of a uniaxial particle, by Stoner and Wohlfarth.
+// The switching field of a uniaxial particle, after Stoner and Wohlfarth.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 

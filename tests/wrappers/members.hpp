@@ -48,7 +48,7 @@ inline std::vector<double> combined(std::vector<double> const& a, double factor,
   return sum;
 }
 
-/// What the members of a prepared term return at each site.
+/// The results of the members of a prepared term, at each site.
 struct Said {
   Vectors field, added, turning, added_turning, neighbor, local, other_local;
   std::vector<double> energy, magnitude, sum_of_terms, magnitude_of_terms;
@@ -128,7 +128,7 @@ double energy_of(Term const& term, Field const& spins, double t) {
   return sum;
 }
 
-/// What a wrapper must answer as the term inside it does.
+/// Answers that a wrapper must share with the term inside it.
 struct Answers {
   bool linear, derivative, affine, conservative, depends_on_time, stationary, by_time;
   int energy_terms;

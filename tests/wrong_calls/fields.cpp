@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Functions other than those of steppers that take a field made elsewhere: copies, sums, terms and
-// observers.
+// Functions other than those of steppers, called with fields that do not fit: copies, sums, terms
+// and observers.
 #include "wrong_calls.hpp"
 
 namespace cayspin::test {
