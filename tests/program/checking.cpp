@@ -56,7 +56,8 @@ TEST_F(Checking, StableDtOfLattices) {
         .get<double>();
   };
   // The stable dt is never above the measured one. It is exact on the fine chain; on the coarse
-  // one, where the bound on the field is not sharp, it may be a third below, and on the others 3 %.
+  // one, where the bound on the field is not sharp, it may be a third below, and on the others 3 %
+  // below.
   EXPECT_NEAR(stable_dt("[100]", "0.01"), 7.26586e-5, 4e-8);
   EXPECT_LT(stable_dt("[100]", "1.0"), 3.88384e-1);
   EXPECT_GT(stable_dt("[100]", "1.0"), 3.88384e-1 * 0.65);

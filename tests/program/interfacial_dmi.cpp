@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The interfacial Dzyaloshinskii-Moriya interaction in scenes: a free spiral, the energy bond by
-// bond, and H = -dE/dm from the conservation laws of an undamped run.
+// bond, and H = -dE/dm, which the conservation laws of an undamped run show.
 #include "program_test.hpp"
 
 #include <array>

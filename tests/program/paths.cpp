@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// cayspin path: the file, barriers and rates in reduced units and in SI, and how it ends.
+// cayspin path: the file, barriers and rates in reduced units and in SI, refusals, and searches
+// that fail.
 #include "hdf5/attribute.hpp"
 #include "hdf5/handle.hpp"
 #include "program_test.hpp"

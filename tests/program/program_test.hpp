@@ -87,7 +87,7 @@ class ProgramTest : public testing::Test {
   /// Expects status 2, and one line that contains `part`.
   void expect_refused(Arguments const& arguments, std::string const& part,
                       Treatment const& treatment = {}) const;
-  /// Returns its standard output. Expects success without output on standard error.
+  /// Returns the standard output of the program. Expects success without output on standard error.
   std::string output_of(Arguments const& arguments) const;
 
   /// Starts the program without waiting; discards its output.

@@ -202,7 +202,7 @@ TEST_F(Sweeping, TakesWordsWithoutQuotes) {
   EXPECT_EQ(sweep_in("words.h5").header.overrides(0),
             std::vector<std::string>{"integrator.method=\"heun\""});
   EXPECT_NE(spins("words.h5", 0), spins("words.h5", 1));
-  // With quotes the sweep is the same one.
+  // Words in quotes give the same sweep, so nothing runs again.
   output_of(sweep_into("words.h5", {"--quiet", "--over", "integrator.method=\"heun\",\"rkmk4\""}));
 }
 

@@ -96,8 +96,8 @@ TEST_F(Thermal, TemperatureZeroIsNoTemperature) {
   EXPECT_EQ(last_spins("zero.h5"), last_spins("cold.h5"));
 }
 
-// Noise may raise the energy above a start at equilibrium; values that are not finite still stop a
-// run.
+// Noise may raise the energy of spins that start at equilibrium; values that are not finite still
+// stop a run.
 TEST_F(Thermal, TheGuardLetsEnergyRise) {
   Arguments const from_rest = set("initial={uniform=[0,0,1]}", "field={exchange=1.0}");
   end_of("out.h5", from_rest);

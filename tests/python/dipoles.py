@@ -82,7 +82,7 @@ class LowestStates(PackageTest):
         return min(found)
 
     # Lowest states by Luttinger and Tisza, Phys. Rev. 70, 954 (1946), per n mu^2 with n dipoles in
-    # a^3: antiparallel dipoles in spheres, and parallel ones in long needles with -2 pi/3.
+    # a^3: antiparallel states in spheres, and parallel dipoles in long needles, which have -2 pi/3.
     def test_three_dimensions(self):
         cells = {"shape": [2, 2, 2], "boundary": "periodic"}
         sphere = {"demagnetizing_factors": [1 / 3] * 3}

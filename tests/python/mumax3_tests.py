@@ -3,7 +3,8 @@
 
 Each test has the name of a script. mumax3 computes in single precision, and its tensors of the
 demagnetising field are integrated with DemagAccuracy = 6. Where this error exceeds the tolerance of
-a script, the limit here is wider and a comment gives the script's. std5b, with 29, needs no more."""
+a script, the limit here is wider and a comment gives the script's. std5b has DemagAccuracy = 29 and
+the tolerance of its script."""
 
 import math
 import os

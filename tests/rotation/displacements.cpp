@@ -39,7 +39,7 @@ TYPED_TEST(Displacements, KeepTheirDigits) {
     long double const s = inner(f, f);
     return m + (2 / (1 + s)) * (f - s * m);
   };
-  // If |m| is not exactly 1, the projection goes to the sphere of m.
+  // If |m| is not exactly 1, the projection goes to a sphere of radius |m|.
   auto const exact_projection = [](Long const& f, Long const& m) {
     Long const end = m + f;
     return (1 / std::sqrt(1 + inner(end, end) - inner(m, m))) * end;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The named values of initial.state, against closed forms.
+// The named values of initial.state, compared with closed forms.
 #include "initial_states.hpp"
 
 #include "wrong_scenes.hpp"

@@ -161,7 +161,7 @@ class Equilibria : public ::testing::Test {
   }
 };
 
-/// A scene in double at given spins.
+/// A scene in double precision, at given spins.
 class Reference {
   using Spins = SpinField<double, Space::memory_space>;
 

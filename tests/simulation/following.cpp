@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Lattices that follow a wall or a skyrmion, compared with lattices that are long enough not to.
+// Lattices that follow a wall or a skyrmion, compared with lattices that are long enough not to
+// need it.
 #include "scenes_of_text.hpp"
 #include "simulation/plan.hpp"
 

@@ -111,7 +111,7 @@ integrator = {{ method = "rkmk4", dt = 1e-14, steps = 40 }}
         << more;
 }
 
-// Neither the field nor the torque of an equilibrium depends on the ratio.
+// Neither the field nor the torque at which a run ends at rest depends on the ratio.
 TEST(GyromagneticOfSites, IsNoPartOfTheField) {
   for (std::string const ratio : {"1", "0.01", "'0.01'", "'0.01 + 0*i'"}) {
     double const g = ratio == "1" ? 1 : 0.01;

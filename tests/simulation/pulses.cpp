@@ -158,7 +158,7 @@ TEST(Pulses, AreWaitedForByRunsThatEndAtRest) {
   EXPECT_LE(run->time(), 600);  // the next check
 }
 
-// The energy at rest, -0.5, is above that of the start, -0.8.
+// At rest the energy is -0.5, above the -0.8 at the start.
 TEST(Pulses, ThatLowerAFieldDoNotKeepARunFromEndingAtRest) {
   auto const scene = scene_of(
       "system = { kind = 'llg', damping = 0.5 }\nlattice = { shape = [1] }\n"

@@ -149,8 +149,8 @@ struct FieldOfModes {
   }
 };
 
-/// Returns the largest |amplitude after a step / before| of the modes, which turn spins a little
-/// off the field.
+/// Returns the largest factor by which a step changes the amplitude of a mode; the modes are small
+/// tilts of spins off the field.
 template <class Stepper>
 double amplification(double largest, double damping, double sigma, double dt) {
   auto const generator = orthogonal(LandauLifshitz{EffectiveField{FieldOfModes{largest}}, damping});

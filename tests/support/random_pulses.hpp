@@ -204,7 +204,7 @@ class RandomPulses {
   }
 
  private:
-  /// A sinc also has lobes before and after the main one.
+  /// A sinc also has lobes before and after the main one, which have to be within the run, too.
   bool is_within(TimeShape const& shape) const {
     if (shape.kind == TimeShape::step) return false;
     if (shape.kind == TimeShape::sinc) return shape.middle + 5 * shape.width < end;
@@ -260,7 +260,7 @@ class RandomPulses {
     for (std::size_t c = 0; c < 3; ++c) m[c] += dt * rate[c];
     return m;
   }
-  // H x m + damping (m x H) x m.
+  // Returns H x m + damping (m x H) x m.
   Triple rate(Triple const& m, Triple const& h) const {
     Triple const turn{h[1] * m[2] - h[2] * m[1], h[2] * m[0] - h[0] * m[2],
                       h[0] * m[1] - h[1] * m[0]};
