@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """The rate of a particle across its barrier in thermal runs, compared with cayspin.path and the
-lowest eigenvalue of Brown's equation, which is approximated only by a finite basis."""
+lowest eigenvalue of Brown's equation, whose only approximation is a finite basis."""
 
 import unittest
 
