@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-// scene -> lattice + field -> generator -> stepper (rotation, isotropy) -> observer -> files
+// Parts of a run: lattice, field terms -> generator -> stepper (rotation, isotropy) -> observers.
 #include <cayspin/checkpoint.hpp>
 #include <cayspin/concepts.hpp>
 #include <cayspin/coupling.hpp>

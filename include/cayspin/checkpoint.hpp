@@ -8,9 +8,9 @@
 
 namespace cayspin::inline v0_2 {
 
-/// Named numbers and fields that a run carries from step to step besides its spins. Restoring them
-/// with the spins continues the run with the same bits as without a break, on any host space and
-/// thread count.
+/// Named numbers and fields that a run carries from step to step besides its spins. If they are
+/// restored together with the spins, the run continues with the same bits as without a break, on
+/// any host space and with any number of threads.
 class Checkpoint {
  public:
   virtual ~Checkpoint() = default;
@@ -18,18 +18,19 @@ class Checkpoint {
   virtual bool restores() const = 0;
   /// Stores or restores `value`. Counts and flags are passed as numbers, too.
   virtual void number(std::string const& name, double& value) = 0;
-  /// Stores or restores the values of all sites, (sites, components) with x fastest.
+  /// Stores or restores the values of all sites: an array (sites, components), row by row, with the
+  /// sites in the order x fastest.
   virtual void field(std::string const& name, std::vector<double>& numbers) = 0;
 };
 
 /// A checkpoint in host memory, empty at first.
 class CheckpointInMemory final : public Checkpoint {
  public:
-  /// Ends storing: from now on, calls restore.
+  /// Ends storing: later calls restore values.
   void close() { restores_ = true; }
 
   bool restores() const override { return restores_; }
-  /// Throws std::out_of_range when no number of this name was stored.
+  /// Throws std::out_of_range when no number of this name was stored; field() does so, too.
   void number(std::string const& name, double& value) override {
     if (restores_)
       value = numbers_.at(name);

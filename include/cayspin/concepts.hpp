@@ -13,8 +13,8 @@
 #include <type_traits>
 #include <utility>
 
-// The five contracts of the library: which members a user's type must have, and which are optional.
-// Terms and generators are templates over the stencil. The concepts check them with the host
+// The five concepts of the library: which members a user's type must have, and which are optional.
+// Terms and generators are templates over the stencil; their concepts check them with the host
 // stencil of Spins (default: double precision in host memory).
 namespace cayspin::inline v0_2 {
 
@@ -31,7 +31,7 @@ using PreparedFor =
     decltype(prepare_term(std::declval<Term const&>(), std::declval<ExecutionOf<Spins> const&>(),
                           std::declval<Spins const&>(), 0.0));
 
-/// A generator that any stepper takes.
+/// A generator with which the Stepper concept checks step().
 struct AnyGenerator {
   template <class Stencil>
   KOKKOS_FUNCTION typename Stencil::vector_type operator()(Stencil const& stencil) const {
@@ -69,15 +69,15 @@ int evaluations_of_next_step(Stepper const& stepper) {
 /// | `Vec3<Value> field(stencil)` | H at the stencil's centre | required |
 /// | `Value energy_density(stencil)` | the site's share of E | required |
 /// | `Vec3<Value> add_field(stencil, h)` | h + H, where that is faster | h + field |
-/// | `Vec3<Value> add_turning_field(stencil, h)` | h + H, up to a multiple of m | add_field |
+/// | `Vec3<Value> add_turning_field(stencil, h)` | h + H plus any multiple of m | add_field |
 /// | `static int degree` | 1: H does not depend on the spins, 2: H is linear in them | neither |
 /// | `static bool is_local` | H depends only on the site's spin and t | false |
-/// | `Vec3<Value> neighbor_field(stencil)` | H of other spins, up to a multiple of m | see below |
+/// | `Vec3<Value> neighbor_field(stencil)` | H that only the neighbours determine | see below |
 ///
 /// Choose between values with select(condition, yes, no). `if` does not work, because on the host a
-/// value is a pack of several sites. RedBlack rotates each spin about neighbor_field, which then
-/// must be all of H. If a non-local term omits it, RedBlack evaluates the whole field for each
-/// iterate of a spin.
+/// value is a pack of several sites. RedBlack calls neighbor_field in place of field: it must not
+/// depend on the spin itself, and may differ from H only by a multiple of m. If a non-local term
+/// omits it, RedBlack evaluates the whole field for each iterate of a spin.
 ///
 /// These members are called on the host before a kernel:
 ///
@@ -87,28 +87,28 @@ int evaluations_of_next_step(Stepper const& stepper) {
 /// | `auto prepare(exec, spins, t)` | the term for kernels at time t | the term itself |
 /// | `static bool depends_on_time` | H changes with t after prepare | false |
 /// | `bool is_stationary(exec, spins)` | one prepare serves all t, spins | true without prepare |
-/// | `bool needs_only_time(exec, spins)` | prepare needs t, not the spins | one of the above |
-/// | `bool is_affine()` | H is affine in the spins | true if degree is given |
+/// | `bool needs_only_time(exec, spins)` | prepare ignores spins | either of the last two is true |
+/// | `bool is_affine()` | H is affine in the spins | true if it has a degree |
 /// | `static bool is_conservative` | false: H has no energy, as for a torque | true |
 ///
 /// If a term has prepare, the device members belong to the returned object. A term made of other
 /// terms inherits the host members from Forwarding (field/forwarding.hpp), and needs gather
-/// (field/parts.hpp) on devices. Some methods of the paper need derivatives, which are in
-/// cayspin_paper.
+/// (field/parts.hpp) on devices. The derivatives of terms that some methods of the paper need are
+/// in cayspin_paper.
 template <class Term, class Spins = SpinField<double, Kokkos::HostSpace>>
 concept FieldTerm = requires {
   requires detail::has_field<detail::PreparedFor<Term, Spins>, detail::StencilOf<Spins>>;
   requires detail::has_energy_density<detail::PreparedFor<Term, Spins>, detail::StencilOf<Spins>>;
 };
 
-/// The generator A of m' = A x m. Its host members, and those about energy, are as in FieldTerm.
+/// The generator A of m' = A x m. It may also have any of the host members of a FieldTerm.
 ///
 /// | member | meaning | default |
 /// |---|---|---|
 /// | `Vec3<Value> operator()(stencil)` | A at the stencil's centre | required |
-/// | `Vec3<Value> turning_part(stencil)` | A, up to a multiple of m | A |
+/// | `Vec3<Value> turning_part(stencil)` | A plus any multiple of m | A |
 /// | `Value energy_density(stencil)` | the site's share of E | no energy |
-/// | `bool conserves_energy()` | A = -dE/dm + c m conserves E (host) | EnergyControl refuses |
+/// | `bool conserves_energy()` | host: E is conserved, A = -dE/dm + c m | no EnergyControl |
 /// | `bool is_orthogonal()` | A has no component along m | false |
 template <class Type, class Spins = SpinField<double, Kokkos::HostSpace>>
 concept Generator =
@@ -123,16 +123,16 @@ concept Generator =
 /// | `step(exec, generator, spins, t, dt)` | advances spins from t to t + dt | required |
 /// | `static int evaluations` | generator evaluations per step | evaluations_done() is required |
 /// | `int64 evaluations_done()` | generator evaluations so far | evaluations is required |
-/// | `int next_step_evaluations()` | differs where a first step needs more | evaluations |
+/// | `int next_step_evaluations()` | in the next step: a first one may need more | evaluations |
 /// | `static int order` | order of convergence | unknown |
 /// | `static int ghosts` | ghost layers that a step needs at each inner end of a part | no parts |
 /// | `reset()` | forgets the previous steps | nothing to forget |
 /// | `check_spins(spins)` | throws for spins of another lattice | checked by step |
 /// | `bool takes_batches(exec, generator, spins)` | batch may be called | false |
-/// | `batch(exec, generator, spins, t, dt, count)` | takes count steps, same bits | one by one |
+/// | `batch(exec, generator, spins, t, dt, count)` | takes count steps, same bits | steps |
 /// | `static int work_fields` | work fields, of three numbers per site | unknown |
 /// | `size_t work_bytes()` | bytes of work memory | unknown |
-/// | `visit_exchanged(visit)` | visit(field) for fields that a step may swap for spins | none |
+/// | `visit_exchanged(visit)` | visit(field) for fields that a step may swap with spins | none |
 ///
 /// integrate() uses visit_exchanged to leave the spins in their original memory.
 template <class Type>
@@ -152,8 +152,11 @@ concept Stepper =
 /// | `int64 accepted_steps()` | internal steps accepted so far | required |
 /// | `int64 rejected_steps()` | internal steps rejected so far | required |
 /// | `reset()` | the next step starts from its t and spins | required |
-/// | `step_towards(exec, generator, spins, t, dt, wanted)` | writes spins only if `wanted` | step |
+/// | `step_towards(exec, generator, spins, t, dt, wanted)` | see below | step |
 /// | `bool has_reached(t, dt)` | it has reached t, the end of a step of dt | step is called |
+///
+/// step_towards writes the spins only when the internal steps have reached the time `wanted`, which
+/// may be later than t + dt.
 template <class Type>
 concept AdaptiveStepper = Stepper<Type> && detail::counts_evaluations<Type> &&
                           requires(Type& stepper, Type const& constant) {
@@ -168,8 +171,7 @@ concept AdaptiveStepper = Stepper<Type> && detail::counts_evaluations<Type> &&
 /// |---|---|---|
 /// | `operator()(exec, Step, spins)` | returns nothing or a Next | required |
 /// | `bool due(Step)` | true if it wants the call at this step | true |
-/// | `static bool changes_spins` | it writes into the spins; no AdaptiveStepper accepts it | false
-/// |
+/// | `static bool changes_spins` | writes into the spins; not with an AdaptiveStepper | false |
 template <class Type, class Spins = SpinField<double, Kokkos::HostSpace>>
 concept Observer = requires(Type& observer, detail::ExecutionOf<Spins> const& exec,
                             Step const& step, Spins const& spins) {
@@ -178,7 +180,8 @@ concept Observer = requires(Type& observer, detail::ExecutionOf<Spins> const& ex
                std::is_same_v<decltype(observer(exec, step, spins)), Next>;
 };
 
-/// Evaluations of the generator per step; empty where their number depends on the spins.
+/// Returns the evaluations of the generator per step; empty where their number depends on the
+/// spins.
 template <class Stepper>
 constexpr std::optional<int> evaluations_per_step() {
   if constexpr (detail::has_evaluations<Stepper>) {

@@ -28,7 +28,7 @@ inline std::array<double, 3> vector_product(std::array<double, 3> const& a,
 
 }  // namespace detail
 
-/// A periodic crystal: a unit cell of three vectors and the sites in it. It needs no Kokkos, so
+/// A periodic crystal: three cell vectors, and the sites in a cell. This header needs no Kokkos, so
 /// that scenes can be read without it.
 struct Crystal {
   using Point = std::array<double, 3>;
@@ -68,8 +68,8 @@ struct Crystal {
     return place;
   }
 
-  /// Returns the lattice of fields on `cells` cells: plane k * basis.size() + s along z holds site
-  /// s of the cells k.
+  /// Returns the lattice of fields on `cells` cells. Its plane k * basis.size() + s along z holds
+  /// site s of the cells with index k along the third vector.
   Lattice lattice(std::array<std::int64_t, 3> const& cells,
                   std::array<Boundary, 3> const& boundary = {}) const {
     Lattice made{cells, {1, 1, 1}, boundary};
@@ -91,8 +91,8 @@ struct Crystal {
     return volume() / (length(cell[0]) * length(cell[1]) * length(cell[2]));
   }
 
-  /// Returns two sites that lie within a millionth of the cell's vectors, in the same or in
-  /// different cells.
+  /// Returns two sites that coincide to within a millionth of each cell vector, in the same cell or
+  /// in different cells; empty if there are none.
   std::optional<std::array<std::size_t, 2>> sites_at_one_place() const {
     auto const fraction = [](double x) { return x - std::floor(x); };
     std::vector<std::size_t> by_x(basis.size());

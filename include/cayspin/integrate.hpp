@@ -18,14 +18,14 @@
 
 namespace cayspin::inline v0_2 {
 
-/// Steps of length dt up to number `steps`; step n is at time begin + n dt. A continued run starts
-/// after step `first`, at that step's time.
+/// Steps of length dt, up to step number `steps`; step n ends at time begin + (n - origin) dt. A
+/// continued run starts at the end of step `first`.
 struct Times {
   double begin = 0, dt = 0;
   std::int64_t steps = 0;
   std::int64_t first = 0;
-  bool continues = false;   // the stepper keeps its memory of the previous run
-  std::int64_t origin = 0;  // the step whose time is begin, if not step 0
+  bool continues = false;   // the stepper remembers the steps of the previous run
+  std::int64_t origin = 0;  // the step that ends at time begin
 
   double at(std::int64_t step) const { return begin + static_cast<double>(step - origin) * dt; }
 };
@@ -40,10 +40,11 @@ struct Summary {
   std::int64_t rejected = 0;     // rejected steps of an adaptive method
 };
 
-/// Observer that calls another one after every `period` steps, counted from step 0, and after the
-/// last one. If the observer has a due(Step), it must want the call, too. Like integrate(), it
-/// refers to a named observer, which must outlive it; a temporary is moved into it.
-///   Every(10, control)             control.energy() is that of the run
+/// Observer that calls another one at steps whose number is a multiple of `period` (0, the initial
+/// state, included) and at the last step. If the other one has a due(Step), that must be true as
+/// well. Like integrate(), Every refers to a named observer, which must outlive it; a temporary is
+/// moved into it.
+///   Every(10, control)             refers to `control`
 ///   Every(10, Record(field, to))
 template <class Observer>
 class Every {
@@ -67,7 +68,7 @@ class Every {
 
  private:
   std::int64_t period_;
-  Observer observer_;  // a reference to a named observer
+  Observer observer_;  // a reference type for a named observer
 };
 
 template <class Observer>
@@ -75,7 +76,7 @@ Every(std::int64_t, Observer&&) -> Every<Observer>;
 
 namespace detail {
 
-/// A stepper that can take several steps of few spins in a single launch.
+/// A stepper that can take several steps of few spins in a single kernel launch.
 template <class Stepper, class Exec, class Generator, class Spins>
 concept has_batches =
     requires(Stepper& stepper, Exec const& exec, Generator const& generator, Spins& spins) {
@@ -148,11 +149,11 @@ class Integration {
   virtual void fence(char const* label) = 0;
   virtual bool is_due(Step const& step) = 0;  // for any observer
   virtual Next observe(Step const& step) = 0;
-  /// Takes at least one step towards step `due`; returns how many. If it reaches `due`, the spins
-  /// are those at that step; otherwise they may be older.
+  /// Takes at least one step towards step `due` and returns how many it took. If they reach `due`,
+  /// the spins are those of that step; otherwise the spins may be older.
   virtual std::int64_t take_steps(Times const& times, std::int64_t number, std::int64_t due) = 0;
 
-  /// `looks_ahead`: take_steps makes use of a later `due`.
+  /// `looks_ahead`: take_steps can make use of a `due` that is more than one step away.
   Summary run(Times const& times, bool looks_ahead) {
     Summary summary;
     fence("cayspin::integrate: begin");
@@ -180,9 +181,9 @@ class Integration {
   ~Integration() = default;
 
  private:
-  /// Returns the next step after `number` that an observer waits for, or the last step; at most
-  /// 1000 steps later, so that observers that poll are soon called again. `known`: the previous
-  /// result.
+  /// Returns the next step after `number` at which an observer is due, or the last step. Looks at
+  /// most 1000 steps ahead, so that observers whose due() depends on more than the step are soon
+  /// asked again. `known`: the previous result.
   std::int64_t next_due(Times const& times, std::int64_t number, std::int64_t known) {
     bool const is_known = known > number;
     std::int64_t const last = is_known ? known : std::min(times.steps, number + 1000);
@@ -244,7 +245,7 @@ class IntegrationOf final : public Integration {
   std::tuple<Observers&...> observers_;
 };
 
-/// Like integrate(), but the spins may end in the memory of the stepper.
+/// Like integrate(), but the spins may end up in memory of the stepper.
 template <class Exec, class Stepper, class Generator, class Spins, class... Observers>
 Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator const& generator,
                                 Spins& spins, Times const& times, Observers&&... observers) {
@@ -266,7 +267,7 @@ Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator co
     throw std::invalid_argument("cayspin::integrate: begin and dt must be finite");
   if (times.first < 0 || times.steps < times.first)
     throw std::invalid_argument("cayspin::integrate: the number of steps is negative");
-  // Checked before an observer sees the spins, and also if there are no steps to take.
+  // Done before an observer sees the spins, and even if there are no steps to take.
   if constexpr (requires { stepper.check_spins(spins); }) stepper.check_spins(spins);
   check_spins_of_parts(generator, spins);
 
@@ -302,16 +303,16 @@ Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator co
 }  // namespace detail
 
 /// Advances `spins` over `times`, and returns statistics. Observers are called with the state
-/// before the first step and after each one. Steppers with memory forget the steps of previous
-/// runs, unless times.continues: then a run in pieces gives the bits of a single run.
+/// before the first step and after each one. Steppers that remember steps forget those of previous
+/// runs, unless times.continues is true: then a run in pieces gives the bits of a single run.
 ///
-/// On return the work has finished and `spins` holds the final state in its original memory, with
-/// any method, so that copies of it see the state, too. Lengths of spins are not checked: call
-/// require_unit_spins for your own spins.
+/// On return the work has finished, and `spins` holds the final state. With any method it is in the
+/// original memory of `spins`, so that copies of the handle see it, too. Lengths of spins are not
+/// checked: call require_unit_spins for your own spins.
 ///
 /// Throws std::invalid_argument when dt is not finite, the number of steps is negative, or the
-/// stepper or a term of the field was made for another lattice than that of the spins. It throws
-/// before an observer is called, and also for 0 steps.
+/// stepper or a term of the field was made for another lattice than that of the spins. It does so
+/// before any observer is called, and even if there are no steps to take.
 template <class Exec, class Stepper, class Generator, class Spins, class... Observers>
 Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator, Spins& spins,
                   Times const& times, Observers&&... observers) {

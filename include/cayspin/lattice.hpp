@@ -22,8 +22,9 @@ struct Ghosts {
   friend bool operator==(Ghosts const&, Ghosts const&) = default;
 };
 
-/// A simple lattice of sites in one, two or three dimensions, x fastest. An axis of extent 1 has no
-/// neighbours; on a periodic axis of extent 2 each site has the other as both neighbours.
+/// A simple lattice of sites in one, two or three dimensions, numbered with x fastest. An axis of
+/// extent 1 has no neighbours; on a periodic axis of extent 2 each site has the other as both
+/// neighbours.
 struct Lattice {
   std::array<std::int64_t, 3> shape{1, 1, 1};
   std::array<double, 3> spacing{1, 1, 1};
@@ -31,10 +32,11 @@ struct Lattice {
   /// Ghosts along y and z of a part of a larger lattice (mpi::Domain), included in `shape`.
   std::array<Ghosts, 3> ghosts{};
   Part const* part = nullptr;
-  /// Sites per cell of a crystal (crystal.hpp): planes along z are the sites of a cell in turn.
+  /// Sites per cell of a crystal (crystal.hpp): successive planes along z hold the sites of a cell
+  /// in turn.
   std::int64_t cell_sites = 1;
-  /// Independent copies of the lattice in one field, one after the other along z; `shape` is that
-  /// of one copy. No term sees a spin of another replica.
+  /// Independent copies of the lattice in one field, one after the other along z; `shape` is the
+  /// shape of one copy. No term sees a spin of another replica.
   std::int64_t replicas = 1;
 
   static Lattice chain(std::int64_t nx, double spacing = 1, Boundary boundary = Boundary::open) {
@@ -49,7 +51,7 @@ struct Lattice {
     return {{nx, ny, nz}, {spacing, spacing, spacing}, {boundary, boundary, boundary}};
   }
 
-  /// Returns this lattice with so many replicas.
+  /// Returns this lattice with `count` replicas.
   Lattice with_replicas(std::int64_t count) const {
     Lattice lattice = *this;
     lattice.replicas = count;
@@ -67,8 +69,8 @@ struct Lattice {
 
   friend bool operator==(Lattice const&, Lattice const&) = default;
 
-  /// Throws std::invalid_argument that names the first invalid extent, spacing, number of sites in
-  /// a cell or number of replicas.
+  /// Throws std::invalid_argument; the message names the first invalid extent, spacing, number of
+  /// ghosts, of sites in a cell or of replicas.
   void validate() const {
     constexpr std::int64_t most_extent = std::numeric_limits<std::int32_t>::max() / 4;
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -17,18 +17,18 @@
 
 namespace cayspin::inline v0_2 {
 
-/// Search for equilibria of the energy of a field by L-BFGS on the product of spheres. Spins move
-/// along great circles by the Cayley map; earlier steps and gradients are projected to the current
-/// tangent planes.
+/// Minimises the energy of a field by L-BFGS on the product of spheres. Spins move along great
+/// circles by the Cayley map; earlier steps and gradients are projected onto the current tangent
+/// planes.
 ///
-/// The preconditioner is the inverse (K + c)^-1 of the exchange K and a constant c, by a multigrid
-/// cycle. It makes the number of evaluations nearly independent of the lattice and of the exchange.
-/// K is measured on the field itself, so user terms, vacancies and site-dependent coefficients need
-/// nothing more. c follows the curvature along the last step; once all torques are below the mean
-/// field of parallel spins, c is not below that field.
+/// The preconditioner is (K + c)^-1 with the exchange operator K and a constant c, applied by a
+/// multigrid cycle. It makes the number of evaluations nearly independent of the lattice and of the
+/// strength of the exchange. K is measured on the field itself, so that user terms, vacancies and
+/// site-dependent coefficients need nothing more. c follows the curvature along the last step. Once
+/// all torques are below the mean field of parallel spins, c is at least that field.
 ///
-/// If the Hessian has a negative eigenvalue where the torque vanishes, the search leaves that state
-/// again. Energies decrease from iteration to iteration, up to round-off.
+/// Where the torque vanishes but the Hessian has a negative eigenvalue, the search moves on from
+/// that saddle. The energy decreases from iteration to iteration, up to round-off.
 template <class Spins>
 class Minimizer {
   using Real = typename Spins::value_type;
@@ -37,10 +37,10 @@ class Minimizer {
  public:
   /// Allocated fields of three numbers per site, including the multigrid levels.
   static constexpr int work_fields = 24;
-  /// Least bound on the torque, limited by underflow of its square.
+  /// Smallest accepted bound on the torque: the square of a smaller one would underflow.
   static constexpr double least_bound = 1e-150;
 
-  /// Throws std::invalid_argument for a part of a lattice.
+  /// Throws std::invalid_argument for a part of a lattice and for more than one replica.
   explicit Minimizer(Spins const& like) : descent_(like) {
     detail::require_whole("cayspin::Minimizer", like.lattice());
     detail::require_one_replica("cayspin::Minimizer", like.lattice());
@@ -89,7 +89,8 @@ class Minimizer {
     return descent_.so_far;
   }
 
-  /// At or near an equilibrium: turns the spins out of a saddle, or classifies the state.
+  /// At or near an equilibrium: moves the spins away from a saddle and returns nothing, or returns
+  /// how the search ends.
   template <class Exec, class Field>
   std::optional<MinimizeEnd> leave_saddle(Exec const& exec, Field const& field, Spins& spins,
                                           MinimizeOptions const& options) {
@@ -99,8 +100,9 @@ class Minimizer {
     descent_.so_far.curvature = found.value;
     if (!found.is_negative) return MinimizeEnd::converged;
     ++descent_.so_far.saddles;
-    // Turns each spin along a great circle until the energy is clearly lower; or, near an
-    // instability, until it falls further while round-off hides by how much.
+    // Turns the spins along great circles, in both directions and by ever smaller angles, until the
+    // energy is clearly lower. Where round-off hides the difference, it is enough that the energy
+    // still falls in that direction.
     auto const &vector = descent_.search.direction, &none = descent_.search.trial;
     detail::combine(exec, 0, vector, 0, vector, none);
     double const longest = detail::largest_difference(exec, vector, none);
@@ -132,7 +134,8 @@ class Minimizer {
     detail::Hessian hessian(exec, field, options.time, spins, descent_.is_mobile,
                             detail::HessianArrays<Spins>{descent_.search.trial, pairs.change(2),
                                                          descent_.lbfgs.scratch()});
-    // Below this curvature, a turn by a radian does not bring the torque above its bound.
+    // If the curvature is below `tolerance`, a turn by one radian does not bring the torque above
+    // its bound.
     auto const found = detail::find_lowest_curvature(
         hessian, exec, arrays,
         {.scale = descent_.first_shift(),
@@ -146,7 +149,8 @@ class Minimizer {
     return found;
   }
 
-  /// Leaves a saddle of small curvature along its vector in search.direction.
+  /// Leaves a saddle of small negative curvature along the vector of that curvature, which is in
+  /// search.direction. Returns false if it does not succeed.
   template <class Exec, class Field>
   bool leave_softly(Exec const& exec, Field const& field, Spins& spins, double longest,
                     MinimizeOptions const& options) {

@@ -36,7 +36,7 @@ struct KeepMobile {
   }
 };
 
-/// A smooth pattern without symmetry that turns no spin by more than 1.
+/// Makes a smooth pattern of vectors without symmetry, the longest of length 1.
 template <class Exec, class Spins>
 void make_disturbance(Exec const& exec, Preconditioner<Spins>& preconditioner, Spins const& work,
                       Spins const& disturbance) {
@@ -48,7 +48,7 @@ void make_disturbance(Exec const& exec, Preconditioner<Spins>& preconditioner, S
   combine(exec, 1 / largest_length(exec, disturbance), disturbance, 0, disturbance, disturbance);
 }
 
-/// minimum_energy_path for a single call.
+/// The search of a single call of minimum_energy_path.
 template <class Exec, class Field, class Spins>
 class PathFinder {
   using Real = typename Spins::value_type;
@@ -86,10 +86,11 @@ class PathFinder {
 
  private:
   static constexpr double disturbance = 0.1;          // rad
-  static constexpr double rough = 0.03, fine = 2e-3;  // gradients over the strongest field
-  static constexpr double longest_turn = 0.3;         // of a spin in a step
+  static constexpr double rough = 0.03, fine = 2e-3;  // gradients, relative to the strongest field
+  static constexpr double longest_turn = 0.3;         // of a spin in a step, rad
 
-  /// Moves every spin along its great circle, with a disturbance in the middle.
+  /// Places the images along the great circle of every spin, with a disturbance that is largest in
+  /// the middle.
   void make_start() {
     auto const &work = saddle_.spins(), &pattern = saddle_.vector();
     make_disturbance(exec_, preconditioner_, work, pattern);
@@ -108,12 +109,12 @@ class PathFinder {
     }
   }
 
-  /// Relaxes the string roughly to a minimum energy path. Then, between known saddles and minima,
-  /// relaxes it further until it is such a path and has no other maxima.
+  /// Relaxes the string roughly. Then adds saddles and minima to it as fixed images, and relaxes it
+  /// between them, until it is a minimum energy path without further maxima.
   PathEnd search() {
     double bound = rough;
     if (auto const end = relax(bound, true)) return *end;
-    double smallest = 0.05;  // peak height over the range of the energies
+    double smallest = 0.05;  // prominence of a peak, relative to the range of energies
     for (int attempt = 0; attempt < 60; ++attempt) {
       auto const peak = next_peak(1, smallest);
       bool const added = peak ? add_saddle(*peak) : add_minimum(smallest);
@@ -130,7 +131,7 @@ class PathFinder {
         bound *= 0.3;
         end = relax(bound, true);
       } else if (found_.saddles.empty()) {
-        // A barrier may be low compared with the energy between the ends.
+        // A barrier may be low compared with the range of energies along the path.
         if (smallest <= 1e-3) return PathEnd::no_saddle;
         smallest = std::max(0.2 * smallest, 1e-3);
         bound = std::max(0.3 * bound, fine);
@@ -146,8 +147,8 @@ class PathFinder {
     return PathEnd::no_saddle;
   }
 
-  /// Relaxes until the gradient across the path, of the highest image or of all, is below `bound`
-  /// times the strongest field. Shortens the steps while it does not fall.
+  /// Relaxes until the gradient across the path is below `bound` times the strongest field, at the
+  /// highest image or at all. When it no longer falls, shortens the steps, and finally gives up.
   std::optional<PathEnd> relax(double bound, bool of_highest,
                                int most_steps = std::numeric_limits<int>::max()) {
     double turn = longest_turn, least = std::numeric_limits<double>::infinity();
@@ -183,12 +184,12 @@ class PathFinder {
            options_.observer(PathProgress{evaluations, energy, gradient}) == Next::proceed;
   }
 
-  /// Returns the highest unknown maximum (sign 1), or the lowest unknown minimum (-1), of the
-  /// energy along the path.
+  /// Returns the highest maximum (sign 1) or the lowest minimum (sign -1) of the energy along the
+  /// path that is not at a fixed image.
   std::optional<Peak> next_peak(int sign, double smallest) const {
     auto points = string_.profile();
     for (auto& point : points) point.energy *= sign, point.slope *= sign;
-    // Smaller peaks come from the remaining gradient.
+    // The remaining gradient across the path can cause peaks up to this height.
     double const left =
         is_settled_ ? 2 * found_.across * found_.across / preconditioner_.first_shift() : 0;
     double const least = std::max(smallest * span_of(points), left);
@@ -209,7 +210,8 @@ class PathFinder {
     return false;
   }
 
-  /// Fixes an image at a minimum between saddles, where the path may turn a corner.
+  /// Adds a fixed image at a minimum of the energy between saddles, where the path may turn a
+  /// corner.
   bool add_minimum(double smallest) {
     auto const valley = next_peak(-1, smallest);
     if (!valley) return false;
@@ -233,7 +235,7 @@ class PathFinder {
     return string_.insert(exec_, spins, found.energy, image);
   }
 
-  /// Climbs from a maximum of the path to a saddle, which becomes an image.
+  /// Climbs from a maximum along the path to a saddle, and adds it as a fixed image.
   bool add_saddle(Peak const& peak) {
     auto const& [image, fraction] = peak.place;
     auto const &before = string_.spins(image), &after = string_.spins(image + 1);
@@ -255,7 +257,7 @@ class PathFinder {
     found_.evaluations += climbed.evaluations;
     stopped_ = climbed.is_stopped;
     if (!climbed.is_saddle) return false;
-    // Rejects saddles far above the path and those that it already passes.
+    // Rejects saddles far above the path, and those that are already on it.
     if (climbed.energy.value > peak.energy + 0.1 * span_of(string_.profile())) return false;
     if (is_known(saddle_.spins())) return false;
     find_direction(exec_, peak_, peak_, saddle_.spins(), peak_, 0, 1, saddle_.vector());
@@ -317,11 +319,11 @@ constexpr int path_work_fields(std::size_t images) {
 /// Finds a minimum energy path between two states, and the saddles on it.
 ///
 /// The first and the last image are relaxed by `minimize`; the images between become the path. It
-/// starts from the great circle of each spin (through x, if its end states are opposite), with a
-/// disturbance of 0.1 rad without symmetry. A string of images descends perpendicular to itself by
-/// preconditioned L-BFGS. From its energy maxima, Newton's method climbs to saddles until the
+/// starts from the great circle of each spin (through x or y, if the end states are opposite), with
+/// a disturbance of 0.1 rad without symmetry. A string of images descends perpendicular to itself
+/// by preconditioned L-BFGS. From its energy maxima, Newton's method climbs to saddles until the
 /// torque is below its bound; then the string relaxes between them. `saddle` receives the highest
-/// one.
+/// saddle.
 ///   std::vector<Spins> images = ...;  // the first and the last are the states
 ///   Spins saddle("saddle", lattice);
 ///   auto const path = cayspin::minimum_energy_path(exec, field, images, saddle);

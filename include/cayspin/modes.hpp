@@ -25,7 +25,8 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// p and q of InverseTurning, instead of a and b.
+/// Functor that replaces the a and b of a Turning by the p and q of its InverseTurning. Also
+/// computes |q| and sqrt(a^2 + b^2).
 template <class Real>
 struct InvertTurning {
   SiteArray<Real, 1> precession, damping;
@@ -43,7 +44,7 @@ struct InvertTurning {
   }
 };
 
-/// Precession and damping of a LandauLifshitz.
+/// Functor that stores the precession (1 or 0) and the damping of a LandauLifshitz at every site.
 template <class Generator, class Real>
 struct StoreTurning {
   Generator generator;
@@ -76,7 +77,7 @@ class ModesAt {
                                   std::to_string(ModesOptions::most));
   }
 
-  /// Calls take(mode, error, search) for each mode found.
+  /// Calls take(search, i) for each mode i found.
   template <class Take>
   ModesEnd find(InverseTurning<Real> const& inverse, bool is_undamped, bool is_symmetric,
                 double fastest, Take const& take) {
@@ -122,8 +123,8 @@ class ModesAt {
   std::int64_t evaluations_ = 0;
 };
 
-/// Chooses the phase in which the longest vector has its largest component real and positive, and
-/// normalises its length to 1. If vectors or components differ only by round-off, the first counts.
+/// Scales a mode so that its longest vector has length 1, and the largest component of that vector
+/// is real and positive. If vectors or components differ only by round-off, the first counts.
 template <class Exec, class Spins>
 void normalize_mode(Exec const& exec, Spins const& real, Spins const& imaginary) {
   auto const x = copy_to_host(real), y = copy_to_host(imaginary);
@@ -153,7 +154,7 @@ void normalize_mode(Exec const& exec, Spins const& real, Spins const& imaginary)
 /// Each product of the Hessian with a vector takes one evaluation of the field if it is affine in
 /// the spins, otherwise two. Symmetries that the equilibrium breaks give zero modes, with a rate of
 /// about 0. At a saddle the decay of a growing mode is negative. Waits. Throws
-/// std::invalid_argument for invalid options and parts of a lattice.
+/// std::invalid_argument for invalid options, parts of a lattice and replicas.
 template <class Exec, class Field, class Spins>
 NormalModes<Spins> normal_modes(
     Exec const& exec, Field const& field,
@@ -229,13 +230,13 @@ Curvatures<Spins> lowest_curvatures(Exec const& exec, Field const& field, Spins 
 }
 
 /// Returns the spin waves of given wave vectors (cycles per lattice cell) about an equilibrium that
-/// is equal in all cells along the periodic axes. It takes two products of the Hessian for each
-/// site of a cell, and then the eigenvalues of a small matrix for each wave vector. A wave vector
-/// need not fit the lattice, unless the interaction reaches around it. Bonds must not be longer
-/// than half the lattice; those along a periodic axis of one cell join it to itself and give its
-/// waves no phase. `poll` is asked before each product and each wave vector; after Next::stop the
-/// result is empty. Throws std::invalid_argument where cells differ, and for a wave vector that
-/// must fit but does not or has a component along an open axis.
+/// is equal in all cells along the periodic axes. It takes two products of the Hessian with a
+/// vector for each mobile site of a cell, and then the eigenvalues of a small matrix for each wave
+/// vector. A wave vector need not fit the lattice, unless the interaction reaches around it. Bonds
+/// must not be longer than half the lattice. Along a periodic axis of one cell, bonds join the cell
+/// to itself and add no phase to waves. `poll` is called before each product and each wave vector;
+/// after Next::stop the result is empty. Throws std::invalid_argument where cells differ, and for a
+/// wave vector that must fit but does not or has a component along an open axis.
 template <class Exec, class Field, class Spins>
 BlochModes bloch_modes(
     Exec const& exec, Field const& field,

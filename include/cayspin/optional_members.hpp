@@ -5,9 +5,9 @@
 
 #include <concepts>
 
-// Calls of field terms and generators by the library. Each function calls the member of its name
-// or, if there is none, does what the tables of concepts.hpp say. field/parts.hpp has the functions
-// for a field made of others.
+// How the library calls field terms and generators. Each function calls the member of its own name
+// or, if there is none, does what the tables in concepts.hpp give as the default. field/parts.hpp
+// has the functions for a field made of others.
 namespace cayspin::inline v0_2::detail {
 
 template <class Term, class Stencil>
@@ -53,7 +53,8 @@ constexpr void check_conservative() {
                 "is_conservative = false, such as ZhangLi and Slonczewski.");
 }
 
-/// Returns `h` plus a term's field at a stencil's centre: most terms add it in fewer operations.
+/// Returns `h` plus a term's field at a stencil's centre. Most terms need fewer operations for this
+/// than for the field and a sum.
 template <class Term, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_field(Term const& term, Stencil const& stencil,
                                                         VectorOf<Stencil> const& h) {
@@ -64,7 +65,7 @@ KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_field(Term const& term, Stenci
     return h + term.field(stencil);
 }
 
-/// Returns `h` plus a term's field, up to a multiple of the spin.
+/// Returns `h` plus a term's field plus any multiple of the spin.
 template <class Term, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_turning_field(Term const& term,
                                                                 Stencil const& stencil,
@@ -132,8 +133,8 @@ auto prepare_term(Term const& term, Exec const& exec, Spins const& spins, double
   }
 }
 
-/// Returns the version for a host loop that calls begin_row (detail/row_fields.hpp): a term may
-/// leave its work to begin_row.
+/// Returns the kernel version for a host loop that calls begin_row (detail/row_fields.hpp); a term
+/// may leave the work of prepare to begin_row.
 template <class Term, class Exec, class Spins>
 auto prepare_for_rows(Term const& term, Exec const& exec, Spins const& spins, double t) {
   if constexpr (requires { term.prepare_for_rows(exec, spins, t); }) {
@@ -144,8 +145,8 @@ auto prepare_for_rows(Term const& term, Exec const& exec, Spins const& spins, do
   }
 }
 
-/// Returns true if H is affine in the spins. A term for which this is known at compile time has a
-/// degree.
+/// Returns true if H is affine in the spins. Terms for which this is known at compile time have a
+/// member `degree`.
 template <class Term, class Exec, class Spins>
 bool has_affine_field(Term const& term, Exec const& exec, Spins const& spins) {
   auto const is = [&](auto const& part) { return has_affine_field(part, exec, spins); };
@@ -167,7 +168,7 @@ KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> evaluate(Generator const& generato
   return generator(stencil);
 }
 
-/// Returns A up to a multiple of the spin, which does not turn it.
+/// Returns A plus any multiple of the spin, which does not turn the spin.
 template <class Generator, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> turning_part(Generator const& generator,
                                                            Stencil const& stencil) {

@@ -28,7 +28,8 @@ class Part {
   virtual ~Part() = default;
   /// Returns the larger lattice.
   virtual Lattice const& whole() const = 0;
-  /// Returns the row or plane of the larger lattice that is number 0 of this part, ghosts included.
+  /// Returns, for each axis, the index in the larger lattice of the first row or plane of this
+  /// part, ghosts included; negative where ghosts wrap around.
   virtual std::array<std::int64_t, 3> begin() const = 0;
   /// Return the number of parts, and the index of this one.
   virtual std::size_t parts() const = 0;
@@ -37,10 +38,10 @@ class Part {
   virtual void sum(std::span<std::int64_t> words) const = 0;
   /// Replaces words by their maxima over the parts.
   virtual void maximum(std::span<std::int64_t> words) const = 0;
-  /// Updates the ghosts of fields; waits. Call when work on the fields has finished.
+  /// Updates the ghosts of fields; waits. Work on the fields must have finished before the call.
   virtual void update_ghosts(std::span<FieldNumbers const> fields) const = 0;
-  /// Sends bytes to each part, including itself, and receives as many as each sends; waits. Spans
-  /// are in the order of the parts, in multiples of 8 bytes.
+  /// Sends sent[i] to part i, and receives what it sends in received[i]; i may be this part. Waits.
+  /// The two parts must give equal sizes, in multiples of 8 bytes.
   virtual void exchange(std::span<std::span<std::byte const> const> sent,
                         std::span<std::span<std::byte> const> received) const = 0;
 };

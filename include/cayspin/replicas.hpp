@@ -15,12 +15,13 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// Copies all sites of a replica between its field and that of all replicas.
+/// Functor that copies the sites of one replica from the field of all replicas to a field of its
+/// own, or back.
 template <class Real, int Components, bool ToReplica>
 struct CopyReplica {
   SiteArray<Real, Components> of_all, of_one;
   RowLayout all, one;
-  std::int64_t first;  // site of the replica
+  std::int64_t first;  // number of the replica's site 0 among all sites
 
   KOKKOS_FUNCTION void operator()(std::int64_t site) const {
     std::ptrdiff_t const in_all = all.offset(first + site), in_one = one.offset(site);
@@ -59,8 +60,8 @@ void copy_replica(Exec const& exec, SiteField<Real, Components, MemorySpace> con
   detail::copy_between<false>(exec, from, replica, to);
 }
 
-/// Copies a field on the lattice of one replica into one replica of a field. Does not wait. Throws
-/// like copy_replica.
+/// Copies a field on the lattice of one replica into one of the replicas of a field. Does not wait.
+/// Throws like copy_replica.
 template <class Exec, std::floating_point Real, int Components, class MemorySpace>
 void copy_to_replica(Exec const& exec, SiteField<Real, Components, MemorySpace> const& from,
                      SiteField<Real, Components, MemorySpace> const& to, std::int64_t replica) {

@@ -21,13 +21,13 @@ struct RowRange {
   KOKKOS_FUNCTION std::int64_t count() const { return std::int64_t(ny()) * nz(); }
 };
 
-/// Memory layout of the sites: one array per component, rows along x padded to whole packs. The
-/// distances between rows, planes and components are odd numbers of cache lines once there are
-/// several lines, and planes are not close to a whole number of pages apart, so that neighbours do
-/// not compete for the same cache sets.
+/// Memory layout of the sites: one array per component, with rows along x padded to whole cache
+/// lines. If rows are longer than a line, the strides of rows, planes and components are odd
+/// numbers of lines, and that of planes is not close to a whole number of pages. This keeps
+/// neighbours from competing for the same cache sets.
 struct RowLayout {
   std::int32_t nx = 0, ny = 0, nz = 0;
-  std::int32_t replica_planes = 0;  // nz is a multiple
+  std::int32_t replica_planes = 0;  // nz is a multiple of it
   bool periodic[3] = {false, false, false};
   std::ptrdiff_t pitch = 0;             // stride of rows
   std::ptrdiff_t plane = 0;             // stride of planes
@@ -35,7 +35,7 @@ struct RowLayout {
   std::ptrdiff_t origin = 0;  // position of site 0 in the allocation; a pack may read before it
   RowRange own;               // all rows but the ghosts
   Part const* part = nullptr;
-  std::int32_t parity = 0;  // of y + z in the whole lattice, where y + z is even here
+  std::int32_t parity = 0;  // of y + z in the whole lattice where y + z of this part is even
 
   template <class Real>
   static RowLayout of(Lattice const& lattice) {
@@ -74,8 +74,8 @@ struct RowLayout {
     return layout;
   }
 
-  /// Returns at least this many cache lines: an odd number, at least a sixth of a page from whole
-  /// pages.
+  /// Returns the stride of planes in cache lines: at least `least`, odd, and, from a page on, at
+  /// least a sixth of a page away from whole pages.
   static std::ptrdiff_t lines_of_plane(std::ptrdiff_t least) {
     constexpr std::ptrdiff_t page = detail::page_bytes / detail::cache_line_bytes,
                              sixth = page / 6 | 1;
@@ -85,7 +85,7 @@ struct RowLayout {
   }
 
   RowRange all() const { return {0, ny, 0, nz}; }
-  /// Returns the part's own rows, and `more` rows of each of its ghosts.
+  /// Returns the part's own rows, with up to `more` ghost rows and ghost planes on each side.
   RowRange own_and(std::int32_t more) const {
     auto const low = [&](std::int32_t own_begin) {
       return own_begin > more ? own_begin - more : 0;
@@ -97,7 +97,7 @@ struct RowLayout {
   }
 
   KOKKOS_FUNCTION bool has_replicas() const { return replica_planes != nz; }
-  /// Returns the number of a plane in its replica.
+  /// Returns the number of a plane within its replica.
   KOKKOS_FUNCTION std::int32_t plane_of_replica(std::int32_t z) const {
     return has_replicas() ? z % replica_planes : z;
   }
@@ -106,7 +106,7 @@ struct RowLayout {
   std::size_t allocation(int components) const {
     return static_cast<std::size_t>(2 * origin + components * component_stride);
   }
-  /// Returns the offset of a site numbered ix + nx (iy + ny iz) without ghosts.
+  /// Returns the offset of a site numbered ix + nx (iy + ny iz), where ghosts do not count.
   KOKKOS_FUNCTION std::ptrdiff_t offset(std::int64_t site) const {
     std::int64_t row = site / nx;
     if (part != nullptr) row = (own.z_begin + row / own.ny()) * ny + own.y_begin + row % own.ny();
@@ -120,7 +120,7 @@ struct RowLayout {
   }
 };
 
-/// A field for kernels, and the form in which a field term stores one: stencil.site().load(array).
+/// A field as kernels and field terms hold it; terms read it with stencil.site().load(array).
 /// Component c of the site at RowLayout::offset is data[c * stride + offset].
 template <class Real, int Components>
 struct SiteArray {
@@ -130,7 +130,8 @@ struct SiteArray {
   std::ptrdiff_t stride = 0;
 };
 
-/// A SiteArray that a kernel only writes; `streaming` when it is larger than the caches.
+/// A SiteArray that a kernel only writes. `streaming`: bypasses the caches, because the fields in
+/// use exceed them.
 template <class Real, int Components>
 struct OutputArray : SiteArray<Real, Components> {
   bool streaming = false;

@@ -19,7 +19,7 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// Returns the energy density, and the sum of its terms' absolute values.
+/// Computes the energy density, and the sum of the absolute values of its terms.
 template <class Source, class Stencil, class Value>
 KOKKOS_FORCEINLINE_FUNCTION void energy_at(Source const& source, Stencil const& stencil,
                                            Value* values) {
@@ -42,7 +42,7 @@ struct EnergyOfSites {
   }
 };
 
-/// Functor that returns the energy density of each term, and its absolute value.
+/// Functor that computes the energy densities of all terms, followed by their absolute values.
 template <class Source, class Real>
 struct TermEnergiesOfSites {
   Source source;
@@ -56,8 +56,8 @@ struct TermEnergiesOfSites {
   }
 };
 
-/// Finds how far m.m is above and below 1; one root of the largest of these gives the largest | |m|
-/// - 1 |.
+/// Computes how far m.m is above and below 1. norm_defect_of turns the largest of each over all
+/// sites into the largest | |m| - 1 |, so that no site needs a root.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION void off_the_sphere(Vec3<Value> const& m, Value* values) {
   Value const square = dot(m, m);
@@ -146,7 +146,7 @@ Energy energy(Exec const& exec, Source const& source, SpinField<Real, MemorySpac
 
 /// Returns the energy of each term of an EffectiveField, in the order of its terms, in one pass
 /// over the spins at time t. The EffectiveField may be inside a FieldWithVacancies or a generator;
-/// a single field term counts as a sum of one.
+/// a single field term counts as an EffectiveField of one term.
 template <class Exec, class Source, class Real, class MemorySpace>
 std::array<Energy, static_cast<std::size_t>(detail::energy_terms<Source>)> term_energies(
     Exec const& exec, Source const& source, SpinField<Real, MemorySpace> const& spins,
@@ -184,7 +184,7 @@ Vec3<double> magnetization(Exec const& exec, SpinField<Real, MemorySpace> const&
   return {total[0] / sites, total[1] / sites, total[2] / sites};
 }
 
-/// Returns the mean of m weighted by site: with an occupation of 0 and 1 as weights, the mean over
+/// Returns the weighted mean of m. With an occupation of 0 and 1 as weights, it is the mean over
 /// the occupied sites. Throws std::invalid_argument when the weights are on another lattice or
 /// their sum is zero.
 template <class Exec, class Real, class MemorySpace>

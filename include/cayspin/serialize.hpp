@@ -32,7 +32,8 @@ class ExchangeMemory {
     if constexpr (std::integral<Number>) require_held<Number>(name, value);
     number = static_cast<Number>(value);
   }
-  /// Checks the count of the fields that follow: in a damaged checkpoint it may exceed the memory.
+  /// Stores or restores the number of fields that follow. Throws if it is above `most`: in a
+  /// damaged checkpoint it could be more than memory can hold.
   template <class Number>
   void count(std::string const& name, Number& number, std::size_t most) const {
     (*this)(name, number);
@@ -73,8 +74,8 @@ class ExchangeMemory {
 
 }  // namespace detail
 
-/// True if a stepper carries something from one step to the next, as multistep, adaptive and
-/// compensated ones do.
+/// True if a stepper carries something besides the spins from one step to the next, as multistep,
+/// adaptive and compensated ones do.
 template <class Stepper>
 inline constexpr bool remembers_steps = requires(Stepper& stepper) { stepper.reset(); };
 

@@ -22,7 +22,7 @@ struct BondOfLength {
   std::array<int, 3> offset;
 };
 
-/// Returns every bond once, up to `reach` cells away along the periodic vectors.
+/// Returns every bond once, shortest first, up to `reach` cells away along the periodic vectors.
 inline std::vector<BondOfLength> bonds_within(Crystal const& crystal, int reach,
                                               std::array<bool, 3> const& repeats) {
   std::vector<BondOfLength> bonds;
@@ -36,7 +36,7 @@ inline std::vector<BondOfLength> bonds_within(Crystal const& crystal, int reach,
       for (int i = -x; i <= x; ++i)
         for (int j = -y; j <= y; ++j)
           for (int k = -z; k <= z; ++k) {
-            // Keeps one of a bond between sites of one kind and its reverse.
+            // A bond between sites of equal index occurs in both directions: keeps one of them.
             if (a == b && !(i > 0 || (i == 0 && (j > 0 || (j == 0 && k > 0))))) continue;
             auto const here = crystal.position({0, 0, 0}, static_cast<std::size_t>(a)),
                        there = crystal.position({i, j, k}, static_cast<std::size_t>(b));
@@ -48,7 +48,8 @@ inline std::vector<BondOfLength> bonds_within(Crystal const& crystal, int reach,
   return bonds;
 }
 
-/// Returns how many cells along a vector contain all sites within a length.
+/// Returns an upper bound on how many cells apart, along any cell vector, two sites within `length`
+/// of each other can be.
 inline double cells_within(Crystal const& crystal, double length) {
   auto const& [a, b, c] = crystal.cell;
   double const volume = std::abs(scalar_product(a, vector_product(b, c)));
@@ -65,12 +66,14 @@ inline double cells_within(Crystal const& crystal, double length) {
 
 }  // namespace detail
 
-/// Distances that differ by less than this fraction are equal, since vectors are typed with few
-/// digits.
+/// Distances that differ by less than this fraction count as equal, because cell vectors and
+/// positions are often given with few digits.
 inline constexpr double same_distance = 1e-4;
 
-/// Returns exchange bonds between all pairs at the first, second, ... distance in a crystal.
-/// `repeats`: the vectors along which there are other cells.
+/// Returns exchange bonds between all pairs of sites at the first, second, ... distance in a
+/// crystal, with the constants exchange[0], exchange[1], ... `repeats`: the cell vectors along
+/// which there are other cells. Throws std::invalid_argument for an invalid crystal, for more than
+/// two million bonds, and for more constants than a single cell has distances.
 inline std::vector<Coupling> couplings_of_shells(Crystal const& crystal,
                                                  std::vector<double> const& exchange,
                                                  std::array<bool, 3> const& repeats = {true, true,
@@ -97,7 +100,7 @@ inline std::vector<Coupling> couplings_of_shells(Crystal const& crystal,
     if (is_bounded && shells < exchange.size())
       throw std::invalid_argument("cayspin::couplings_of_shells: the sites of a cell have only " +
                                   std::to_string(shells) + " distances");
-    // Shorter bonds may be farther along a skew vector.
+    // If the cell vectors are skew, other bonds up to this length may reach over more cells.
     if (is_whole && (is_bounded || detail::cells_within(crystal, length) <= reach)) break;
   }
   return couplings;

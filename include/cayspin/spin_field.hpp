@@ -25,9 +25,9 @@ inline Lattice const& validated(Lattice const& lattice) {
   return lattice;
 }
 
-/// Functor that initialises a field: tasks are its rows and then its margins, before, between and
-/// after the components. Packs at the ends of rows read padding there. It is discarded, but must
-/// not trap or be denormal.
+/// Functor that initialises a field. Its tasks are the rows, and then the margins before, between
+/// and after the components. Packs at the ends of rows read some of this padding; the results are
+/// discarded, but must not trap or be denormal.
 template <class Real>
 struct FillField {
   Real* data;
@@ -85,7 +85,7 @@ struct CopySites {
 
 /// `Components` numbers on every site of a lattice, each component in a separate array (RowLayout).
 /// A handle: copies share the memory, as copies of a Kokkos::View do. A default-constructed or
-/// moved-from field has no sites, and every call refuses it.
+/// moved-from field has no sites, and functions that take fields refuse it.
 template <std::floating_point Real, int Components,
           class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class SiteField {
@@ -159,7 +159,7 @@ class SiteField {
   }
 
  private:
-  Lattice lattice_{{0, 0, 0}};  // equal to that of no other field
+  Lattice lattice_{{0, 0, 0}};  // no valid field has this lattice
   RowLayout layout_;
   Kokkos::View<Real*, MemorySpace> data_;
 };
@@ -239,15 +239,15 @@ void copy(Exec const& exec, View const& from, SiteField<Real, Components, Memory
   detail::update_ghosts(exec, to.lattice(), to);
 }
 
-/// Copies a field into a View of extents (sites, Components), x fastest.
-/// Throws std::invalid_argument when the extents differ.
+/// Copies a field into a View of extents (sites, Components), x fastest. Does not wait. Throws
+/// std::invalid_argument when the extents differ.
 template <class Exec, class View, class Real, int Components, class MemorySpace>
 void copy(Exec const& exec, SiteField<Real, Components, MemorySpace> const& from, View const& to) {
   detail::copy_sites<false>(exec, to, from);
 }
 
-/// Copies numbers in host memory, (sites, Components) with x fastest, into a field; waits. Numbers
-/// of one replica of the lattice go into all replicas.
+/// Copies numbers in host memory, (sites, Components) with x fastest, into a field; waits. If they
+/// are for one replica of the lattice, all replicas get them.
 template <class Number, class Real, int Components, class MemorySpace>
 void copy_from_host(std::vector<Number> const& from,
                     SiteField<Real, Components, MemorySpace> const& to) {

@@ -19,16 +19,17 @@
 #include <stdexcept>
 
 // The largest stable time step of a method for the Landau-Lifshitz equation, computed before a run.
-// The stages of the method act on one transverse mode of a nearly uniform state, u' = s (-damping +
-// i) u. sigma is the part of the generator along the spins.
+// The stages of the method are applied to one transverse mode of a nearly uniform state, u' = s
+// (-damping + i) u, where s is the effective field of the mode. sigma is the part of the generator
+// along the spins.
 namespace cayspin::inline v0_2 {
 
 namespace detail {
 
 using Complex = std::complex<double>;
 
-/// Lie-algebra coordinates of a spin near the axis: transverse (first order in the mode's
-/// amplitude) and parallel (zeroth order).
+/// Lie-algebra coordinates of a spin near the direction of the uniform state: transverse (first
+/// order in the mode's amplitude) and parallel (zeroth order).
 struct NearAxis {
   Complex transverse{0, 0};
   double parallel = 0;
@@ -44,7 +45,7 @@ inline NearAxis operator*(double s, NearAxis const& a) {
 template <class Update>
 struct LinearUpdate;
 
-// Returns the transverse part of f x y.
+// Returns the transverse part of f x y, as a complex number like NearAxis::transverse.
 inline Complex transverse_cross(NearAxis const& f, NearAxis const& y) {
   return Complex(0, 1) * (f.parallel * y.transverse - y.parallel * f.transverse);
 }
@@ -56,7 +57,8 @@ struct LinearUpdate<update::Lie<Cayley>> {
         y.transverse - 0.5 * transverse_cross(f, y) + 0.25 * f.parallel * y.parallel * f.transverse,
         y.parallel * (1 + 0.25 * f.parallel * f.parallel)};
   }
-  /// Returns the amplitude after the move, minus one.
+  /// Returns the change of the amplitude in the rotation with coordinates f; before it, the
+  /// amplitude is 1.
   static Complex growth(NearAxis const& f) {
     return Complex(0, -1) * f.transverse / Complex(1, -0.5 * f.parallel);
   }
@@ -104,8 +106,8 @@ struct LinearUpdate<update::Classical> {
 template <>
 struct LinearUpdate<update::Projected> : LinearUpdate<update::Classical> {};
 
-/// Returns the growth by the rotation of these coordinates, followed by the second rotation if the
-/// tableau has one; row `stages` is the end of the step.
+/// Returns the growth in the rotation with coordinates `first`, followed by a second rotation if
+/// the tableau has one. Row `stages` is the end of the step.
 template <class Tableau, class Linear, class Coordinates>
 Complex growth_to(int row, NearAxis const& first, Coordinates const& increments) {
   Complex const growth = Linear::growth(first);
@@ -117,7 +119,8 @@ Complex growth_to(int row, NearAxis const& first, Coordinates const& increments)
   return growth + Linear::growth(second);
 }
 
-/// Returns the factor of one step on the mode, minus one. z = dt s (-damping + i), q = dt sigma.
+/// Returns the factor by which one step multiplies the amplitude of the mode, minus one. z = dt s
+/// (-damping + i), q = dt sigma.
 template <class Tableau, class Update>
 Complex mode_growth(Complex z, double q) {
   using Linear = LinearUpdate<Update>;
@@ -135,7 +138,8 @@ Complex mode_growth(Complex z, double q) {
   return growth_to<Tableau, Linear>(stages, total, increments);
 }
 
-/// Returns the largest absolute row sum, by which a tableau magnifies round-off.
+/// Returns the largest sum of absolute weights in a row of the tableau, at least 1: the tableau
+/// magnifies round-off by this factor.
 template <class Tableau>
 constexpr double largest_row() {
   double largest = 1;
@@ -150,7 +154,7 @@ constexpr double largest_row() {
   return largest;
 }
 
-/// Returns the mode's growth in one step of a method; a stepper may define its own.
+/// Returns the mode's growth in one step of a method; a stepper may have its own mode_growth.
 template <class Stepper>
 Complex growth_of_step(Complex z, double q) {
   if constexpr (requires { Stepper::mode_growth(z, q); })
@@ -159,8 +163,8 @@ Complex growth_of_step(Complex z, double q) {
     return mode_growth<typename Stepper::tableau_type, typename Stepper::update_type>(z, q);
 }
 
-/// Returns true if the mode grows. `clearly`: by more than round-off; otherwise growth that
-/// round-off could hide counts, too.
+/// Returns true if the mode grows. `clearly`: only growth beyond round-off counts; otherwise growth
+/// that round-off could hide counts, too.
 template <class Stepper>
 bool amplifies(Complex rate, double dt, double sigma, bool clearly) {
   Complex const growth = growth_of_step<Stepper>(dt * rate, dt * sigma);
@@ -174,7 +178,7 @@ bool amplifies(Complex rate, double dt, double sigma, bool clearly) {
 
 /// Returns the smallest dt below `limit` above which grows(dt, clearly) is true; `limit` when there
 /// is none, 0 when every dt down to 1e-9 of the mode's time `unit` amplifies. Searches upwards from
-/// `from` units: at short steps of high order, round-off would hide growth.
+/// `from` units: at shorter steps, round-off would hide the growth of methods of high order.
 template <class Grows>
 double first_amplifying_step(Grows const& grows, double unit, double limit, double from) {
   double stable = from * unit, unstable = stable;
@@ -210,7 +214,7 @@ inline void check_bound(double field_bound, double damping) {
 
 }  // namespace detail
 
-/// Returns the largest eigenvalue of -constant Lap on the lattice, a bound on the exchange field.
+/// Returns the largest eigenvalue of -|constant| Lap on the lattice, a bound on the exchange field.
 /// Throws std::invalid_argument when the constant is not finite.
 inline double exchange_bound(Lattice const& of_spins, double constant) {
   detail::finite(constant, "cayspin::exchange_bound: the constant");
@@ -236,9 +240,10 @@ struct StabilityOptions {
 };
 
 /// Returns the largest dt at which no mode of a nearly uniform state grows by more than round-off:
-/// an a-priori bound that never exceeds the linear limit. 0 when every dt amplifies, infinity when
-/// none does. Throws std::invalid_argument for a bound or a damping that is negative or not finite.
-/// `field_bound`: exchange_bound + |applied| + sum of |anisotropy constants| + |demag strengths|.
+/// an a-priori bound that never exceeds the linear limit. Returns 0 when modes grow at every dt,
+/// infinity when none grows at any. Throws std::invalid_argument for a bound or a damping that is
+/// negative or not finite. `field_bound`: exchange_bound + |applied| + sum of |anisotropy
+/// constants| + |demag strengths|.
 ///   largest_stable_step<Rkmk4<Spins>>(field_bound, damping, {.precession = false})
 template <class Stepper>
 double largest_stable_step(double field_bound, double damping,
@@ -248,9 +253,11 @@ double largest_stable_step(double field_bound, double damping,
   double limit = std::numeric_limits<double>::infinity();
   detail::Complex const rate(-damping, options.precession ? 1 : 0);
   if (!(field_bound > 0) || std::abs(rate) == 0) return limit;
-  limit = 1e3 / (field_bound * std::abs(rate));  // of the search; no explicit method gets there
+  // The end of the search: no explicit method is stable that far.
+  limit = 1e3 / (field_bound * std::abs(rate));
   double const scan_end = limit;
-  // Without sigma the limit is y/s, so the stiffest mode decides; with it any mode may.
+  // Without sigma, the limit of a mode is proportional to 1/s, so the stiffest mode decides. With
+  // sigma, any mode may decide.
   int const modes = sigma == 0 ? 1 : 400;
   for (int mode = modes; mode >= 1; --mode) {
     auto const of_mode = field_bound * (static_cast<double>(mode) / modes) * rate;

@@ -112,7 +112,7 @@ template <class Site, class Real>
 inline constexpr bool is_along_row<Stencil<Site, Real, RowStencil<Real>>> = Site::is_between_ends;
 
 /// Returns m_next - m_previous, with the zero vector for a missing neighbour. If none is missing,
-/// it uses values that other terms load, too.
+/// it uses the same loads as other terms.
 template <int Axis, class AnyStencil>
 KOKKOS_FORCEINLINE_FUNCTION typename AnyStencil::vector_type difference(AnyStencil const& stencil) {
   if constexpr (requires { stencil.template is_between<Axis>(); }) {
@@ -123,7 +123,8 @@ KOKKOS_FORCEINLINE_FUNCTION typename AnyStencil::vector_type difference(AnyStenc
   return stencil.template next<Axis>(none) - stencil.template previous<Axis>(none);
 }
 
-/// A stencil without neighbours: a spin in no field, and a site for coefficients.
+/// A stencil without neighbours: the value of a spin, which need not be in a field, and a site to
+/// load coefficients from.
 template <class Site>
 class SpinAlone {
  public:

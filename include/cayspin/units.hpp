@@ -80,7 +80,7 @@ struct LayerCurrent {
   double thickness = 0;   ///< of the layer, m
 };
 /// Returns the damping-like torque of a current in T: hbar j efficiency / (2 e Ms thickness). If j
-/// efficiency is positive, spins turn towards the polarization.
+/// times the efficiency is positive, spins turn towards the polarization.
 ///   spin_torque({.density = 1e12, .efficiency = 0.1, .Ms = 8e5, .thickness = 3e-9})
 inline double spin_torque(LayerCurrent const& current) {
   return reduced_planck * current.efficiency * current.density /
@@ -95,7 +95,9 @@ class ReducedUnits {
   double length_unit() const { return length_; }  ///< m
   double field_unit() const { return field_; }    ///< T, of B = mu0 H
   double energy_unit() const { return energy_; }  ///< J
-  /// m/s, for ZhangLi. The equation applies the factor of the damping's form to its torque.
+  /// m/s, for ZhangLi: length_unit() over time_unit(), but without the factor 1 + alpha^2 of
+  /// Gilbert's form. The unit of time applies that factor to the torque, as to all terms of the
+  /// equation.
   double velocity_unit() const { return velocity_; }
   double damping() const { return damping_; }  ///< of LandauLifshitz
 
@@ -117,7 +119,7 @@ class ReducedUnits {
   double per_second(double rate) const { return rate / time_; }
 
  protected:
-  /// `moment`: of a spin or cell, J/T.
+  /// `moment`: that of a spin or cell, J/T.
   ReducedUnits(double moment, double energy, double length, double gamma, Damping const& damping)
       : time_(damping.time_factor() * moment / (detail::positive(gamma, "gamma") * energy)),
         length_(length),
@@ -196,7 +198,7 @@ class Atomistic : public ReducedUnits {
         dipolar_(vacuum_permeability * material.mu_s * material.mu_s /
                  std::pow(material.lattice_constant, 3) / material.energy) {}
 
-  /// Returns the constant of Exchange, from J in joules. Its energies are relative to parallel
+  /// Returns the constant of Exchange, from J in joules. The energy of Exchange is 0 for parallel
   /// spins.
   double exchange(double J) const { return J / energy_unit(); }
   /// Returns the constant of UniaxialAnisotropy, from K in joules.

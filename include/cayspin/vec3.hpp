@@ -91,7 +91,8 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> as_value(Vec3<double> const& v) {
   return {as_value<Value>(v.x), as_value<Value>(v.y), as_value<Value>(v.z)};
 }
 
-/// Returns `axis` divided by its length; throws std::invalid_argument if that is zero.
+/// Returns `axis` divided by its length; throws std::invalid_argument if that is zero or not
+/// finite.
 inline Vec3<double> normalized(Vec3<double> const& axis, char const* what) {
   double const length = std::hypot(axis.x, axis.y, axis.z);
   if (!(length > 0) || !std::isfinite(length))
@@ -110,7 +111,7 @@ inline Vec3<double> finite(Vec3<double> const& v, char const* what) {
   return {finite(v.x, what), finite(v.y, what), finite(v.z, what)};
 }
 
-/// Squares below this are not resolved.
+/// Squares of lengths below this are too inaccurate to divide by.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION constexpr scalar_t<Value> smallest_square() {
   using Scalar = scalar_t<Value>;
@@ -118,8 +119,8 @@ KOKKOS_FORCEINLINE_FUNCTION constexpr scalar_t<Value> smallest_square() {
                                           : static_cast<Scalar>(0x1p-103);
 }
 
-/// Returns |m|^2 as a divisor: for the zero spin of a vacant site, a number that keeps zeros zero.
-/// NaN stays NaN.
+/// Returns |m|^2 to divide by. For the zero spin of a vacant site, returns a positive number, so
+/// that 0 divided by it is 0. NaN stays NaN.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value square_to_divide_by(Vec3<Value> const& m) {
   return maximum<Value>(dot(m, m), Value(smallest_square<Value>()));

@@ -17,9 +17,9 @@ namespace cayspin::inline v0_2 {
 
 /// m' = -m x H - damping m x (m x H), as A x m with A = H + damping m x H; without precession
 /// (overdamped) A = damping m x H. Reduced units. Damping is double, or a ScalarField with a number
-/// for each site. This is the form of Landau and Lifshitz. Gilbert's has A / (1 + damping^2);
-/// rescaling time converts one into the other if the damping is uniform, but not if it differs
-/// between sites.
+/// for each site. This is the form of Landau and Lifshitz. In Gilbert's form, A is divided by 1 +
+/// damping^2; if the damping is uniform, rescaling time converts one form into the other, but not
+/// if it differs between sites.
 template <class Field, class Damping = double>
 class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
                        public detail::ForwardingEnergy<LandauLifshitz<Field, Damping>, Field> {
@@ -34,7 +34,8 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
 
   KOKKOS_FORCEINLINE_FUNCTION Field const& field() const { return field_; }
   KOKKOS_FORCEINLINE_FUNCTION bool has_precession() const { return precession_; }
-  /// Returns false where the damping is zero on all sites; a damping field is not searched.
+  /// Returns false if the damping is a number and 0. A damping field counts as damped: its values
+  /// are not looked at.
   KOKKOS_FORCEINLINE_FUNCTION bool is_damped() const {
     if constexpr (uniform)
       return damping_ != 0;
@@ -90,8 +91,8 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
     return generator(stencil.site(), stencil.center(), h);
   }
 
-  /// Returns true if the motion conserves the energy: A = -dE/dm up to a multiple of m. A damping
-  /// field is not searched for nonzero values.
+  /// Returns true if the motion conserves the energy: A = -dE/dm up to a multiple of m. Returns
+  /// false for a damping field, even if it is zero on all sites.
   bool conserves_energy() const {
     if constexpr (uniform && detail::is_conservative<Field>)
       return damping_ == 0 && precession_;

@@ -27,7 +27,8 @@ struct SymmetricMatrix {
   }
 };
 
-/// A = -B m, E = <m, B m> / 2 of bodies whose B = I^-1 is Bodies::inverse_inertia<Value>(site).
+/// A = -B m and E = <m, B m> / 2 for rigid bodies; B = I^-1 is
+/// Bodies::inverse_inertia<Value>(site).
 template <class Bodies>
 class BodyGenerator {
  public:
@@ -58,9 +59,9 @@ inline constexpr bool is_body = std::is_base_of_v<BodyGenerator<Generator>, Gene
 
 }  // namespace detail
 
-/// Free rigid bodies of equal inertia, described by their body angular momentum m on the unit
-/// sphere: m' = m x I^-1 m, that is A = -I^-1 m (Lewis and Nigam 2002, Sec. 5, sign corrected); E =
-/// <m, I^-1 m> / 2 per body. Lattice::chain(count) holds count independent bodies.
+/// Free rigid bodies of equal inertia, described by their angular momentum m in the body frame, on
+/// the unit sphere: m' = m x I^-1 m, that is A = -I^-1 m (Lewis and Nigam 2002, Sec. 5, sign
+/// corrected); E = <m, I^-1 m> / 2 per body. Lattice::chain(count) holds count independent bodies.
 class RigidBody : public detail::BodyGenerator<RigidBody> {
  public:
   explicit RigidBody(SymmetricTensor const& inverse_inertia)
@@ -107,8 +108,8 @@ struct BodiesOfSites : BodyGenerator<BodiesOfSites<Real, Components>> {
 
 }  // namespace detail
 
-/// Free rigid bodies with different inertias. Six numbers per body: I^-1, ordered as
-/// SymmetricTensor. Three: a diagonal I^-1, in the body's principal axes.
+/// Free rigid bodies with different inertias. Six numbers per body are I^-1, ordered as in
+/// SymmetricTensor. Three are the diagonal of I^-1 in the body's principal axes.
 template <class Real, class MemorySpace, int Components = 6>
 class RigidBodyEnsemble {
   static_assert(

@@ -32,7 +32,7 @@ struct Constant {
 /// sigma from a forward difference of A_o = A - (m.A) m: xi = A_o + sigma m with sigma = -<w', w x
 /// m> / |w|^2, w = A_o. A second evaluation at cay(dt w) m, t + dt gives w'. It raises the order of
 /// LieEuler's energy error by one. Lewis and Nigam 2002, Sec. 4.1, with the sign and the norm
-/// corrected. Zero if A_o is zero.
+/// corrected. If A_o is zero, sigma is, too.
 struct FiniteDifference {
   double cap = std::numeric_limits<double>::infinity();  ///< bound on |dt sigma|
 };

@@ -7,7 +7,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Returns numerator / square; zero if the square is too small to be resolved.
+/// Returns numerator / square; zero if the square is too small to divide by.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value guarded_quotient(Value const& numerator, Value const& square) {
   auto const large_enough = Value(smallest_square<Value>()) < square;

@@ -24,13 +24,14 @@ struct Depth {
   friend bool operator==(Depth const&, Depth const&) = default;
 };
 
-/// Rounds up to whole cells: the planes along z of all sites of a crystal's cell.
+/// Rounds the depth along z up to whole cells of a crystal, which have one plane for each of their
+/// sites.
 inline Depth in_whole_cells(Depth const& depth, Lattice const& lattice) {
   auto const of_cell = static_cast<int>(lattice.cell_sites);
   return {depth.y, (depth.z + of_cell - 1) / of_cell * of_cell};
 }
 
-/// Returns true if each part has the rows or planes that its neighbours need.
+/// Returns true if each part has as many rows and planes as its neighbours need for ghosts.
 inline bool can_divide(Lattice const& lattice, Depth const& depth, Division const& division) {
   auto const fits = [](std::int64_t extent, int needed, int parts) {
     return parts == 1 || (parts > 1 && extent / parts >= needed);
@@ -47,8 +48,8 @@ inline std::string to_text(Depth const& depth) {
   return std::to_string(depth.y) + " rows or " + std::to_string(depth.z) + " planes";
 }
 
-/// Returns the division into this many parts that repeats least work; along z if two are equal.
-/// Throws std::invalid_argument when there is none.
+/// Returns the division into this many parts that repeats the least work on ghosts; of equal ones,
+/// the one with most parts along z. Throws std::invalid_argument when there is none.
 inline Division divide(Lattice const& lattice, Depth const& depth, int parts) {
   Division best{0, 0};
   double least = 0;
@@ -69,7 +70,8 @@ inline Division divide(Lattice const& lattice, Depth const& depth, int parts) {
   return best;
 }
 
-/// Throws std::invalid_argument unless the division gives `parts` parts that fit.
+/// Throws std::invalid_argument unless the depth is positive and the division gives `parts` parts
+/// that are large enough for it.
 inline void require_division(Lattice const& lattice, Depth const& depth, Division const& division,
                              int parts) {
   if (depth.y < 1 || depth.z < 1)

@@ -20,10 +20,10 @@
 namespace cayspin::inline v0_2::mpi {
 
 /// A lattice divided among the ranks of a communicator, along y and z. Each rank holds its part,
-/// with `depth` ghosts at each end inside the lattice. Fields on local() work like any others with
-/// steppers, terms and sums, and give the bits of a single rank. A step needs as many ghosts as it
-/// has stages. Parts of a crystal, and their ghosts, hold whole cells. The Domain must outlive its
-/// fields and steppers.
+/// with `depth` ghosts at each end that borders another part. Fields on local() work like any
+/// others with steppers, terms and sums, and results have the same bits as on a single rank. A step
+/// needs Stepper::ghosts ghosts: with most methods, one for each stage. Parts of a crystal, and
+/// their ghosts, hold whole cells. The Domain must outlive its fields and steppers.
 class Domain final : public Part {
  public:
   /// Collective on `comm`. Throws std::invalid_argument on every rank when the lattices or depths
@@ -31,7 +31,7 @@ class Domain final : public Part {
   Domain(MPI_Comm comm, Lattice const& lattice, Depth const& depth)
       : Domain(comm, lattice, depth, divide(agreed(comm, lattice, depth), depth, size_of(comm))) {}
 
-  /// Uses this division; the product of its numbers must be the number of ranks.
+  /// Uses the given division; the product of its two numbers must be the number of ranks.
   Domain(MPI_Comm comm, Lattice const& lattice, Depth const& depth, Division const& division)
       : whole_(agreed(comm, lattice, depth, division)),
         division_(division),
@@ -68,8 +68,9 @@ class Domain final : public Part {
   void sum(std::span<std::int64_t> words) const override { combine(words, MPI_SUM); }
   void maximum(std::span<std::int64_t> words) const override { combine(words, MPI_MAX); }
 
-  /// Sends one message per face and direction, or one per component of a large face. Planes along z
-  /// come first, then rows along y, including the ghosts just received along z.
+  /// Sends one message to each neighbour or, if the faces are large, one for each component of each
+  /// field. Planes along z are exchanged first, then rows along y, including the ghosts just
+  /// received along z.
   void update_ghosts(std::span<FieldNumbers const> fields) const override {
     Kokkos::Profiling::ScopedRegion const region("cayspin::mpi::update_ghosts");
     for_each_axis([&](std::size_t axis, detail::GhostMessages& messages) {
@@ -89,11 +90,13 @@ class Domain final : public Part {
   }
 
  private:
-  /// Returns `lattice` if all ranks were given equal ones.
+  /// Returns `lattice` if all ranks were given equal lattices, depths and divisions; throws
+  /// otherwise.
   static Lattice const& agreed(MPI_Comm comm, Lattice const& lattice, Depth const& depth,
                                Division const& division = {}) {
     constexpr std::size_t count = 14;
-    std::array<std::int64_t, 2 * count> given{};  // numbers, followed by their complements
+    // Numbers, then their complements: the maxima of these give the minima of the numbers.
+    std::array<std::int64_t, 2 * count> given{};
     given[0] = lattice.cell_sites;
     given[1] = division.y;
     given[2] = division.z;
@@ -128,7 +131,7 @@ class Domain final : public Part {
     detail::wait_for(request);
   }
 
-  /// Calls work for the divided axes.
+  /// Calls work(axis, messages) for the divided axes, z first.
   template <class Work>
   void for_each_axis(Work const& work) const {
     for (std::size_t const axis : {2UL, 1UL})
@@ -138,7 +141,8 @@ class Domain final : public Part {
 
   int depth_along(std::size_t axis) const { return axis == 1 ? depth_.y : depth_.z; }
 
-  /// Sets part number `index` of `parts` along an axis, in multiples of `unit`.
+  /// Sets the extent, ghosts and neighbours of part number `index` of `parts` along an axis, in
+  /// multiples of `unit`.
   void divide_axis(std::size_t axis, int parts, int index, std::int64_t unit) {
     neighbor_[axis] = {MPI_PROC_NULL, MPI_PROC_NULL};
     if (parts == 1) return;

@@ -5,7 +5,8 @@
 
 namespace cayspin::inline v0_2 {
 
-/// The displacement of a spin, scale * direction, in full relative precision even when it is small.
+/// The displacement of a spin, scale * direction. It has full relative precision even when it is
+/// small.
 template <class Value>
 struct Displacement {
   Value scale;

@@ -9,7 +9,7 @@ namespace cayspin::inline v0_2::detail {
 
 /// Returns the Taylor polynomial 1 + x/c1 (1 + x/c2 (1 + ...)) with ck = -(2k + Odd)(2k - 1 + Odd),
 /// the series of sin(a)/a (Odd = 1) and cos(a) (Odd = 0) in x = a^2. For |a| <= 1.62 the first
-/// omitted term is below a quarter of the precision's epsilon.
+/// omitted term is below a quarter of the epsilon of the precision.
 template <int Odd, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value trigonometric_series(Value const& x) {
   constexpr int terms = sizeof(scalar_t<Value>) == sizeof(double) ? 10 : 6;
@@ -22,16 +22,16 @@ KOKKOS_FORCEINLINE_FUNCTION Value trigonometric_series(Value const& x) {
   return sum;
 }
 
-/// sine * direction and cosine of half the rotation angle |f|. Both may have the wrong sign, which
-/// does not change the rotation.
+/// sine * direction and cosine of half the rotation angle |f|. Both signs may be reversed together,
+/// which does not change the rotation.
 template <class Value>
 struct HalfAngle {
   Value sine, cosine;
   Vec3<Value> direction;
 };
 
-/// Norm |f| without overflow: f is first scaled down by a power of two if its square would
-/// overflow.
+/// The norm |f|, computed without overflow of its square: if f is large, it is first scaled down by
+/// a power of two.
 template <class Value>
 struct ScaledNorm {
   Vec3<Value> scaled;
@@ -54,8 +54,8 @@ KOKKOS_FORCEINLINE_FUNCTION ScaledNorm<Value> scaled_norm(Vec3<Value> const& f) 
   return {scaled, norm, norm * select<Value>(too_large, Value(up), Value(Scalar(1)))};
 }
 
-/// sine_over_r * r and cosine of half an angle, both possibly with the wrong sign; r is half the
-/// angle minus multiples of pi.
+/// sine_over_r * r and cosine of half an angle, both possibly with reversed signs; r is half the
+/// angle minus a multiple of pi.
 template <class Value>
 struct HalfTurn {
   Value r, sine_over_r, cosine;
@@ -67,10 +67,10 @@ KOKKOS_FORCEINLINE_FUNCTION HalfTurn<Value> half_turn(Value const& angle) {
   constexpr bool is_double = sizeof(Scalar) == sizeof(double);
   Value const a = Value(Scalar(0.5)) * angle;
 
-  // Subtracts multiples of pi, given as a sum of three numbers. Their count is off by one where a /
-  // pi rounds to the other side of a half: r may pass pi / 2 by some |f| eps. The clamp acts only
-  // if that is not small, and keeps the result on the sphere. Products are exact, also without a
-  // fused multiply-add instruction.
+  // Subtracts the nearest multiple of pi, with pi as a sum of three numbers. Where rounding a / pi
+  // gives the wrong multiple, |r| exceeds pi / 2 by about |f| eps. The clamp acts only if that is
+  // large, and keeps the result on the sphere. The products in fma are exact even on machines
+  // without that instruction.
   constexpr double pi = 3.14159265358979311600e+00, pi_low = 1.22464679914735317636e-16,
                    pi_lowest = -2.99476980971833966592e-33;
   constexpr float pi_f = 3.14159274101257324f, pi_low_f = -8.74227800037247e-08f,
@@ -94,7 +94,8 @@ KOKKOS_FORCEINLINE_FUNCTION HalfAngle<Value> half_angle(Vec3<Value> const& f) {
   constexpr bool is_double = sizeof(Scalar) == sizeof(double);
   auto const [scaled, scaled_length, length] = scaled_norm(f);
   auto const [r, sine_over_r, cosine] = half_turn(length);
-  // If |f|^2 is below the smallest normal number, |f| is not resolved: then sin(a) f/|f| = f/2.
+  // If |f|^2 is close to or below the smallest normal number, |f| is inaccurate: then sin(a) f/|f|
+  // = f/2 is used.
   auto const tiny = scaled_length < Value(is_double ? Scalar(0x1p-500) : Scalar(0x1p-60f));
   Value const safe = select<Value>(tiny, Value(Scalar(1)), scaled_length);
   return {select<Value>(tiny, Value(Scalar(0.5)), Value(r * sine_over_r / safe)), cosine, scaled};
@@ -105,8 +106,8 @@ template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value inverse_tangent_coefficient(Vec3<Value> const& f) {
   using Scalar = scalar_t<Value>;
   Value const square = dot(f, f);
-  // For n < 1/2 the closed form would cancel. There the series of |B_2k| n^(2k-2) / (2k)! is used,
-  // whose first omitted term is below 1e-18.
+  // For n < 1/2 the closed form would suffer from cancellation. There the series of |B_2k| n^(2k-2)
+  // / (2k)! is used, whose first omitted term is below 1e-18.
   constexpr double series[] = {1. / 12,           1. / 720,
                                1. / 30240,        1. / 1209600,
                                1. / 47900160,     691. / 1307674368000,

@@ -37,13 +37,14 @@ struct TurnByTangent {
   }
 };
 
-/// Selection of one of the 32 turns by five bits. Numbers: words of Bits, one for each lane.
+/// Selects one of the 32 turns by five bits. `Numbers` is a word of Bits for each lane.
 template <class Real>
 struct ChoiceOfTurn {
   using Bits = std::conditional_t<sizeof(Real) == 8, std::uint64_t, std::uint32_t>;
 
   /// Bits 2 and 3 are 0 for a turn about a diagonal. Otherwise they choose an axis, and bit 0 is
-  /// set for a turn about it. The other bits are signs. The four numbers are words, too.
+  /// set if there is a turn about it. The other bits are signs. The tangents and factors are passed
+  /// as words, too: as the bits of Reals.
   template <class Value, class Numbers, class Words>
   KOKKOS_FORCEINLINE_FUNCTION static TurnByTangent<Value> of(Numbers const& code,
                                                              Words const& axial,
@@ -89,7 +90,7 @@ struct ChoiceOfTurn {
     Numbers const is_axial = mask<Numbers>((code & 13) == Axis);
     return (is_diagonal & diagonal) | (is_axial & axial);
   }
-  /// Returns a word of ones where a condition holds.
+  /// Returns a word of ones where a condition holds, of zeros elsewhere.
   template <class Numbers, class Condition>
   KOKKOS_FORCEINLINE_FUNCTION static Numbers mask(Condition const& condition) {
     if constexpr (std::is_same_v<Condition, bool>)
@@ -99,10 +100,10 @@ struct ChoiceOfTurn {
   }
 };
 
-/// Random rotation: sets m to exp(v) m for a random v made of five bits. Of the 32 cases v is 0 in
-/// 12, +-2 s along an axis in 12, and sqrt(2) s (+-1, +-1, +-1) in 8. These have the moments of
-/// normal numbers of deviation s up to the fifth, and a step of weak order 2 depends on no others
-/// (Kloeden and Platen 1992, Sec. 14.2).
+/// Random rotation: turns m into exp(v) m for a random v made of five bits. In 12 of the 32 cases v
+/// is 0, in 12 it is +-2 s along an axis, and in 8 it is sqrt(2) s (+-1, +-1, +-1). Up to the
+/// fifth, the moments of v are those of normal numbers with standard deviation s; a step of weak
+/// order 2 depends on no others (Kloeden and Platen 1992, Sec. 14.2).
 template <class Real, bool OnHost>
 class RandomTurn {
   using Choice = ChoiceOfTurn<Real>;
@@ -111,7 +112,7 @@ class RandomTurn {
   using Bits = typename Choice::Bits;
 
   RandomTurn() = default;
-  /// s^2: the variance of each component.
+  /// `variance`: s^2, of each component of v.
   explicit RandomTurn(double variance) {
     double const half_axial = std::sqrt(variance), half_diagonal = std::sqrt(1.5 * variance);
     axial_ = static_cast<Real>(std::tan(half_axial));
@@ -128,12 +129,12 @@ class RandomTurn {
       }
   }
 
-  /// Returns the numbers of RandomTurnOfNumbers.
+  /// Returns the numbers that a RandomTurnOfNumbers holds in one lane.
   std::array<Real, 4> numbers() const {
     return {axial_, diagonal_, axial_factor_, diagonal_factor_};
   }
 
-  /// Turns m by the five bits from `First` on.
+  /// Returns m turned by the five bits from bit `First` on.
   template <int First, class Value, class Numbers>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> turned(Numbers const& numbers,
                                                  Vec3<Value> const& m) const {
@@ -168,7 +169,8 @@ class RandomTurn {
   std::conditional_t<OnHost, Tables, Nothing> tables_;
 };
 
-/// RandomTurn with the numbers of another in each lane; the same bits.
+/// RandomTurn with different numbers in each lane. A lane gets the same bits as from the RandomTurn
+/// with its numbers.
 template <class Real, class Value>
 struct RandomTurnOfNumbers {
   Value axial, diagonal, axial_factor, diagonal_factor;
@@ -185,8 +187,8 @@ struct RandomTurnOfNumbers {
 };
 
 /// RandomTurn for sites with different variances, at most 1. Tangents are quotients of polynomials,
-/// accurate to 1e-6 at variance 1 and to rounding below 0.04: v is longer by O(s^11), and its
-/// moments still suffice for weak order 2.
+/// too small by up to 3e-6 of their value at variance 1, and by less than rounding below 0.01. This
+/// shortens v by O(s^11), and its moments still suffice for weak order 2.
 template <class Real, class Value>
 class RandomTurnOfSites {
   using Choice = ChoiceOfTurn<Real>;
@@ -211,7 +213,7 @@ class RandomTurnOfSites {
   KOKKOS_FORCEINLINE_FUNCTION static Numbers bits(Value const& value) {
     return Choice::template bits<Numbers>(value);
   }
-  /// Returns tan(sqrt(x)), to x^5 in the numbers of its continued fraction.
+  /// Returns tan(sqrt(x)), by the first five levels of the continued fraction of the tangent.
   KOKKOS_FORCEINLINE_FUNCTION static Value tangent_of_root(Value const& x) {
     Value const numerator = (x - Value(Real(105))) * x + Value(Real(945));
     Value const denominator = (Value(Real(15)) * x - Value(Real(420))) * x + Value(Real(945));

@@ -23,7 +23,7 @@ inline int words_of_message(std::size_t bytes) {
   return static_cast<int>(words);
 }
 
-/// Exchanges bytes with each rank, including this one, in multiples of 8.
+/// Exchanges bytes with each rank, including this one. Sizes are multiples of 8.
 inline void exchange_with_all(MPI_Comm comm, std::span<std::span<std::byte const> const> sent,
                               std::span<std::span<std::byte> const> received) {
   constexpr int tag = 2;  // neighbours' ghosts use 0 and 1

@@ -44,9 +44,8 @@ struct CopyRows {
   }
 };
 
-/// Messages to and from the two neighbours along an axis: one to each neighbour for the boxes of
-/// all fields. Two ranks on a periodic axis are each other's neighbour twice, so the direction is
-/// the tag.
+/// Messages to and from the two neighbours along an axis, each with the boxes of all fields. Two
+/// ranks on a periodic axis are neighbours on both sides, so the direction is the tag.
 class GhostMessages {
  public:
   void exchange(MPI_Comm comm, std::span<FieldNumbers const> fields, Faces const& faces,
@@ -57,7 +56,8 @@ class GhostMessages {
               : exchange_in_place(comm, fields, faces, neighbor);
   }
 
-  /// Exchanges fields in host memory. Steppers pass the same few fields again and again.
+  /// Exchanges fields in host memory. Steppers pass the same few fields again and again, so their
+  /// messages are kept.
   void exchange_in_place(MPI_Comm comm, std::span<FieldNumbers const> fields, Faces const& faces,
                          std::array<int, 2> const& neighbor) {
     constexpr std::size_t most = 8;

@@ -18,7 +18,7 @@
 
 namespace cayspin::inline v0_2::mpi::detail {
 
-/// Sites from `begin` up to but excluding `end`.
+/// The sites from `begin` to `end`, which is excluded.
 struct Box {
   std::array<std::int64_t, 3> begin, end;
 
@@ -38,7 +38,8 @@ struct BytesInPlace {
   int planes, components;
   MPI_Aint plane, component;  // strides in bytes
 
-  // Rows are sent with their padding to make them one block; whole planes are one block, too.
+  // The rows of a plane are sent with their padding, so that they are one block. Whole planes
+  // together are one block, too.
   BytesInPlace(FieldNumbers const& field, Box const& box)
       : first(static_cast<std::byte*>(field.data) +
               count(field, box.begin[2] * field.plane + box.begin[1] * field.row + box.begin[0])),
@@ -70,8 +71,8 @@ struct BytesInPlace {
   }
 };
 
-/// Persistent messages of some fields in host memory to and from the two neighbours along an axis:
-/// made once, and started for each exchange.
+/// Persistent MPI messages with some fields in host memory, to and from the two neighbours along an
+/// axis: made once, and started for each exchange.
 class MessagesInPlace {
  public:
   MessagesInPlace(MPI_Comm comm, std::span<FieldNumbers const> fields, Faces const& faces,
@@ -108,8 +109,8 @@ class MessagesInPlace {
  private:
   MPI_Request* next() { return &requests_.emplace_back(MPI_REQUEST_NULL); }
 
-  // One message for all components, or one for each if components are long and contiguous: mpich
-  // copies those faster.
+  // Makes one message for all components or, if the components are long and contiguous, one for
+  // each, since MPICH copies those faster.
   template <class Make>
   void add(Box const& box, Make const& make) const {
     constexpr int long_bytes = 32 * 1024;
