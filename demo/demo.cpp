@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The slab of scenes/slab_switching.toml with a step of 0.01, by geometric Euler, by classical
-// Euler and by RKMK4: what `cayspin run` computes, in a program that takes seconds to compile.
+// Computes the slab of scenes/slab_switching.toml with a step of 0.01, by geometric Euler, by
+// classical Euler and by RKMK4. `cayspin run` computes the same, but this program compiles in
+// seconds.
 #include "cayspin_git_commit.hpp"
 #include "io/scene.hpp"
 #include "io/trajectory.hpp"
@@ -59,7 +60,7 @@ io::TrajectoryFile create(std::filesystem::path const& path, io::Scene const& sc
   return {path, header, true};
 }
 
-/// An observer that writes samples.
+/// An observer that writes scalars and a frame of all spins.
 template <class Generator>
 struct WriteFrame {
   Generator const& generator;

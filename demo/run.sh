@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Runs the switching slab by geometric and by classical Euler with equal steps, and accurately, and
-# draws the three in one picture. Usage: bash demo/run.sh BUILD_DIR
+# Computes the switching slab by geometric and by classical Euler, and by RKMK4 as the reference,
+# all with equal steps, and draws the three runs in one picture. Usage: bash demo/run.sh BUILD_DIR
 set -euo pipefail
 
 [ $# -eq 1 ] || { echo "usage: bash demo/run.sh BUILD_DIR" >&2; exit 2; }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Uses spins in your own View: copied in, integrated on the device, copied out and read by your own
-// kernel. Everything is queued on one execution space without waiting in between. Energy, norm and
-// magnetization are sampled on the way.
+// Uses spins in your own View: copies them in, integrates on the device, copies them out and reads
+// them in your own kernel. All of this runs on one execution space, so that your code needs no
+// fence in between. Energy, norm and magnetization are sampled during the run.
 #include <cayspin/cayspin.hpp>
 
 #include <cmath>

@@ -31,7 +31,8 @@ int main(int argc, char** argv) {
   auto const lattice = cayspin::Lattice::square(20, 20);
   cayspin::SpinField<double> spins("spins", lattice);
 
-  // A field along (1, 1, 1) tips the spins from one easy axis towards it, and is then switched off.
+  // A field along (2, 1, 1) tips the spins from the easy axis z; after it is switched off, they
+  // settle along the easy axis x.
   cayspin::EffectiveField const tipping(cayspin::Exchange(lattice, 2.0), CubicAnisotropy{1.0},
                                         cayspin::Zeeman{{2, 1, 1}});
   cayspin::EffectiveField const resting(cayspin::Exchange(lattice, 2.0), CubicAnisotropy{1.0});

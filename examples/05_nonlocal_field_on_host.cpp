@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A non-local field that host code computes, through a mirror copy: use this for an FFT demag or
-// any solver that is not a kernel. Here the spins of a ring are coupled by dipoles, summed
-// directly.
+// A non-local field computed by host code, which gets the spins in a mirror copy. Use this for an
+// FFT demagnetising field or any solver that is not a kernel. Here the field is that of the dipoles
+// of a periodic chain, summed directly.
 #include <cayspin/cayspin.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-/// H_i = sum_j g (3 (m_j.x) x - m_j) / r_ij^3 along a periodic chain in direction x.
+/// H_i = g sum_j (3 (m_j.x) x - m_j) / r_ij^3 along a periodic chain in direction x; r_ij is the
+/// distance the shorter way around, and g the strength.
 struct DipolesOfChain {
   static constexpr int degree = 2;  // H is linear in m: E = -m.H/2
   double strength;

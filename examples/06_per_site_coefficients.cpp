@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   for (int y = 0; y < 24; ++y)
     for (int x = 0; x < 64; ++x) {
       bool const left = x < 32;
-      exchange.push_back(x == 31 || x == 32 ? 0.1 : 1.0);  // a bond has the harmonic mean
+      exchange.push_back(x == 31 || x == 32 ? 0.1 : 1.0);  // a bond takes the harmonic mean
       axes.insert(axes.end(), {left ? 0.6 : -0.6, 0.0, 0.8});
       damping.push_back(x < 8 || x >= 56 ? 0.5 : 0.02);
       occupation.push_back(std::hypot(x - 31.5, y - 11.5) < 6 ? 0 : 1);

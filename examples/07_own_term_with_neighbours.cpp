@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Your own field term that reads neighbours. The argument of `next<Axis>` and `previous<Axis>`
-// replaces a missing neighbour: here zero, so that an open end has no bond.
+// Your own field term that reads neighbours. The second argument of `next<Axis>` and
+// `previous<Axis>` replaces a missing neighbour: here it is zero, so that an open end has no bond.
 #include <cayspin/cayspin.hpp>
 
 #include <cmath>
@@ -44,7 +44,7 @@ int main(int argc, char** argv) {
   cayspin::Rkmk4 stepper(spins);
   cayspin::integrate(exec, stepper, cayspin::LandauLifshitz(field, 1.0), spins, {0, 0.1, 10000});
 
-  // The spins turn by the same angle from site to site, against the exchange.
+  // The interaction turns the spins by the same angle from site to site, against the exchange.
   auto const m = cayspin::copy_to_host(spins);
   auto const angle = [&](std::size_t site) { return std::atan2(m[3 * site], m[3 * site + 2]); };
   double const turn = std::remainder(angle(12) - angle(11), 2 * std::acos(-1.0));

@@ -14,10 +14,10 @@ struct Current {
   cayspin::Vec3<double> polarisation;  // p, a unit vector
 };
 
-/// Gilbert's equation with the torque -a m x (m x p), which turns spins to the polarisation p. a =
-/// strength P L^2 / ((L^2 + 1) + (L^2 - 1) m.p), with degree of polarisation P and asymmetry L. Its
-/// own damping adds the field -damping a p. Forwarding prepares the inner generator before each
-/// stage, so that its field may depend on time or come from the host.
+/// Gilbert's equation with the torque -a m x (m x p), which turns spins towards the polarisation p.
+/// a = strength P L^2 / ((L^2 + 1) + (L^2 - 1) m.p), with degree of polarisation P and asymmetry L.
+/// Gilbert's damping of this torque adds -damping a p to A. Forwarding prepares the inner generator
+/// before each stage, so that its field may depend on time or come from the host.
 template <class Inner>
 class SpinTorque : public cayspin::Forwarding<SpinTorque<Inner>, Inner> {
  public:
@@ -55,11 +55,12 @@ class SpinTorque : public cayspin::Forwarding<SpinTorque<Inner>, Inner> {
 constexpr double mu0 = 4e-7 * std::numbers::pi, electron = 1.602176634e-19, hbar = 1.054571817e-34;
 constexpr double saturation = 1e6, anisotropy = 8e5, thickness = 1.2e-9;  // A/m, J/m^3, m
 constexpr double damping = 0.01, degree = 0.6, asymmetry = 1.5;
-constexpr double constant = 2 * anisotropy / (mu0 * saturation * saturation) - 1;  // less demag
-/// Strength, in units of Ms, of 1 A/m^2.
+// The anisotropy less the demagnetising field, in reduced units.
+constexpr double constant = 2 * anisotropy / (mu0 * saturation * saturation) - 1;
+/// Strength, in units of Ms, of a current of 1 A/m^2.
 constexpr double strength_of_unit = hbar / (mu0 * electron * saturation * saturation * thickness);
 
-/// Returns true if a spin close to z or -z leaves it.
+/// Returns true if the current drives a spin that is close to z (or to -z, if `down`) away from it.
 bool leaves(bool down, double current) {
   Kokkos::DefaultExecutionSpace const exec;
   auto const one = cayspin::Lattice::chain(1);
@@ -88,7 +89,7 @@ double critical_current(bool down) {
 
 int main(int argc, char** argv) {
   Kokkos::ScopeGuard kokkos(argc, argv);
-  // a = -+ damping H_k, with m.p = +-1.
+  // The layer switches at a = -+ damping H_k, with m.p = +-1.
   double const predicted_up = -2 * damping * constant / (strength_of_unit * degree);
   double const predicted_down = -predicted_up / (asymmetry * asymmetry);
   double const up = critical_current(false), down = critical_current(true);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Arrays of another code, here plain ones with OpenMP, wrapped in unmanaged Views without a second
-// allocation. A write head moves along a track; the code computes its field and reads the bits, and
-// cayspin moves the spins. Numbers are copied at each hand-over, not at each step.
+// Uses arrays of another code, here plain arrays and OpenMP loops, through unmanaged Views, which
+// allocate nothing. A write head moves along a track. The other code computes the field of the head
+// and reads the bits; cayspin moves the spins. Numbers are copied at each hand-over, not at each
+// step.
 #include <cayspin/cayspin.hpp>
 
 #include <array>

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Spin waves of a permalloy film that an antenna starts, beside the dispersion of Kalinikos and
+"""Spin waves that an antenna excites in a permalloy film, beside the dispersion of Kalinikos and
 Slavin (1986): waves along the magnetization (backward volume) and across it (Damon-Eshbach)."""
 
 import argparse
@@ -16,11 +16,11 @@ import matplotlib.pyplot as plt  # noqa: E402  the backend has to be chosen befo
 
 GAMMA, MU0 = 1.76085963e11, 4e-7 * np.pi  # rad/(s T), T m/A
 MS, A, FIELD, THICKNESS = 8e5, 1.3e-11, 0.05, 2e-8  # A/m, J/m, T, m
-CELLS, CELL, TO, HIGHEST = 1000, 4e-9, 4e-9, 30e9  # the last two: s, Hz
+CELLS, CELL, TO, HIGHEST = 1000, 4e-9, 4e-9, 30e9  # m, s, Hz after the count
 
 
 def scene(along):
-    """Waves run along x in a film that is magnetized along `along`."""
+    """Returns a scene with waves along x in a film that is magnetized along `along`."""
     offset = f"(2*pi*{HIGHEST}*(t - 1.0001e-10))"
     return cayspin.Scene(
         units="SI", system={"kind": "llg"},
@@ -35,7 +35,7 @@ def scene(along):
 
 
 def kalinikos_slavin(k, across):
-    """The angular frequency of the lowest branch, its spins unpinned at both faces."""
+    """Returns the angular frequency of the lowest branch, with unpinned spins at both faces."""
     field = GAMMA * (FIELD + 2 * A / MS * k**2)
     of_moment = GAMMA * MU0 * MS
     p = 1 - (1 - np.exp(-k * THICKNESS)) / (k * THICKNESS)

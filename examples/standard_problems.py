@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The five standard problems of muMAG, by the shipped scenes: prints what they ask for beside
-published figures, with evaluations of the field and seconds of one processor.
+"""Solves the five standard problems of muMAG with the shipped scenes. Prints what they ask for
+beside published figures, with the evaluations of the field and the processor time in seconds.
 
 Usage: standard_problems.py [PROBLEM]... [--picture PNG] [--quick]
 """
@@ -21,7 +21,7 @@ def scene(name, **tables):
 
 
 class Clock:
-    """Seconds of this process."""
+    """Processor seconds of this process."""
 
     def __init__(self):
         self.begin = time.process_time()
@@ -31,7 +31,7 @@ class Clock:
 
 
 class Loop:
-    """Equilibria, each from the one before, in fields along a direction."""
+    """Equilibria in fields along a direction, each relaxed from the one before."""
 
     def __init__(self, of, direction):
         self.sim = cayspin.Simulation(of)
@@ -49,7 +49,8 @@ class Loop:
         return m
 
     def coercivity(self):
-        """Where the magnetization along the field is zero, between the two states around that."""
+        """Returns minus the field at which the magnetization along it crosses zero, interpolated
+        between the states before and after."""
         i = int(np.argmax(np.array(self.along) < 0))
         (a, b), (h, k) = self.along[i - 1:i + 1], self.fields[i - 1:i + 1]
         return -(h - a * (k - h) / (b - a))
@@ -87,7 +88,7 @@ def problem_1(quick):
 
 
 # Donahue et al., J. Appl. Phys. 87, 5520 (2000), and muMAG's page of the problem: d, Hc, <m_x> and
-# <m_y> at zero field. The first is their limit of a small particle.
+# <m_y> at zero field. The first row is their limit of a small particle.
 DONAHUE = ((0.1, .05707, 1, 0), (2, .05694, 1, 0), (5, .05612, .9999, 0), (8, .05515, .9995, 0),
            (10, .05454, .9989, 0), (12, .05389, .9886, .0631), (15, .05258, .9784, .0795),
            (20, .04991, .9701, .0819), (25, .04779, .9657, .0790), (30, .04594, .9627, .0756))
@@ -129,7 +130,8 @@ def problem_2(quick):
 
 
 def energies(sim, cells):
-    """In Km of the cube: exchange, demagnetising field, anisotropy."""
+    """Returns the energies of exchange, demagnetising field and anisotropy, as energy densities in
+    units of Km; that of the anisotropy is 0 along its axis."""
     found = sim.energies()
     sites = cells**3
     return np.array([2 * found["exchange"] / sites, 2 * found["demag"] / sites,
@@ -137,7 +139,7 @@ def energies(sim, cells):
 
 
 def problem_3(quick):
-    """The cube in which a flower and a vortex have one energy."""
+    """The cube in which a flower and a vortex have the same energy."""
     starts = {"flower": ({"uniform": [0, 0, 1]}, True),
               "twisted flower": ({"uniform": [0, 0, 1]}, False),
               "vortex": ({"expression": ["0.3", "0.5 - z", "y - 0.5"]}, False)}
@@ -182,7 +184,7 @@ def problem_3(quick):
 
 
 def curve(of, end, looks, evaluations_of_multirate=None):
-    """<m> at `looks` times, and a line on the cost."""
+    """Returns <m> at `looks` times, and text on the cost."""
     sim, clock, m = cayspin.Simulation(of), Clock(), []
     for look in range(looks):
         sim.run(until=(look + 1) * end / looks, output=False)
@@ -192,7 +194,7 @@ def curve(of, end, looks, evaluations_of_multirate=None):
 
 
 def problem_4(quick):
-    """Two reversals of a film of permalloy, and what an error of 1e-3 in <m> takes."""
+    """Two reversals of a film of permalloy, and the cost of an error of 1e-3 in <m>."""
     size = {"shape": [100, 25, 1], "spacing": [5e-9, 5e-9, 3e-9]} if quick else {}
     sim = cayspin.Simulation(scene(4, lattice=size, field={"applied": [0, 0, 0]}))
     clock, found = Clock(), sim.relax(torque=1e-8)

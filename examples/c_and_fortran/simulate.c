@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception */
-/* A scene from C: some steps, a look at the spins where they are, and the rest of the run. */
+/* Runs a scene from C: takes some steps, reads the spins in place, and completes the run. */
 #include <cayspin/cayspin.h>
 
 #include <math.h>

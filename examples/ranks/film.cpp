@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A permalloy film with a user-written demagnetising field, by FFTs over all ranks. The printed
-// numbers have equal bits on any number of ranks.
+// A permalloy film with a user-written demagnetising field, computed by FFTs that are shared by all
+// ranks. The printed numbers have equal bits on any number of ranks.
 #include "film_demagnetising_field.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -14,7 +14,7 @@ using Spins = cayspin::SpinField<double>;
 
 void run(MPI_Comm comm) {
   Kokkos::DefaultExecutionSpace const exec;
-  // Lengths in nm, the exchange for A = 13 pJ/m and Ms = 800 kA/m, fields in Ms.
+  // Lengths are in nm, fields in Ms; the exchange is that of A = 13 pJ/m and Ms = 800 kA/m.
   cayspin::Lattice const film{.shape = {50, 24, 1}, .spacing = {5, 5, 3}};
   double const exchange = 2 * 13e-12 / (1.25663706212e-6 * 800e3 * 800e3) * 1e18;
 

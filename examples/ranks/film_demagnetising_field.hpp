@@ -17,10 +17,11 @@
 #include <type_traits>
 #include <vector>
 
-/// The field H = -N m of all cells of a film of one layer, divided along y, for HostField. Each
-/// rank transforms its rows along x; then each transforms some columns along y, padded to twice the
-/// extents, so that the film does not see its periodic images. All transforms are of one row or
-/// column, so the bits do not depend on the number of ranks. In units of Ms, for open boundaries.
+/// A solver for HostField: the demagnetising field H = -N m, in units of Ms, of a film of one layer
+/// with open boundaries, which is divided among the ranks along y. Each rank transforms its rows
+/// along x, and then some columns along y. Both are padded to twice the extents, so that the film
+/// does not see its periodic images. Each transform is that of a single row or column, so the bits
+/// do not depend on the number of ranks.
 class FilmDemagnetisingField {
  public:
   static constexpr int degree = 2;  // H is linear in m: E = -m.H/2
@@ -86,8 +87,8 @@ class FilmDemagnetisingField {
       return results_[c * rows() * nx_ + site];
     }
 
-    /// Calls fill(row, component, own row) for the numbers of a row along x. Afterwards each rank
-    /// has the spectra of its columns.
+    /// Calls fill(row, component, y) to fill each padded row along x; y counts this rank's rows.
+    /// Afterwards each rank has the spectra of its columns.
     template <class Fill>
     void transform(Fill const& fill) {
       for (std::size_t c = 0; c < 3; ++c)
@@ -111,7 +112,7 @@ class FilmDemagnetisingField {
       for (std::size_t i = 0; i < component; ++i) {
         cayspin::DemagnetizingTensor const& n = kernel_[i];
         Complex const x = column_[i], y = column_[component + i], z = column_[2 * component + i];
-        column_[i] = n.xx * x + n.xy * y;  // in the film's plane N has no xz and no yz
+        column_[i] = n.xx * x + n.xy * y;  // N_xz and N_yz are 0 within a layer
         column_[component + i] = n.xy * x + n.yy * y;
         column_[2 * component + i] = n.zz * z;
       }
@@ -142,12 +143,14 @@ class FilmDemagnetisingField {
       return reinterpret_cast<fftw_complex*>(numbers);
     }
     std::size_t columns() const { return k_.of(rank_); }
-    /// Returns the share of a rank, which may be empty, of an own row.
+    /// Returns where the share of a rank, which may be empty, begins in the spectrum of one of this
+    /// rank's rows.
     Complex* in_rows(std::size_t c, std::size_t y, std::size_t rank) {
       return of_rows_.data() + 3 * rows() * k_.begin[rank] + (c * rows() + y) * k_.of(rank);
     }
 
-    // FFTW_ESTIMATE and FFTW_UNALIGNED give one plan for all rows, and thus equal bits.
+    // With FFTW_ESTIMATE and FFTW_UNALIGNED all rows on all ranks have the same plan, and thus
+    // equal bits.
     void make_plans() {
       constexpr unsigned flags = FFTW_ESTIMATE | FFTW_UNALIGNED;
       auto const x = static_cast<int>(2 * nx_), y = static_cast<int>(2 * ny_);
@@ -166,8 +169,9 @@ class FilmDemagnetisingField {
         work(rank, shares.begin[rank], shares.of(rank));
     }
 
-    // Each of the columns with all rows, and their place in a message: (component, row, column) of
-    // the rows of each rank.
+    // Calls work(number, its place in the messages) for all numbers of this rank's columns.
+    // Messages hold the rows of one rank after the other, each in the order (component, row,
+    // column).
     template <class Work>
     void for_each_number(Work const& work) {
       for_each_share(y_, [&](std::size_t, std::size_t begin, std::size_t count) {
@@ -183,7 +187,8 @@ class FilmDemagnetisingField {
       for (std::size_t i = 0; i < 3 * columns(); ++i) work(as_fftw(&column_[i * 2 * ny_]));
     }
 
-    // Each rank has `lines` lines, and exchanges the share of every other rank.
+    // This rank has `lines` lines: sends every rank its share of them, and receives this rank's
+    // share of the lines of every rank.
     void exchange(std::vector<Complex> const& from, std::size_t lines, Shares const& shares,
                   std::vector<Complex>& to, std::size_t lines_there, Shares const& shares_there) {
       auto const counts = [](std::size_t of_line, Shares const& of_ranks) {
@@ -199,8 +204,8 @@ class FilmDemagnetisingField {
                     received[0].data(), received[1].data(), MPI_C_DOUBLE_COMPLEX, comm_);
     }
 
-    /// Computes the spectrum of -N, which is real: N is even along x and y, except xy, which is
-    /// odd.
+    /// Computes the spectrum of -N. It is real, because N_xx, N_yy and N_zz are even along x and
+    /// along y, and N_xy is odd along both.
     void find_kernel(cayspin::Lattice const& film, cayspin::TensorOfCells& tensor) {
       kernel_.resize(columns() * 2 * ny_);
       for (bool const odd : {false, true}) {
@@ -231,7 +236,8 @@ class FilmDemagnetisingField {
         }
       });
     }
-    // Fills a column's spectrum from half of its numbers by mirroring.
+    // Replaces the spectrum of a column by that of the column with its even or odd mirror image in
+    // place of the padding.
     void mirror(Complex* column, bool odd) {
       fftw_execute_dft(backward_y_.get(), as_fftw(column), as_fftw(column));
       for (std::size_t y = 0; y < ny_; ++y) column[y] /= static_cast<double>(2 * ny_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A code with its own communicator and field, divided along z, that uses cayspin for the steps. The
-// printed numbers have equal bits on any number of ranks.
+// A code with a communicator and a View of its own, divided along z, that uses cayspin for the
+// steps. The printed numbers have equal bits on 1 to 4 ranks.
 #include <cayspin/cayspin.hpp>
 #include <cayspin/mpi/domain.hpp>
 
@@ -9,7 +9,8 @@
 
 namespace {
 
-/// The initial state: a helix along z. `first` is the first plane of the rank.
+/// The initial state: a helix along z. `in_plane` is the number of sites of a plane, and `first`
+/// the first plane of the rank.
 struct Helix {
   Kokkos::View<double* [3]> m;
   std::int64_t in_plane, first;
@@ -43,7 +44,7 @@ void run(MPI_Comm comm) {
   cayspin::integrate(exec, stepper, generator, spins, cayspin::Times{0, 0.1, 200});
   cayspin::copy(exec, spins, mine);
 
-  // Sums are over all ranks, on each of them.
+  // Every rank gets the sums over all ranks.
   double const energy = cayspin::energy(exec, field, spins).value;
   auto const m = cayspin::magnetization(exec, spins);
   if (domain.rank() == 0)

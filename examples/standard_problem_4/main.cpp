@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The micromagnetic standard problem 4 of NIST's muMAG group: a film of permalloy rests in its S
-// state, and two fields switch it. Exchange and a full demagnetising field.
-//   example_standard_problem_4          128 x 32 cells, beside mumax3
-//   example_standard_problem_4 mumax3   the same with mumax3's approximation of the tensor
-//   example_standard_problem_4 oommf    200 x 50 cells, beside OOMMF
-//   example_standard_problem_4 multirate     200 x 50 cells, the demagnetising field once a step
-//   example_standard_problem_4 adaptive the same beside adaptive methods; multirate10: over 10 ns
+// state, and two fields switch it. The field consists of exchange, the full demagnetising field and
+// the applied field.
+//   example_standard_problem_4              128 x 32 cells, beside mumax3
+//   example_standard_problem_4 mumax3       the same with mumax3's approximation of the tensor
+//   example_standard_problem_4 oommf        200 x 50 cells, beside OOMMF
+//   example_standard_problem_4 multirate    200 x 50 cells, the demagnetising field once a step
+//   example_standard_problem_4 adaptive     like multirate, and adaptive methods
+//   example_standard_problem_4 multirate10  like multirate, over 10 ns
 #include "multirate.hpp"
 #include "problem.hpp"
 #include "quadrature.hpp"
@@ -30,7 +32,7 @@ bool agree(char const* what, Vector const& m, Vector const& other, double limit)
   return apart < limit;
 }
 
-/// test/standardproblem4.mx3 and standardproblem4b.mx3 of mumax3.
+/// Compares with the values in test/standardproblem4.mx3 and standardproblem4b.mx3 of mumax3.
 bool agrees_with_mumax3(cayspin::TensorOfCells& tensor, double limit_of_field_1) {
   StandardProblem4 problem(128, 32, tensor);
   bool fine =
@@ -45,7 +47,8 @@ bool agrees_with_mumax3(cayspin::TensorOfCells& tensor, double limit_of_field_1)
   return fine;
 }
 
-/// micromagnetics_examples/std4/oommf.txt of fidimag. OOMMF has Newell's tensor.
+/// Compares with micromagnetics_examples/std4/oommf.txt of fidimag. OOMMF also uses Newell's
+/// tensor.
 bool agrees_with_oommf() {
   StandardProblem4 problem(200, 50);
   auto const rest = problem.relax(1e-6);
@@ -59,8 +62,8 @@ bool agrees_with_oommf() {
          std::abs(reversal.crossing - crossing) < 1e-4;
 }
 
-/// The demagnetising field evaluated once a step, compared with rkmk4, which evaluates it in each
-/// stage.
+/// Evaluates the demagnetising field once a step, and compares with rkmk4, which evaluates it in
+/// each stage.
 bool follows_with_a_multirate_field(bool with_adaptive_methods) {
   StandardProblem4 problem(200, 50);
   problem.relax(1e-6);
@@ -79,14 +82,14 @@ bool follows_with_a_multirate_field(bool with_adaptive_methods) {
   tried(std::integral_constant<int, 3>(), 700, 4, 2e-3);
   tried(std::integral_constant<int, 4>(), 900, 3, 2e-4);
   if (!with_adaptive_methods) return fine;
-  constexpr double tolerance = 0.05;  // stability limits the steps
+  constexpr double tolerance = 0.05;  // so loose that stability limits the steps
   report("bs3", multirate.adaptive<cayspin::tableau::BogackiShampine3>(tolerance), converged, 1);
   report("tsit5", multirate.adaptive<cayspin::tableau::Tsitouras5>(tolerance), converged, 1);
   report("dp5", multirate.adaptive<cayspin::tableau::DormandPrince5>(tolerance), converged, 1);
   return fine;
 }
 
-/// The energy law over 10 ns, until the film reaches equilibrium.
+/// Checks that the energy never rises during 10 ns, in which the film reaches equilibrium.
 bool falls_for_10_nanoseconds() {
   StandardProblem4 problem(200, 50);
   problem.relax(1e-6);
@@ -108,6 +111,6 @@ int main(int argc, char** argv) {
   if (std::strcmp(beside, "multirate10") == 0) return falls_for_10_nanoseconds() ? 0 : 1;
   if (std::strcmp(beside, "mumax3") == 0)
     return agrees_with_mumax3(quadrature::tensor, 1e-3) ? 0 : 1;
-  // m_y changes by 8e-3 in a picosecond there.
+  // The limit is for 1 ns in field 1, where m_y changes by 8e-3 in a picosecond.
   return agrees_with_mumax3(cayspin::demagnetizing_tensor, 6e-3) ? 0 : 1;
 }

@@ -23,7 +23,7 @@ class MultirateProblem4 {
       cayspin::SlowField<Spins, cayspin::HostField<Spins, cayspin::DemagnetizingField<double>>>;
   static constexpr int looks_per_nanosecond = 50;
 
-  /// `problem`: at equilibrium.
+  /// `problem` must be at equilibrium.
   MultirateProblem4(Problem const& problem, Problem::Vector const& millitesla, int nanoseconds)
       : problem_(problem),
         nanoseconds_(nanoseconds),
@@ -57,7 +57,8 @@ class MultirateProblem4 {
         cayspin::AdaptiveRkmk<Spins, Tableau>(spins_, cayspin::StepOptions{.tolerance = tolerance}),
         looks());
   }
-  /// Takes one evaluation a step, and twice `substeps` steps of RKMK4 for everything else.
+  /// Each step takes one evaluation of the demagnetising field, and twice `substeps` steps of RKMK4
+  /// for everything else.
   template <int Order>
   Run multirate(int steps, int substeps) {
     return run(cayspin::Multirate<cayspin::Rkmk4<Spins>, SlowTerm, Order>(

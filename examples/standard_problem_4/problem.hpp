@@ -52,8 +52,8 @@ class StandardProblem4 {
     return cayspin::magnetization(exec_, spins_);
   }
 
-  /// Return what a program needs to continue by itself: the film, its S state, its equation of
-  /// motion.
+  /// For programs that continue from the S state themselves: the film, its S state, its
+  /// demagnetising field, a nanosecond in reduced units, and the equation of motion.
   cayspin::Lattice const& film() const { return film_; }
   std::vector<double> const& at_rest() const { return at_rest_; }
   auto const& demag() const { return demag_; }

@@ -9,12 +9,12 @@
 #include <cstddef>
 #include <numbers>
 
-/// The tensor by the quadrature of mumax3 (Vansteenkiste et al. 2014, Sec. II.E), with its default
-/// accuracy: point charges on the faces of one cell, and the mean of their fields at points in the
-/// other cell. Its error is up to 2.5e-4.
+/// The demagnetising tensor by mumax3's quadrature (Vansteenkiste et al. 2014, Sec. II.E) with its
+/// default accuracy: the mean, over points in one cell, of the field of point charges on the faces
+/// of the other. Its error is up to 2.5e-4.
 namespace quadrature {
 
-constexpr double accuracy = 6;  // distance over the size of a piece
+constexpr double accuracy = 6;  // distance of the cells over the size of a piece
 
 /// Returns the middle of piece `index` of `pieces` pieces of an edge.
 inline double middle(double edge, int pieces, int index) {
@@ -23,7 +23,7 @@ inline double middle(double edge, int pieces, int index) {
 
 inline cayspin::DemagnetizingTensor tensor(std::array<double, 3> const& distance,
                                            std::array<double, 3> const& size) {
-  // Between the nearest faces; the shortest edge for cells that touch.
+  // The gap between the nearest faces; if the cells touch, their shortest edge instead.
   double gap = 0;
   for (std::size_t a = 0; a < 3; ++a)
     gap = std::hypot(gap, std::max(std::abs(distance[a]) - size[a], 0.0));

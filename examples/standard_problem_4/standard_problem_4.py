@@ -34,7 +34,7 @@ def newell_f(x, y, z):
 
 
 def newell_g(x, y, z):
-    """The same, eq. 32."""
+    """Newell, Williams and Dunlop 1993, eq. 32."""
     xx, yy, zz = x * x, y * y, z * z
     r = np.sqrt(xx + yy + zz)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -48,7 +48,8 @@ def newell_g(x, y, z):
 
 
 def interaction(function, axes):
-    """Second differences of `function` along all axes, at offsets 0 to n - 1 along x, y and z."""
+    """Returns an element of the tensor at offsets 0 to n - 1 along x, y and z: second differences of
+    `function` along all three axes, over 4 pi times the volume of a cell."""
     size = np.array(SIZE, dtype=np.longdouble) / SIZE[2]
     grid = np.meshgrid(*(np.arange(-1, n + 1) * d for n, d in zip(CELLS, size)), indexing="ij")
     values = function(*(grid[axis] for axis in axes))
@@ -60,7 +61,7 @@ def interaction(function, axes):
 
 
 class DemagnetisingField:
-    """H of all cells in tesla, from the unit vectors of all cells."""
+    """A callable that returns mu0 H of all cells in tesla, from their spins."""
 
     def __init__(self):
         self.tensor = {}
@@ -94,7 +95,7 @@ def film(demagnetising_field, alpha, **tables):
 
 
 def relax(demagnetising_field):
-    """The S state: overdamped motion from (1, 0.1, 0)."""
+    """Returns the S state, reached by overdamped motion from (1, 0.1, 0)."""
     scene = film(demagnetising_field, 1.0, system={"kind": "llg", "precession": False},
                  initial={"uniform": [1, 0.1, 0]}, integrator={"method": "heun", "dt": 1.2e-12})
     sim = cayspin.Simulation(scene)

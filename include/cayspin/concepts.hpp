@@ -129,7 +129,7 @@ concept Generator =
 /// | `reset()` | forgets the previous steps | nothing to forget |
 /// | `check_spins(spins)` | throws for spins of another lattice | checked by step |
 /// | `bool takes_batches(exec, generator, spins)` | batch may be called | false |
-/// | `batch(exec, generator, spins, t, dt, count)` | takes count steps, same bits | steps |
+/// | `batch(exec, generator, spins, t, dt, count)` | takes count steps, same bits | one by one |
 /// | `static int work_fields` | work fields, of three numbers per site | unknown |
 /// | `size_t work_bytes()` | bytes of work memory | unknown |
 /// | `visit_exchanged(visit)` | visit(field) for fields that a step may swap with spins | none |
