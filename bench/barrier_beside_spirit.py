@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The barrier of a skyrmion that collapses, by cayspin and by Spirit's GNEB, from the same states.
+"""The barrier to the collapse of a skyrmion, by cayspin and by Spirit's GNEB, from the same states.
 
     python3 -m pip install spirit
     OMP_NUM_THREADS=1 python3 bench/barrier_beside_spirit.py [--repeat 3]
 
-16 x 16 sites, periodic, in meV: exchange 10, Bloch DMI 6, a field of 2.894190905 (25 T on 2 Bohr
-magnetons): the skyrmion of Spirit's tests. Both have 16 images and relax their ends. Spirit starts
-from its homogeneous transition; its highest image climbs after the path is rough, as its manual has
-it. Both stop where max |m x H| at the saddle is below a bound. An evaluation is H of all sites of
-an image."""
+The skyrmion is that of Spirit's tests: 16 x 16 sites, periodic, and in meV exchange 10, Bloch DMI 6
+and a field of 2.894190905 (25 T on 2 Bohr magnetons). Both programs relax the ends and use 16
+images. Spirit starts from its homogeneous transition. As its manual recommends, it relaxes the path
+roughly before the highest image climbs. Both stop when max |m x H| at the saddle is below a bound.
+An evaluation is that of H at all sites of an image."""
 
 import argparse
 import pathlib
@@ -39,12 +39,12 @@ output_file_tag x
 
 
 def by_spirit(solver, bound, most=20000):
-    """Evaluations, seconds, barrier, the torque at the saddle, and the skyrmion at the start."""
+    """Returns evaluations, seconds, barrier, torque at the saddle, and the initial skyrmion."""
     from spirit import (chain, configuration, log, simulation, state, system, transition)
     from spirit.parameters import gneb
 
     def iterate(p, method, done, image=-1):
-        """Iterations until done(); their number."""
+        """Iterates until done(), at most `most` times; returns the number of iterations."""
         simulation.start(p, method, solver, n_iterations=10 * most, single_shot=True, idx_image=image)
         count = 0
         while not done() and count < most:
@@ -73,7 +73,7 @@ def by_spirit(solver, bound, most=20000):
             configuration.plus_z(p, idx_image=IMAGES - 1)
             transition.homogeneous(p, 0, IMAGES - 1)
             chain.update_data(p)
-            rough = 0.3  # meV
+            rough = 0.3  # meV, force at which the highest image starts to climb
             inner = range(1, IMAGES - 1)
             force = lambda: simulation.get_max_torque_norm(p)
             count = iterate(p, simulation.METHOD_GNEB, lambda: 0 < force() < rough)

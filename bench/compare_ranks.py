@@ -1,14 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Two ranks of one thread beside one rank of two threads, and beside two that are apart.
+"""Compares two ranks of one thread with one rank of two threads, and with two independent ranks.
 
 Usage: compare_ranks.py BUILD_DIR [--repetitions N]
 
-Strong: time of one rank with two threads over that of two ranks, on a lattice of so many sites.
-Weak: time of two ranks with such a lattice each over that of two ranks with one twice as long; in
-step: the same, where the first two wait for each other after each step. The runs alternate; the
-best of each counts. Exchange: the part of the time in which ghosts are exchanged, in the strong and
-in the weak case.
+Columns of the table, for a lattice of the given number of sites:
+- strong: the time of one rank with two threads over that of two ranks, on this lattice,
+- weak: the time of two independent ranks with this lattice each over that of two ranks that share
+  one of twice its length,
+- in step: like weak, but the independent ranks wait for each other after each step,
+- exchange: the part of the time that is spent on exchanging ghosts, in the strong and in the weak
+  case.
+The runs alternate, and the best of each kind counts.
 """
 import argparse
 import os
@@ -21,7 +24,7 @@ LINE = re.compile(r"(.*): ([\d.]+) ns, exchange ([\d.]+), exchanges \d+, stages 
 
 
 def measure(program, ranks, threads, size, *more):
-    """{method: (ns per spin and step, part of the exchange, stages)}"""
+    """Returns {method: (ns per spin and step, part of the time in exchanges, stages)}."""
     environment = dict(os.environ, OMP_NUM_THREADS=str(threads), OMP_WAIT_POLICY="passive",
                        OMP_PROC_BIND="false")
     text = subprocess.run(["mpiexec", "-n", str(ranks), program, *map(str, size), *more],

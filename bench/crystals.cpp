@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Nanoseconds per spin and step of Heun's method on bcc with 8 and 14 neighbours, next to the
-// hand-written loop for that crystal in one run. Cases are named PRECISION/METHOD/SIZE; a size is
-// the edge of a cube of cells, each of two spins.
+// hand-written loop for that crystal in the same run. Cases are named
+// PRECISION/NEIGHBOURS/METHOD/SIZE; a size is the edge of a cube of cells, each of two spins.
 //   bench_crystals --benchmark_filter=/64
 #include "hand_written.hpp"
 #include "main.hpp"
@@ -60,7 +60,7 @@ class HandWritten {
 template <class Real, bool SecondShell>
 void add(std::string const& prefix) {
   using Heun = cayspin::LieHeun<cayspin::SpinField<Real>>;
-  // Both methods have order 2: short steps differ little.
+  // The loop and the library use different methods of order 2, whose short steps differ little.
   auto const distance = [] {
     constexpr int n = 8, steps = 20;
     constexpr double dt = 1e-5;

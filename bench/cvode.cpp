@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Compares CVODE of SUNDIALS with cayspin's methods on one thread, with one kernel for the right
-// side: milliseconds and evaluations to an error. `bench_cvode [SCENE..]`, all without names:
-// slab_fine, slab_fine_damped, film, heisenberg, film_256. The error is the largest distance of any
-// spin from tsit5 at a tolerance of 1e-12, at four times; CVODE's spins are divided by their
-// lengths there. Times are the shortest of 3 to 100 runs.
+// Compares CVODE of SUNDIALS with cayspin's methods on one thread, with the same kernel for the
+// right side: milliseconds and evaluations that it takes to reach given errors. `bench_cvode
+// [SCENE..]`; without names it runs all scenes: slab_fine, slab_fine_damped, film, heisenberg,
+// film_256. The error is the largest distance of any spin, at four times, from a run of tsit5 with
+// a tolerance of 1e-12; for this, spins are divided by their lengths. Times are the shortest of
+// several runs.
 #include "cvode_run.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -109,7 +110,7 @@ class Comparison {
       }
     });
   }
-  /// Disordered spins with exchange only.
+  /// For disordered spins with only exchange.
   void steps_with_sigma() {
     using Plain = Rkmk<Spins, tableau::DormandPrince8>;
     using WithSigma = Rkmk<Spins, tableau::DormandPrince8, isotropy::Constant>;

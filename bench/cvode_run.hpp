@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-// CVODE on the equation of a generator.
+// Integrates the equation of a generator by CVODE.
 namespace by_sundials {
 
 struct CvodeOptions {
@@ -26,7 +26,8 @@ struct CvodeOptions {
   bool preconditioned = false;
 };
 
-/// (1 + b K)^-1 as in StiffGauss, b = gamma (damping - i), normal to the spins.
+/// The preconditioner (1 + b K)^-1 as in StiffGauss, normal to the spins; b = gamma (damping - i
+/// precession), both as measured.
 class SpinWavePreconditioner {
   using Solver = cayspin::detail::SpinWaveSolver<double, Kokkos::HostSpace>;
 
@@ -36,7 +37,7 @@ class SpinWavePreconditioner {
         right_("bench::preconditioner::right", lattice),
         solution_("bench::preconditioner::solution", lattice) {}
 
-  /// Evaluates the generator some times, and returns how often.
+  /// Measures exchange, damping and precession of the generator; returns the number of evaluations.
   template <class Generator>
   int measure(Generator const& generator) {
     int const evaluations =
@@ -68,7 +69,7 @@ class SpinWavePreconditioner {
       site.store(r - dot(m, r) * m, output);
     }
   };
-  /// v' + m x v'' normal to the spins, and the right side along them.
+  /// Functor that computes v' + m x v'' normal to the spins, and keeps the right side along them.
   struct Turn {
     cayspin::SiteArray<double, 6> solution;
     SiteArray right, spins;
@@ -94,8 +95,8 @@ class SpinWavePreconditioner {
   std::string across_label_ = "cayspin::bench::across", turn_label_ = "cayspin::bench::turn";
 };
 
-/// CVODE run from `start` to the horizon that stores states at equal intervals; returns no states
-/// if it fails or takes more than `most` evaluations.
+/// Runs CVODE from `start` to the horizon and stores states at equal intervals. If it fails or
+/// takes more than `most` evaluations, the later states are missing.
 template <class Generator>
 class Cvode {
  public:

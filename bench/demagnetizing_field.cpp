@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Milliseconds of an evaluation of the demagnetising field in the default space, next to only the
-// six transforms of a lattice padded with zeros: by FFTW's measured plans, or by cuFFT. Both on one
-// thread with OMP_NUM_THREADS=1. Cases are named PRECISION/WHAT/SHAPE.
+// Milliseconds of an evaluation of the demagnetising field in the default space, next to the six
+// transforms of a zero-padded lattice without anything else, by measured plans of FFTW or by cuFFT.
+// With OMP_NUM_THREADS=1 both run on one thread. Cases are named PRECISION/field/SHAPE and
+// PRECISION/transforms/SHAPE.
 //   bench_demagnetizing_field --benchmark_filter=f64 --benchmark_repetitions=5
 #include "main.hpp"
 #include "scene.hpp"
@@ -20,8 +21,8 @@ namespace {
 constexpr std::array<std::int64_t, 3> shapes[] = {
     {256, 256, 1}, {512, 512, 1}, {64, 64, 64}, {128, 128, 128}};
 
-/// Forward and backward transforms of a lattice padded to twice its length along each axis longer
-/// than a cell. The data are zeros, which stay zero.
+/// A forward and a backward transform of a lattice padded to twice its extent along each axis of
+/// more than one cell. The data are zeros, which stay zero.
 template <class Real>
 class PaddedTransforms {
 #if defined(KOKKOS_ENABLE_CUDA)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Nanoseconds per spin and evaluation of methods of high order and of adaptive steps, next to
+// Nanoseconds per spin and evaluation of methods of high order and of adaptive methods, next to
 // RKMK4. Cases are named evaluations/PRECISION/METHOD/SIZE.
 #include "main.hpp"
 #include "scene.hpp"

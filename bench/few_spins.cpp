@@ -69,7 +69,8 @@ using Vectorized = hand_written::Steps<Chain<Loops::vectorized>>;
 template <class Loop>
 using MethodOf = void (Loop::*)(hand_written::Vectors<double>&, double, std::int64_t);
 
-/// The library's method next to hand-written loops that take the steps of Renormalized.
+/// Adds the library's method, and the hand-written loops, whose steps must be those of
+/// Renormalized.
 template <class Stepper, class Renormalized>
 void add(std::string const& name, MethodOf<Scalar> scalar, MethodOf<Vectorized> vectorized) {
   using Default = Kokkos::DefaultHostExecutionSpace;

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Writes BUILD_DIR/gpu-report.md: what `bash cmake/bootstrap.sh gpu` found in a build folder.
 
-It reads gpu-tests.txt (of ctest), gpu-bench.txt (of bench/run.sh) and bench-results. A part that is
-missing is named in the report. Exit status 1 where there is one, or a test failed.
+It reads gpu-tests.txt (the output of ctest), gpu-bench.txt (that of bench/run.sh) and
+bench-results. The report names parts that are missing. The exit status is 1 if a part is missing or
+a test failed.
 """
 import argparse
 import contextlib
@@ -17,7 +18,7 @@ import model_gpu
 
 
 def output_of(*command):
-    """Returns the output of a command; None if it does not run."""
+    """Returns the output of a command; None if it cannot be run or fails."""
     try:
         done = subprocess.run(command, text=True, stdout=subprocess.PIPE,
                               stderr=subprocess.DEVNULL)
@@ -39,7 +40,7 @@ def machine():
 
 
 def tests(text):
-    """Lines on the tests of a run of ctest, and whether all passed."""
+    """Returns lines on a run of ctest, from its output, and whether no test failed."""
     summary = re.search(r"^\d+% tests passed.*$", text, re.MULTILINE)
     if not summary:
         return ["ctest printed no summary."], False

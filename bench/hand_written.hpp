@@ -8,11 +8,12 @@
 
 // Code that a good engineer writes in a day for exactly one scene, without a library: separate
 // component arrays, OpenMP over rows, a vectorised inner loop, one fused loop per stage,
-// renormalised at the end of the step. The benchmarks compare with it. It shares no code with
-// cayspin, and is compiled separately with the flags that suit it best.
+// renormalised at the end of the step. The benchmarks compare with it. This code shares nothing
+// with cayspin, and is compiled separately with the flags that suit it best.
 namespace hand_written {
 
-/// Requests 2 MiB pages; without them the loop waits for address translation beyond the caches.
+/// Requests 2 MiB pages. Without them, loops over arrays larger than the caches wait for address
+/// translation.
 void advise_huge_pages(void* begin, std::size_t bytes);
 
 template <class Number>
@@ -51,9 +52,9 @@ struct Cube {
   std::size_t sites() const { return static_cast<std::size_t>(n) * n * n; }
 };
 
-/// bcc, n x n x n periodic cells of two sites, exchange with 8 neighbours or, with a second shell,
-/// 14, a field along z, damping. Written with the offsets of all neighbours known at compile time.
-/// Spins are ordered by plane z, and in it sites 0 of all cells before sites 1.
+/// bcc, n x n x n periodic cells of two sites: exchange with 8 neighbours (14 with the second
+/// shell), a field along z, damping. The positions of all neighbours are written into the code. For
+/// each z, the spins of site 0 of all cells come before those of site 1.
 template <class Number, bool SecondShell>
 struct Bcc {
   using Real = Number;
@@ -76,7 +77,8 @@ struct Chain {
   std::size_t sites() const { return n; }
 };
 
-/// Steps of one of these scenes: a loop for each stage, renormalised at the end of the step.
+/// Takes steps of one of these scenes: one loop over the sites for each stage. Spins are
+/// renormalised at the end of a step.
 template <class Scene>
 class Steps {
   using Real = typename Scene::Real;

@@ -8,8 +8,8 @@ HAND_WRITTEN_INLINE void add(Numbers<Real> const& v, std::size_t i, Vector<Real>
   sum.x += v.x[i], sum.y += v.y[i], sum.z += v.z[i];
 }
 
-/// The neighbour rows of a row: four of the other sites of cells, and, for the second shell, the
-/// row itself and four of its own sites.
+/// Where the rows begin that hold the neighbours of a row: four rows of the cells' other site and,
+/// for the second shell, the row itself and four rows of its own site.
 struct RowsBeside {
   std::size_t other[4], own, along[4];
 };
@@ -51,7 +51,8 @@ void for_each(Bcc<Real, SecondShell> const& bcc, Numbers<Real> const v, Body bod
   for (std::size_t plane = 0; plane < 2 * n; ++plane)
     for (std::size_t y = 0; y < n; ++y) {
       std::size_t const z = plane / 2, site = plane % 2;
-      // The four cells along y and z with the nearest other sites start one cell back, or here.
+      // The nearest other sites are in four cells along y and z: for site 0 these start one cell
+      // back, for site 1 at this cell.
       std::size_t const back = site == 0 ? n - 1 : 0;
       RowsBeside const rows{
           {row_at(1 - site, y + back, z + back), row_at(1 - site, y + back + 1, z + back),
@@ -66,7 +67,7 @@ void for_each(Bcc<Real, SecondShell> const& bcc, Numbers<Real> const v, Body bod
     }
 }
 
-// Only Heun is compared.
+// The benchmark uses only Heun's method.
 template void Steps<Bcc<float, false>>::heun(Vectors<float>&, float, std::int64_t);
 template void Steps<Bcc<float, true>>::heun(Vectors<float>&, float, std::int64_t);
 template void Steps<Bcc<double, false>>::heun(Vectors<double>&, double, std::int64_t);

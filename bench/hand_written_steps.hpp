@@ -6,8 +6,9 @@
 #include <cmath>
 #include <utility>
 
-// Steps of a scene whose file has for_each(scene, spins, body), which calls body(site, dm/dt) for
-// every site. Everything is inlined: nothing is shared between files with other options.
+// The steps of all scenes. A file that includes this has a for_each(scene, spins, body), which
+// calls body(site, dm/dt) for every site. Everything is inlined, because other files that include
+// this are compiled with other options.
 namespace hand_written {
 
 #define HAND_WRITTEN_INLINE [[gnu::always_inline]] inline

@@ -14,7 +14,8 @@
 #include <utility>
 #include <vector>
 
-// Methods from coarse to fine steps, as in `cayspin trade`, and their cost at an error.
+// Runs methods from coarse to fine steps, as `cayspin trade` does, and finds what they cost at
+// given errors.
 namespace ladder {
 
 using Spins = cayspin::SpinField<double, Kokkos::HostSpace>;
@@ -22,7 +23,8 @@ using States = std::vector<std::vector<double>>;  // (sites, 3) at each sample
 
 inline constexpr int looks = 4;
 
-/// Returns unit vectors along f(x, y, z, site), x = (index + 1/2) / extent.
+/// Returns unit vectors along f(x, y, number), where x = (index + 1/2) / extent, y likewise, and
+/// `number` differs from site to site.
 template <class Function>
 std::vector<double> start_of(cayspin::Lattice const& lattice, Function const& f) {
   std::vector<double> spins;
@@ -41,14 +43,14 @@ std::vector<double> start_of(cayspin::Lattice const& lattice, Function const& f)
   return spins;
 }
 
-/// Returns true on one thread, to which times refer; otherwise prints a message.
+/// Returns true if there is only one thread, which the times are for; otherwise prints a message.
 inline bool has_one_thread() {
   if (Kokkos::DefaultHostExecutionSpace().concurrency() == 1) return true;
   std::fprintf(stderr, "set OMP_NUM_THREADS=1: seconds are those of one thread\n");
   return false;
 }
 
-/// Clock of processor time, which excludes other processes.
+/// Clock of the processor time of this process.
 class Clock {
  public:
   Clock() { reset(); }
@@ -83,8 +85,8 @@ struct Ladder {
   std::vector<Rung> rungs = {};
 };
 
-/// Returns the largest distance of any spin at any sample; spins of `run` are divided by their
-/// lengths.
+/// Returns the largest distance of any spin at any sample, with the spins of `run` divided by their
+/// lengths; infinity if samples are missing or not finite.
 inline double distance(States const& run, States const& reference) {
   double largest = 0;
   if (run.size() != reference.size()) return std::numeric_limits<double>::infinity();
@@ -101,8 +103,8 @@ inline double distance(States const& run, States const& reference) {
   return largest;
 }
 
-/// Returns the cost of a ladder at an error, interpolated logarithmically between rungs; infinite
-/// if it does not reach the error.
+/// Returns the cost of a ladder at an error, interpolated logarithmically between rungs; infinity
+/// if no rung reaches the error.
 inline double amount_to(Ladder const& ladder, double error, double Rung::*amount) {
   double best = std::numeric_limits<double>::infinity();
   Rung const* before = nullptr;
@@ -124,8 +126,8 @@ struct Limits {
   int rungs = 24;
 };
 
-/// Calls `run(rung)` from the coarsest, rung 0, on: the shortest of 3 to 100 runs, or of 2 long
-/// ones.
+/// Calls run(rung) from rung 0, the coarsest, on. Repeats useful rungs: the shortest of up to 100
+/// runs counts, of only 2 if they are long. Stops at the limits, or when errors no longer decrease.
 template <class RunOnce>
 Ladder climb(std::string name, bool is_own, States const& reference, Limits const& limits,
              RunOnce const& run) {
@@ -154,7 +156,7 @@ Ladder climb(std::string name, bool is_own, States const& reference, Limits cons
   return ladder;
 }
 
-/// Takes `steps` steps of a cayspin stepper, a multiple of the samples.
+/// Takes `steps` steps of a cayspin stepper; `steps` must be a multiple of `looks`.
 template <class Stepper, class Generator>
 Run take_steps(Stepper& stepper, Generator const& generator, cayspin::Lattice const& lattice,
                std::vector<double> const& start, double horizon, std::int64_t steps) {
@@ -182,7 +184,8 @@ inline std::int64_t with_looks(double steps) {
   return looks * std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(steps / looks)));
 }
 
-/// Returns `fewest` steps on rung 0, and 1.5 times as many on each next one.
+/// Returns `fewest` steps for rung 0 and 1.5 times as many for each next one, rounded up to a
+/// multiple of `looks`.
 inline std::int64_t steps_of(int rung, double fewest) {
   return with_looks(fewest * std::pow(1.5, rung));
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Energy, total spin and norm over long runs without damping, every method with and without
-// EnergyControl: spins on a periodic cube with only exchange, from a random start. All methods get
-// equally many field evaluations per unit time. Prints a row of a Markdown table per run, with the
-// largest error at a thousand samples.
+// Errors of energy, total spin and norm in long runs without damping, of every method with and
+// without EnergyControl: spins on a periodic cube with only exchange, from a random start. All
+// methods get equally many field evaluations per unit time. Prints a row of a Markdown table per
+// run, with the largest errors at a thousand samples.
 //   bench_long_runs [--steps=1000000] [--edge=16] [--evaluations=80] [--period=1] [--only=METHOD]
 #include "random_spins.hpp"
 
@@ -32,7 +32,7 @@ struct Options {
   std::string only;
 };
 
-/// Records the largest errors so far; runs before the control.
+/// Observer that records the largest errors so far. It is called before EnergyControl.
 class Watch {
  public:
   Watch(Generator const& generator, std::int64_t sites)

@@ -4,11 +4,11 @@
 
 Usage: model_gpu.py [--edge N] [--measured DIR]
 
-A kernel takes as long as the slowest of what its sites need: bytes of the memory and of the second
-cache, issue slots, lanes for arithmetic and for integers, bytes of the first cache, and the wait for
-memory with as many warps as the registers allow. Nothing overlaps perfectly, so this is a lower
-bound of the time, for a cube with N sites along each edge. --measured: the folder of results of
-bench/run.sh, whose times are printed beside it.
+The time of a kernel is that of the resource that limits it: the bandwidth of the memory, of the
+second-level or of the first-level cache, issue slots, lanes for arithmetic or for integers, or the
+latency of the memory with as many warps as the registers allow. This is a lower bound, because
+resources do not overlap perfectly. The lattice is a cube with N sites along each edge. --measured:
+the folder with the results of bench/run.sh, whose times are printed beside those of the model.
 """
 import argparse
 import pathlib
@@ -19,17 +19,17 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 COUNTS = ROOT / "tests" / "cuda" / "expected_sass.txt"
 
 # Assumed, for the SXM cards: both have the chip GH100 and differ only in memory.
-CARDS = {"H100": 3.35e12, "H200": 4.8e12}  # bytes a second of the memory, by their data sheets
+CARDS = {"H100": 3.35e12, "H200": 4.8e12}  # memory bandwidth, bytes/s, from the data sheets
 PROCESSORS = 132  # multiprocessors
 CLOCK = 1.755e9  # below the boost of 1.98 GHz: a busy card keeps less
-SCHEDULERS, LANES = 4, 32  # of a multiprocessor; one instruction of a warp a clock each
+SCHEDULERS, LANES = 4, 32  # of a multiprocessor, of a warp; each issues one instruction a clock
 ARITHMETIC = {"f64": 64, "f32": 128}  # lanes of a multiprocessor
 INTEGERS = 64
-FIRST_CACHE = 128  # bytes a clock of a multiprocessor
-SECOND_CACHE = 5.5e12  # bytes a second: 60 % of 5120 bytes a clock, cautiously
-LATENCY = 800e-9  # seconds for a site's loads from a busy memory: twice that of an idle one
+FIRST_CACHE = 128  # bytes a clock, of a multiprocessor
+SECOND_CACHE = 5.5e12  # bytes a second: a cautious 60 % of 5120 bytes a clock
+LATENCY = 800e-9  # seconds that a site's loads take from a busy memory: twice those of an idle one
 REGISTERS, WARPS = 65536, 64  # of a multiprocessor
-SECTOR = 32  # bytes, the least that comes from the second cache
+SECTOR = 32  # bytes, the least that the second-level cache transfers
 
 SIZE = {"f64": 8, "f32": 4}
 METHODS = {  # cases of bench_throughput
@@ -38,7 +38,7 @@ METHODS = {  # cases of bench_throughput
 
 
 class Kernel:
-    """A line of the counts. Its spins come from 7 sites, other arrays from its own."""
+    """A line of the counts. A kernel reads spins at 7 sites, other arrays only at its own."""
 
     def __init__(self, line):
         self.name, *numbers = line.split()
@@ -54,7 +54,7 @@ class Kernel:
 
     @property
     def warps(self):
-        """Resident on a multiprocessor: registers are given out in eights, warps in fours."""
+        """Warps on a multiprocessor: a thread gets a multiple of 8 registers; warps come in fours."""
         each = (self.registers + 7) // 8 * 8 * LANES
         return min(WARPS, REGISTERS // each // 4 * 4)
 
@@ -67,7 +67,7 @@ def walk(edge):
 def seconds(kernel, bandwidth, edge):
     """Returns the seconds per site that each resource needs."""
     size, sites = SIZE[kernel.precision], walk(edge)
-    once = (kernel.total - kernel.loop) / sites  # instructions of a thread, outside its loop
+    once = (kernel.total - kernel.loop) / sites  # instructions outside a thread's loop, per site
     clocks = 1 / (PROCESSORS * CLOCK)
     # A tile of 32 x 4 x sites: two more rows along y and z, and a sector at each end of its own
     # rows.
@@ -106,7 +106,8 @@ def print_kernels(kernels, edge):
 
 
 def steps(kernels, bandwidth, edge):
-    """{(precision, method): [seconds a site, those of only the memory, the bound]}."""
+    """Returns {(precision, method): [seconds a site, those of only the memory, resources that limit
+    the kernels]}."""
     found = {}
     for kernel in kernels:
         times = seconds(kernel, bandwidth, edge)
@@ -132,7 +133,7 @@ def print_steps(kernels, edge):
 
 
 def card_of(context):
-    """The GPU that a benchmark ran on, else its execution space."""
+    """Returns the GPU that a benchmark ran on; without one, its execution space."""
     configuration = context.get("kokkos_configuration", "")
     found = re.search(r"Kokkos::Cuda\[ \d+ \] (.*?) : Selected", configuration)
     return found[1] if found else context["execution_space"]

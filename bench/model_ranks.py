@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""A model of steps on many ranks: fitted to two ranks here, and what it says of more.
+"""A model of the time of steps on many ranks, fitted to two ranks of this machine.
 
 Usage: model_ranks.py BUILD_DIR [--latency S --bandwidth B] [--plot FILE.png]
 
-A step of a part of n x n x n sites takes the time of its sites and of those that it repeats, and
-one exchange of ghosts along z and one along y, each of a latency and of its bytes over a bandwidth.
-The time of a site, the latency and the bandwidth are fitted to runs of bench_ranks on two ranks,
-which share the memory of this machine; the caches hold none of the lattices. --latency and
---bandwidth are those of the network between the ranks of the predictions. An exchange at each stage
-repeats nothing, but takes a pass through memory for each stage, which is measured, too.
+The step of a part of n x n x n sites takes time for its sites, for the ghost sites that it computes
+as well, and for one exchange of ghosts along z and one along y. An exchange takes a latency plus
+its bytes over a bandwidth. The time of a site, the latency and the bandwidth are fitted to runs of
+bench_ranks on two ranks, which share the memory of this machine; no lattice fits the caches.
+Predictions for many ranks use the --latency and --bandwidth of a network instead. Ranks that
+exchange ghosts at each stage compute none, but need a pass through memory for each stage; the time
+of that is measured, too.
 """
 import argparse
 import pathlib
@@ -22,13 +23,14 @@ from compare_ranks import better, measure
 SIZES = [(128, 128, 256), (192, 192, 128), (192, 192, 256), (256, 256, 128), (256, 256, 256)]
 RANKS = [8, 64, 512, 4096]
 SITE_BYTES = 3 * 8
-# arXiv 2202.12309: a hydrodynamics application of Parthenon, against one node of eight.
+# Ranks and efficiency, relative to one node of eight, of a hydrodynamics application of Parthenon:
+# arXiv 2202.12309.
 PUBLISHED = (73728, 0.92)
 
 
 def measured(program, repetitions):
-    """{method: [(sites, sites with those repeated, bytes, seconds, in exchange, stages, seconds by
-    passes over those apart)]}, of one rank and step."""
+    """Returns {method: [(sites, sites with computed ghosts, bytes, seconds, seconds in exchanges,
+    stages, time by passes over that of independent ranks)]} for one rank and step."""
     rows = {}
     for nx, ny, nz in SIZES:
         half = (nx, ny, nz // 2)
@@ -47,7 +49,7 @@ def measured(program, repetitions):
 
 
 def relative_fit(columns, values):
-    """Coefficients that give the values with the least relative errors, and those."""
+    """Returns the coefficients with the least relative errors of the values, and these errors."""
     columns, values = numpy.array(columns, float).T, numpy.array(values, float)
     found, *_ = numpy.linalg.lstsq(columns / values[:, None], numpy.ones(len(values)), rcond=None)
     return found, columns @ found / values - 1
@@ -59,21 +61,22 @@ class Model:
         self.latency, self.bandwidth = latency, bandwidth
 
     def exchange(self, n, depth):
-        """Seconds: two faces along z, and then two along y with the ghosts along z."""
+        """Returns seconds for two faces along z, and then two along y with the ghosts along z."""
         sites = n * depth * (2 * n + 2 * depth)
         return 2 * self.latency + 2 * SITE_BYTES * sites / self.bandwidth
 
     def step(self, n, depth=None):
-        """Seconds of a step of a part with neighbours on all four sides that exchanges `depth`
-        planes at a time, as many as all stages of one or more steps need, or 1."""
+        """Returns the seconds of a step of a part with neighbours on all four sides. It exchanges
+        `depth` planes at a time: as many as all stages of one or more steps need, or 1."""
         depth = depth or self.stages
         sites = numpy.mean([n * (n + 2 * k)**2 for k in range(depth)])
         passes = self.passes if depth < self.stages else 1
         return passes * self.site * sites + self.stages / depth * self.exchange(n, depth)
 
     def efficiency(self, n, ranks):
-        """Returns the efficiency with n^3 sites per rank. Few ranks have fewer neighbours."""
-        inner = 1 - 1 / ranks**0.5  # ends inside the lattice, of all ends along an axis
+        """Returns the weak efficiency with n^3 sites per rank; with few ranks, many have fewer than
+        four neighbours."""
+        inner = 1 - 1 / ranks**0.5  # of all ends of parts along an axis, those inside the lattice
         alone = self.site * n**3
         return alone / (alone + inner * (self.step(n) - alone))
 

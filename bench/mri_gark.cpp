@@ -46,7 +46,7 @@ auto cheap_field() {
 using Demag = HostField<Spins, DemagnetizingField<double>>;
 using SlowDemag = SlowField<Spins, Demag>;
 
-/// A stepper under a generator whose demagnetising field counts its evaluations.
+/// Runs cayspin's steppers with a generator whose demagnetising field counts its evaluations.
 class Own {
  public:
   explicit Own(Demag const& demag)
@@ -80,7 +80,8 @@ class Own {
   std::vector<double> start_;
 };
 
-/// MRIStep: the demagnetising field is slow, the others are fast.
+/// Runs MRIStep of ARKODE: the demagnetising field is the slow part, the other terms are the fast
+/// part.
 class Mri {
  public:
   Mri(Demag const& demag, ARKODE_MRITableID table)
@@ -153,7 +154,8 @@ class Mri {
   std::vector<double> start_;
 };
 
-/// Returns the least-squares slope of log(error) over log(steps), for errors below 2e-3.
+/// Returns the order of a method: minus the least-squares slope of log(error) over log(steps), for
+/// errors below 2e-3.
 double fitted_order(ladder::Ladder const& ladder) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (auto const& rung : ladder.rungs) {
@@ -186,7 +188,7 @@ int main(int argc, char** argv) {
   double const largest =
       largest_stable_step<Rkmk4<Spins>>(exchange_bound(film(), exchange) + 1, damping);
   std::vector<ladder::Ladder> ladders;
-  // Inner steps of at most 0.4 of the largest stable one, a multiple of `stages` of them.
+  // A step has a multiple of `stages` inner steps, each at most 0.4 of the largest stable one.
   auto const compare = [&](std::string const& name, bool is_own, double coarsest, int stages,
                            auto&& run) {
     auto const once = [&](int rung) {

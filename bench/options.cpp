@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Cost of each option of the integrators: nanoseconds per spin and step of a chain of 100 spins, of
-// cubes, and of a lattice that fits the second-level cache. Cases are named options/METHOD,
+// Cost of each option of the integrators: nanoseconds per spin and step on a chain of 100 spins, on
+// cubes, and on a lattice that fits the second-level cache. Cases are named options/METHOD,
 // OPTION/SIZE.
 #include "main.hpp"
 #include "scene.hpp"
@@ -19,12 +19,12 @@ using namespace cayspin;
 using Spins = SpinField<double>;
 using scene::Default, scene::Orthogonal;
 
-// The scene with one change.
+// Rigid bodies in place of the scene. The structs below are the scene with one change.
 struct Bodies {
   static auto generator(Lattice const&) { return RigidBody::principal(1, 2, 3); }
 };
 
-/// One number on all sites, stored for each of them.
+/// Returns a field with the same number at every site.
 ScalarField<double> on_sites(Lattice const& lattice, double number) {
   return {"coefficient", lattice, number};
 }
@@ -79,7 +79,7 @@ struct DampingOfSites {
   }
 };
 
-/// Steps through integrate, with energy, norm defect and magnetization computed after each.
+/// Times steps of integrate, with energy, norm defect and magnetization computed after each.
 template <class Stepper>
 void time_observed_steps(benchmark::State& state, Lattice const& lattice) {
   auto spins = scene::random<typename Stepper::spins_type>(lattice);
@@ -109,7 +109,7 @@ void on_sizes(std::string const& name, Run run) {
       run);
 }
 
-/// `words`: see scene::words_moved; 0 if there is no prediction.
+/// `words`: the `of_passes` of scene::words_moved; 0 if there is no prediction.
 template <class Stepper, class System = Default>
 void add(std::string const& name, double words) {
   on_sizes(name, [=](benchmark::State& state, Lattice const& lattice) {

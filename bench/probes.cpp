@@ -80,7 +80,7 @@ template <class Real, class P>
 PROBE_INLINE Vector<P> dcay_inverse(Vector<P> const& f, Vector<P> const& y) {
   return y + Real(-0.5) * cross(f, y) + (Real(0.25) * dot(f, y)) * f;
 }
-/// Returns the spin with stereographic coordinates `step` times u, transported from m to m0.
+/// Returns the spin at the coordinates step * chart_rate(u, m, m0) of the chart at m0.
 template <class Real, class P>
 PROBE_INLINE Vector<P> chart_move(Real step, Vector<P> const& u, Vector<P> const& m,
                                   Vector<P> const& m0) {
@@ -90,19 +90,20 @@ PROBE_INLINE Vector<P> chart_move(Real step, Vector<P> const& u, Vector<P> const
   P const along = Real(-2) * scale * dot(u, m0);
   return m0 + (along - Real(2) * scale * reach) * m0 + (scale * e2) * u + along * m;
 }
-/// Returns the coordinates that lead from m0 to w.
+/// Returns the coordinates of the spin w in the stereographic chart at m0.
 template <class Real, class P>
 PROBE_INLINE Vector<P> chart_of(Vector<P> const& w, Vector<P> const& m0) {
   Vector<P> const d = w - m0;
   P const square = dot(d, d);
   return (Real(1) / (Real(4) - square)) * ((d + d) + square * m0);
 }
+/// Returns the spin with coordinates f in the chart at m0.
 template <class Real, class P>
 PROBE_INLINE Vector<P> chart_to(Vector<P> const& f, Vector<P> const& m0) {
   P const s = dot(f, f);
   return m0 + (Real(2) / (Real(1) + s)) * (f - s * m0);
 }
-/// u at m in coordinates at m0.
+/// Returns the rate m' = u of a spin m in the coordinates of the chart at m0.
 template <class Real, class P>
 PROBE_INLINE Vector<P> chart_rate(Vector<P> const& u, Vector<P> const& m, Vector<P> const& m0) {
   P const inverse = Real(2) / (Real(2) * dot(m, m0) + Real(2));
@@ -129,8 +130,8 @@ PROBE_INLINE void Probe<Real>::write(Vector const& v, int field, std::ptrdiff_t 
   store(v.x, to), store(v.y, to + stride_), store(v.z, to + 2 * stride_);
 }
 
-/// Calls body(at, m, A) for each pack of the spins `level`, then writes the ghost sites of `out`.
-/// Without Whole, A is only given up to a multiple of m.
+/// Calls body(at, m, A) for each pack of the spins in field `level`. Writes the ghost sites of
+/// field `out` after each row. Unless Whole, A lacks a multiple of m.
 template <class Real>
 template <bool Whole, class Body>
 PROBE_INLINE void Probe<Real>::for_each_pack(int level, int out, Body const& body) {
@@ -168,7 +169,7 @@ PROBE_INLINE void Probe<Real>::for_each_pack(int level, int out, Body const& bod
     }
 }
 
-// Includes the ghost sites, which copy their neighbours.
+// Also visits the ghost sites, whose spins are those of the sites beside them.
 template <class Real>
 template <class Work>
 void Probe<Real>::for_each_site(Work const& work) const {

@@ -4,13 +4,14 @@
 #include <cstddef>
 #include <vector>
 
-// Speed limit of a step on one core, from its second-level cache: each method written out for one
-// lattice and one scene, with packs, rows that carry ghost sites, and nothing generic. The probes
-// share no code with cayspin; the benchmarks compare their spins with cayspin's after each run.
+// How fast a step can be on one core with data in its second-level cache: each method is written
+// out for one lattice and one scene, with packs, rows with ghost sites, and nothing generic. The
+// probes share no code with cayspin. Before it times a probe, the benchmark checks that its steps
+// are those of cayspin.
 namespace probes {
 
 struct Scene {
-  int nx, ny, nz;  // open; nx is a multiple of a pack
+  int nx, ny, nz;  // open ends; nx is a multiple of the pack width
   double exchange, anisotropy, applied, damping;
 };
 
@@ -27,7 +28,7 @@ class Probe {
   void chart_rk4(Real dt);
   void projected_rk4(Real dt);
 
-  /// Spins as (sites, 3), x fastest.
+  /// Set or return the spins as (sites, 3), x fastest.
   void set(std::vector<double> const& spins);
   std::vector<double> get() const;
 

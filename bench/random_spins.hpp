@@ -6,8 +6,8 @@
 #include <map>
 #include <vector>
 
-/// Returns spins uniform on the sphere, (sites, 3), equal on every machine; generated once for each
-/// count.
+/// Returns random spins (sites, 3), uniform on the sphere, from the same random numbers on every
+/// machine. They are generated once for each count.
 inline std::vector<double> const& random_spins(std::int64_t sites) {
   static std::map<std::int64_t, std::vector<double>> made;
   auto& spins = made[sites];

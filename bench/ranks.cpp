@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Nanoseconds per spin and step on the ranks that mpiexec starts, and the part spent on exchanging
-// ghosts, measured by Kokkos' regions: one line per method. Usage: bench_ranks NX NY NZ [MODE];
-// compare_ranks.py and model_ranks.py start it. Mode "apart": each rank has such a lattice to
-// itself; "in_step": it also waits for the others after each step; "passes": it also takes a pass
-// for each stage, as exchanges between stages would need.
+// Nanoseconds per spin and step on the ranks that mpiexec starts, and the part of the time spent on
+// exchanging ghosts, measured by Kokkos' regions: one line per method. Usage: bench_ranks NX NY NZ
+// [MODE]; compare_ranks.py and model_ranks.py start it. Mode "apart": each rank has a lattice of
+// this size to itself; "in_step": the same, and ranks wait for each other after each step;
+// "passes": like "apart", but each stage is a pass over memory, as exchanges between stages would
+// need.
 #include "scene.hpp"
 
 #include <cayspin/mpi/domain.hpp>
@@ -43,7 +44,7 @@ double of_all(double value, MPI_Op operation) {
   return value;
 }
 
-// Waits like an exchange of ghosts.
+// A barrier, which waits in the same way as an exchange of ghosts.
 void wait_for_all() {
   std::array<MPI_Request, 1> request;
   MPI_Ibarrier(MPI_COMM_WORLD, request.data());
@@ -73,7 +74,7 @@ void measure(char const* name, cayspin::Lattice const& lattice, std::string cons
     }
     exec.fence();
     double const seconds = of_all(MPI_Wtime() - begin, MPI_MAX);
-    double const waited = of_all(exchange.seconds, MPI_MIN);  // of the last rank
+    double const waited = of_all(exchange.seconds, MPI_MIN);  // of the rank that waited least
     total += seconds;
     if (seconds < best) best = seconds, exchanging = waited, exchanges = exchange.count;
   }

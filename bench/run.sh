@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Runs all benchmarks with all cores and, where threads are compared, with one; then prints the
-# table and draws it. Usage: PYTHON=python3 bash bench/run.sh BUILD_DIR
+# Runs bench_throughput, bench_few_spins, bench_options and bench_evaluations with all cores, and
+# bench_throughput also with one. Then prints tables of the results and draws them. Usage:
+# PYTHON=python3 bash bench/run.sh BUILD_DIR
 set -euo pipefail
 
 build_dir=$1
@@ -29,7 +30,7 @@ throughput() {
 
 rm -rf "$results"
 mkdir -p "$results"
-drawn='/(hand-written .*|Euler|Heun|RKMK4|.* tangent)' # over all sizes; the others at some
+drawn='/(hand-written .*|Euler|Heun|RKMK4|.* tangent)' # at all sizes; the others at some
 throughput smallest "$threads" "$drawn/(5|10|16|24)/"
 throughput small "$threads" "/(32|64|L2)/|$drawn/48/" --benchmark_repetitions=7
 throughput medium "$threads" "/(128|L2)/|$drawn/96/"

@@ -16,14 +16,15 @@
 // The scene of the benchmarks, and the timing of a stepper on it.
 namespace scene {
 
-// Damping is computed, but 0: otherwise a small lattice reaches equilibrium within a repetition,
-// and the benchmark would time denormal numbers.
+// Damping is 0, but its term is computed. With damping, a small lattice would reach equilibrium
+// within a repetition, and the benchmark would time denormal numbers.
 inline constexpr double exchange = 1, anisotropy = 0.5, applied = 0.3, damping = 0, dt = 0.02;
 
-/// Small enough for the second-level cache, and for the calling thread.
+/// A lattice that fits the second-level cache, and is small enough for the calling thread to do all
+/// work.
 inline cayspin::Lattice in_l2() { return cayspin::Lattice::cubic(128, 4, 4); }
 
-/// A lattice, and its name in cases.
+/// A lattice, and its name in the names of cases.
 struct Size {
   cayspin::Lattice lattice;
   std::string name;
@@ -49,7 +50,8 @@ struct Orthogonal {
   }
 };
 
-/// Reports nanoseconds per spin and step, and the bounds on them.
+/// Reports nanoseconds per spin and step, and what bounds them: the numbers moved per spin and step
+/// (`words`) and the bytes of work memory per spin.
 inline void report(benchmark::State& state, std::int64_t sites, double words, double work_bytes) {
   auto const spins = static_cast<double>(sites);
   state.counters["ns/spin"] =
@@ -75,8 +77,9 @@ Stepper make_stepper(typename Stepper::spins_type const& like) {
     return Stepper(like);
 }
 
-/// Returns the numbers that a step moves per spin without caches: `of_passes` if each stage is a
-/// pass over memory; a sweep reads and writes the spins.
+/// Returns how many numbers per spin a step on a large lattice moves between caches and memory:
+/// `of_passes` if each stage is a pass over memory, and 6 for a sweep, which reads and writes the
+/// spins once.
 template <class Stepper>
 double words_moved(Stepper const& stepper, double of_passes) {
   if constexpr (requires { stepper.path(); })
@@ -115,8 +118,8 @@ void time_steps(benchmark::State& state, cayspin::Lattice const& lattice, double
   report(state, lattice.sites(), words_moved(stepper, words_of_passes), work_bytes(stepper));
 }
 
-/// Returns the distance of `others`, (sites, 3), from the spins after so many of the library's
-/// steps.
+/// Returns the largest difference of any component between `others`, (sites, 3), and the spins
+/// after `steps` steps of the library.
 template <class Stepper, class System = Default>
 double distance_to(std::vector<double> const& others, cayspin::Lattice const& lattice, int steps,
                    double step) {
@@ -137,7 +140,7 @@ template <class Run>
 void add(std::string const& name, Run run) {
   benchmark::RegisterBenchmark(name.c_str(), run)->UseRealTime()->Unit(benchmark::kMillisecond);
 }
-/// Registers NAME/SIZE for each size: run(state, lattice).
+/// Registers run(state, lattice) as NAME/SIZE for each size.
 template <class Run>
 void add(std::string const& name, std::vector<Size> const& sizes, Run run) {
   for (auto const& size : sizes)

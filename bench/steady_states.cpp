@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Equilibria of films and cubes, to max |m x H| < 1e-6: field evaluations and seconds of
-// cayspin::minimize, with and without its preconditioner, of Barzilai and Borwein's steps with
-// equal kernels, and of a relaxation in time. `bench_steady_states --large`: also 256^2 and 64^3
-// spins. Stops a method after 60000 evaluations.
+// The cost of equilibria of films and cubes, to max |m x H| < 1e-6: field evaluations and seconds
+// of cayspin::minimize, with and without its preconditioner, of Barzilai and Borwein's steps with
+// the same kernels, and of a relaxation in time. `bench_steady_states --large`: also 256^2 and 64^3
+// spins. Methods stop after 60000 evaluations.
 #include "random_spins.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -56,7 +56,7 @@ Cost by_minimize(Field const& field, Spins& spins, bool preconditioned) {
   return {found.end == MinimizeEnd::converged, found.evaluations, clock.seconds()};
 }
 
-/// Steps along the gradient, alternately of the lengths s.s / s.y and s.y / y.y.
+/// Takes steps along the gradient, of the lengths s.s / s.y and s.y / y.y in turns.
 template <class Field>
 Cost by_barzilai_borwein(Field const& field, Spins& spins) {
   auto const& lattice = spins.lattice();
@@ -84,7 +84,7 @@ Cost by_barzilai_borwein(Field const& field, Spins& spins) {
   return cost;
 }
 
-/// m' = (m x H) x m by RKMK4 at its largest stable step.
+/// Integrates m' = (m x H) x m by RKMK4 at 0.95 of its largest stable step.
 template <class Field>
 Cost by_relaxing(Field const& field, Spins& spins, double field_bound) {
   Exec const exec;

@@ -14,8 +14,9 @@
 #include <unistd.h>
 #endif
 
-// STREAM's copy, the reference for memory speed: b = a on arrays much larger than the caches, with
-// ordinary stores and with stores that bypass the caches. On a device both are ordinary.
+// STREAM's copy, the reference for memory speed: b = a on arrays much larger than the caches, once
+// with ordinary stores and once with stores that bypass the caches. On a device both use ordinary
+// stores.
 namespace stream {
 
 using Exec = Kokkos::DefaultExecutionSpace;
@@ -23,7 +24,7 @@ using Array = Kokkos::View<double*, Exec::memory_space>;
 
 inline constexpr std::int64_t block = 4096;
 
-/// One block of `block` numbers per task on a host, one number on a device.
+/// Functor that copies `block` numbers per task on a host, one number on a device.
 template <bool NonTemporal>
 struct Copy {
   double const* from;
@@ -47,7 +48,7 @@ struct Copy {
   }
 };
 
-/// Returns four times the last cache, at least 256 MiB, at most 1 GiB.
+/// Returns four times the size of the third-level cache, but at least 256 MiB and at most 1 GiB.
 inline std::int64_t array_bytes() {
   std::int64_t cache = 0;
 #if defined(__linux__) && defined(_SC_LEVEL3_CACHE_SIZE)
@@ -56,7 +57,7 @@ inline std::int64_t array_bytes() {
   return std::clamp(4 * cache, std::int64_t(256) << 20, std::int64_t(1) << 30);
 }
 
-/// Arrays allocated by the first copy.
+/// The arrays, allocated by the first benchmark that runs.
 struct Arrays {
   std::int64_t size = array_bytes() / 8 / block * block;
   Array from, to;

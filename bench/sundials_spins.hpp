@@ -33,9 +33,10 @@ struct FreeVector {
 };
 using Vector = std::unique_ptr<_generic_N_Vector, FreeVector>;
 
-/// Serial vectors with the memory layout of a spin field, including margins: kernels read and write
-/// them in place. If padding is more than an eighth of a field, vectors hold only the sites, and
-/// are copied: long vectors would cost more. The padding of a rate is zero.
+/// Makes serial vectors with the memory layout of a spin field, margins included, which kernels
+/// read and write in place. If the padding would be more than an eighth of the spins, vectors hold
+/// only the spins and are copied for kernels, since SUNDIALS' operations on longer vectors would
+/// cost more. The padding of rates is zero.
 class SpinVectors {
  public:
   explicit SpinVectors(cayspin::Lattice const& lattice)
@@ -118,7 +119,7 @@ class SpinVectors {
   sunindextype length_ = 0;
 };
 
-/// A x m of every site.
+/// Functor that computes A x m at every site.
 template <class Generator>
 struct RateOfSites {
   Generator generator;
@@ -132,7 +133,8 @@ struct RateOfSites {
   }
 };
 
-/// The right side m' = A x m by the generator's own kernel. Nonlocal fields read a copy, `whole`.
+/// Evaluates the right side m' = A x m by the generator's own kernel. If the field is non-local, it
+/// reads the spins from a copy, whole_.
 template <class Generator>
 class RightSide {
  public:

@@ -13,7 +13,7 @@ namespace {
 
 using namespace cayspin;
 
-/// A stepper with both halves of the noise after each step.
+/// A stepper that applies both halves of the noise after each step.
 template <class Of>
 struct Noisy {
   using spins_type = typename Of::spins_type;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Bias of thermal averages due to steps of length dt: cayspin's noise around its steps, next to
-// three schemes of other programs, reimplemented here. One line per scheme, damping and dt: the
-// error of <m_z> in a field of 2 T (Langevin), of <m_z^2> of a uniaxial spin with K = 3 T, and of
-// <m.m'> of neighbours on a chain with J = 3 T (Fisher 1964), each with its standard error.
+// Bias of thermal averages due to steps of length dt: cayspin's noise before and after its steps,
+// next to three schemes of other programs, reimplemented here. Prints one line per scheme, damping
+// and dt: the error of <m_z> in a field of twice the temperature (Langevin), of <m_z^2> of a
+// uniaxial spin with K of three times the temperature, and of <m.m'> of neighbours on a chain with
+// J of three times the temperature (Fisher 1964), each with its standard error.
 //   bench_thermal_bias [sites] [time]
 #include <cayspin/cayspin.hpp>
 #include <cayspin/observer/thermal_noise.hpp>
@@ -23,8 +24,8 @@ using Vectors = std::vector<Vector>;
 using Spins = cayspin::SpinField<double, Kokkos::HostSpace>;
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
-/// A mean with its standard error, from equally long blocks of time; the first samples that fill no
-/// block are left out.
+/// A mean with its standard error, from equally long blocks of samples. Samples at the start that
+/// do not fill a block are left out.
 struct Estimate {
   double mean = 0, error = 0;
 };
@@ -143,8 +144,8 @@ Vector by_rotation(Vector const& f, Vector const& m) {
   return m + std::sin(angle) * em + (1 - std::cos(angle)) * cross(e, em);
 }
 
-/// Each scheme: a prediction from the field of m, then a step from the fields of both. a: h times
-/// A.
+/// Each scheme predicts spins with the field of m, then takes its step with the field of the spins
+/// that `at` returns. `first` and `a` are dt times A.
 struct HeunAndRenormalise {
   static constexpr char const* name = "Heun, renormalised";
   static Vector guess(Vector const& a, Vector const& m) { return normalized(m + cross(a, m)); }
