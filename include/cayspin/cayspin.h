@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception */
-/* Scenes from C, and from all that calls C. Every function returns a cayspin_status. It changes
-   what its pointers point to only when that is CAYSPIN_OK. No C++ exception leaves a function.
-   Calls from several threads take turns, but for cayspin_time and cayspin_steps: they do not wait,
-   and say how far a run is. Calls on several simulations take turns step by step, and those that
-   read and write files take turns in HDF5. No other call on a simulation may be under way when
-   cayspin_close is called. No function starts a process. A damaged HDF5 file may crash HDF5, and
-   with it the program: `cayspin check` reads the files of a scene in a process of its own. */
+/* Scenes from C, and from every language that can call C. The functions on simulations return a
+   cayspin_status, and change what their pointers point to only if it is CAYSPIN_OK. No C++ exception
+   leaves a function. Calls from several threads take turns, except for cayspin_time and
+   cayspin_steps, which do not wait and tell how far a run has come. Calls on several simulations
+   take turns step by step, and those that read or write files take turns in HDF5. No other call on a
+   simulation may be in progress when cayspin_close is called. No function starts a process. A
+   damaged HDF5 file may crash HDF5, and the program with it; `cayspin check` reads the files of a
+   scene in a separate process. */
 #ifndef CAYSPIN_CAYSPIN_H
 #define CAYSPIN_CAYSPIN_H
 
@@ -21,7 +22,7 @@ extern "C" {
 /* A run of a scene: its spins, its method and the time. */
 typedef struct cayspin_simulation cayspin_simulation;
 
-/* Any number is a value of these types, in C++ as in C. */
+/* In C++ as in C, the enumerations below can hold any int. */
 #ifdef __cplusplus
 #define CAYSPIN_AS_INT : int
 #else
@@ -42,8 +43,9 @@ typedef enum cayspin_precision CAYSPIN_AS_INT {
 } cayspin_precision;
 
 /* Vectors of all sites in host memory, float or double: component c of site (x, y, z) is number
-   z strides[0] + y strides[1] + x strides[2] + c strides[3] after `data`. Of a crystal with n sites
-   in a cell, plane z = k n + s has site s of the cells k, and nz is cells times n. */
+   z strides[0] + y strides[1] + x strides[2] + c strides[3] after `data`. In a crystal with n sites
+   per cell, plane z = k n + s has site s of the cells with index k, and nz is n times their number
+   along z. */
 typedef struct cayspin_array {
   void const* data;
   cayspin_precision precision;
@@ -51,64 +53,66 @@ typedef struct cayspin_array {
   int64_t strides[4]; /* in numbers, not bytes */
 } cayspin_array;
 
-/* A state that cayspin_relax has found, in the units of the scene. */
+/* The state that cayspin_relax has found, in the units of the scene. */
 typedef struct cayspin_minimum {
-  int converged;       /* 1; 0 where round-off or the limit on evaluations ended the search */
+  int converged;       /* 1, or 0 if round-off or the limit on evaluations ended the search */
   double torque;       /* max |m x H| */
   double energy;       /* summed over sites */
   int64_t evaluations; /* of the field over all sites */
 } cayspin_minimum;
 
-/* One line about the last call of this thread that failed: empty before the first one. It is valid
-   until the next call that fails. */
+/* One line about the last call by this thread that failed; empty if none has. It is valid until the
+   next call that fails. */
 char const* cayspin_last_error(void);
 
-/* Such as "0.2.0". */
+/* The version, such as "0.2.0". */
 char const* cayspin_version(void);
 
-/* Opens a scene file; one without [integrator] is only for cayspin_relax. `space`: openmp, threads,
-   cuda, ..., "serial" for the host's with one thread, or NULL for Kokkos' default. Starts Kokkos
-   unless the program has. */
+/* Opens a scene file; one without [integrator] is only for cayspin_relax. `space`: "openmp",
+   "threads", "cuda", ..., "serial" for the host's space with one thread, or NULL for Kokkos'
+   default. Starts Kokkos unless the program has done so. */
 cayspin_status cayspin_open_file(char const* path, cayspin_precision precision, char const* space,
                                  cayspin_simulation** simulation);
 
-/* The same for a scene's text. Messages call it `name`, and its files lie in the folder of `name`.
-   NULL: "scene". */
+/* Opens the text of a scene. Messages call it `name`, and the paths in it start in the folder of
+   `name`; NULL stands for "scene". */
 cayspin_status cayspin_open_text(char const* text, char const* name, cayspin_precision precision,
                                  char const* space, cayspin_simulation** simulation);
 
 /* Takes `count` steps. After CAYSPIN_NUMBERS_FAILED the spins are those before the failing step. */
 cayspin_status cayspin_step(cayspin_simulation* simulation, int64_t count);
 
-/* Takes steps to the scene's end, and writes the file as `cayspin run` does: `output`, or where
-   that is NULL the scene's output.file. A file that exists is an error unless `overwrite`. */
+/* Takes steps to the scene's end, and writes a file as `cayspin run` does: `output` or, if that is
+   NULL, the scene's output.file. It is an error if the file exists, unless `overwrite` is not 0. */
 cayspin_status cayspin_run(cayspin_simulation* simulation, char const* output, int overwrite);
 
 /* Moves the spins to an equilibrium, as `cayspin relax` does: until max |m x H| is below `torque`,
-   or for so many `evaluations` of the field. `applied`, three numbers, takes the place of the
-   scene's field.applied; NULL: H is that at the time now. Time and steps stay as they are. */
+   or for at most `evaluations` evaluations of the field. `applied`, three numbers, replaces the
+   scene's field.applied; if it is NULL, H is that at the current time. Time and steps do not
+   change. */
 cayspin_status cayspin_relax(cayspin_simulation* simulation, double torque, int64_t evaluations,
                              double const* applied, cayspin_minimum* found);
 
-/* In the units of the scene: reduced, or seconds. */
+/* The time of the run, in reduced units, or in seconds for a scene in SI, and its steps so far. */
 cayspin_status cayspin_time(cayspin_simulation const* simulation, double* time);
 cayspin_status cayspin_steps(cayspin_simulation const* simulation, int64_t* steps);
 
-/* The spins where they are: no copy on a host, one on a device. Valid until the next call of
+/* The spins in place: on a host this is no copy, on a device it is one. Valid until the next call of
    cayspin_step, cayspin_run, cayspin_relax, cayspin_set_spins or cayspin_close. */
 cayspin_status cayspin_borrow_spins(cayspin_simulation* simulation, cayspin_array* spins);
 
-/* H of every site now, in the units of the scene. Valid until the next call of this function or of
-   cayspin_close. */
+/* H at every site at the current time, in the units of the scene. Valid until the next call of this
+   function or of cayspin_close. */
 cayspin_status cayspin_borrow_field(cayspin_simulation* simulation, cayspin_array* field);
 
-/* Copies spins in, normalised, of either precision. Methods that remember steps begin again. */
+/* Copies spins of either precision in, and normalises them. Methods that remember steps start
+   afresh. */
 cayspin_status cayspin_set_spins(cayspin_simulation* simulation, cayspin_array const* spins);
 
-/* Summed over sites; in reduced units, or in joules for a scene in SI. */
+/* The energy, summed over sites, in reduced units, or in joules for a scene in SI. */
 cayspin_status cayspin_energy(cayspin_simulation* simulation, double* energy);
 
-/* The mean of the spins, weighted by the moments of sites where the scene has them. */
+/* The mean of the spins, weighted by the moments of the sites if the scene has any. */
 cayspin_status cayspin_magnetization(cayspin_simulation* simulation, double magnetization[3]);
 
 /* Ends a simulation; NULL does nothing. */

@@ -185,7 +185,7 @@ class PathFinder {
   }
 
   /// Returns the highest maximum (sign 1) or the lowest minimum (sign -1) of the energy along the
-  /// path that is not at a fixed image.
+  /// path that is not at a fixed image and is prominent enough.
   std::optional<Peak> next_peak(int sign, double smallest) const {
     auto points = string_.profile();
     for (auto& point : points) point.energy *= sign, point.slope *= sign;

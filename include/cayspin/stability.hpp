@@ -114,7 +114,7 @@ Complex growth_to(int row, NearAxis const& first, Coordinates const& increments)
   NearAxis second;
   for (int j = 0; j < row && j < Tableau::stages; ++j)
     second = second + second_weight<Tableau>(row, j) * increments[j];
-  // Relative to the spin after the first rotation.
+  // Makes the coordinates relative to the spin after the first rotation.
   second.transverse -= second.parallel * growth;
   return growth + Linear::growth(second);
 }
@@ -176,9 +176,10 @@ bool amplifies(Complex rate, double dt, double sigma, bool clearly) {
   return !(excess < (clearly ? size : -size) * std::abs(growth));
 }
 
-/// Returns the smallest dt below `limit` above which grows(dt, clearly) is true; `limit` when there
-/// is none, 0 when every dt down to 1e-9 of the mode's time `unit` amplifies. Searches upwards from
-/// `from` units: at shorter steps, round-off would hide the growth of methods of high order.
+/// Returns the smallest dt below `limit` beyond which grows(dt, clearly) is true; `limit` if there
+/// is none, 0 if it is true at every dt down to 1e-9 of `unit`, the time scale of the mode.
+/// Searches upwards from `from` units: at shorter steps, round-off would hide the growth of methods
+/// of high order.
 template <class Grows>
 double first_amplifying_step(Grows const& grows, double unit, double limit, double from) {
   double stable = from * unit, unstable = stable;

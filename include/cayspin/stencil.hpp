@@ -74,8 +74,8 @@ class Stencil {
   Spins const& spins_;
   typename Site::Place place_;
   vector_type center_;
-  // Neighbours along x, where the ends of rows need a branch: loaded once for all terms. Unused
-  // ones cost nothing.
+  // Neighbours along x, where the ends of rows need a branch. They are loaded once for all terms;
+  // if no term uses them, they cost nothing.
   vector_type beside_[2];
 };
 

@@ -47,7 +47,7 @@ struct Vec3 {
   KOKKOS_FORCEINLINE_FUNCTION Vec3& operator-=(Vec3 const& a) { return *this = *this - a; }
 };
 
-/// Value and vector types of a stencil, a spin or a site, as terms name them.
+/// Short names in terms for the value and vector types of a stencil, a spin or a site.
 template <class Stencil>
 using ValueOf = typename Stencil::value_type;
 template <class Stencil>

@@ -24,7 +24,7 @@ struct BodyInvariants {
   Value b, b2, v2;                   // <m, B m>, |B m|^2, |v|^2
   Value trace, second, det;          // of B
   Value mixed;                       // <m, B m x B^2 m>
-  Value trace_c, second_c, cubic_c;  // of C = B - b; <C m, C C m> / |C m|^2
+  Value trace_c, second_c, cubic_c;  // of C = B - b; cubic_c: <C m, C C m> / |C m|^2
 
   KOKKOS_FORCEINLINE_FUNCTION BodyInvariants(SymmetricMatrix<Value> const& matrix,
                                              Vec3<Value> const& m) {

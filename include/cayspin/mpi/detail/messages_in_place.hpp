@@ -34,7 +34,7 @@ struct Faces {
 /// A box of a field in host memory as equal blocks of bytes at constant strides.
 struct BytesInPlace {
   std::byte* first;
-  int bytes;  // in a row
+  int bytes;  // of a block
   int planes, components;
   MPI_Aint plane, component;  // strides in bytes
 
