@@ -54,7 +54,7 @@ class Kernel:
 
     @property
     def warps(self):
-        """Warps on a multiprocessor; threads get registers in multiples of 8, warps come in fours."""
+        """Warps on a multiprocessor; threads get registers in eights, warps come in fours."""
         each = (self.registers + 7) // 8 * 8 * LANES
         return min(WARPS, REGISTERS // each // 4 * 4)
 

@@ -14,7 +14,7 @@
 /// of the other. Its error is up to 2.5e-4.
 namespace quadrature {
 
-constexpr double accuracy = 6;  // distance of the cells over the size of a piece
+constexpr double accuracy = 6;  // gap between the cells over the size of a piece
 
 /// Returns the middle of piece `index` of `pieces` pieces of an edge.
 inline double middle(double edge, int pieces, int index) {

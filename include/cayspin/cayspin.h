@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception */
 /* Scenes from C, and from every language that can call C. The functions on simulations return a
-   cayspin_status, and change what their pointers point to only if it is CAYSPIN_OK. No C++ exception
-   leaves a function. Calls from several threads take turns, except for cayspin_time and
+   cayspin_status, and change what their pointers point to only if it is CAYSPIN_OK. No C++
+   exception leaves a function. Calls from several threads take turns, except for cayspin_time and
    cayspin_steps, which do not wait and tell how far a run has come. Calls on several simulations
-   take turns step by step, and those that read or write files take turns in HDF5. No other call on a
-   simulation may be in progress when cayspin_close is called. No function starts a process. A
+   take turns step by step, and those that read or write files take turns in HDF5. No other call on
+   a simulation may be in progress when cayspin_close is called. No function starts a process. A
    damaged HDF5 file may crash HDF5, and the program with it; `cayspin check` reads the files of a
    scene in a separate process. */
 #ifndef CAYSPIN_CAYSPIN_H
@@ -97,8 +97,8 @@ cayspin_status cayspin_relax(cayspin_simulation* simulation, double torque, int6
 cayspin_status cayspin_time(cayspin_simulation const* simulation, double* time);
 cayspin_status cayspin_steps(cayspin_simulation const* simulation, int64_t* steps);
 
-/* The spins in place: on a host this is no copy, on a device it is one. Valid until the next call of
-   cayspin_step, cayspin_run, cayspin_relax, cayspin_set_spins or cayspin_close. */
+/* The spins in place: on a host this is no copy, on a device it is one. Valid until the next call
+   of cayspin_step, cayspin_run, cayspin_relax, cayspin_set_spins or cayspin_close. */
 cayspin_status cayspin_borrow_spins(cayspin_simulation* simulation, cayspin_array* spins);
 
 /* H at every site at the current time, in the units of the scene. Valid until the next call of this
