@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A code with a communicator and a View of its own, divided along z, that uses cayspin for the
-// steps. The printed numbers have equal bits on 1 to 4 ranks.
+// steps. The printed numbers have equal bits on any number of ranks.
 #include <cayspin/cayspin.hpp>
 #include <cayspin/mpi/domain.hpp>
 
@@ -28,7 +28,9 @@ void run(MPI_Comm comm) {
   auto const lattice = cayspin::Lattice::cubic(24, 16, 32);
 
   using Stepper = cayspin::Rkmk4<cayspin::SpinField<double>>;
-  cayspin::mpi::Domain const domain(comm, lattice, Stepper::ghosts);
+  int ranks = 0;
+  MPI_Comm_size(comm, &ranks);
+  cayspin::mpi::Domain const domain(comm, lattice, Stepper::ghosts, {.y = 1, .z = ranks});
   auto const& local = domain.local();
   Kokkos::View<double* [3]> const mine("mine", local.sites());  // without ghosts
   std::int64_t const first = domain.begin()[2] + local.ghosts[2].before;
