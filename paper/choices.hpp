@@ -8,7 +8,7 @@ namespace cayspin::paper {
 
 using io::Generator, io::Isotropy;
 
-/// Returns a choice of the method with this name.
+/// Returns the method of this name with the given generator and sigma.
 inline MethodChoice choose(std::string_view method, Generator generator = Generator::standard,
                            Isotropy isotropy = Isotropy::zero, double sigma = 0) {
   return {.method = io::find_method(method),

@@ -10,8 +10,8 @@
 #include <vector>
 
 /// Fields in OVF, the file format of OOMMF and mumax3: three components, or one, on a rectangular
-/// mesh. Versions 1.0 and 2.0 are read, and 2.0 is written. Every failure throws std::runtime_error
-/// with one line that starts with the file.
+/// mesh. Versions 1.0 and 2.0 are read, and 2.0 is written. Failures to read or write throw
+/// std::runtime_error, with one line that starts with the path.
 namespace cayspin::inline v0_2::io {
 
 /// Storage format of an OVF file's values. `text` has as many digits as a double needs.

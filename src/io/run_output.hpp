@@ -28,8 +28,7 @@ struct RunOutputOptions {
 /// one thread, which must not use HDF5 until finish(), close() or the destructor.
 class RunOutput {
  public:
-  /// Creates the files. An existing file is an error unless `overwrite`; in that case no file is
-  /// changed.
+  /// Creates the files. Without `overwrite`, an existing file is an error, and no file is changed.
   RunOutput(std::filesystem::path path, TrajectoryHeader const& header,
             RunOutputOptions const& options);
 

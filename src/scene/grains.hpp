@@ -13,7 +13,7 @@ namespace cayspin::inline v0_2::io::detail {
 /// depend on which part of the lattice is evaluated.
 class Grains {
  public:
-  /// `length`: the unit of lattice.spacing, in the unit of `size` below.
+  /// `length`: converts lattice.spacing to the unit of `size` below.
   Grains(Lattice const& lattice, double length);
 
   /// Returns the number 0, 1, .. of the grain at a point, in fractions of the lattice. The lattice

@@ -58,9 +58,9 @@ struct EarlierRun {
 /// uninterrupted run.
 class Restart {
  public:
-  /// Throws UsageError when there is no such state: the lattice, the precision or the units differ,
-  /// its time is not that of a step, no step is left before `end`, or no checkpoint has the steps
-  /// that the method remembers.
+  /// Throws UsageError when there is no such state: the files hold no frame, the lattice, the
+  /// precision or the units differ, the last time is not that of a step, no step is left before
+  /// `end`, or no checkpoint has the steps that the method remembers.
   Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Precision precision,
           std::int64_t end);
 

@@ -239,7 +239,7 @@ class SceneRunInSpace final
 
   static constexpr bool on_host = cayspin::detail::is_host_execution<Space>;
 
-  // Lends a copy of vectors in the memory of a device.
+  // Lends a host copy of vectors that are in the memory of a device.
   template <class Field>
   LentVectors lend_copy(Field const& field) {
     auto const numbers = std::make_shared<std::vector<Real>>(copy_to_host(field));

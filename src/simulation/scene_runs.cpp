@@ -13,7 +13,7 @@
 namespace cayspin::simulation {
 namespace {
 
-// Returns a function that tells whether one of several runs was interrupted; it also asks `asked`.
+// Returns a function that tells whether any of several runs was interrupted; it also calls asked().
 std::function<bool()> or_asked(std::atomic<bool>& interrupted, std::function<bool()> const& asked) {
   return [&] {
     if (!interrupted && asked && asked()) interrupted = true;

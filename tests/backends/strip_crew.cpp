@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::int64_t steps = 300;
 
-/// One number for each strip. A step adds up a strip's number and its neighbours' of the previous
-/// step (double buffered). The numbers are not atomic: only the crew orders access to them.
+/// One number for each strip. A step computes it from the previous numbers of the strip and its two
+/// neighbours (double buffered). The numbers are not atomic: only the crew orders access to them.
 struct Neighbours {
   std::vector<std::uint64_t> numbers[2];
 

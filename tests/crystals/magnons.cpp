@@ -78,7 +78,7 @@ class Magnons : public ::testing::Test {
 };
 TYPED_TEST_SUITE(Magnons, Backends, BackendName);
 
-/// Returns bonds between two sites of the basis, one for each offset of cells.
+/// Returns bonds between two sites of the basis, one for each cell offset.
 std::vector<Coupling> bonds(std::array<int, 2> between,
                             std::vector<std::array<int, 3>> const& offsets, double exchange,
                             std::array<double, 3> const& D = {}) {

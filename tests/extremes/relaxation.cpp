@@ -46,7 +46,7 @@ Outcome relax(Setting const& setting, Against against, io::Scene const& scene, P
     off = std::max(off, std::abs(length - 1));
     error = std::max(error, std::hypot(x / length, y / length, z / length - 1));
   }
-  // A torque below the bound leaves each spin within about that angle of the field.
+  // A torque below the bound leaves each spin within about torque / field (radians) of the field.
   bool const rests = against == Against::solution && error <= 2 * setting.torque / setting.field;
   Fate const fate = off > 4 * eps  ? Fate::drifts
                     : end == start ? Fate::exact

@@ -141,7 +141,7 @@ TYPED_TEST(SiteDependent, DampingActsSiteBySite) {
   }
 }
 
-// With a sigma that uses the derivatives of fields and of the generator.
+// The method's sigma uses the derivatives of the fields and of the generator.
 TYPED_TEST(SiteDependent, EqualCoefficientsStepAlike) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::cubic(9, 3, 2, 0.8, Boundary::periodic);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The number of evaluations hardly depends on the exchange, and the result is the film's
-// equilibrium.
+// Minimising the energy of films: the number of evaluations hardly depends on the exchange, and the
+// result is an equilibrium.
 #include "films.hpp"
 
 namespace cayspin::test {

@@ -33,7 +33,7 @@ template <class Backend>
 class RigidBodyOracles : public ::testing::Test {};
 TYPED_TEST_SUITE(RigidBodyOracles, OracleBackends, BackendName);
 
-// Nineteen equal bodies: whole packs, a partial one, and every lane.
+// Nineteen equal bodies fill whole packs and a part of one, so that every lane is tested.
 constexpr std::int64_t bodies = 19;
 
 /// Like with_method, but also with the methods that only rigid bodies have.

@@ -122,8 +122,8 @@ dt = 0.01
 steps = 1
 )toml";
 
-// Modes of the last frame of a file of relax equal those of the scene. At a saddle, along the
-// in-plane hard axis, one mode grows.
+// Modes that start from the last frame of a file written by relax equal those of the scene. At a
+// saddle, here with the spins along the in-plane hard axis, one mode grows.
 TEST_F(Modes, StartFromFilesAndSaddles) {
   auto const scene = write("scene.toml", film);
   EXPECT_EQ(output_of({"modes", scene, "--count", "2", "--quiet"}), "");

@@ -75,7 +75,7 @@ class ShapedText {
       axes += fmt::format("{{ cubic = {:.4f}, axes = [[1, 0, 0], [0, 1, 0]] }}, ", uniform(-1, 1));
     if (!axes.empty()) field_ += "anisotropy = [" + axes + "]\n";
     if (chance(0.4)) field_ += fmt::format("demag = {{ strength = {:.4f} }}\n", uniform(0.2, 1.5));
-    // The field is along no axis, so that no mode is free.
+    // The applied field is oblique, so that every rotation of the spins costs energy.
     field_ += fmt::format("applied = [{:.4f}, {:.4f}, {:.4f}]\n", uniform(0.02, 0.1),
                           uniform(0.02, 0.1), uniform(-0.3, 0.3));
   }

@@ -34,7 +34,7 @@ class UnitsInMotion : public ::testing::Test {
   /// Tolerance of angles after all steps.
   static constexpr double tolerance = steps_taken * double(std::numeric_limits<Real>::epsilon());
 
-  /// Returns the spins after so many seconds.
+  /// Returns the spins at this time, in seconds.
   template <class Generator>
   static Field after(double seconds, units::ReducedUnits const& units, Generator const& generator,
                      Field const& start, int steps = steps_taken) {

@@ -248,7 +248,7 @@ void expect_members(std::string const& name, Term const& term, Setting<Real> con
       is.expect_same(here.other_local, here.local, "local_field_varies");
   }
 
-  // Prepared terms may be used at other times and with other spins, as the term says.
+  // Prepared terms may be used at other times and with other spins where the term's traits say so.
   Vectors const later = field_of(term, others, on.t + 0.3);
   Said const of_others = said(prepared, others);
   if (detail::is_stationary(term, exec, spins))

@@ -37,8 +37,8 @@ struct FiniteDifference {
   double cap = std::numeric_limits<double>::infinity();  ///< bound on |dt sigma|
 };
 
-/// FiniteDifference with w' = (w_n - w_(n-1)) / dt: one evaluation per step, and one extra field
-/// for w. The first step uses the forward difference.
+/// FiniteDifference with w' = (w_n - w_(n-1)) / dt: one evaluation per step instead of two. w is
+/// kept from step to step. The first step uses the forward difference.
 struct FiniteDifferenceBackward {
   double cap = std::numeric_limits<double>::infinity();  ///< bound on |dt sigma|
 };

@@ -50,7 +50,7 @@ struct NormalModes {
   std::int64_t evaluations = 0;          ///< evaluations of the field over all sites
 };
 
-/// An eigenvalue of the Hessian of the energy on the tangent planes, and its vector.
+/// An eigenvalue of the Hessian of the energy on the tangent planes, and its eigenvector.
 template <class Spins>
 struct Curvature {
   double value = 0;

@@ -9,7 +9,7 @@
 
 #include <cstddef>
 
-// Kernels of an adaptive Runge-Kutta step besides its stages. Tableau is a FirstSameAsLast.
+// Kernels of an adaptive Runge-Kutta step other than its stages. Tableau is a FirstSameAsLast.
 namespace cayspin::inline v0_2::detail {
 
 /// Functor that computes the generator at the start of a run, and the square of the spin's rate |A

@@ -15,13 +15,16 @@
 #include <concepts>
 #include <stdexcept>
 
-// Derivatives of the effective field, for Series4 and isotropy::Analytic. The library's terms have
-// them here. A user's term needs a degree (FieldTerm in cayspin/concepts.hpp), or
+// Derivatives of the effective field, for Series4 and isotropy::Analytic. Those of the library's
+// terms are defined below. A user's term needs one of
+//   static constexpr int degree           see FieldTerm in cayspin/concepts.hpp
 //   Vec3<Value> linear_field(stencil)     the linear part of an H that is affine in the spins;
 //                                         requires is_affine()
-//   Vec3<Value> field_rate(m, rates)      dH/dt at m, along the rates of the stencil's array
+//   Vec3<Value> field_rate(m, rates)      only for Analytic: dH/dt at m, along the rates of the
+//                                         stencil's array
+// and, if prepare is not enough,
 //   auto prepare_rate(exec, rates, t, dt)     returns the term for kernels that evaluate dH/dt at
-//                                             time t, if prepare is not enough
+//                                             time t
 namespace cayspin::inline v0_2::detail {
 
 /// Contribution of a uniform applied field to dH/dt.
@@ -124,7 +127,7 @@ struct LinearField {
           requires { requires Term::degree == 1 || Term::degree == 2; },
           "This needs the derivative of each field term: a static constexpr int degree (1 for H "
           "independent of the spins, 2 for H linear in them), linear_field(stencil) for H affine "
-          "in them, or, for isotropy::Analytic alone, field_rate(m, rates).");
+          "in them, or, only for isotropy::Analytic, field_rate(m, rates).");
       if constexpr (Term::degree == 2)
         return term.field(stencil);
       else
