@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception */
-/* Scenes from C, and from every language that can call C. The functions on simulations return a
-   cayspin_status, and change what their pointers point to only if it is CAYSPIN_OK. No C++
-   exception leaves a function. Calls from several threads take turns, except for cayspin_time and
-   cayspin_steps, which do not wait and tell how far a run has come. Calls on several simulations
-   take turns step by step, and those that read or write files take turns in HDF5. No other call on
-   a simulation may be in progress when cayspin_close is called. No function starts a process. A
-   damaged HDF5 file may crash HDF5, and the program with it; `cayspin check` reads the files of a
-   scene in a separate process. */
+/* Runs scenes from C, and from every language that can call C. The functions on simulations return
+   a cayspin_status, and write results through their pointers only if the status is CAYSPIN_OK. No
+   C++ exception leaves a function. Any thread may call them: calls wait for each other, also calls
+   on different simulations. Only cayspin_time and cayspin_steps do not wait, so that they tell how
+   far a run has come. No other call on a simulation may be in progress when cayspin_close is
+   called. No function starts a process. A damaged HDF5 file may crash HDF5, and the program with
+   it; `cayspin check` reads the files of a scene in a separate process. */
 #ifndef CAYSPIN_CAYSPIN_H
 #define CAYSPIN_CAYSPIN_H
 
@@ -33,8 +32,8 @@ typedef enum cayspin_status CAYSPIN_AS_INT {
   CAYSPIN_OK = 0,
   CAYSPIN_WRONG_USAGE = 1,    /* a null pointer, or an argument that is not accepted */
   CAYSPIN_WRONG_SCENE = 2,    /* the scene, or a file that it names */
-  CAYSPIN_NUMBERS_FAILED = 3, /* non-finite spins, or an energy that rises and must not */
-  CAYSPIN_FAILED = 4          /* memory, a file that cannot be written, anything else */
+  CAYSPIN_NUMBERS_FAILED = 3, /* non-finite spins, or an energy that rose but must not */
+  CAYSPIN_FAILED = 4          /* out of memory, a file that cannot be written, or else */
 } cayspin_status;
 
 typedef enum cayspin_precision CAYSPIN_AS_INT {
@@ -42,10 +41,10 @@ typedef enum cayspin_precision CAYSPIN_AS_INT {
   CAYSPIN_DOUBLE = 8
 } cayspin_precision;
 
-/* Vectors of all sites in host memory, float or double: component c of site (x, y, z) is number
-   z strides[0] + y strides[1] + x strides[2] + c strides[3] after `data`. In a crystal with n sites
-   per cell, plane z = k n + s has site s of the cells with index k, and nz is n times their number
-   along z. */
+/* Vectors of all sites in host memory. With `data` as a pointer to float or double, component c of
+   site (x, y, z) is data[z strides[0] + y strides[1] + x strides[2] + c strides[3]]. In a crystal
+   with n sites per cell, plane z = k n + s holds site s of the cells with index k along z, and nz
+   is n times the number of cells along z. */
 typedef struct cayspin_array {
   void const* data;
   cayspin_precision precision;
@@ -53,7 +52,7 @@ typedef struct cayspin_array {
   int64_t strides[4]; /* in numbers, not bytes */
 } cayspin_array;
 
-/* The state that cayspin_relax has found, in the units of the scene. */
+/* The result of cayspin_relax, in the units of the scene. */
 typedef struct cayspin_minimum {
   int converged;       /* 1, or 0 if round-off or the limit on evaluations ended the search */
   double torque;       /* max |m x H| */
@@ -61,21 +60,21 @@ typedef struct cayspin_minimum {
   int64_t evaluations; /* of the field over all sites */
 } cayspin_minimum;
 
-/* One line about the last call by this thread that failed; empty if none has. It is valid until the
-   next call that fails. */
+/* One line about the last call by this thread that failed; empty if none has failed. It is valid
+   until the next call by this thread that fails. */
 char const* cayspin_last_error(void);
 
 /* The version, such as "0.2.0". */
 char const* cayspin_version(void);
 
-/* Opens a scene file; one without [integrator] is only for cayspin_relax. `space`: "openmp",
-   "threads", "cuda", ..., "serial" for the host's space with one thread, or NULL for Kokkos'
-   default. Starts Kokkos unless the program has done so. */
+/* Opens a scene file. A scene without [integrator] can be relaxed, but takes no steps. `space` is
+   the execution space: "openmp", "threads", "cuda", ...; "serial" for the host's space with one
+   thread; or NULL for Kokkos' default. Starts Kokkos unless the program has done so. */
 cayspin_status cayspin_open_file(char const* path, cayspin_precision precision, char const* space,
                                  cayspin_simulation** simulation);
 
-/* Opens the text of a scene. Messages call it `name`, and the paths in it start in the folder of
-   `name`; NULL stands for "scene". */
+/* Opens a scene given as text. Messages call it `name`, and the relative paths in it start in the
+   folder of `name`. If `name` is NULL, it is "scene". */
 cayspin_status cayspin_open_text(char const* text, char const* name, cayspin_precision precision,
                                  char const* space, cayspin_simulation** simulation);
 
@@ -93,20 +92,21 @@ cayspin_status cayspin_run(cayspin_simulation* simulation, char const* output, i
 cayspin_status cayspin_relax(cayspin_simulation* simulation, double torque, int64_t evaluations,
                              double const* applied, cayspin_minimum* found);
 
-/* The time of the run, in reduced units, or in seconds for a scene in SI, and its steps so far. */
+/* The time that the run has reached, in reduced units or, for a scene in SI, in seconds; and the
+   number of steps so far. */
 cayspin_status cayspin_time(cayspin_simulation const* simulation, double* time);
 cayspin_status cayspin_steps(cayspin_simulation const* simulation, int64_t* steps);
 
-/* The spins in place: on a host this is no copy, on a device it is one. Valid until the next call
-   of cayspin_step, cayspin_run, cayspin_relax, cayspin_set_spins or cayspin_close. */
+/* The spins: in their own memory if the run is on a host, otherwise a host copy. Valid until the
+   next call of cayspin_step, cayspin_run, cayspin_relax, cayspin_set_spins or cayspin_close. */
 cayspin_status cayspin_borrow_spins(cayspin_simulation* simulation, cayspin_array* spins);
 
-/* H at every site at the current time, in the units of the scene. Valid until the next call of this
-   function or of cayspin_close. */
+/* H at every site at the current time, in the units of the scene, in host memory. Valid until the
+   next call of this function or of cayspin_close. */
 cayspin_status cayspin_borrow_field(cayspin_simulation* simulation, cayspin_array* field);
 
-/* Copies spins of either precision in, and normalises them. Methods that remember steps start
-   afresh. */
+/* Replaces the spins of the run by copies of these, normalised; either precision is accepted.
+   Methods that remember steps start afresh. */
 cayspin_status cayspin_set_spins(cayspin_simulation* simulation, cayspin_array const* spins);
 
 /* The energy, summed over sites, in reduced units, or in joules for a scene in SI. */
@@ -115,7 +115,7 @@ cayspin_status cayspin_energy(cayspin_simulation* simulation, double* energy);
 /* The mean of the spins, weighted by the moments of the sites if the scene has any. */
 cayspin_status cayspin_magnetization(cayspin_simulation* simulation, double magnetization[3]);
 
-/* Ends a simulation; NULL does nothing. */
+/* Ends a simulation and frees its memory. Does nothing if it is NULL. */
 cayspin_status cayspin_close(cayspin_simulation* simulation);
 
 #ifdef __GNUC__

@@ -8,9 +8,9 @@
 
 namespace cayspin::inline v0_2 {
 
-/// Named numbers and fields that a run carries from step to step besides its spins. If they are
-/// restored together with the spins, the run continues with the same bits as without a break, on
-/// any host space and with any number of threads.
+/// Named numbers and fields that a run carries from step to step in addition to its spins. If they
+/// are restored together with the spins, the run continues with the same bits as without a break,
+/// on any host space and with any number of threads.
 class Checkpoint {
  public:
   virtual ~Checkpoint() = default;
@@ -18,8 +18,8 @@ class Checkpoint {
   virtual bool restores() const = 0;
   /// Stores or restores `value`. Counts and flags are passed as numbers, too.
   virtual void number(std::string const& name, double& value) = 0;
-  /// Stores or restores the values of all sites: an array (sites, components), row by row, with the
-  /// sites in the order x fastest.
+  /// Stores or restores the values of all sites: an array (sites, components) in row-major order;
+  /// the x index of sites varies fastest. Storing may move from `numbers`.
   virtual void field(std::string const& name, std::vector<double>& numbers) = 0;
 };
 
@@ -30,7 +30,7 @@ class CheckpointInMemory final : public Checkpoint {
   void close() { restores_ = true; }
 
   bool restores() const override { return restores_; }
-  /// Throws std::out_of_range when no number of this name was stored; field() does so, too.
+  /// While restoring, number() and field() throw std::out_of_range for a name that was not stored.
   void number(std::string const& name, double& value) override {
     if (restores_)
       value = numbers_.at(name);

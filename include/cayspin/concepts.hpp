@@ -14,8 +14,8 @@
 #include <utility>
 
 // The five concepts of the library: which members a user's type must have, and which are optional.
-// Terms and generators are templates over the stencil; their concepts check them with the host
-// stencil of Spins (default: double precision in host memory).
+// The members of terms and generators that kernels call are templates over the stencil; the
+// concepts check them with the host stencil of Spins (default: double precision in host memory).
 namespace cayspin::inline v0_2 {
 
 namespace detail {
@@ -68,16 +68,17 @@ int evaluations_of_next_step(Stepper const& stepper) {
 /// |---|---|---|
 /// | `Vec3<Value> field(stencil)` | H at the stencil's centre | required |
 /// | `Value energy_density(stencil)` | the site's share of E | required |
-/// | `Vec3<Value> add_field(stencil, h)` | h + H, where that is faster | h + field |
+/// | `Vec3<Value> add_field(stencil, h)` | h + H, if faster than a sum with field | h + field |
 /// | `Vec3<Value> add_turning_field(stencil, h)` | h + H plus any multiple of m | add_field |
-/// | `static int degree` | 1: H does not depend on the spins, 2: H is linear in them | neither |
+/// | `static int degree` | 1: H does not depend on the spins, 2: H is linear in them | unknown |
 /// | `static bool is_local` | H depends only on the site's spin and t | false |
 /// | `Vec3<Value> neighbor_field(stencil)` | H that only the neighbours determine | see below |
 ///
 /// Choose between values with select(condition, yes, no). `if` does not work, because on the host a
-/// value is a pack of several sites. RedBlack calls neighbor_field in place of field: it must not
-/// depend on the spin itself, and may differ from H only by a multiple of m. If a non-local term
-/// omits it, RedBlack evaluates the whole field for each iterate of a spin.
+/// value is a pack of several sites. RedBlack calls neighbor_field in place of field. The result
+/// must not depend on the spin m of the site itself, and may differ from H only by a multiple of m.
+/// If a non-local term has no neighbor_field, RedBlack evaluates the whole field for each iterate
+/// of a spin.
 ///
 /// These members are called on the host before a kernel:
 ///
@@ -85,16 +86,16 @@ int evaluations_of_next_step(Stepper const& stepper) {
 /// |---|---|---|
 /// | `check_spins(spins)` | throws for unsuitable spins or invalid values | accepts all spins |
 /// | `auto prepare(exec, spins, t)` | the term for kernels at time t | the term itself |
-/// | `static bool depends_on_time` | H changes with t after prepare | false |
-/// | `bool is_stationary(exec, spins)` | one prepare serves all t, spins | true without prepare |
-/// | `bool needs_only_time(exec, spins)` | prepare ignores spins | either of the last two is true |
+/// | `static bool depends_on_time` | H at fixed spins changes with t | false |
+/// | `bool is_stationary(exec, spins)` | one prepare serves all t and spins | if without prepare |
+/// | `bool needs_only_time(exec, spins)` | prepare ignores spins | if either of these two is true |
 /// | `bool is_affine()` | H is affine in the spins | true if it has a degree |
 /// | `static bool is_conservative` | false: H has no energy, as for a torque | true |
 ///
 /// If a term has prepare, the device members belong to the returned object. A term made of other
-/// terms inherits the host members from Forwarding (field/forwarding.hpp), and needs gather
-/// (field/parts.hpp) on devices. The derivatives of terms that some methods of the paper need are
-/// in cayspin_paper.
+/// terms inherits the host members from Forwarding (field/forwarding.hpp), and its device members
+/// may include gather (field/parts.hpp). Some methods of the paper need derivatives of terms; these
+/// are in cayspin_paper.
 template <class Term, class Spins = SpinField<double, Kokkos::HostSpace>>
 concept FieldTerm = requires {
   requires detail::has_field<detail::PreparedFor<Term, Spins>, detail::StencilOf<Spins>>;
@@ -123,13 +124,13 @@ concept Generator =
 /// | `step(exec, generator, spins, t, dt)` | advances spins from t to t + dt | required |
 /// | `static int evaluations` | generator evaluations per step | evaluations_done() is required |
 /// | `int64 evaluations_done()` | generator evaluations so far | evaluations is required |
-/// | `int next_step_evaluations()` | in the next step: a first one may need more | evaluations |
+/// | `int next_step_evaluations()` | those of the next step; a first may need more | evaluations |
 /// | `static int order` | order of convergence | unknown |
-/// | `static int ghosts` | ghost layers that a step needs at each inner end of a part | no parts |
+/// | `static int ghosts` | ghost layers that a step needs at inner ends of a part | refuses parts |
 /// | `reset()` | forgets the previous steps | nothing to forget |
 /// | `check_spins(spins)` | throws for spins of another lattice | checked by step |
 /// | `bool takes_batches(exec, generator, spins)` | batch may be called | false |
-/// | `batch(exec, generator, spins, t, dt, count)` | takes count steps, same bits | one by one |
+/// | `batch(exec, generator, spins, t, dt, count)` | same bits as count steps | one by one |
 /// | `static int work_fields` | work fields, of three numbers per site | unknown |
 /// | `size_t work_bytes()` | bytes of work memory | unknown |
 /// | `visit_exchanged(visit)` | visit(field) for fields that a step may swap with spins | none |
@@ -153,7 +154,7 @@ concept Stepper =
 /// | `int64 rejected_steps()` | internal steps rejected so far | required |
 /// | `reset()` | the next step starts from its t and spins | required |
 /// | `step_towards(exec, generator, spins, t, dt, wanted)` | see below | step |
-/// | `bool has_reached(t, dt)` | it has reached t, the end of a step of dt | step is called |
+/// | `bool has_reached(t, dt)` | internal steps reach t, up to round-off of dt | step is called |
 ///
 /// step_towards writes the spins only when the internal steps have reached the time `wanted`, which
 /// may be later than t + dt.
@@ -180,8 +181,7 @@ concept Observer = requires(Type& observer, detail::ExecutionOf<Spins> const& ex
                std::is_same_v<decltype(observer(exec, step, spins)), Next>;
 };
 
-/// Returns the evaluations of the generator per step; empty where their number depends on the
-/// spins.
+/// Returns the number of generator evaluations per step; empty if it depends on the spins.
 template <class Stepper>
 constexpr std::optional<int> evaluations_per_step() {
   if constexpr (detail::has_evaluations<Stepper>) {

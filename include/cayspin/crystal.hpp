@@ -49,7 +49,8 @@ struct Crystal {
             {corner[0] + 0.5 * site[0], corner[1] + 0.5 * site[1], corner[2] + 0.5 * site[2]});
     return made;
   }
-  /// Hexagonal cells of edge 1 along x. hcp has the ideal c/a.
+  /// Hexagonal cells: two edges of length 1 at an angle of 60 degrees, the first along x, and c
+  /// along z. In hcp c = sqrt(8/3), the ideal ratio; otherwise c = 1.
   static Crystal hcp() {
     auto cell = hexagonal();
     cell[2][2] = std::sqrt(8.0 / 3);
@@ -58,7 +59,7 @@ struct Crystal {
   static Crystal honeycomb() { return {hexagonal(), {{0, 0, 0}, {1.0 / 3, 1.0 / 3, 0}}}; }
   static Crystal kagome() { return {hexagonal(), {{0, 0, 0}, {0.5, 0, 0}, {0, 0.5, 0}}}; }
 
-  /// Returns the position of site `site` of a cell.
+  /// Returns the position of site `site` in the cell with the indices `of_cell`.
   Point position(std::array<std::int64_t, 3> const& of_cell, std::size_t site) const {
     Point place{0, 0, 0};
     for (std::size_t vector = 0; vector < 3; ++vector) {
@@ -68,12 +69,12 @@ struct Crystal {
     return place;
   }
 
-  /// Returns the lattice of fields on `cells` cells. Its plane k * basis.size() + s along z holds
-  /// site s of the cells with index k along the third vector.
+  /// Returns the lattice for fields on a crystal with cells[i] cells along cell vector i. Plane k *
+  /// basis.size() + s along z holds site s of the cells with index k along the third vector.
   Lattice lattice(std::array<std::int64_t, 3> const& cells,
                   std::array<Boundary, 3> const& boundary = {}) const {
     Lattice made{cells, {1, 1, 1}, boundary};
-    made.validate();  // the product of unchecked cell counts may overflow
+    made.validate();  // the product below could overflow with unchecked counts
     made.cell_sites = static_cast<std::int64_t>(basis.size());
     made.shape[2] *= made.cell_sites;
     made.validate();
@@ -85,7 +86,7 @@ struct Crystal {
     return std::abs(detail::scalar_product(cell[0], detail::vector_product(cell[1], cell[2])));
   }
 
-  /// Returns the cell's volume divided by that of a box with the same edges.
+  /// Returns the cell's volume divided by that of a box whose edges have the same lengths.
   double fullness() const {
     auto const length = [](Point const& v) { return std::hypot(v[0], v[1], v[2]); };
     return volume() / (length(cell[0]) * length(cell[1]) * length(cell[2]));

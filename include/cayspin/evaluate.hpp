@@ -36,9 +36,9 @@ void require_other_field(char const* output_of, Spins const& spins, Output const
 
 }  // namespace detail
 
-/// Writes H at time t of every site into `output`. `field`: an EffectiveField or a field term. Does
-/// not wait. Throws std::invalid_argument when the field or the output belongs to another lattice
-/// than the spins, or when the output is the spins.
+/// Writes H of every site at time t into `output`. `field`: an EffectiveField or a field term. Does
+/// not wait. Throws std::invalid_argument when the field or the output was made for another lattice
+/// than that of the spins, or when the output shares memory with the spins.
 template <class Exec, class Field, class Real, class MemorySpace>
 void evaluate_field(Exec const& exec, Field const& field, SpinField<Real, MemorySpace> const& spins,
                     double t, SiteField<Real, 3, MemorySpace> const& output) {
@@ -50,7 +50,7 @@ void evaluate_field(Exec const& exec, Field const& field, SpinField<Real, Memory
                                   std::move(prepared), spins.array(), output.output(false)});
 }
 
-/// Writes A of m' = A x m at time t of every site into `output`; otherwise as evaluate_field.
+/// Writes the A of m' = A x m of every site at time t into `output`; otherwise like evaluate_field.
 template <class Exec, class Generator, class Real, class MemorySpace>
 void evaluate_generator(Exec const& exec, Generator const& generator,
                         SpinField<Real, MemorySpace> const& spins, double t,

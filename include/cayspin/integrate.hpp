@@ -24,7 +24,7 @@ struct Times {
   double begin = 0, dt = 0;
   std::int64_t steps = 0;
   std::int64_t first = 0;
-  bool continues = false;   // the stepper remembers the steps of the previous run
+  bool continues = false;   // keep what the stepper remembers of the previous run
   std::int64_t origin = 0;  // the step that ends at time begin
 
   double at(std::int64_t step) const { return begin + static_cast<double>(step - origin) * dt; }
@@ -42,8 +42,8 @@ struct Summary {
 
 /// Observer that calls another one at steps whose number is a multiple of `period` (0, the initial
 /// state, included) and at the last step. If the other one has a due(Step), that must be true as
-/// well. Like integrate(), Every refers to a named observer, which must outlive it; a temporary is
-/// moved into it.
+/// well. Every keeps a reference to an observer that is a variable, which must outlive it; a
+/// temporary is moved into Every.
 ///   Every(10, control)             refers to `control`
 ///   Every(10, Record(field, to))
 template <class Observer>
@@ -147,10 +147,11 @@ void check_spins_of_parts(Term const& term, Spins const& spins) {
 class Integration {
  public:
   virtual void fence(char const* label) = 0;
-  virtual bool is_due(Step const& step) = 0;  // for any observer
+  virtual bool is_due(Step const& step) = 0;  // true if any observer is due
   virtual Next observe(Step const& step) = 0;
-  /// Takes at least one step towards step `due` and returns how many it took. If they reach `due`,
-  /// the spins are those of that step; otherwise the spins may be older.
+  /// Takes one or more steps after step `number`, at most up to step `due`, and returns how many.
+  /// After step `due` the spins are current; if fewer steps were taken, they may be those of an
+  /// earlier time.
   virtual std::int64_t take_steps(Times const& times, std::int64_t number, std::int64_t due) = 0;
 
   /// `looks_ahead`: take_steps can make use of a `due` that is more than one step away.
@@ -181,9 +182,10 @@ class Integration {
   ~Integration() = default;
 
  private:
-  /// Returns the next step after `number` at which an observer is due, or the last step. Looks at
-  /// most 1000 steps ahead, so that observers whose due() depends on more than the step are soon
-  /// asked again. `known`: the previous result.
+  /// Returns the next step after `number` at which an observer is due, or the last step, but at
+  /// most number + 1000, so that observers whose due() depends on more than the step are soon asked
+  /// again. `known`: the previous result. If it is still ahead, only step number + 1 is asked
+  /// about.
   std::int64_t next_due(Times const& times, std::int64_t number, std::int64_t known) {
     bool const is_known = known > number;
     std::int64_t const last = is_known ? known : std::min(times.steps, number + 1000);
@@ -304,15 +306,16 @@ Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator co
 
 /// Advances `spins` over `times`, and returns statistics. Observers are called with the state
 /// before the first step and after each one. Steppers that remember steps forget those of previous
-/// runs, unless times.continues is true: then a run in pieces gives the bits of a single run.
+/// runs, unless times.continues is true; with it, a run in pieces gives the bits of a single run.
 ///
-/// On return the work has finished, and `spins` holds the final state. With any method it is in the
-/// original memory of `spins`, so that copies of the handle see it, too. Lengths of spins are not
-/// checked: call require_unit_spins for your own spins.
+/// On return the work has finished, and `spins` holds the final state. With every method this state
+/// is in the original memory of `spins`, so that copies of the handle see it, too. Lengths of spins
+/// are not checked: call require_unit_spins for your own spins.
 ///
-/// Throws std::invalid_argument when dt is not finite, the number of steps is negative, or the
-/// stepper or a term of the field was made for another lattice than that of the spins. It does so
-/// before any observer is called, and even if there are no steps to take.
+/// Throws std::invalid_argument when begin or dt is not finite, the number of steps is negative, or
+/// the stepper or a term of the field was made for another lattice than that of the spins. These
+/// checks come before the first call of an observer, and are made even if there are no steps to
+/// take.
 template <class Exec, class Stepper, class Generator, class Spins, class... Observers>
 Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator, Spins& spins,
                   Times const& times, Observers&&... observers) {

@@ -22,9 +22,9 @@ struct Ghosts {
   friend bool operator==(Ghosts const&, Ghosts const&) = default;
 };
 
-/// A simple lattice of sites in one, two or three dimensions, numbered with x fastest. An axis of
-/// extent 1 has no neighbours; on a periodic axis of extent 2 each site has the other as both
-/// neighbours.
+/// A simple lattice of sites in one, two or three dimensions, numbered with x fastest. Along an
+/// axis of extent 1, also a periodic one, sites have no neighbours; along a periodic axis of extent
+/// 2, the other site is both neighbours of a site.
 struct Lattice {
   std::array<std::int64_t, 3> shape{1, 1, 1};
   std::array<double, 3> spacing{1, 1, 1};
@@ -69,8 +69,8 @@ struct Lattice {
 
   friend bool operator==(Lattice const&, Lattice const&) = default;
 
-  /// Throws std::invalid_argument; the message names the first invalid extent, spacing, number of
-  /// ghosts, of sites in a cell or of replicas.
+  /// Throws std::invalid_argument for an invalid extent, spacing, or number of ghosts, of sites in
+  /// a cell or of replicas, and for more than 1e15 sites. The message names the first fault.
   void validate() const {
     constexpr std::int64_t most_extent = std::numeric_limits<std::int32_t>::max() / 4;
     for (std::size_t axis = 0; axis < 3; ++axis) {

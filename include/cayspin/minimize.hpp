@@ -17,18 +17,19 @@
 
 namespace cayspin::inline v0_2 {
 
-/// Minimises the energy of a field by L-BFGS on the product of spheres. Spins move along great
-/// circles by the Cayley map; earlier steps and gradients are projected onto the current tangent
-/// planes.
+/// Minimises the energy of a field by L-BFGS on the product of spheres, with Newton steps where
+/// L-BFGS is slow. Spins move along great circles by the Cayley map; earlier steps and gradients
+/// are projected onto the current tangent planes.
 ///
-/// The preconditioner is (K + c)^-1 with the exchange operator K and a constant c, applied by a
+/// The preconditioner (K + c)^-1, with the exchange operator K and a constant c, is applied by a
 /// multigrid cycle. It makes the number of evaluations nearly independent of the lattice and of the
 /// strength of the exchange. K is measured on the field itself, so that user terms, vacancies and
 /// site-dependent coefficients need nothing more. c follows the curvature along the last step. Once
 /// all torques are below the mean field of parallel spins, c is at least that field.
 ///
-/// Where the torque vanishes but the Hessian has a negative eigenvalue, the search moves on from
-/// that saddle. The energy decreases from iteration to iteration, up to round-off.
+/// If the torque vanishes but the Hessian has a negative eigenvalue, the state is a saddle, and the
+/// search moves on (unless options.keep_saddles). The energy decreases from iteration to iteration,
+/// up to round-off.
 template <class Spins>
 class Minimizer {
   using Real = typename Spins::value_type;
@@ -37,7 +38,7 @@ class Minimizer {
  public:
   /// Allocated fields of three numbers per site, including the multigrid levels.
   static constexpr int work_fields = 24;
-  /// Smallest accepted bound on the torque: the square of a smaller one would underflow.
+  /// Smallest accepted bound on the torque: squares of much smaller ones would underflow.
   static constexpr double least_bound = 1e-150;
 
   /// Throws std::invalid_argument for a part of a lattice and for more than one replica.
@@ -47,7 +48,8 @@ class Minimizer {
   }
 
   /// Moves `spins` to a minimum. Waits. Throws std::invalid_argument for spins of another lattice
-  /// and invalid options, and FieldNotFinite for a field that is not finite at the start.
+  /// and invalid options, and FieldNotFinite for a field or an energy that is not finite at the
+  /// start.
   template <class Exec, class Field>
   Minimum minimize(Exec const& exec, Field const& field, Spins& spins,
                    MinimizeOptions const& options = {}) {
@@ -89,8 +91,8 @@ class Minimizer {
     return descent_.so_far;
   }
 
-  /// At or near an equilibrium: moves the spins away from a saddle and returns nothing, or returns
-  /// how the search ends.
+  /// Call at or near an equilibrium. If it is a saddle, moves the spins away from it and returns
+  /// nothing. Otherwise, or if no move lowers the energy, returns how the search ends.
   template <class Exec, class Field>
   std::optional<MinimizeEnd> leave_saddle(Exec const& exec, Field const& field, Spins& spins,
                                           MinimizeOptions const& options) {
@@ -100,9 +102,9 @@ class Minimizer {
     descent_.so_far.curvature = found.value;
     if (!found.is_negative) return MinimizeEnd::converged;
     ++descent_.so_far.saddles;
-    // Turns the spins along great circles, in both directions and by ever smaller angles, until the
-    // energy is clearly lower. Where round-off hides the difference, it is enough that the energy
-    // still falls in that direction.
+    // Turns the spins along or against the vector by ever smaller angles, until the energy is
+    // lower. If the change of the energy is within round-off, the slope must show that it falls in
+    // the direction of the turn.
     auto const &vector = descent_.search.direction, &none = descent_.search.trial;
     detail::combine(exec, 0, vector, 0, vector, none);
     double const longest = detail::largest_difference(exec, vector, none);
@@ -123,7 +125,7 @@ class Minimizer {
     return MinimizeEnd::stagnated;
   }
 
-  /// Writes the vector of the lowest curvature into search.direction.
+  /// Finds the lowest curvature, and writes its vector into search.direction.
   template <class Exec, class Field>
   detail::LowestCurvature find_curvature(Exec const& exec, Field const& field, Spins const& spins,
                                          MinimizeOptions const& options) {
@@ -134,8 +136,8 @@ class Minimizer {
     detail::Hessian hessian(exec, field, options.time, spins, descent_.is_mobile,
                             detail::HessianArrays<Spins>{descent_.search.trial, pairs.change(2),
                                                          descent_.lbfgs.scratch()});
-    // If the curvature is below `tolerance`, a turn by one radian does not bring the torque above
-    // its bound.
+    // Curvatures smaller than `tolerance` count as zero: a turn by one radian would keep the torque
+    // below its bound, or within round-off.
     auto const found = detail::find_lowest_curvature(
         hessian, exec, arrays,
         {.scale = descent_.first_shift(),
@@ -150,7 +152,7 @@ class Minimizer {
   }
 
   /// Leaves a saddle of small negative curvature along the vector of that curvature, which is in
-  /// search.direction. Returns false if it does not succeed.
+  /// search.direction. Returns false, with the spins unchanged, if the energy does not fall.
   template <class Exec, class Field>
   bool leave_softly(Exec const& exec, Field const& field, Spins& spins, double longest,
                     MinimizeOptions const& options) {
@@ -170,8 +172,8 @@ class Minimizer {
   Descent descent_;
 };
 
-/// Moves `spins` to a minimum of the energy of `field`, an EffectiveField or a field term: a
-/// Minimizer for a single call.
+/// Moves `spins` to a minimum of the energy of `field`, an EffectiveField or a field term, by a
+/// Minimizer that is made for this call. Waits. Throws like Minimizer.
 ///   auto const found = cayspin::minimize(exec, field, spins, {.torque = 1e-6});
 ///   if (found.end != cayspin::MinimizeEnd::converged) ...
 template <class Exec, class Field, class Spins>

@@ -89,8 +89,8 @@ class PathFinder {
   static constexpr double rough = 0.03, fine = 2e-3;  // gradients, relative to the strongest field
   static constexpr double longest_turn = 0.3;         // of a spin in a step, rad
 
-  /// Places the images along the great circle of every spin, with a disturbance that is largest in
-  /// the middle.
+  /// Places the images along the great circles of the spins, with a disturbance that is largest in
+  /// the middle of the path.
   void make_start() {
     auto const &work = saddle_.spins(), &pattern = saddle_.vector();
     make_disturbance(exec_, preconditioner_, work, pattern);
@@ -114,7 +114,7 @@ class PathFinder {
   PathEnd search() {
     double bound = rough;
     if (auto const end = relax(bound, true)) return *end;
-    double smallest = 0.05;  // prominence of a peak, relative to the range of energies
+    double smallest = 0.05;  // least prominence of a peak, relative to the range of energies
     for (int attempt = 0; attempt < 60; ++attempt) {
       auto const peak = next_peak(1, smallest);
       bool const added = peak ? add_saddle(*peak) : add_minimum(smallest);
@@ -147,8 +147,10 @@ class PathFinder {
     return PathEnd::no_saddle;
   }
 
-  /// Relaxes until the gradient across the path is below `bound` times the strongest field, at the
-  /// highest image or at all. When it no longer falls, shortens the steps, and finally gives up.
+  /// Relaxes the string until the gradient across it is below `bound` times the strongest field: at
+  /// the highest image if `of_highest`, otherwise at all images. If the gradient no longer falls,
+  /// gives up if `of_highest`; otherwise shortens the steps first. Returns nothing, or why the
+  /// search ends.
   std::optional<PathEnd> relax(double bound, bool of_highest,
                                int most_steps = std::numeric_limits<int>::max()) {
     double turn = longest_turn, least = std::numeric_limits<double>::infinity();
@@ -210,8 +212,8 @@ class PathFinder {
     return false;
   }
 
-  /// Adds a fixed image at a minimum of the energy between saddles, where the path may turn a
-  /// corner.
+  /// Adds a fixed image at a minimum of the energy along the path, where the path may turn a
+  /// corner. Returns whether it did.
   bool add_minimum(double smallest) {
     auto const valley = next_peak(-1, smallest);
     if (!valley) return false;
@@ -235,7 +237,8 @@ class PathFinder {
     return string_.insert(exec_, spins, found.energy, image);
   }
 
-  /// Climbs from a maximum along the path to a saddle, and adds it as a fixed image.
+  /// Climbs from a maximum of the energy along the path to a saddle, and adds the saddle as a fixed
+  /// image. Returns whether it did.
   bool add_saddle(Peak const& peak) {
     auto const& [image, fraction] = peak.place;
     auto const &before = string_.spins(image), &after = string_.spins(image + 1);
@@ -310,26 +313,26 @@ class PathFinder {
 
 }  // namespace detail
 
-/// Returns how many fields of three numbers per site minimum_energy_path allocates besides the
-/// images.
+/// Returns how many fields of three numbers per site minimum_energy_path allocates in addition to
+/// the images.
 constexpr int path_work_fields(std::size_t images) {
   return 48 + detail::PathString<SpinField<double>>::fields_per_image * static_cast<int>(images);
 }
 
 /// Finds a minimum energy path between two states, and the saddles on it.
 ///
-/// The first and the last image are relaxed by `minimize`; the images between become the path. It
-/// starts from the great circle of each spin (through x or y, if the end states are opposite), with
-/// a disturbance of 0.1 rad without symmetry. A string of images descends perpendicular to itself
-/// by preconditioned L-BFGS. From its energy maxima, Newton's method climbs to saddles until the
-/// torque is below its bound; then the string relaxes between them. `saddle` receives the highest
-/// saddle.
+/// `minimize` relaxes the first and the last image; the images between them become the path. The
+/// start is a path along the great circle of each spin (through x or y, where the spins at the ends
+/// are opposite), with a disturbance of 0.1 rad without symmetry. This string of images descends
+/// perpendicular to itself by preconditioned L-BFGS. From the maxima of the energy along the
+/// string, Newton's method climbs to saddles until the torque is below its bound; then the string
+/// relaxes between them. `saddle` receives the highest saddle, if one is found.
 ///   std::vector<Spins> images = ...;  // the first and the last are the states
 ///   Spins saddle("saddle", lattice);
 ///   auto const path = cayspin::minimum_energy_path(exec, field, images, saddle);
 ///   double const barrier = path.barrier_forward();
-/// Waits. Throws std::invalid_argument for fewer than three images, images on different lattices
-/// and invalid options, and FieldNotFinite as minimize does.
+/// Waits. Throws std::invalid_argument for fewer than three images, images on different lattices,
+/// parts of a lattice, replicas and invalid options, and FieldNotFinite as minimize does.
 template <class Exec, class Field, class Spins>
 MinimumEnergyPath minimum_energy_path(Exec const& exec, Field const& field,
                                       std::vector<Spins>& images, Spins& saddle,

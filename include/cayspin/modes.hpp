@@ -25,8 +25,8 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// Functor that replaces the a and b of a Turning by the p and q of its InverseTurning. Also
-/// computes |q| and sqrt(a^2 + b^2).
+/// Functor that replaces the precession a and the damping b of a Turning by the p and q of
+/// InverseTurning. Also computes |q| and sqrt(a^2 + b^2).
 template <class Real>
 struct InvertTurning {
   SiteArray<Real, 1> precession, damping;
@@ -58,7 +58,7 @@ struct StoreTurning {
   }
 };
 
-/// Setup that all searches at an equilibrium share.
+/// Setup that all searches for modes at an equilibrium share.
 template <class Exec, class Field, class Spins>
 class ModesAt {
   using Real = typename Spins::value_type;
@@ -77,7 +77,7 @@ class ModesAt {
                                   std::to_string(ModesOptions::most));
   }
 
-  /// Calls take(search, i) for each mode i found.
+  /// Searches, calls take(search, i) for each mode i found, and returns why the search ended.
   template <class Take>
   ModesEnd find(InverseTurning<Real> const& inverse, bool is_undamped, bool is_symmetric,
                 double fastest, Take const& take) {
@@ -123,8 +123,9 @@ class ModesAt {
   std::int64_t evaluations_ = 0;
 };
 
-/// Scales a mode so that its longest vector has length 1, and the largest component of that vector
-/// is real and positive. If vectors or components differ only by round-off, the first counts.
+/// Multiplies a mode, real + i imaginary, by a complex number that makes its longest vector of
+/// length 1 and the largest component of that vector real and positive. If vectors or components
+/// differ only by round-off, the first counts.
 template <class Exec, class Spins>
 void normalize_mode(Exec const& exec, Spins const& real, Spins const& imaginary) {
   auto const x = copy_to_host(real), y = copy_to_host(imaginary);
@@ -150,11 +151,11 @@ void normalize_mode(Exec const& exec, Spins const& real, Spins const& imaginary)
 
 }  // namespace detail
 
-/// Returns the normal modes of the equation of motion, linearised at an equilibrium, slowest first.
-/// Each product of the Hessian with a vector takes one evaluation of the field if it is affine in
-/// the spins, otherwise two. Symmetries that the equilibrium breaks give zero modes, with a rate of
-/// about 0. At a saddle the decay of a growing mode is negative. Waits. Throws
-/// std::invalid_argument for invalid options, parts of a lattice and replicas.
+/// Returns the normal modes of the equation of motion (Turning), linearised at an equilibrium,
+/// slowest first. Each product of the Hessian with a vector takes one evaluation of the field if
+/// the field is affine in the spins, otherwise two. Symmetries that the equilibrium breaks give
+/// zero modes, with a rate of about 0. At a saddle some modes grow; their decay is negative. Waits.
+/// Throws std::invalid_argument for invalid options, parts of a lattice and replicas.
 template <class Exec, class Field, class Spins>
 NormalModes<Spins> normal_modes(
     Exec const& exec, Field const& field,
@@ -186,7 +187,8 @@ NormalModes<Spins> normal_modes(
   return found;
 }
 
-/// Returns the normal modes of a LandauLifshitz.
+/// Returns the normal modes of a LandauLifshitz. Throws std::invalid_argument also if it has
+/// neither precession nor damping.
 template <class Exec, class Field, class Damping, class Spins>
 NormalModes<Spins> normal_modes(Exec const& exec, LandauLifshitz<Field, Damping> const& generator,
                                 Spins const& spins, ModesOptions const& options = {}) {
@@ -206,7 +208,7 @@ NormalModes<Spins> normal_modes(Exec const& exec, LandauLifshitz<Field, Damping>
 }
 
 /// Returns the lowest eigenvalues of the Hessian of a field's energy on the tangent planes of
-/// mobile spins, with their vectors. Waits. Throws like normal_modes.
+/// mobile spins, with the eigenvectors. Waits. Throws like normal_modes.
 template <class Exec, class Field, class Spins>
 Curvatures<Spins> lowest_curvatures(Exec const& exec, Field const& field, Spins const& spins,
                                     ModesOptions const& options = {}) {
@@ -230,13 +232,14 @@ Curvatures<Spins> lowest_curvatures(Exec const& exec, Field const& field, Spins 
 }
 
 /// Returns the spin waves of given wave vectors (cycles per lattice cell) about an equilibrium that
-/// is equal in all cells along the periodic axes. It takes two products of the Hessian with a
+/// is equal in all cells along the periodic axes. This takes two products of the Hessian with a
 /// vector for each mobile site of a cell, and then the eigenvalues of a small matrix for each wave
-/// vector. A wave vector need not fit the lattice, unless the interaction reaches around it. Bonds
-/// must not be longer than half the lattice. Along a periodic axis of one cell, bonds join the cell
-/// to itself and add no phase to waves. `poll` is called before each product and each wave vector;
-/// after Next::stop the result is empty. Throws std::invalid_argument where cells differ, and for a
-/// wave vector that must fit but does not or has a component along an open axis.
+/// vector. A wave vector need not fit the lattice, unless the interaction reaches around the
+/// lattice. Bonds must not be longer than half the lattice. If there is only one cell along a
+/// periodic axis, bonds along it join the cell to itself, and waves have no phase along them.
+/// `poll` is called before each product and each wave vector; after Next::stop the result is empty.
+/// Throws std::invalid_argument if cells differ, for a wave vector that must fit but does not or
+/// that has a component along an open axis, and for parts of a lattice and replicas.
 template <class Exec, class Field, class Spins>
 BlochModes bloch_modes(
     Exec const& exec, Field const& field,

@@ -5,9 +5,9 @@
 
 #include <concepts>
 
-// How the library calls field terms and generators. Each function calls the member of its own name
-// or, if there is none, does what the tables in concepts.hpp give as the default. field/parts.hpp
-// has the functions for a field made of others.
+// How the library calls field terms and generators. Each function calls the member that it is named
+// after or, if there is none, does what the tables in concepts.hpp give as the default.
+// field/parts.hpp has the functions for a field made of several terms.
 namespace cayspin::inline v0_2::detail {
 
 template <class Term, class Stencil>
@@ -65,7 +65,7 @@ KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_field(Term const& term, Stenci
     return h + term.field(stencil);
 }
 
-/// Returns `h` plus a term's field plus any multiple of the spin.
+/// Returns `h` plus a term's field plus some multiple of the spin.
 template <class Term, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_turning_field(Term const& term,
                                                                 Stencil const& stencil,
@@ -168,7 +168,7 @@ KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> evaluate(Generator const& generato
   return generator(stencil);
 }
 
-/// Returns A plus any multiple of the spin, which does not turn the spin.
+/// Returns A plus some multiple of the spin, which has no effect on the motion.
 template <class Generator, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> turning_part(Generator const& generator,
                                                            Stencil const& stencil) {

@@ -41,12 +41,12 @@ class Part {
   /// Updates the ghosts of fields; waits. Work on the fields must have finished before the call.
   virtual void update_ghosts(std::span<FieldNumbers const> fields) const = 0;
   /// Sends sent[i] to part i, and receives what it sends in received[i]; i may be this part. Waits.
-  /// The two parts must give equal sizes, in multiples of 8 bytes.
+  /// Sender and receiver must give equal sizes, in multiples of 8 bytes.
   virtual void exchange(std::span<std::span<std::byte const> const> sent,
                         std::span<std::span<std::byte> const> received) const = 0;
 };
 
-/// Returns the lattice that this one is a part of, or itself.
+/// Returns the lattice that `lattice` is a part of; if it is whole, returns `lattice` itself.
 inline Lattice const& whole(Lattice const& lattice) {
   return lattice.part == nullptr ? lattice : lattice.part->whole();
 }

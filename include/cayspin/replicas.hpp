@@ -10,13 +10,13 @@
 #include <string>
 
 // Fields on Lattice::with_replicas: many independent copies of a small lattice, which a stepper
-// advances together. Site number s of replica r is number r * (sites of one replica) + s.
+// advances together. Site s of replica r is number r * (sites of one replica) + s among all sites.
 namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// Functor that copies the sites of one replica from the field of all replicas to a field of its
-/// own, or back.
+/// Functor that copies the sites of one replica between the field of all replicas and a field of
+/// this replica only.
 template <class Real, int Components, bool ToReplica>
 struct CopyReplica {
   SiteArray<Real, Components> of_all, of_one;

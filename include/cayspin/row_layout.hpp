@@ -23,11 +23,11 @@ struct RowRange {
 
 /// Memory layout of the sites: one array per component, with rows along x padded to whole cache
 /// lines. If rows are longer than a line, the strides of rows, planes and components are odd
-/// numbers of lines, and that of planes is not close to a whole number of pages. This keeps
+/// numbers of lines, and the stride of planes is not close to a whole number of pages. This keeps
 /// neighbours from competing for the same cache sets.
 struct RowLayout {
   std::int32_t nx = 0, ny = 0, nz = 0;
-  std::int32_t replica_planes = 0;  // nz is a multiple of it
+  std::int32_t replica_planes = 0;  // planes of one replica
   bool periodic[3] = {false, false, false};
   std::ptrdiff_t pitch = 0;             // stride of rows
   std::ptrdiff_t plane = 0;             // stride of planes
@@ -35,7 +35,7 @@ struct RowLayout {
   std::ptrdiff_t origin = 0;  // position of site 0 in the allocation; a pack may read before it
   RowRange own;               // all rows but the ghosts
   Part const* part = nullptr;
-  std::int32_t parity = 0;  // of y + z in the whole lattice where y + z of this part is even
+  std::int32_t parity = 0;  // parity of y + z in the whole lattice where it is even in this part
 
   template <class Real>
   static RowLayout of(Lattice const& lattice) {
@@ -106,7 +106,8 @@ struct RowLayout {
   std::size_t allocation(int components) const {
     return static_cast<std::size_t>(2 * origin + components * component_stride);
   }
-  /// Returns the offset of a site numbered ix + nx (iy + ny iz), where ghosts do not count.
+  /// Returns the offset of a site. Its number is ix + nx (iy + ny iz), with indices and an ny that
+  /// leave out the ghosts.
   KOKKOS_FUNCTION std::ptrdiff_t offset(std::int64_t site) const {
     std::int64_t row = site / nx;
     if (part != nullptr) row = (own.z_begin + row / own.ny()) * ny + own.y_begin + row % own.ny();
@@ -130,8 +131,8 @@ struct SiteArray {
   std::ptrdiff_t stride = 0;
 };
 
-/// A SiteArray that a kernel only writes. `streaming`: bypasses the caches, because the fields in
-/// use exceed them.
+/// A SiteArray that a kernel only writes. `streaming`: stores bypass the caches, for fields that do
+/// not fit them.
 template <class Real, int Components>
 struct OutputArray : SiteArray<Real, Components> {
   bool streaming = false;

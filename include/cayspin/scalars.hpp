@@ -125,8 +125,8 @@ struct TorqueOfSites {
 
 }  // namespace detail
 
-/// An energy summed over sites, and the sum of absolute values of its terms, to which its round-off
-/// is proportional.
+/// An energy, summed over sites. `magnitude` is the sum of the absolute values of its terms; the
+/// round-off of `value` is proportional to it.
 struct Energy {
   double value = 0, magnitude = 0;
 };
@@ -144,9 +144,9 @@ Energy energy(Exec const& exec, Source const& source, SpinField<Real, MemorySpac
   return {total[0], total[1]};
 }
 
-/// Returns the energy of each term of an EffectiveField, in the order of its terms, in one pass
-/// over the spins at time t. The EffectiveField may be inside a FieldWithVacancies or a generator;
-/// a single field term counts as an EffectiveField of one term.
+/// Returns the energy at time t of each term of an EffectiveField, in the order of its terms, in
+/// one pass over the spins. The EffectiveField may be inside a FieldWithVacancies or a generator; a
+/// single field term counts as an EffectiveField of one term.
 template <class Exec, class Source, class Real, class MemorySpace>
 std::array<Energy, static_cast<std::size_t>(detail::energy_terms<Source>)> term_energies(
     Exec const& exec, Source const& source, SpinField<Real, MemorySpace> const& spins,

@@ -74,15 +74,16 @@ class ExchangeMemory {
 
 }  // namespace detail
 
-/// True if a stepper carries something besides the spins from one step to the next, as multistep,
-/// adaptive and compensated ones do.
+/// True if a stepper carries something in addition to the spins from one step to the next, as
+/// multistep, adaptive and compensated ones do.
 template <class Stepper>
 inline constexpr bool remembers_steps = requires(Stepper& stepper) { stepper.reset(); };
 
 /// Stores the state of `stepper` (or of an EnergyControl) in a checkpoint, or restores it from one.
-/// After a restore, integrate with times.continues continues exactly as the stored stepper would
-/// have. Work on the stepper's fields must have finished; waits. Throws what the checkpoint throws,
-/// and std::invalid_argument for fields of another size and counts that the stepper cannot have.
+/// After that, integrate() with times.continues continues exactly as the stored stepper would have.
+/// Names in the checkpoint start with `prefix`. Work on the stepper's fields must have finished;
+/// waits. Throws what the checkpoint throws, and std::invalid_argument for fields of another size
+/// and counts that the stepper cannot have.
 template <class Stepper>
 void serialize(Stepper& stepper, Checkpoint& checkpoint, std::string const& prefix = {}) {
   detail::ExchangeMemory const visit(checkpoint, prefix);

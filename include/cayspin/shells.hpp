@@ -22,7 +22,8 @@ struct BondOfLength {
   std::array<int, 3> offset;
 };
 
-/// Returns every bond once, shortest first, up to `reach` cells away along the periodic vectors.
+/// Returns every bond once, shortest first, between sites at most `reach` cells apart along each
+/// vector that repeats.
 inline std::vector<BondOfLength> bonds_within(Crystal const& crystal, int reach,
                                               std::array<bool, 3> const& repeats) {
   std::vector<BondOfLength> bonds;
@@ -36,7 +37,8 @@ inline std::vector<BondOfLength> bonds_within(Crystal const& crystal, int reach,
       for (int i = -x; i <= x; ++i)
         for (int j = -y; j <= y; ++j)
           for (int k = -z; k <= z; ++k) {
-            // A bond between sites of equal index occurs in both directions: keeps one of them.
+            // A bond between sites of equal index occurs in both directions; one of the two is
+            // kept.
             if (a == b && !(i > 0 || (i == 0 && (j > 0 || (j == 0 && k > 0))))) continue;
             auto const here = crystal.position({0, 0, 0}, static_cast<std::size_t>(a)),
                        there = crystal.position({i, j, k}, static_cast<std::size_t>(b));
@@ -71,9 +73,10 @@ inline double cells_within(Crystal const& crystal, double length) {
 inline constexpr double same_distance = 1e-4;
 
 /// Returns exchange bonds between all pairs of sites at the first, second, ... distance in a
-/// crystal, with the constants exchange[0], exchange[1], ... `repeats`: the cell vectors along
-/// which there are other cells. Throws std::invalid_argument for an invalid crystal, for more than
-/// two million bonds, and for more constants than a single cell has distances.
+/// crystal, with the constants exchange[0], exchange[1], ... `repeats` says for each cell vector
+/// whether there are other cells along it. Throws std::invalid_argument for an invalid crystal, for
+/// more than two million bonds, and, if no vector repeats, for more constants than there are
+/// distances in a cell.
 inline std::vector<Coupling> couplings_of_shells(Crystal const& crystal,
                                                  std::vector<double> const& exchange,
                                                  std::array<bool, 3> const& repeats = {true, true,

@@ -26,8 +26,8 @@ inline Lattice const& validated(Lattice const& lattice) {
 }
 
 /// Functor that initialises a field. Its tasks are the rows, and then the margins before, between
-/// and after the components. Packs at the ends of rows read some of this padding; the results are
-/// discarded, but must not trap or be denormal.
+/// and after the components. Packs at the ends of rows read some of this padding. Results from it
+/// are discarded, but must not trap or be denormal.
 template <class Real>
 struct FillField {
   Real* data;
@@ -108,7 +108,8 @@ class SiteField {
   }
   ~SiteField() = default;
 
-  /// Allocates; every site starts as (0, .., 0, last_component).
+  /// Allocates, and sets every site to (0, .., 0, last_component). Throws std::invalid_argument for
+  /// an invalid lattice.
   SiteField(std::string const& label, Lattice const& lattice, Real last_component = Real(0))
       : lattice_(detail::validated(lattice)),
         layout_(RowLayout::of<Real>(lattice)),
@@ -135,8 +136,8 @@ class SiteField {
   /// Returns the allocation, for deep copies between fields on equal lattices.
   Kokkos::View<Real*, MemorySpace> const& allocation() const { return data_; }
 
-  /// Returns the numbers of one site; only for host code on fields in host memory. `site` is not
-  /// checked.
+  /// Return or set the vector of one site; only for host code on fields in host memory. `site` is
+  /// not checked.
   Vec3<Real> get(std::int64_t site) const
     requires(Components == 3 && std::is_same_v<MemorySpace, Kokkos::HostSpace>)
   {
@@ -203,8 +204,8 @@ CAYSPIN_DETAIL_NOINLINE std::array<Field, Count> numbered_fields(std::string con
 template <std::floating_point Real, class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 using ScalarField = SiteField<Real, 1, MemorySpace>;
 
-/// A unit vector per site; starts as +z everywhere. Steppers preserve the lengths that they are
-/// given: check copied-in spins with require_unit_spins (observer/normalize.hpp).
+/// A unit vector per site, initially +z. Steppers preserve the lengths of the spins that they are
+/// given: check spins that you copy in with require_unit_spins (observer/normalize.hpp).
 template <std::floating_point Real, class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class SpinField : public SiteField<Real, 3, MemorySpace> {
  public:
@@ -246,8 +247,9 @@ void copy(Exec const& exec, SiteField<Real, Components, MemorySpace> const& from
   detail::copy_sites<false>(exec, to, from);
 }
 
-/// Copies numbers in host memory, (sites, Components) with x fastest, into a field; waits. If they
-/// are for one replica of the lattice, all replicas get them.
+/// Copies numbers in host memory, (sites, Components) with x fastest, into a field; waits. If there
+/// are only as many as for one replica of the lattice, all replicas get them. Throws
+/// std::invalid_argument for any other count.
 template <class Number, class Real, int Components, class MemorySpace>
 void copy_from_host(std::vector<Number> const& from,
                     SiteField<Real, Components, MemorySpace> const& to) {
