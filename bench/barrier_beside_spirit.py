@@ -9,7 +9,7 @@ The skyrmion is that of Spirit's tests: 16 x 16 sites, periodic, and in meV exch
 and a field of 2.894190905 (25 T on 2 Bohr magnetons). Both programs relax the ends and use 16
 images. Spirit starts from its homogeneous transition. As its manual recommends, it relaxes the path
 roughly before the highest image climbs. Both stop when max |m x H| at the saddle is below a bound.
-An evaluation is that of H at all sites of an image."""
+One evaluation computes H at all sites of one image."""
 
 import argparse
 import pathlib

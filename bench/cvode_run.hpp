@@ -26,8 +26,9 @@ struct CvodeOptions {
   bool preconditioned = false;
 };
 
-/// The preconditioner (1 + b K)^-1 as in StiffGauss, normal to the spins; b = gamma (damping - i
-/// precession), both as measured.
+/// The preconditioner (1 + b K)^-1 as in StiffGauss, normal to the spins. K is the exchange
+/// operator, and b = gamma (damping - i precession) with the measured damping and precession and
+/// the gamma of CVODE.
 class SpinWavePreconditioner {
   using Solver = cayspin::detail::SpinWaveSolver<double, Kokkos::HostSpace>;
 
@@ -95,8 +96,8 @@ class SpinWavePreconditioner {
   std::string across_label_ = "cayspin::bench::across", turn_label_ = "cayspin::bench::turn";
 };
 
-/// Runs CVODE from `start` to the horizon and stores states at equal intervals. If it fails or
-/// takes more than `most` evaluations, the later states are missing.
+/// Runs CVODE from `start` to the horizon and stores states at equal intervals of time. If CVODE
+/// fails or takes more than `most` evaluations, the later states are missing.
 template <class Generator>
 class Cvode {
  public:

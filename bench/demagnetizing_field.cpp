@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Milliseconds of an evaluation of the demagnetising field in the default space, next to the six
-// transforms of a zero-padded lattice without anything else, by measured plans of FFTW or by cuFFT.
-// With OMP_NUM_THREADS=1 both run on one thread. Cases are named PRECISION/field/SHAPE and
-// PRECISION/transforms/SHAPE.
+// Milliseconds of an evaluation of the demagnetising field in the default space, next to only the
+// six transforms of a zero-padded lattice, by FFTW with measured plans or by cuFFT. With
+// OMP_NUM_THREADS=1 field and transforms run on one thread. Cases are named PRECISION/field/SHAPE
+// and PRECISION/transforms/SHAPE.
 //   bench_demagnetizing_field --benchmark_filter=f64 --benchmark_repetitions=5
 #include "main.hpp"
 #include "scene.hpp"

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Cost of [ensemble]: ns a spin and step of many small lattices and of one large lattice of as many
-spins, and their ratio. The time of a step is found from two runs, one with twice the steps of the
-other. The two lattices run in turns; the shortest time of each counts. Also prints the seconds of a
-sweep of short runs."""
+"""Cost of [ensemble]: ns per spin and step for many small lattices and for one large lattice with
+as many spins, and their ratio. The time of a step is found from two runs, one with twice the steps
+of the other. The two lattices run in turn; the shortest time of each counts. Also prints the
+seconds of a sweep of short runs."""
 
 import argparse
 import pathlib

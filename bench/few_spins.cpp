@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Steps per second of a chain of 100 spins through cayspin::integrate, with an observer every 100
-// steps, next to hand-written loops for that scene: one scalar, one vectorised by the compiler.
+// steps, next to two hand-written loops for this scene: one scalar, one vectorised by the compiler.
 // Cases are named few spins/METHOD/EXECUTION SPACE, few spins/scalar METHOD and few
 // spins/vectorized METHOD.
 #include "hand_written.hpp"
@@ -69,8 +69,8 @@ using Vectorized = hand_written::Steps<Chain<Loops::vectorized>>;
 template <class Loop>
 using MethodOf = void (Loop::*)(hand_written::Vectors<double>&, double, std::int64_t);
 
-/// Adds the library's method, and the hand-written loops, whose steps must be those of
-/// Renormalized.
+/// Adds the method of the library and the hand-written loops, which must take the steps of the
+/// stepper Renormalized.
 template <class Stepper, class Renormalized>
 void add(std::string const& name, MethodOf<Scalar> scalar, MethodOf<Vectorized> vectorized) {
   using Default = Kokkos::DefaultHostExecutionSpace;

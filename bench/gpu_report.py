@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Writes BUILD_DIR/gpu-report.md: what `bash cmake/bootstrap.sh gpu` found in a build folder.
+"""Writes BUILD_DIR/gpu-report.md, a report on the results of `bash cmake/bootstrap.sh gpu`.
 
 It reads gpu-tests.txt (the output of ctest), gpu-bench.txt (that of bench/run.sh) and
 bench-results. The report names parts that are missing. The exit status is 1 if a part is missing or
@@ -40,7 +40,8 @@ def machine():
 
 
 def tests(text):
-    """Returns lines on a run of ctest, from its output, and whether no test failed."""
+    """Returns lines of the report about a run of ctest, and whether no test failed. `text` is the
+    output of ctest."""
     summary = re.search(r"^\d+% tests passed.*$", text, re.MULTILINE)
     if not summary:
         return ["ctest printed no summary."], False

@@ -8,8 +8,8 @@
 
 // Code that a good engineer writes in a day for exactly one scene, without a library: separate
 // component arrays, OpenMP over rows, a vectorised inner loop, one fused loop per stage,
-// renormalised at the end of the step. The benchmarks compare with it. This code shares nothing
-// with cayspin, and is compiled separately with the flags that suit it best.
+// renormalised at the end of the step. The benchmarks compare cayspin with this code, which shares
+// nothing with cayspin and is compiled separately with the flags that suit it best.
 namespace hand_written {
 
 /// Requests 2 MiB pages. Without them, loops over arrays larger than the caches wait for address

@@ -8,8 +8,9 @@ HAND_WRITTEN_INLINE void add(Numbers<Real> const& v, std::size_t i, Vector<Real>
   sum.x += v.x[i], sum.y += v.y[i], sum.z += v.z[i];
 }
 
-/// Where the rows begin that hold the neighbours of a row: four rows of the cells' other site and,
-/// for the second shell, the row itself and four rows of its own site.
+/// Indices at which the rows with the neighbours of a row begin: four rows of the other site of the
+/// cells and, for the second shell, the row itself (`own`) and four rows of the same site
+/// (`along`).
 struct RowsBeside {
   std::size_t other[4], own, along[4];
 };
@@ -51,8 +52,8 @@ void for_each(Bcc<Real, SecondShell> const& bcc, Numbers<Real> const v, Body bod
   for (std::size_t plane = 0; plane < 2 * n; ++plane)
     for (std::size_t y = 0; y < n; ++y) {
       std::size_t const z = plane / 2, site = plane % 2;
-      // The nearest other sites are in four cells along y and z: for site 0 these start one cell
-      // back, for site 1 at this cell.
+      // The nearest sites of the other kind are in 2 x 2 cells along y and z. For site 0 these are
+      // the cell before and this cell; for site 1, this cell and the next.
       std::size_t const back = site == 0 ? n - 1 : 0;
       RowsBeside const rows{
           {row_at(1 - site, y + back, z + back), row_at(1 - site, y + back + 1, z + back),

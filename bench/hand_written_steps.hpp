@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
-// The steps of all scenes. A file that includes this has a for_each(scene, spins, body), which
-// calls body(site, dm/dt) for every site. Everything is inlined, because other files that include
-// this are compiled with other options.
+// The steps of all scenes. A file that includes this defines for_each(scene, spins, body), which
+// calls body(site, dm/dt) for every site. Everything is inlined, because the files that include
+// this are compiled with different options.
 namespace hand_written {
 
 #define HAND_WRITTEN_INLINE [[gnu::always_inline]] inline

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-// Runs methods from coarse to fine steps, as `cayspin trade` does, and finds what they cost at
+// Runs methods from coarse to fine steps, as `cayspin trade` does, and finds how much they cost at
 // given errors.
 namespace ladder {
 
@@ -43,7 +43,8 @@ std::vector<double> start_of(cayspin::Lattice const& lattice, Function const& f)
   return spins;
 }
 
-/// Returns true if there is only one thread, which the times are for; otherwise prints a message.
+/// Returns true if Kokkos has only one thread, as all reported times require; otherwise prints a
+/// message.
 inline bool has_one_thread() {
   if (Kokkos::DefaultHostExecutionSpace().concurrency() == 1) return true;
   std::fprintf(stderr, "set OMP_NUM_THREADS=1: seconds are those of one thread\n");
@@ -85,8 +86,8 @@ struct Ladder {
   std::vector<Rung> rungs = {};
 };
 
-/// Returns the largest distance of any spin at any sample, with the spins of `run` divided by their
-/// lengths; infinity if samples are missing or not finite.
+/// Returns the largest distance of any spin from the reference at any sample. The spins of `run`
+/// are first divided by their lengths. Returns infinity if samples are missing or not finite.
 inline double distance(States const& run, States const& reference) {
   double largest = 0;
   if (run.size() != reference.size()) return std::numeric_limits<double>::infinity();
@@ -126,8 +127,9 @@ struct Limits {
   int rungs = 24;
 };
 
-/// Calls run(rung) from rung 0, the coarsest, on. Repeats useful rungs: the shortest of up to 100
-/// runs counts, of only 2 if they are long. Stops at the limits, or when errors no longer decrease.
+/// Calls run(rung) for rung 0, the coarsest, and so on. Repeats rungs with an error below 0.5: the
+/// shortest of up to 100 runs counts, of 2 or 3 if they are long. Stops at the limits, or when
+/// small errors no longer decrease.
 template <class RunOnce>
 Ladder climb(std::string name, bool is_own, States const& reference, Limits const& limits,
              RunOnce const& run) {
@@ -156,7 +158,8 @@ Ladder climb(std::string name, bool is_own, States const& reference, Limits cons
   return ladder;
 }
 
-/// Takes `steps` steps of a cayspin stepper; `steps` must be a multiple of `looks`.
+/// Takes `steps` steps of a cayspin stepper, up to the time `horizon`. `steps` must be a multiple
+/// of `looks`.
 template <class Stepper, class Generator>
 Run take_steps(Stepper& stepper, Generator const& generator, cayspin::Lattice const& lattice,
                std::vector<double> const& start, double horizon, std::int64_t steps) {

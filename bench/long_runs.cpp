@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Errors of energy, total spin and norm in long runs without damping, of every method with and
-// without EnergyControl: spins on a periodic cube with only exchange, from a random start. All
-// methods get equally many field evaluations per unit time. Prints a row of a Markdown table per
-// run, with the largest errors at a thousand samples.
+// Errors of energy, total spin and norm in long runs without damping, for each of thirteen methods
+// with and without EnergyControl: spins on a periodic cube with only exchange, from a random start.
+// All methods get equally many field evaluations per unit time. For each run prints a row of a
+// Markdown table, with the largest errors among about a thousand samples.
 //   bench_long_runs [--steps=1000000] [--edge=16] [--evaluations=80] [--period=1] [--only=METHOD]
 #include "random_spins.hpp"
 
@@ -135,7 +135,7 @@ int main(int argc, char** argv) {
   Runs const runs(options_of(argc, argv));
   runs.run<ProjectedRk4<Spins>>("RK4 + renormalise");
   runs.run<Rkmk4<Spins>>("RKMK4");
-  // Makes H the sum of the six neighbours, without the multiple of the spin itself in exchange.
+  // Makes A the sum of the six neighbours: the term -6 m of exchange cancels.
   isotropy::Constant const neighbor_sum{6};
   runs.run<Rkmk4<Spins, isotropy::Constant>>("RKMK4, sigma = 6", neighbor_sum);
   runs.run<StereographicRungeKutta<Spins, tableau::Classical4>>("RK4 in the chart");

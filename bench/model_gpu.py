@@ -21,15 +21,15 @@ COUNTS = ROOT / "tests" / "cuda" / "expected_sass.txt"
 # Assumed, for the SXM cards: both have the chip GH100 and differ only in memory.
 CARDS = {"H100": 3.35e12, "H200": 4.8e12}  # memory bandwidth, bytes/s, from the data sheets
 PROCESSORS = 132  # multiprocessors
-CLOCK = 1.755e9  # below the boost of 1.98 GHz: a busy card keeps less
-SCHEDULERS, LANES = 4, 32  # of a multiprocessor, of a warp; each issues one instruction a clock
+CLOCK = 1.755e9  # Hz; a busy card does not keep up its boost clock of 1.98 GHz
+SCHEDULERS, LANES = 4, 32  # of a multiprocessor (each issues one instruction a clock); of a warp
 ARITHMETIC = {"f64": 64, "f32": 128}  # lanes of a multiprocessor
 INTEGERS = 64
 FIRST_CACHE = 128  # bytes a clock, of a multiprocessor
 SECOND_CACHE = 5.5e12  # bytes a second: a cautious 60 % of 5120 bytes a clock
 LATENCY = 800e-9  # seconds that a site's loads take from a busy memory: twice those of an idle one
 REGISTERS, WARPS = 65536, 64  # of a multiprocessor
-SECTOR = 32  # bytes, the least that the second-level cache transfers
+SECTOR = 32  # bytes: the smallest transfer of the second-level cache
 
 SIZE = {"f64": 8, "f32": 4}
 METHODS = {  # cases of bench_throughput
@@ -38,7 +38,8 @@ METHODS = {  # cases of bench_throughput
 
 
 class Kernel:
-    """A line of the counts. A kernel reads spins at 7 sites, other arrays only at its own."""
+    """A line of the counts. For each site a kernel reads the spins at 7 sites, and other arrays
+    only at that site."""
 
     def __init__(self, line):
         self.name, *numbers = line.split()
@@ -60,7 +61,7 @@ class Kernel:
 
 
 def walk(edge):
-    """Sites of a thread, as in DeviceTiles."""
+    """Returns the number of sites that a thread handles, as in DeviceTiles."""
     return min(max(edge**3 >> 19, 1), 8)
 
 
@@ -69,8 +70,8 @@ def seconds(kernel, bandwidth, edge):
     size, sites = SIZE[kernel.precision], walk(edge)
     once = (kernel.total - kernel.loop) / sites  # instructions outside a thread's loop, per site
     clocks = 1 / (PROCESSORS * CLOCK)
-    # A tile of 32 x 4 x sites: two more rows along y and z, and a sector at each end of its own
-    # rows.
+    # For a tile of 32 x 4 x sites also two rows along y and two along z are read, and a sector at
+    # each end of the rows of the tile.
     stencil = 3 * (size * (1 + 2 / 4 + 2 / sites) + 2 * SECTOR / 32)
     return {
         "memory": kernel.words * size / bandwidth,
@@ -78,7 +79,7 @@ def seconds(kernel, bandwidth, edge):
         "issue": (kernel.loop + once) / LANES / SCHEDULERS * clocks,
         "arithmetic": kernel.arithmetic / ARITHMETIC[kernel.precision] * clocks,
         "integers": (kernel.integer + once) / INTEGERS * clocks,
-        # The neighbours along x are not aligned: one more line for each of these loads.
+        # The neighbours along x are not aligned: each of these loads takes one more line.
         "first cache": ((kernel.loads + kernel.stores) * size + 6 * FIRST_CACHE / 32) /
                        FIRST_CACHE * clocks,
         "latency": LATENCY / (kernel.warps * LANES * PROCESSORS),
@@ -106,8 +107,8 @@ def print_kernels(kernels, edge):
 
 
 def steps(kernels, bandwidth, edge):
-    """Returns {(precision, method): [seconds a site, those of only the memory, resources that limit
-    the kernels]}."""
+    """Returns {(precision, method): [seconds per site, seconds per site if only memory limited the
+    kernels, resources that limit them]}."""
     found = {}
     for kernel in kernels:
         times = seconds(kernel, bandwidth, edge)

@@ -9,8 +9,8 @@ as well, and for one exchange of ghosts along z and one along y. An exchange tak
 its bytes over a bandwidth. The time of a site, the latency and the bandwidth are fitted to runs of
 bench_ranks on two ranks, which share the memory of this machine; no lattice fits the caches.
 Predictions for many ranks use the --latency and --bandwidth of a network instead. Ranks that
-exchange ghosts at each stage compute none, but need a pass through memory for each stage; the time
-of that is measured, too.
+exchange ghosts at each stage compute no ghosts, but each stage is a pass through memory; the time
+of such steps is measured, too.
 """
 import argparse
 import pathlib
@@ -61,7 +61,8 @@ class Model:
         self.latency, self.bandwidth = latency, bandwidth
 
     def exchange(self, n, depth):
-        """Returns seconds for two faces along z, and then two along y with the ghosts along z."""
+        """Returns the seconds of an exchange: two faces along z, then two along y that include the
+        ghosts along z."""
         sites = n * depth * (2 * n + 2 * depth)
         return 2 * self.latency + 2 * SITE_BYTES * sites / self.bandwidth
 
@@ -76,7 +77,7 @@ class Model:
     def efficiency(self, n, ranks):
         """Returns the weak efficiency with n^3 sites per rank; with few ranks, many have fewer than
         four neighbours."""
-        inner = 1 - 1 / ranks**0.5  # of all ends of parts along an axis, those inside the lattice
+        inner = 1 - 1 / ranks**0.5  # share of the ends of parts that are inside the lattice
         alone = self.site * n**3
         return alone / (alone + inner * (self.step(n) - alone))
 

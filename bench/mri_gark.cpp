@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A film of permalloy whose demagnetising field is evaluated rarely: by Multirate, once a step, and
 // by the multirate methods of SUNDIALS' ARKODE (MIS-KW3, MRI-GARK-ERK33a and ERK45a), three or five
-// times a step. Inner methods are of order 4, and their steps nearly equal. Prints for each run:
-// evaluations of the demagnetising field, seconds, the largest distance of any spin from a
-// reference at four times; then fitted orders, and the cost at given errors.
+// times a step. Inner methods are of order 4, and their steps are of nearly equal length. Prints
+// for each run: evaluations of the demagnetising field, seconds, the largest distance of any spin
+// from a reference at four times; then fitted orders, and the cost at given errors.
 #include "ladder.hpp"
 #include "sundials_spins.hpp"
 

@@ -19,7 +19,8 @@ using namespace cayspin;
 using Spins = SpinField<double>;
 using scene::Default, scene::Orthogonal;
 
-// Rigid bodies in place of the scene. The structs below are the scene with one change.
+// Rigid bodies in place of the scene. The structs after this one are the scene with one change
+// each.
 struct Bodies {
   static auto generator(Lattice const&) { return RigidBody::principal(1, 2, 3); }
 };

@@ -131,7 +131,8 @@ PROBE_INLINE void Probe<Real>::write(Vector const& v, int field, std::ptrdiff_t 
 }
 
 /// Calls body(at, m, A) for each pack of the spins in field `level`. Writes the ghost sites of
-/// field `out` after each row. Unless Whole, A lacks a multiple of m.
+/// field `out` after each row. Unless Whole, A leaves out the part -6 exchange m, which does not
+/// turn m.
 template <class Real>
 template <bool Whole, class Body>
 PROBE_INLINE void Probe<Real>::for_each_pack(int level, int out, Body const& body) {
@@ -169,7 +170,8 @@ PROBE_INLINE void Probe<Real>::for_each_pack(int level, int out, Body const& bod
     }
 }
 
-// Also visits the ghost sites, whose spins are those of the sites beside them.
+// Calls work(index in (sites, 3), index in a field) for each component of each site, also of the
+// ghost sites, which have the spins of the sites beside them.
 template <class Real>
 template <class Work>
 void Probe<Real>::for_each_site(Work const& work) const {

@@ -4,14 +4,14 @@
 #include <cstddef>
 #include <vector>
 
-// How fast a step can be on one core with data in its second-level cache: each method is written
-// out for one lattice and one scene, with packs, rows with ghost sites, and nothing generic. The
-// probes share no code with cayspin. Before it times a probe, the benchmark checks that its steps
-// are those of cayspin.
+// Probes show how fast a step can be on one core with the data in its second-level cache: each
+// method is written out for one kind of scene, with packs, rows with ghost sites, and nothing
+// generic. Probes share no code with cayspin. Before the benchmark times a probe, it checks that
+// the probe takes the same steps as cayspin.
 namespace probes {
 
 struct Scene {
-  int nx, ny, nz;  // open ends; nx is a multiple of the pack width
+  int nx, ny, nz;  // sites, with open ends; nx is a multiple of the pack width
   double exchange, anisotropy, applied, damping;
 };
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 /// Returns random spins (sites, 3), uniform on the sphere, from the same random numbers on every
-/// machine. They are generated once for each count.
+/// machine. They are generated once for each number of sites.
 inline std::vector<double> const& random_spins(std::int64_t sites) {
   static std::map<std::int64_t, std::vector<double>> made;
   auto& spins = made[sites];

@@ -30,7 +30,7 @@ throughput() {
 
 rm -rf "$results"
 mkdir -p "$results"
-drawn='/(hand-written .*|Euler|Heun|RKMK4|.* tangent)' # at all sizes; the others at some
+drawn='/(hand-written .*|Euler|Heun|RKMK4|.* tangent)' # measured at all sizes; the others at some
 throughput smallest "$threads" "$drawn/(5|10|16|24)/"
 throughput small "$threads" "/(32|64|L2)/|$drawn/48/" --benchmark_repetitions=7
 throughput medium "$threads" "/(128|L2)/|$drawn/96/"

@@ -24,7 +24,7 @@ inline constexpr double exchange = 1, anisotropy = 0.5, applied = 0.3, damping =
 /// work.
 inline cayspin::Lattice in_l2() { return cayspin::Lattice::cubic(128, 4, 4); }
 
-/// A lattice, and its name in the names of cases.
+/// A lattice, and the text for its size in the names of cases.
 struct Size {
   cayspin::Lattice lattice;
   std::string name;

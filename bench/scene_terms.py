@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Cost of terms in scenes: ns a spin and step of a plain scene, which has only exchange, one
+"""Cost of terms in scenes: ns per spin and step of a plain scene, which has only exchange, one
 anisotropy axis and an applied field, and how many times longer scenes with one change take. Scenes
-of the same shape and method run in turns; the shortest time of each counts."""
+of the same shape and method run in turn; the shortest time of each counts."""
 
 import argparse
 import pathlib
@@ -13,7 +13,7 @@ import tempfile
 AXIS = "{ constant = 0.1, axis = [0, 0, 1] }"
 CUBIC = "{ cubic = 1e-9, axes = [[1, 0, 0], [0, 1, 0]] }"
 PLAIN = {"exchange": "1.0", "anisotropy": AXIS, "applied": "[0.1, 0, 0.2]"}
-# name: keys that change in [field], in [lattice], in [system]
+# name: keys that differ from the plain scene in [field], in [lattice], in [system]
 TERMS = {
     "plain": ({}, {}, {}),
     "interfacial DMI": ({"dmi": "{ interfacial = 1e-9, normal = [0, 0, 1] }"}, {}, {}),

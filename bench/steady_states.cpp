@@ -56,7 +56,8 @@ Cost by_minimize(Field const& field, Spins& spins, bool preconditioned) {
   return {found.end == MinimizeEnd::converged, found.evaluations, clock.seconds()};
 }
 
-/// Takes steps along the gradient, of the lengths s.s / s.y and s.y / y.y in turns.
+/// Takes steps against the gradient, by s.s / s.y and s.y / y.y times the gradient in turn, where s
+/// is the previous step and y the change of the gradient in it.
 template <class Field>
 Cost by_barzilai_borwein(Field const& field, Spins& spins) {
   auto const& lattice = spins.lattice();

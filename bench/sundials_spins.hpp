@@ -33,10 +33,10 @@ struct FreeVector {
 };
 using Vector = std::unique_ptr<_generic_N_Vector, FreeVector>;
 
-/// Makes serial vectors with the memory layout of a spin field, margins included, which kernels
-/// read and write in place. If the padding would be more than an eighth of the spins, vectors hold
-/// only the spins and are copied for kernels, since SUNDIALS' operations on longer vectors would
-/// cost more. The padding of rates is zero.
+/// Makes serial vectors of SUNDIALS that have the memory layout of a spin field, margins included,
+/// so that kernels read and write them in place. If the padding would be an eighth of the spins or
+/// more, vectors hold only the spins and are copied for kernels, because SUNDIALS' operations on
+/// the longer vectors would cost more. The padding of rates is zero.
 class SpinVectors {
  public:
   explicit SpinVectors(cayspin::Lattice const& lattice)
@@ -133,8 +133,8 @@ struct RateOfSites {
   }
 };
 
-/// Evaluates the right side m' = A x m by the generator's own kernel. If the field is non-local, it
-/// reads the spins from a copy, whole_.
+/// Evaluates the right side of m' = A x m by the generator's own kernel. If the field is non-local,
+/// the spins are first copied to the field whole_, from which the generator is prepared.
 template <class Generator>
 class RightSide {
  public:

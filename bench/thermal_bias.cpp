@@ -3,7 +3,7 @@
 // next to three schemes of other programs, reimplemented here. Prints one line per scheme, damping
 // and dt: the error of <m_z> in a field of twice the temperature (Langevin), of <m_z^2> of a
 // uniaxial spin with K of three times the temperature, and of <m.m'> of neighbours on a chain with
-// J of three times the temperature (Fisher 1964), each with its standard error.
+// J of three times the temperature (Fisher 1964). Each error is printed with its standard error.
 //   bench_thermal_bias [sites] [time]
 #include <cayspin/cayspin.hpp>
 #include <cayspin/observer/thermal_noise.hpp>
@@ -145,7 +145,7 @@ Vector by_rotation(Vector const& f, Vector const& m) {
 }
 
 /// Each scheme predicts spins with the field of m, then takes its step with the field of the spins
-/// that `at` returns. `first` and `a` are dt times A.
+/// that `at` returns. `first` is dt times the A of the prediction, and `a` that of the step.
 struct HeunAndRenormalise {
   static constexpr char const* name = "Heun, renormalised";
   static Vector guess(Vector const& a, Vector const& m) { return normalized(m + cross(a, m)); }

@@ -2,7 +2,7 @@
 // Nanoseconds per spin and step for many numbers of spins, next to the hand-written loops and the
 // memory's speed in the same run. Cases are named PRECISION/METHOD/SIZE; a size is a cube's edge,
 // or L2 for a lattice that fits the second-level cache. For that lattice most methods also have a
-// probe: the step written out for this scene only, on one core.
+// probe: the same step, written out for this scene only.
 //   bench_throughput --benchmark_filter='/(32|128)/' --benchmark_out=32_128.json
 #include "hand_written.hpp"
 #include "main.hpp"

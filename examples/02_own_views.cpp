@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Uses spins in your own View: copies them in, integrates on the device, copies them out and reads
-// them in your own kernel. All of this runs on one execution space, so that your code needs no
-// fence in between. Energy, norm and magnetization are sampled during the run.
+// them in your own kernel. All of this runs on one instance of an execution space, so that your
+// code needs no fence in between. Energy, norm and magnetization are sampled during the run.
 #include <cayspin/cayspin.hpp>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Your own field term is a plain struct. It runs fused with the others, on every backend and in
-// both precisions; nothing is registered or instantiated elsewhere.
+// Your own field term is a plain struct. It is fused with the other terms into one kernel, on every
+// backend and in both precisions; you need not register or instantiate it anywhere.
 #include <cayspin/cayspin.hpp>
 
 #include <cstdio>

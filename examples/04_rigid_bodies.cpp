@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A thousand free rigid bodies of equal inertia, tumbling on S^2. Rotation about the middle axis is
-// unstable. The length of the angular momentum is conserved to round-off, and the energy to the
-// method's order.
+// A thousand free rigid bodies of equal inertia tumble: rotation about the middle axis is unstable.
+// The length of the angular momentum is conserved to round-off, and the energy to the order of the
+// method.
 #include <cayspin/cayspin.hpp>
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A non-local field computed by host code, which gets the spins in a mirror copy. Use this for an
-// FFT demagnetising field or any solver that is not a kernel. Here the field is that of the dipoles
-// of a periodic chain, summed directly.
+// A non-local field computed by host code, which gets the spins in host memory (a copy, if they are
+// on a device). Use this for an FFT demagnetising field or any solver that is not a kernel. Here
+// the field is that of the dipoles of a periodic chain, summed directly.
 #include <cayspin/cayspin.hpp>
 
 #include <algorithm>

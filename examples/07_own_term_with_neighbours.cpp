@@ -44,7 +44,8 @@ int main(int argc, char** argv) {
   cayspin::Rkmk4 stepper(spins);
   cayspin::integrate(exec, stepper, cayspin::LandauLifshitz(field, 1.0), spins, {0, 0.1, 10000});
 
-  // The interaction turns the spins by the same angle from site to site, against the exchange.
+  // The interaction works against the exchange, and turns the spins by equal angles from site to
+  // site.
   auto const m = cayspin::copy_to_host(spins);
   auto const angle = [&](std::size_t site) { return std::atan2(m[3 * site], m[3 * site + 2]); };
   double const turn = std::remainder(angle(12) - angle(11), 2 * std::acos(-1.0));

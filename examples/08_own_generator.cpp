@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Your own generator: any A(m, t) with m' = A x m. This one adds Slonczewski's torque of a
-// spin-polarised current to any Landau-Lifshitz generator. The program finds the currents that
+// Your own generator: any A(m, t), for the motion m' = A x m. This one adds Slonczewski's torque of
+// a spin-polarised current to any Landau-Lifshitz generator. The program finds the currents that
 // switch a magnetic layer and compares them with Slonczewski's formula.
 #include <cayspin/cayspin.hpp>
 
@@ -17,7 +17,8 @@ struct Current {
 /// Gilbert's equation with the torque -a m x (m x p), which turns spins towards the polarisation p.
 /// a = strength P L^2 / ((L^2 + 1) + (L^2 - 1) m.p), with degree of polarisation P and asymmetry L.
 /// Gilbert's damping of this torque adds -damping a p to A. Forwarding prepares the inner generator
-/// before each stage, so that its field may depend on time or come from the host.
+/// before each stage, so that the field of the inner generator may depend on time or be computed on
+/// the host.
 template <class Inner>
 class SpinTorque : public cayspin::Forwarding<SpinTorque<Inner>, Inner> {
  public:
@@ -55,7 +56,7 @@ class SpinTorque : public cayspin::Forwarding<SpinTorque<Inner>, Inner> {
 constexpr double mu0 = 4e-7 * std::numbers::pi, electron = 1.602176634e-19, hbar = 1.054571817e-34;
 constexpr double saturation = 1e6, anisotropy = 8e5, thickness = 1.2e-9;  // A/m, J/m^3, m
 constexpr double damping = 0.01, degree = 0.6, asymmetry = 1.5;
-// The anisotropy less the demagnetising field, in reduced units.
+// The anisotropy minus the demagnetising field, in reduced units.
 constexpr double constant = 2 * anisotropy / (mu0 * saturation * saturation) - 1;
 /// Strength, in units of Ms, of a current of 1 A/m^2.
 constexpr double strength_of_unit = hbar / (mu0 * electron * saturation * saturation * thickness);

@@ -16,7 +16,7 @@ import matplotlib.pyplot as plt  # noqa: E402  the backend has to be chosen befo
 
 GAMMA, MU0 = 1.76085963e11, 4e-7 * np.pi  # rad/(s T), T m/A
 MS, A, FIELD, THICKNESS = 8e5, 1.3e-11, 0.05, 2e-8  # A/m, J/m, T, m
-CELLS, CELL, TO, HIGHEST = 1000, 4e-9, 4e-9, 30e9  # m, s, Hz after the count
+CELLS, CELL, TO, HIGHEST = 1000, 4e-9, 4e-9, 30e9  # count, m, s, Hz
 
 
 def scene(along):

@@ -49,8 +49,8 @@ class Loop:
         return m
 
     def coercivity(self):
-        """Returns minus the field at which the magnetization along it crosses zero, interpolated
-        between the states before and after."""
+        """Returns the coercivity: minus the field at which the magnetization along the direction
+        crosses zero, interpolated between the states before and after."""
         i = int(np.argmax(np.array(self.along) < 0))
         (a, b), (h, k) = self.along[i - 1:i + 1], self.fields[i - 1:i + 1]
         return -(h - a * (k - h) / (b - a))
@@ -88,7 +88,7 @@ def problem_1(quick):
 
 
 # Donahue et al., J. Appl. Phys. 87, 5520 (2000), and muMAG's page of the problem: d, Hc, <m_x> and
-# <m_y> at zero field. The first row is their limit of a small particle.
+# <m_y> at zero field. The first row is their limit for small particles.
 DONAHUE = ((0.1, .05707, 1, 0), (2, .05694, 1, 0), (5, .05612, .9999, 0), (8, .05515, .9995, 0),
            (10, .05454, .9989, 0), (12, .05389, .9886, .0631), (15, .05258, .9784, .0795),
            (20, .04991, .9701, .0819), (25, .04779, .9657, .0790), (30, .04594, .9627, .0756))
@@ -130,8 +130,8 @@ def problem_2(quick):
 
 
 def energies(sim, cells):
-    """Returns the energies of exchange, demagnetising field and anisotropy, as energy densities in
-    units of Km; that of the anisotropy is 0 along its axis."""
+    """Returns the mean energy densities of exchange, demagnetising field and anisotropy, in units
+    of Km; the energy of the anisotropy is 0 for spins along its axis."""
     found = sim.energies()
     sites = cells**3
     return np.array([2 * found["exchange"] / sites, 2 * found["demag"] / sites,
@@ -184,7 +184,7 @@ def problem_3(quick):
 
 
 def curve(of, end, looks, evaluations_of_multirate=None):
-    """Returns <m> at `looks` times, and text on the cost."""
+    """Returns <m> at `looks` equally spaced times, and a text with the cost."""
     sim, clock, m = cayspin.Simulation(of), Clock(), []
     for look in range(looks):
         sim.run(until=(look + 1) * end / looks, output=False)

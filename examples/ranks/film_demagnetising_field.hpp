@@ -19,9 +19,9 @@
 
 /// A solver for HostField: the demagnetising field H = -N m, in units of Ms, of a film of one layer
 /// with open boundaries, which is divided among the ranks along y. Each rank transforms its rows
-/// along x, and then some columns along y. Both are padded to twice the extents, so that the film
-/// does not see its periodic images. Each transform is that of a single row or column, so the bits
-/// do not depend on the number of ranks.
+/// along x, and then its share of the columns along y. Rows and columns are padded to twice the
+/// extents, so that the film does not see its periodic images. Each transform is that of a single
+/// row or column, so the bits do not depend on the number of ranks.
 class FilmDemagnetisingField {
  public:
   static constexpr int degree = 2;  // H is linear in m: E = -m.H/2
@@ -143,8 +143,8 @@ class FilmDemagnetisingField {
       return reinterpret_cast<fftw_complex*>(numbers);
     }
     std::size_t columns() const { return k_.of(rank_); }
-    /// Returns where the share of a rank, which may be empty, begins in the spectrum of one of this
-    /// rank's rows.
+    /// Returns where of_rows_ holds a rank's share, which may be empty, of the spectrum of
+    /// component c of this rank's row y.
     Complex* in_rows(std::size_t c, std::size_t y, std::size_t rank) {
       return of_rows_.data() + 3 * rows() * k_.begin[rank] + (c * rows() + y) * k_.of(rank);
     }
@@ -169,9 +169,9 @@ class FilmDemagnetisingField {
         work(rank, shares.begin[rank], shares.of(rank));
     }
 
-    // Calls work(number, its place in the messages) for all numbers of this rank's columns.
-    // Messages hold the rows of one rank after the other, each in the order (component, row,
-    // column).
+    // Calls work(number, place of the number in the messages) for all numbers of this rank's
+    // columns. The messages are one after the other in memory, one for each rank's rows; within
+    // each the order is (component, row, column).
     template <class Work>
     void for_each_number(Work const& work) {
       for_each_share(y_, [&](std::size_t, std::size_t begin, std::size_t count) {
@@ -187,8 +187,8 @@ class FilmDemagnetisingField {
       for (std::size_t i = 0; i < 3 * columns(); ++i) work(as_fftw(&column_[i * 2 * ny_]));
     }
 
-    // This rank has `lines` lines: sends every rank its share of them, and receives this rank's
-    // share of the lines of every rank.
+    // This rank has `lines` lines. Sends every rank its share of these lines, and receives this
+    // rank's share of the lines of every rank.
     void exchange(std::vector<Complex> const& from, std::size_t lines, Shares const& shares,
                   std::vector<Complex>& to, std::size_t lines_there, Shares const& shares_there) {
       auto const counts = [](std::size_t of_line, Shares const& of_ranks) {

@@ -5,8 +5,8 @@
 //   example_standard_problem_4              128 x 32 cells, beside mumax3
 //   example_standard_problem_4 mumax3       the same with mumax3's approximation of the tensor
 //   example_standard_problem_4 oommf        200 x 50 cells, beside OOMMF
-//   example_standard_problem_4 multirate    200 x 50 cells, the demagnetising field once a step
-//   example_standard_problem_4 adaptive     like multirate, and adaptive methods
+//   example_standard_problem_4 multirate    200 x 50 cells, demagnetising field once per step
+//   example_standard_problem_4 adaptive     like multirate, also with adaptive methods
 //   example_standard_problem_4 multirate10  like multirate, over 10 ns
 #include "multirate.hpp"
 #include "problem.hpp"
@@ -62,7 +62,7 @@ bool agrees_with_oommf() {
          std::abs(reversal.crossing - crossing) < 1e-4;
 }
 
-/// Evaluates the demagnetising field once a step, and compares with rkmk4, which evaluates it in
+/// Evaluates the demagnetising field once per step, and compares with rkmk4, which evaluates it in
 /// each stage.
 bool follows_with_a_multirate_field(bool with_adaptive_methods) {
   StandardProblem4 problem(200, 50);

@@ -14,7 +14,7 @@
 /// of the other. Its error is up to 2.5e-4.
 namespace quadrature {
 
-constexpr double accuracy = 6;  // gap between the cells over the size of a piece
+constexpr double accuracy = 6;  // gap between the cells / edge of a piece of a cell
 
 /// Returns the middle of piece `index` of `pieces` pieces of an edge.
 inline double middle(double edge, int pieces, int index) {
@@ -35,7 +35,8 @@ inline cayspin::DemagnetizingTensor tensor(std::array<double, 3> const& distance
   std::array<std::array<double, 3>, 3> n{};  // [direction of m][component of -H]
   for (std::size_t u = 0; u < 3; ++u) {
     std::size_t const v = (u + 1) % 3, w = (u + 2) % 3;
-    // Twice as many charges as points: errors cancel because the grids are staggered.
+    // Along each edge there are twice as many charges as points: errors cancel because the grids
+    // are staggered.
     int const along_v = 2 * pieces[v], along_w = 2 * pieces[w];
     double const charge =
         size[v] * size[w] /

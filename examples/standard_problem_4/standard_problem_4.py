@@ -48,8 +48,8 @@ def newell_g(x, y, z):
 
 
 def interaction(function, axes):
-    """Returns an element of the tensor at offsets 0 to n - 1 along x, y and z: the second
-    differences of `function` along all three axes, over 4 pi times the volume of a cell."""
+    """Returns an element of the tensor at offsets 0 to n - 1 along x, y and z: minus the second
+    difference of `function`, taken along all three axes, over 4 pi times the volume of a cell."""
     size = np.array(SIZE, dtype=np.longdouble) / SIZE[2]
     grid = np.meshgrid(*(np.arange(-1, n + 1) * d for n, d in zip(CELLS, size)), indexing="ij")
     values = function(*(grid[axis] for axis in axes))

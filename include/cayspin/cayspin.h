@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception */
 /* Runs scenes from C, and from every language that can call C. The functions on simulations return
    a cayspin_status, and write results through their pointers only if the status is CAYSPIN_OK. No
-   C++ exception leaves a function. Any thread may call them: calls wait for each other, also calls
-   on different simulations. Only cayspin_time and cayspin_steps do not wait, so that they tell how
-   far a run has come. No other call on a simulation may be in progress when cayspin_close is
-   called. No function starts a process. A damaged HDF5 file may crash HDF5, and the program with
-   it; `cayspin check` reads the files of a scene in a separate process. */
+   C++ exception leaves a function. Any thread may call them: calls on a simulation wait for each
+   other, and only one simulation computes at a time. cayspin_time and cayspin_steps do not wait, so
+   that they tell how far a run has come. No other call on a simulation may be in progress when
+   cayspin_close is called. No function starts a process. A damaged HDF5 file may crash HDF5, and
+   the program with it; `cayspin check` reads the files of a scene in a separate process. */
 #ifndef CAYSPIN_CAYSPIN_H
 #define CAYSPIN_CAYSPIN_H
 
@@ -32,7 +32,7 @@ typedef enum cayspin_status CAYSPIN_AS_INT {
   CAYSPIN_OK = 0,
   CAYSPIN_WRONG_USAGE = 1,    /* a null pointer, or an argument that is not accepted */
   CAYSPIN_WRONG_SCENE = 2,    /* the scene, or a file that it names */
-  CAYSPIN_NUMBERS_FAILED = 3, /* non-finite spins, or an energy that rose but must not */
+  CAYSPIN_NUMBERS_FAILED = 3, /* a failed check of the spins or the energy, or a failed method */
   CAYSPIN_FAILED = 4          /* out of memory, a file that cannot be written, or else */
 } cayspin_status;
 
@@ -78,7 +78,9 @@ cayspin_status cayspin_open_file(char const* path, cayspin_precision precision, 
 cayspin_status cayspin_open_text(char const* text, char const* name, cayspin_precision precision,
                                  char const* space, cayspin_simulation** simulation);
 
-/* Takes `count` steps. After CAYSPIN_NUMBERS_FAILED the spins are those before the failing step. */
+/* Takes `count` steps. After CAYSPIN_NUMBERS_FAILED the spins are those that failed a check or, if
+   the method failed, those before the failing step (with adaptive methods up to 1000 steps
+   earlier). */
 cayspin_status cayspin_step(cayspin_simulation* simulation, int64_t count);
 
 /* Takes steps to the scene's end, and writes a file as `cayspin run` does: `output` or, if that is

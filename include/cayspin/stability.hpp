@@ -19,9 +19,9 @@
 #include <stdexcept>
 
 // The largest stable time step of a method for the Landau-Lifshitz equation, computed before a run.
-// The stages of the method are applied to one transverse mode of a nearly uniform state, u' = s
-// (-damping + i) u, where s is the effective field of the mode. sigma is the part of the generator
-// along the spins.
+// The stages of the method are applied to one transverse mode of a nearly uniform state. Its
+// amplitude u obeys u' = s (-damping + i) u, where s is the effective field of the mode. sigma is
+// the part of the generator along the spins.
 namespace cayspin::inline v0_2 {
 
 namespace detail {
@@ -57,8 +57,8 @@ struct LinearUpdate<update::Lie<Cayley>> {
         y.transverse - 0.5 * transverse_cross(f, y) + 0.25 * f.parallel * y.parallel * f.transverse,
         y.parallel * (1 + 0.25 * f.parallel * f.parallel)};
   }
-  /// Returns the change of the amplitude in the rotation with coordinates f; before it, the
-  /// amplitude is 1.
+  /// Returns by how much the rotation with coordinates f changes the amplitude, which is 1 before
+  /// it.
   static Complex growth(NearAxis const& f) {
     return Complex(0, -1) * f.transverse / Complex(1, -0.5 * f.parallel);
   }
@@ -106,8 +106,9 @@ struct LinearUpdate<update::Classical> {
 template <>
 struct LinearUpdate<update::Projected> : LinearUpdate<update::Classical> {};
 
-/// Returns the growth in the rotation with coordinates `first`, followed by a second rotation if
-/// the tableau has one. Row `stages` is the end of the step.
+/// Returns the growth of the amplitude from the start of the step to stage `row`, or to the end of
+/// the step if `row` is the number of stages: by the rotation with coordinates `first`, and by a
+/// second rotation if the tableau has one.
 template <class Tableau, class Linear, class Coordinates>
 Complex growth_to(int row, NearAxis const& first, Coordinates const& increments) {
   Complex const growth = Linear::growth(first);
@@ -119,7 +120,7 @@ Complex growth_to(int row, NearAxis const& first, Coordinates const& increments)
   return growth + Linear::growth(second);
 }
 
-/// Returns the factor by which one step multiplies the amplitude of the mode, minus one. z = dt s
+/// Returns the factor by which one step multiplies the amplitude of the mode, minus 1. z = dt s
 /// (-damping + i), q = dt sigma.
 template <class Tableau, class Update>
 Complex mode_growth(Complex z, double q) {
@@ -139,7 +140,7 @@ Complex mode_growth(Complex z, double q) {
 }
 
 /// Returns the largest sum of absolute weights in a row of the tableau, at least 1: the tableau
-/// magnifies round-off by this factor.
+/// magnifies round-off by at most this factor.
 template <class Tableau>
 constexpr double largest_row() {
   double largest = 1;
@@ -154,7 +155,7 @@ constexpr double largest_row() {
   return largest;
 }
 
-/// Returns the mode's growth in one step of a method; a stepper may have its own mode_growth.
+/// Returns mode_growth for one step of a method; a stepper may define its own mode_growth.
 template <class Stepper>
 Complex growth_of_step(Complex z, double q) {
   if constexpr (requires { Stepper::mode_growth(z, q); })
@@ -176,9 +177,10 @@ bool amplifies(Complex rate, double dt, double sigma, bool clearly) {
   return !(excess < (clearly ? size : -size) * std::abs(growth));
 }
 
-/// Returns the smallest dt below `limit` beyond which grows(dt, clearly) is true; `limit` if there
-/// is none, 0 if it is true at every dt down to 1e-9 of `unit`, the time scale of the mode.
-/// Searches upwards from `from` units: at shorter steps, round-off would hide the growth of methods
+/// Returns the largest dt up to which a mode does not grow, but at most `limit`; 0 if the mode
+/// grows even at dt = 1e-9 `unit`. grows(dt, clearly) is as amplifies, and `unit` is the time scale
+/// of the mode. The search starts at dt = from * unit. If the mode grows clearly there, it goes
+/// down, otherwise up. It does not start lower, because round-off would hide the growth by methods
 /// of high order.
 template <class Grows>
 double first_amplifying_step(Grows const& grows, double unit, double limit, double from) {
@@ -215,8 +217,8 @@ inline void check_bound(double field_bound, double damping) {
 
 }  // namespace detail
 
-/// Returns the largest eigenvalue of -|constant| Lap on the lattice, a bound on the exchange field.
-/// Throws std::invalid_argument when the constant is not finite.
+/// Returns the largest eigenvalue of -|constant| times the discrete Laplacian of the lattice, a
+/// bound on the exchange field. Throws std::invalid_argument when the constant is not finite.
 inline double exchange_bound(Lattice const& of_spins, double constant) {
   detail::finite(constant, "cayspin::exchange_bound: the constant");
   Lattice const& lattice = whole(of_spins);
@@ -234,17 +236,18 @@ inline double exchange_bound(Lattice const& of_spins, double constant) {
   return bound;
 }
 
-/// Parameters of the equation that largest_stable_step needs besides field and damping.
+/// Parameters of the equation that largest_stable_step needs in addition to the field and the
+/// damping.
 struct StabilityOptions {
   bool precession = true;
   double sigma = 0;  ///< of isotropy::Constant
 };
 
 /// Returns the largest dt at which no mode of a nearly uniform state grows by more than round-off:
-/// an a-priori bound that never exceeds the linear limit. Returns 0 when modes grow at every dt,
-/// infinity when none grows at any. Throws std::invalid_argument for a bound or a damping that is
-/// negative or not finite. `field_bound`: exchange_bound + |applied| + sum of |anisotropy
-/// constants| + |demag strengths|.
+/// an a-priori bound that does not exceed the linear limit. Returns 0 when modes grow at every dt,
+/// infinity when no mode grows at any dt. `field_bound`: exchange_bound + |applied field| + sum of
+/// |anisotropy constants| + sum of |demag strengths|. Throws std::invalid_argument for a bound or a
+/// damping that is negative or not finite, and for a sigma that is not finite.
 ///   largest_stable_step<Rkmk4<Spins>>(field_bound, damping, {.precession = false})
 template <class Stepper>
 double largest_stable_step(double field_bound, double damping,

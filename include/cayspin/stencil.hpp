@@ -6,9 +6,9 @@
 namespace cayspin::inline v0_2 {
 
 /// The argument of field terms and generators: the spin of a site and its neighbours along the axes
-/// of the lattice. On the host a value is a pack: one number for each of several sites. Functions
-/// cayspin::next<0>(stencil) and cayspin::previous<0>(stencil) equal the members, and need no
-/// `template` keyword in generic code.
+/// of the lattice. On the host a value is a pack: one number for each of several sites. The
+/// functions cayspin::next<0>(stencil) and cayspin::previous<0>(stencil) do what the members do,
+/// and need no `template` keyword in generic code.
 template <class Site, class Real, class Spins = SiteArray<Real, 3>>
 class Stencil {
  public:
@@ -43,7 +43,7 @@ class Stencil {
     return neighbor_or<Axis, 1>(missing);
   }
 
-  /// Returns true if all sites of a pack have neighbours on both sides.
+  /// Returns true if all sites of the pack have neighbours on both sides along an axis.
   template <int Axis>
   KOKKOS_FORCEINLINE_FUNCTION bool is_between() const
     requires requires(Site const& site) { site.template is_between<Axis>(); }
@@ -74,8 +74,8 @@ class Stencil {
   Spins const& spins_;
   typename Site::Place place_;
   vector_type center_;
-  // Neighbours along x, where the ends of rows need a branch. They are loaded once for all terms;
-  // if no term uses them, they cost nothing.
+  // Neighbours along x. Their loads need a branch at the ends of rows, and are done once for all
+  // terms; if no term uses them, they cost nothing.
   vector_type beside_[2];
 };
 
@@ -105,14 +105,14 @@ KOKKOS_FORCEINLINE_FUNCTION auto previous(AnyStencil const& stencil,
 
 namespace detail {
 
-/// True for the stencil of a stage inside a row, away from its ends.
+/// True for the stencil of a stage at sites away from the ends of a row.
 template <class Stencil>
 inline constexpr bool is_along_row = false;
 template <class Site, class Real>
 inline constexpr bool is_along_row<Stencil<Site, Real, RowStencil<Real>>> = Site::is_between_ends;
 
-/// Returns m_next - m_previous, with the zero vector for a missing neighbour. If none is missing,
-/// it uses the same loads as other terms.
+/// Returns m_next - m_previous, with the zero vector for a missing neighbour. If no neighbour is
+/// missing, it shares its loads with other terms.
 template <int Axis, class AnyStencil>
 KOKKOS_FORCEINLINE_FUNCTION typename AnyStencil::vector_type difference(AnyStencil const& stencil) {
   if constexpr (requires { stencil.template is_between<Axis>(); }) {

@@ -30,8 +30,8 @@ inline double positive(double value, char const* what) {
 }
 }  // namespace detail
 
-/// A damping constant and the equation that it belongs to. In both forms the constant is the
-/// `damping` of LandauLifshitz; they differ in the unit of time.
+/// A damping constant, of Gilbert's equation or of Landau and Lifshitz's. In both forms the
+/// constant is the `damping` of LandauLifshitz; only the unit of time differs.
 class Damping {
  public:
   Damping() = default;  ///< none
@@ -51,9 +51,10 @@ class Damping {
   double alpha_ = 0, time_factor_ = 1;
 };
 
-/// dm/dt = -gamma m x B + alpha m x dm/dt
+/// dm/dt = -gamma m x B + alpha m x dm/dt. Throws std::invalid_argument when alpha is negative or
+/// not finite.
 inline Damping gilbert(double alpha) { return {alpha, 1 + alpha * alpha}; }
-/// dm/dt = -gamma m x B - alpha gamma m x (m x B)
+/// dm/dt = -gamma m x B - alpha gamma m x (m x B). Throws like gilbert.
 inline Damping landau_lifshitz(double alpha) { return {alpha, 1}; }
 
 /// A current through a magnet.
@@ -64,8 +65,8 @@ struct PolarizedCurrent {
   double gamma = electron_gamma;
 };
 /// Returns the velocity of Zhang and Li's torque in m/s, as defined by Thiaville et al. (2005): u =
-/// -g mu_B P j / (2 e Ms) with g mu_B = gamma hbar. Electrons, and walls if P > 0, move against the
-/// current.
+/// -g mu_B P j / (2 e Ms) with g mu_B = gamma hbar. Electrons move against the current, and so do
+/// walls if P > 0. Throws std::invalid_argument when Ms is not positive and finite.
 ///   drift_velocity({.density = 1e12, .polarization = 0.4, .Ms = 8e5})
 inline double drift_velocity(PolarizedCurrent const& current) {
   return -current.gamma * reduced_planck * current.polarization * current.density /
@@ -80,7 +81,8 @@ struct LayerCurrent {
   double thickness = 0;   ///< of the layer, m
 };
 /// Returns the damping-like torque of a current in T: hbar j efficiency / (2 e Ms thickness). If j
-/// times the efficiency is positive, spins turn towards the polarization.
+/// times the efficiency is positive, spins turn towards the polarization. Throws
+/// std::invalid_argument when Ms or the thickness is not positive and finite.
 ///   spin_torque({.density = 1e12, .efficiency = 0.1, .Ms = 8e5, .thickness = 3e-9})
 inline double spin_torque(LayerCurrent const& current) {
   return reduced_planck * current.efficiency * current.density /
@@ -119,7 +121,7 @@ class ReducedUnits {
   double per_second(double rate) const { return rate / time_; }
 
  protected:
-  /// `moment`: that of a spin or cell, J/T.
+  /// `moment`: of a spin or of a cell, J/T.
   ReducedUnits(double moment, double energy, double length, double gamma, Damping const& damping)
       : time_(damping.time_factor() * moment / (detail::positive(gamma, "gamma") * energy)),
         length_(length),
@@ -152,7 +154,8 @@ class Micromagnetic : public ReducedUnits {
 
   /// Returns the constant of Exchange, from A in J/m.
   double exchange(double A) const { return 2 * A / (pressure_ * length_unit() * length_unit()); }
-  /// Returns the constant of UniaxialAnisotropy, from Ku in J/m^3 with E = -Ku V (m.e)^2.
+  /// Returns the constant of UniaxialAnisotropy, from Ku in J/m^3 with E = -Ku V (m.e)^2 for a cell
+  /// of volume V.
   double anisotropy(double Ku) const { return 2 * Ku / pressure_; }
   /// Returns the constant of CubicAnisotropy, from Kc in J/m^3.
   double cubic_anisotropy(double Kc) const { return Kc / pressure_; }
@@ -205,7 +208,7 @@ class Atomistic : public ReducedUnits {
   double anisotropy(double K) const { return 2 * K / energy_unit(); }
   /// Returns the constant of CubicAnisotropy, from Kc in joules.
   double cubic_anisotropy(double Kc) const { return Kc / energy_unit(); }
-  /// Returns the constant of InterfacialDmi and BulkDmi, from D of a bond in joules.
+  /// Returns the constant of InterfacialDmi and BulkDmi, from the D of a bond in joules.
   double dmi(double D) const { return D / energy_unit(); }
   /// Returns the strength of SlabDemag, from a demagnetising factor.
   double demagnetization(double factor) const { return factor * dipolar_; }

@@ -10,9 +10,9 @@
 
 namespace cayspin::inline v0_2 {
 
-/// Three components. Value is float, double, or a pack of either: on the host one value holds
-/// several sites. Numbers of another type (2.0 * v, v * 2) are first converted to the scalar of
-/// Value.
+/// Three components. Value is float, double, or a pack of either: on the host one value holds the
+/// numbers of several sites. Numbers of another type (2.0 * v, v * 2) are first converted to the
+/// scalar of Value.
 template <class Value>
 struct Vec3 {
   using value_type = Value;
@@ -47,7 +47,8 @@ struct Vec3 {
   KOKKOS_FORCEINLINE_FUNCTION Vec3& operator-=(Vec3 const& a) { return *this = *this - a; }
 };
 
-/// Short names in terms for the value and vector types of a stencil, a spin or a site.
+/// Short names, for use in terms, of the value type of a stencil, a spin or a site, and of the type
+/// of its vectors.
 template <class Stencil>
 using ValueOf = typename Stencil::value_type;
 template <class Stencil>
@@ -91,8 +92,8 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> as_value(Vec3<double> const& v) {
   return {as_value<Value>(v.x), as_value<Value>(v.y), as_value<Value>(v.z)};
 }
 
-/// Returns `axis` divided by its length; throws std::invalid_argument if that is zero or not
-/// finite.
+/// Returns `axis` divided by its length. Throws std::invalid_argument if the length is zero or not
+/// finite; the message starts with `what`.
 inline Vec3<double> normalized(Vec3<double> const& axis, char const* what) {
   double const length = std::hypot(axis.x, axis.y, axis.z);
   if (!(length > 0) || !std::isfinite(length))
@@ -102,7 +103,7 @@ inline Vec3<double> normalized(Vec3<double> const& axis, char const* what) {
 
 namespace detail {
 
-/// Returns `number`; throws std::invalid_argument when it is not finite.
+/// Returns the argument; throws std::invalid_argument when it is not finite.
 inline double finite(double number, char const* what) {
   if (!std::isfinite(number)) throw std::invalid_argument(std::string(what) + " must be finite");
   return number;
@@ -119,8 +120,8 @@ KOKKOS_FORCEINLINE_FUNCTION constexpr scalar_t<Value> smallest_square() {
                                           : static_cast<Scalar>(0x1p-103);
 }
 
-/// Returns |m|^2 to divide by. For the zero spin of a vacant site, returns a positive number, so
-/// that 0 divided by it is 0. NaN stays NaN.
+/// Returns |m|^2, or smallest_square if that is larger, to divide by: for the zero spin of a vacant
+/// site, 0 divided by the result is 0. NaN stays NaN.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value square_to_divide_by(Vec3<Value> const& m) {
   return maximum<Value>(dot(m, m), Value(smallest_square<Value>()));

@@ -18,24 +18,25 @@ namespace cayspin::inline v0_2 {
 /// m' = -m x H - damping m x (m x H), as A x m with A = H + damping m x H; without precession
 /// (overdamped) A = damping m x H. Reduced units. Damping is double, or a ScalarField with a number
 /// for each site. This is the form of Landau and Lifshitz. In Gilbert's form, A is divided by 1 +
-/// damping^2; if the damping is uniform, rescaling time converts one form into the other, but not
-/// if it differs between sites.
+/// damping^2. Rescaling time converts one form into the other if the damping is uniform, but not if
+/// it differs between sites.
 template <class Field, class Damping = double>
 class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
                        public detail::ForwardingEnergy<LandauLifshitz<Field, Damping>, Field> {
  public:
-  /// Throws std::invalid_argument when damping is negative or not finite.
+  /// Throws std::invalid_argument when the damping is negative or not finite, at any site of a
+  /// damping field.
   LandauLifshitz(Field field, std::type_identity_t<Damping> damping, bool precession = true)
       : field_(std::move(field)), damping_(std::move(damping)), precession_(precession) {
     check(damping_);
   }
-  /// Precession is a bool: passing a number does not compile.
+  /// Does not compile with a number for `precession`, which is a bool.
   LandauLifshitz(Field, std::type_identity_t<Damping>, double) = delete;
 
   KOKKOS_FORCEINLINE_FUNCTION Field const& field() const { return field_; }
   KOKKOS_FORCEINLINE_FUNCTION bool has_precession() const { return precession_; }
-  /// Returns false if the damping is a number and 0. A damping field counts as damped: its values
-  /// are not looked at.
+  /// Returns false only if the damping is the number 0; a damping field counts as damped, whatever
+  /// its values are.
   KOKKOS_FORCEINLINE_FUNCTION bool is_damped() const {
     if constexpr (uniform)
       return damping_ != 0;
@@ -113,7 +114,7 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
       throw std::invalid_argument("cayspin::LandauLifshitz: damping must be >= 0 on every site");
   }
   template <class Real>
-  static void check(SiteArray<Real, 1> const&) {}  // the field was checked by the constructor
+  static void check(SiteArray<Real, 1> const&) {}  // checked as a SiteField
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator(Site const& site, Vec3<Value> const& m,

@@ -59,9 +59,11 @@ inline constexpr bool is_body = std::is_base_of_v<BodyGenerator<Generator>, Gene
 
 }  // namespace detail
 
-/// Free rigid bodies of equal inertia, described by their angular momentum m in the body frame, on
-/// the unit sphere: m' = m x I^-1 m, that is A = -I^-1 m (Lewis and Nigam 2002, Sec. 5, sign
-/// corrected); E = <m, I^-1 m> / 2 per body. Lattice::chain(count) holds count independent bodies.
+/// Free rigid bodies of equal inertia I. The spin m of a body is its angular momentum in the body
+/// frame, of length 1: m' = m x I^-1 m, that is A = -I^-1 m (Lewis and Nigam 2002, Sec. 5, sign
+/// corrected), and E = <m, I^-1 m> / 2 per body. Each site of a lattice is an independent body;
+/// Lattice::chain(count) is enough for `count` bodies. Throws std::invalid_argument for an inverse
+/// inertia that is not finite.
 class RigidBody : public detail::BodyGenerator<RigidBody> {
  public:
   explicit RigidBody(SymmetricTensor const& inverse_inertia)
@@ -76,7 +78,8 @@ class RigidBody : public detail::BodyGenerator<RigidBody> {
         throw std::invalid_argument("cayspin::RigidBody: the inverse inertia must be finite");
   }
 
-  /// Makes bodies from principal moments of inertia; none may be zero.
+  /// Makes bodies from principal moments of inertia; throws std::invalid_argument if one of them is
+  /// zero.
   static RigidBody principal(double i1, double i2, double i3) {
     return RigidBody(SymmetricTensor{1 / i1, 1 / i2, 1 / i3, 0, 0, 0});
   }
@@ -108,8 +111,8 @@ struct BodiesOfSites : BodyGenerator<BodiesOfSites<Real, Components>> {
 
 }  // namespace detail
 
-/// Free rigid bodies with different inertias. Six numbers per body are I^-1, ordered as in
-/// SymmetricTensor. Three are the diagonal of I^-1 in the body's principal axes.
+/// Free rigid bodies with different inertias I. The field has six numbers per body, I^-1 in the
+/// order of SymmetricTensor, or three: the diagonal of an I^-1 that is diagonal in the body frame.
 template <class Real, class MemorySpace, int Components = 6>
 class RigidBodyEnsemble {
   static_assert(

@@ -7,10 +7,10 @@
 
 namespace cayspin::inline v0_2::isotropy {
 
-/// Correction for rigid bodies that adds dt^p s m to a step's coordinates F. The number s cancels
-/// the leading energy error of LieHeun (p = 3), Rkmk4 and Series4 (p = 4). On a body in steady
-/// rotation the correction has no effect. Lewis and Nigam 2002, Sec. 5.2, here coordinate free and
-/// for any symmetric inertia.
+/// Correction for rigid bodies that adds dt^p s m to the coordinates F of a step; p is 3 for
+/// LieHeun, and 4 for Rkmk4 and Series4. The number s is chosen so that the leading energy error of
+/// the step cancels. On a body in steady rotation the correction has no effect. Lewis and Nigam
+/// 2002, Sec. 5.2, here coordinate free and for any symmetric inertia.
 struct Energy {};
 
 }  // namespace cayspin::inline v0_2::isotropy

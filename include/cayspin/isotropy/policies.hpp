@@ -29,16 +29,16 @@ struct Constant {
   }
 };
 
-/// sigma from a forward difference of A_o = A - (m.A) m: xi = A_o + sigma m with sigma = -<w', w x
-/// m> / |w|^2, w = A_o. A second evaluation at cay(dt w) m, t + dt gives w'. It raises the order of
-/// LieEuler's energy error by one. Lewis and Nigam 2002, Sec. 4.1, with the sign and the norm
-/// corrected. If A_o is zero, sigma is, too.
+/// sigma from a forward difference of A_o = A - (m.A) m: xi = A_o + sigma m with w = A_o and sigma
+/// = -<w', w x m> / |w|^2. The derivative w' comes from a second evaluation, at cay(dt w) m and t +
+/// dt. This sigma raises the order of LieEuler's energy error by one. Lewis and Nigam 2002, Sec.
+/// 4.1, with the sign and the norm corrected. If A_o is zero, so is sigma.
 struct FiniteDifference {
   double cap = std::numeric_limits<double>::infinity();  ///< bound on |dt sigma|
 };
 
-/// FiniteDifference with w' = (w_n - w_(n-1)) / dt: one evaluation per step instead of two. w is
-/// kept from step to step. The first step uses the forward difference.
+/// FiniteDifference with the backward difference w' = (w_n - w_(n-1)) / dt: one evaluation per step
+/// instead of two. w is kept from step to step. The first step uses the forward difference.
 struct FiniteDifferenceBackward {
   double cap = std::numeric_limits<double>::infinity();  ///< bound on |dt sigma|
 };

@@ -24,14 +24,14 @@ struct Depth {
   friend bool operator==(Depth const&, Depth const&) = default;
 };
 
-/// Rounds the depth along z up to whole cells of a crystal, which have one plane for each of their
+/// Rounds the depth along z up to whole cells of a crystal; a cell has one plane for each of its
 /// sites.
 inline Depth in_whole_cells(Depth const& depth, Lattice const& lattice) {
   auto const of_cell = static_cast<int>(lattice.cell_sites);
   return {depth.y, (depth.z + of_cell - 1) / of_cell * of_cell};
 }
 
-/// Returns true if each part has as many rows and planes as its neighbours need for ghosts.
+/// Returns true if each part has at least the rows and planes that its neighbours need for ghosts.
 inline bool can_divide(Lattice const& lattice, Depth const& depth, Division const& division) {
   auto const fits = [](std::int64_t extent, int needed, int parts) {
     return parts == 1 || (parts > 1 && extent / parts >= needed);
@@ -48,8 +48,9 @@ inline std::string to_text(Depth const& depth) {
   return std::to_string(depth.y) + " rows or " + std::to_string(depth.z) + " planes";
 }
 
-/// Returns the division into this many parts that repeats the least work on ghosts; of equal ones,
-/// the one with most parts along z. Throws std::invalid_argument when there is none.
+/// Returns the division into this many parts that repeats the least work on ghosts, estimated as if
+/// the depths along y and z were equal; of equal ones, the one with most parts along z. Throws
+/// std::invalid_argument when there is none.
 inline Division divide(Lattice const& lattice, Depth const& depth, int parts) {
   Division best{0, 0};
   double least = 0;

@@ -22,12 +22,13 @@ namespace cayspin::inline v0_2::mpi {
 /// A lattice divided among the ranks of a communicator, along y and z. Each rank holds its part,
 /// with `depth` ghosts at each end that borders another part. Fields on local() work like any
 /// others with steppers, terms and sums, and results have the same bits as on a single rank. A step
-/// needs Stepper::ghosts ghosts: with most methods, one for each stage. Parts of a crystal, and
-/// their ghosts, hold whole cells. The Domain must outlive its fields and steppers.
+/// needs a depth of Stepper::ghosts: with most methods, one layer for each stage. Parts of a
+/// crystal, and their ghosts along z, hold whole cells. The Domain must outlive its fields and
+/// steppers.
 class Domain final : public Part {
  public:
   /// Collective on `comm`. Throws std::invalid_argument on every rank when the lattices or depths
-  /// of ranks differ, or the lattice cannot be divided.
+  /// of the ranks differ, the lattice is invalid or has replicas, or it cannot be divided.
   Domain(MPI_Comm comm, Lattice const& lattice, Depth const& depth)
       : Domain(comm, lattice, depth, divide(agreed(comm, lattice, depth), depth, size_of(comm))) {}
 
@@ -90,12 +91,13 @@ class Domain final : public Part {
   }
 
  private:
-  /// Returns `lattice` if all ranks were given equal lattices, depths and divisions; throws
-  /// otherwise.
+  /// Returns `lattice` if all ranks were given equal lattices, depths and divisions; otherwise
+  /// throws std::invalid_argument.
   static Lattice const& agreed(MPI_Comm comm, Lattice const& lattice, Depth const& depth,
                                Division const& division = {}) {
     constexpr std::size_t count = 14;
-    // Numbers, then their complements: the maxima of these give the minima of the numbers.
+    // Numbers, then their complements: the maximum of a complement is the complement of the
+    // minimum.
     std::array<std::int64_t, 2 * count> given{};
     given[0] = lattice.cell_sites;
     given[1] = division.y;
@@ -141,8 +143,8 @@ class Domain final : public Part {
 
   int depth_along(std::size_t axis) const { return axis == 1 ? depth_.y : depth_.z; }
 
-  /// Sets the extent, ghosts and neighbours of part number `index` of `parts` along an axis, in
-  /// multiples of `unit`.
+  /// Sets the extent, ghosts and neighbours of part number `index` of `parts` along an axis.
+  /// Extents without ghosts are multiples of `unit`.
   void divide_axis(std::size_t axis, int parts, int index, std::int64_t unit) {
     neighbor_[axis] = {MPI_PROC_NULL, MPI_PROC_NULL};
     if (parts == 1) return;

@@ -58,7 +58,7 @@ struct TurnAboutAxes {
 
 }  // namespace detail
 
-/// Options of EnergyControl, whose constructor throws std::invalid_argument if one is out of range.
+/// Options of EnergyControl. Its constructor throws std::invalid_argument if one is out of range.
 struct EnergyControlOptions {
   std::int64_t period = 1;  // steps between corrections
   /// Largest turn of a spin in a correction, as a fraction of its turn in a step.
@@ -69,12 +69,12 @@ struct EnergyControlOptions {
 /// Lagged energy control: an observer for undamped runs with any one-step or multistep method,
 /// called at the end of steps. A correction turns all spins towards the field or away from it, m <-
 /// cay(kappa m x A) m with the same kappa = (E - E_0) / sum |A_o|^2, where A_o is the part of A
-/// normal to m. This is a Newton step to the initial energy, so that energy errors do not
+/// normal to m. This is a Newton step to E_0, the energy to hold, so that energy errors do not
 /// accumulate. The generator A must conserve an energy and not depend on t. kappa is of the order
 /// of the method's error, so the method keeps its order.
 ///
-/// Each correction costs one evaluation of the generator and two passes; the memory cost is one
-/// field:
+/// Each correction costs one evaluation of the generator and two passes over the spins. The memory
+/// cost is one field.
 ///   EnergyControl control(spins, generator);
 ///   integrate(exec, stepper, generator, spins, times, control);
 /// Other observers see the spins before or after the correction, depending on their position among
@@ -121,7 +121,8 @@ class EnergyControl {
   /// Evaluations of the generator so far.
   std::int64_t evaluations_done() const { return evaluations_done_; }
 
-  /// Forgets the held energy. The next call takes that of its spins, unless the options give one.
+  /// Forgets the held energy. The next call sets it to the energy of the spins, unless the options
+  /// give an energy.
   void reset() { energy_ = options_.energy; }
 
   /// For cayspin::serialize.

@@ -12,7 +12,7 @@
 
 namespace cayspin::inline v0_2 {
 
-/// Energy, norm defect and magnetization at one step.
+/// Energy, norm defect, magnetization and largest rate of the spins at one step.
 struct Sample {
   std::int64_t step = 0;
   double time = 0;
@@ -51,8 +51,8 @@ struct SampleOfSites {
 }  // namespace detail
 
 /// Returns a Sample of `spins`, in one pass. `source` gives the energy (an EffectiveField, a field
-/// term or a generator); the optional `generator` gives the largest rate. Each of them costs one
-/// more evaluation of its field: for an expensive one (HostField), use Every with a longer period.
+/// term or a generator); the optional `generator` gives the largest rate. Each of the two costs one
+/// evaluation of its field; if that is expensive (HostField), sample less often.
 template <class Exec, class Source, class Real, class MemorySpace,
           class Generator = detail::NoGenerator>
 Sample sample(Exec const& exec, Source const& source, Step const& step,

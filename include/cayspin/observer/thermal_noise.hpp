@@ -31,15 +31,15 @@ struct ThermalNoiseOptions {
   std::vector<double> cell_sites = {};
   /// Factor of damping times temperature for each replica of the lattice. Empty: all 1.
   std::vector<double> replicas = {};
-  /// True: columns, the sites with equal x, are independent lattices whose first axis is y. Column
-  /// x gets the random numbers of such a lattice with seed + x, and `replicas` has a factor for
-  /// each column.
+  /// If true, the columns (sites with equal x) are independent lattices whose first axis is y.
+  /// Column x gets the random numbers of such a lattice with seed + x, and `replicas` has a factor
+  /// for each column.
   bool columns_are_replicas = false;
 };
 
 /// Thermal noise for LandauLifshitz with damping and any one-step method: half of it is applied
-/// before each step and half after. A half turns each spin by a random angle about a random axis,
-/// with a variance per component of s^2 = u - u^2/12, u = damping temperature dt. Spins without a
+/// before each step and half after. A half turns each spin by a random rotation vector, whose
+/// components have the variance s^2 = u - u^2/12 with u = damping temperature dt. Spins without a
 /// field then diffuse with an error of third order in u. Together with the step this is a splitting
 /// of second order, which samples Boltzmann's distribution of E / temperature.
 ///   ThermalNoise const noise(spins, damping, {.temperature = 0.5, .seed = 1});
@@ -48,8 +48,8 @@ struct ThermalNoiseOptions {
 /// Without observers in between, noise.between_steps(times) applies both halves at once. Random
 /// numbers come from Philox by seed, site and step: the bits do not depend on threads, host spaces
 /// or ranks, nor on where a run is interrupted, and each replica gets the bits that it would get as
-/// a separate lattice. Costs two passes a step, and no memory per site. Does not compile with an
-/// AdaptiveStepper. Multistep methods lose their order.
+/// a separate lattice. Costs two passes per step (one with between_steps), and no memory per site.
+/// Does not compile with an AdaptiveStepper. Multistep methods lose their order.
 template <class Spins>
 class ThermalNoise {
   using Real = typename Spins::value_type;
@@ -58,8 +58,9 @@ class ThermalNoise {
   enum class Half { before, after };
 
   /// Throws std::invalid_argument for a temperature, damping or factor that is negative or not
-  /// finite, if there is not one number for each site of a cell or for each replica, and if columns
-  /// are to be replicas on a lattice with replicas, on a part, or with numbers for a cell's sites.
+  /// finite, if numbers are given but not one for each site of a cell or for each replica, and if
+  /// columns are to be replicas on a lattice with replicas, on a part, or with numbers for a cell's
+  /// sites.
   ThermalNoise(Spins const& like, double damping, ThermalNoiseOptions const& options)
       : lattice_(like.lattice()), damping_(damping), options_(options) {
     if (!(damping >= 0) || !std::isfinite(damping))
@@ -82,8 +83,8 @@ class ThermalNoise {
   /// Multiplies damping times temperature at each site by a factor, which may contain the damping,
   /// the temperature, or one over the moment; 0 where a spin does not move. Factors other than 0
   /// and 1 replace options.cell_sites and options.replicas, which must then be empty. Throws
-  /// std::invalid_argument if they are not, if columns are to be replicas, and for a negative or
-  /// non-finite factor.
+  /// std::invalid_argument if these are not empty, if columns are to be replicas, for factors on
+  /// another lattice, for a negative or non-finite factor, and like the other constructor.
   ThermalNoise(Spins const& like, double damping, ThermalNoiseOptions const& options,
                ScalarField<Real, typename Spins::memory_space> const& factors)
       : ThermalNoise(like, damping, options) {
@@ -110,8 +111,9 @@ class ThermalNoise {
     }
   }
 
-  /// Sets the temperature from the next turn on, for temperatures that change in time. Throws
-  /// std::invalid_argument if it is negative or not finite.
+  /// Sets the temperature for later calls of turn and turn_between_steps. Observers that were made
+  /// before are copies, and keep their temperature. Throws std::invalid_argument if it is negative
+  /// or not finite.
   void set_temperature(double temperature) {
     if (!(temperature >= 0) || !std::isfinite(temperature))
       throw std::invalid_argument("cayspin::ThermalNoise: the temperature must be finite and >= 0");
@@ -135,8 +137,8 @@ class ThermalNoise {
     turn_between(exec, step, true, true, dt, spins);
   }
 
-  /// Returns an observer that applies the half after each step. Put it first, so that other
-  /// observers see the spins after it.
+  /// Returns an observer that applies the half after each step. Put it first, so that the other
+  /// observers see spins to which this half has been applied.
   auto after_steps(Times const& times) const {
     return BetweenSteps<true, false>{*this, times.first};
   }
@@ -281,7 +283,7 @@ class ThermalNoise {
 
     template <class Exec>
     void operator()(Exec const& exec, Step const& step, Spins const& spins) const {
-      // A stopped run may be continued, and then starts with this half.
+      // If the run ends here, the half before the next step is left to the run that continues it.
       bool const ends = After && step.number > first, begins = Before && !step.last && !step.stops;
       if (ends || begins) noise.turn_between(exec, step.number, ends, begins, step.dt, spins);
     }

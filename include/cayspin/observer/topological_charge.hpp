@@ -27,8 +27,8 @@ struct SpinAndLength {
 
 /// Returns half the solid angle that three spins enclose, within -pi .. pi (van Oosterom and
 /// Strackee 1983): its tan is a.(b x c) / (1 + a.b + b.c + c.a) for unit vectors. Returns 0 for
-/// spins that are coplanar to round-off: if two of them are antiparallel, both parts of the
-/// quotient would be rounding errors.
+/// spins that are coplanar to round-off: if two of them are antiparallel, numerator and denominator
+/// would be rounding errors.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value half_solid_angle(SpinAndLength<Value> const& a,
                                                    SpinAndLength<Value> const& b,
@@ -42,8 +42,9 @@ KOKKOS_FORCEINLINE_FUNCTION Value half_solid_angle(SpinAndLength<Value> const& a
                        Value(Kokkos::atan2(volume, rest)));
 }
 
-/// Functor for the two triangles at a site, one with its next neighbours along x and y and one with
-/// its previous ones. Over all sites they cover each plaquette with one triangle of each kind.
+/// Functor that adds up half the solid angles of two triangles at a site: one with the next
+/// neighbours along x and y, and one with the previous neighbours. All sites together cover each
+/// plaquette with one triangle of either kind.
 template <class Real>
 struct SolidAngleOfSites {
   SiteArray<Real, 3> spins;
@@ -51,7 +52,7 @@ struct SolidAngleOfSites {
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
     Stencil<Site, Real> const stencil(site, spins);
-    auto const none = zero<Value>();  // encloses no angle
+    auto const none = zero<Value>();  // a zero spin encloses no angle
     SpinAndLength<Value> const here(stencil.center());
     SpinAndLength<Value> const east(stencil.template next<0>(none));
     SpinAndLength<Value> const north(stencil.template next<1>(none));
@@ -83,9 +84,9 @@ double charge_of(Exec const& exec, SpinField<Real, MemorySpace> const& spins,
 /// Lengths of spins do not matter; a spin of length 0 encloses no angle.
 ///
 /// A skyrmion with its core down among spins up has Q = -1, of Neel or Bloch type; an antiskyrmion
-/// with that core has +1. The charge of a periodic plane is an integer, to round-off. At open ends
-/// the plaquettes end: a vortex in a film has +-1/2. Three spins that lie in a plane and point all
-/// around it enclose half the sphere, but of either sign; they count as 0.
+/// with that core has +1. The charge of a periodic plane is an integer, to round-off. There are no
+/// plaquettes beyond open ends: a vortex in a film has about +-1/2. Three spins that lie in a plane
+/// and point all around it enclose half the sphere, but of either sign; they count as 0.
 ///
 /// Sums are in double. On host spaces their bits do not depend on the number of threads. Throws
 /// std::invalid_argument for spins without sites.
@@ -94,8 +95,9 @@ double topological_charge(Exec const& exec, SpinField<Real, MemorySpace> const& 
   return detail::charge_of(exec, spins, spins.layout());
 }
 
-/// Returns the charge of plane number z of the whole lattice only; replicas follow one another.
-/// Throws std::invalid_argument when there is no such plane.
+/// Returns the charge of only plane z of the whole lattice. In a field of replicas, the planes of
+/// the second replica are numbered after those of the first, and so on. Throws
+/// std::invalid_argument when there is no such plane.
 template <class Exec, class Real, class MemorySpace>
 double topological_charge(Exec const& exec, SpinField<Real, MemorySpace> const& spins,
                           std::int64_t z) {

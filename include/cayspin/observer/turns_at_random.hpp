@@ -32,7 +32,7 @@ struct OneTurn {
   }
 };
 
-/// One turn for each column, the sites with equal x; none where the temperature is 0.
+/// One turn for each column (sites with equal x); no turn in columns whose temperature is 0.
 template <class Real>
 struct TurnOfColumn {
   Real const* numbers;  // those of RandomTurn, each for `stride` columns
@@ -64,8 +64,8 @@ struct TurnOrNone {
   bool is_none;
 };
 
-/// One turn for each site of a crystal's cell, or of each replica's cell; none where a spin does
-/// not move.
+/// One turn for each site of a crystal's cell, or for each site of a cell of each replica; no turn
+/// where a spin does not move.
 template <class Real, bool OnHost>
 struct TurnOfCellSite {
   TurnOrNone<Real, OnHost> const* turns;
@@ -193,7 +193,7 @@ struct NumbersOfSites {
   }
 };
 
-/// Random numbers for columns, each of which is a lattice whose rows are along y.
+/// Random numbers for columns; each column is a lattice whose rows are along y.
 struct NumbersOfColumns {
   RandomBitsOfColumns random;
   std::uint64_t places;  // in a row of such a lattice

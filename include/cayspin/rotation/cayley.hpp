@@ -8,7 +8,7 @@
 namespace cayspin::inline v0_2 {
 
 /// The Cayley map of so(3). Coordinates f stand for the rotation about f by the angle 2
-/// atan(|f|/2). Lewis and Nigam 2002, Sec. 2; right-trivialised differential.
+/// atan(|f|/2). The differential is right-trivialised. Lewis and Nigam 2002, Sec. 2.
 struct Cayley {
   /// Returns cay(f) m, to a few ulp, for |f| up to about 1e150 (double) or 1e18 (float).
   template <class Value>
@@ -45,7 +45,7 @@ struct Cayley {
 };
 
 /// The Cayley map for any finite f, without overflow of intermediate results. Somewhat slower than
-/// Cayley. The inverse differential is the inherited one, and can overflow.
+/// Cayley. Only inverse_differential, which is inherited, can overflow.
 struct OverflowSafeCayley : Cayley {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> rotate(Vec3<Value> const& f,

@@ -22,16 +22,16 @@ KOKKOS_FORCEINLINE_FUNCTION Value trigonometric_series(Value const& x) {
   return sum;
 }
 
-/// sine * direction and cosine of half the rotation angle |f|. Both signs may be reversed together,
-/// which does not change the rotation.
+/// The rotation by f as a unit quaternion: cosine is cos(|f|/2), and sine * direction is the vector
+/// sin(|f|/2) f/|f|. Both may have the opposite sign, which gives the same rotation.
 template <class Value>
 struct HalfAngle {
   Value sine, cosine;
   Vec3<Value> direction;
 };
 
-/// The norm |f|, computed without overflow of its square: if f is large, it is first scaled down by
-/// a power of two.
+/// The norm |f|, computed without overflow of its square. `scaled` is f or, if f is large, f times
+/// a small power of two.
 template <class Value>
 struct ScaledNorm {
   Vec3<Value> scaled;
@@ -54,8 +54,8 @@ KOKKOS_FORCEINLINE_FUNCTION ScaledNorm<Value> scaled_norm(Vec3<Value> const& f) 
   return {scaled, norm, norm * select<Value>(too_large, Value(up), Value(Scalar(1)))};
 }
 
-/// sine_over_r * r and cosine of half an angle, both possibly with reversed signs; r is half the
-/// angle minus a multiple of pi.
+/// The sine, sine_over_r * r, and the cosine of half an angle; both may have the opposite sign. r
+/// is half the angle minus a multiple of pi.
 template <class Value>
 struct HalfTurn {
   Value r, sine_over_r, cosine;
@@ -67,10 +67,10 @@ KOKKOS_FORCEINLINE_FUNCTION HalfTurn<Value> half_turn(Value const& angle) {
   constexpr bool is_double = sizeof(Scalar) == sizeof(double);
   Value const a = Value(Scalar(0.5)) * angle;
 
-  // Subtracts the nearest multiple of pi, with pi as a sum of three numbers. Where rounding a / pi
-  // gives the wrong multiple, |r| exceeds pi / 2 by about |f| eps. The clamp acts only if that is
-  // large, and keeps the result on the sphere. The products in fma are exact even on machines
-  // without that instruction.
+  // Subtracts the nearest multiple of pi, with pi as a sum of three numbers. If rounding a / pi
+  // gives the wrong multiple, |r| exceeds pi / 2 by about a eps. The clamp acts only if this excess
+  // is large, and keeps the result on the sphere. An fma does not round its product, even on
+  // machines without such an instruction.
   constexpr double pi = 3.14159265358979311600e+00, pi_low = 1.22464679914735317636e-16,
                    pi_lowest = -2.99476980971833966592e-33;
   constexpr float pi_f = 3.14159274101257324f, pi_low_f = -8.74227800037247e-08f,
@@ -94,8 +94,8 @@ KOKKOS_FORCEINLINE_FUNCTION HalfAngle<Value> half_angle(Vec3<Value> const& f) {
   constexpr bool is_double = sizeof(Scalar) == sizeof(double);
   auto const [scaled, scaled_length, length] = scaled_norm(f);
   auto const [r, sine_over_r, cosine] = half_turn(length);
-  // If |f|^2 is close to or below the smallest normal number, |f| is inaccurate: then sin(a) f/|f|
-  // = f/2 is used.
+  // If |f|^2 is close to or below the smallest normal number, |f| is inaccurate; then f/2 replaces
+  // sin(|f|/2) f/|f|.
   auto const tiny = scaled_length < Value(is_double ? Scalar(0x1p-500) : Scalar(0x1p-60f));
   Value const safe = select<Value>(tiny, Value(Scalar(1)), scaled_length);
   return {select<Value>(tiny, Value(Scalar(0.5)), Value(r * sine_over_r / safe)), cosine, scaled};

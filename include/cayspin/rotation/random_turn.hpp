@@ -14,8 +14,8 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// exp(v) m = m + factor tangent x (m + tangent x m): tangent is tan(|v| / 2) v / |v|, and factor
-/// 2 cos^2(|v| / 2).
+/// Functor that turns m into exp(v) m = m + factor tangent x (m + tangent x m), with tangent =
+/// tan(|v| / 2) v / |v| and factor = 2 cos^2(|v| / 2).
 template <class Value>
 struct TurnByTangent {
   Vec3<Value> tangent;
@@ -42,9 +42,9 @@ template <class Real>
 struct ChoiceOfTurn {
   using Bits = std::conditional_t<sizeof(Real) == 8, std::uint64_t, std::uint32_t>;
 
-  /// Bits 2 and 3 are 0 for a turn about a diagonal. Otherwise they choose an axis, and bit 0 is
-  /// set if there is a turn about it. The other bits are signs. The tangents and factors are passed
-  /// as words, too: as the bits of Reals.
+  /// If bits 2 and 3 are 0, the turn is about a diagonal, with signs from bits 0, 1 and 4.
+  /// Otherwise they choose an axis; there is a turn about it if bit 0 is set, with a sign from bits
+  /// 1 and 4. The tangents and factors are Reals, passed as words with the same bits.
   template <class Value, class Numbers, class Words>
   KOKKOS_FORCEINLINE_FUNCTION static TurnByTangent<Value> of(Numbers const& code,
                                                              Words const& axial,
@@ -61,7 +61,7 @@ struct ChoiceOfTurn {
             value<Value>(Numbers((is_diagonal & diagonal_factor) | (~is_diagonal & axial_factor)))};
   }
 
-  /// Returns the sign bit where this bit of a code is 1.
+  /// Returns a word whose sign bit is set if bit `Bit` of the code is 1; its other bits are 0.
   template <int Bit, class Numbers>
   KOKKOS_FORCEINLINE_FUNCTION static Numbers sign_if(Numbers const& code) {
     constexpr int top = 8 * sizeof(Bits) - 1;
@@ -90,7 +90,7 @@ struct ChoiceOfTurn {
     Numbers const is_axial = mask<Numbers>((code & 13) == Axis);
     return (is_diagonal & diagonal) | (is_axial & axial);
   }
-  /// Returns a word of ones where a condition holds, of zeros elsewhere.
+  /// Returns a word of ones in lanes in which the condition holds, and of zeros elsewhere.
   template <class Numbers, class Condition>
   KOKKOS_FORCEINLINE_FUNCTION static Numbers mask(Condition const& condition) {
     if constexpr (std::is_same_v<Condition, bool>)
@@ -100,10 +100,10 @@ struct ChoiceOfTurn {
   }
 };
 
-/// Random rotation: turns m into exp(v) m for a random v made of five bits. In 12 of the 32 cases v
-/// is 0, in 12 it is +-2 s along an axis, and in 8 it is sqrt(2) s (+-1, +-1, +-1). Up to the
-/// fifth, the moments of v are those of normal numbers with standard deviation s; a step of weak
-/// order 2 depends on no others (Kloeden and Platen 1992, Sec. 14.2).
+/// Random rotation: turns m into exp(v) m, where five random bits choose v. In 12 of the 32 cases v
+/// is 0, in 12 it is +-2 s along an axis, and in 8 it is sqrt(2) s (+-1, +-1, +-1). The moments of
+/// v up to the fifth are those of three independent normal numbers of standard deviation s; a step
+/// of weak order 2 depends on no other moments (Kloeden and Platen 1992, Sec. 14.2).
 template <class Real, bool OnHost>
 class RandomTurn {
   using Choice = ChoiceOfTurn<Real>;
@@ -129,7 +129,7 @@ class RandomTurn {
       }
   }
 
-  /// Returns the numbers that a RandomTurnOfNumbers holds in one lane.
+  /// Returns the four numbers that RandomTurnOfNumbers holds for a lane.
   std::array<Real, 4> numbers() const {
     return {axial_, diagonal_, axial_factor_, diagonal_factor_};
   }
@@ -161,7 +161,7 @@ class RandomTurn {
   }
 
   struct Tables {
-    alignas(64) Real x[16] = {}, y[16] = {}, z[16] = {}, factor[16] = {};  // for codes below 16
+    alignas(64) Real x[16] = {}, y[16] = {}, z[16] = {}, factor[16] = {};  // for bit 4 = 0
   };
   struct Nothing {};
 
@@ -169,8 +169,8 @@ class RandomTurn {
   std::conditional_t<OnHost, Tables, Nothing> tables_;
 };
 
-/// RandomTurn with different numbers in each lane. A lane gets the same bits as from the RandomTurn
-/// with its numbers.
+/// RandomTurn with different numbers in each lane. The result in a lane has the same bits as that
+/// of the RandomTurn with the numbers of the lane.
 template <class Real, class Value>
 struct RandomTurnOfNumbers {
   Value axial, diagonal, axial_factor, diagonal_factor;
@@ -186,9 +186,10 @@ struct RandomTurnOfNumbers {
   }
 };
 
-/// RandomTurn for sites with different variances, at most 1. Tangents are quotients of polynomials,
-/// too small by up to 3e-6 of their value at variance 1, and by less than rounding below 0.01. This
-/// shortens v by O(s^11), and its moments still suffice for weak order 2.
+/// RandomTurn for sites with different variances, each at most 1. Tangents are computed as
+/// quotients of polynomials. At variance 1 they are too small by up to 3e-6 of their value, below
+/// 0.01 by less than round-off. This shortens v by O(s^11); the moments of v still suffice for weak
+/// order 2.
 template <class Real, class Value>
 class RandomTurnOfSites {
   using Choice = ChoiceOfTurn<Real>;

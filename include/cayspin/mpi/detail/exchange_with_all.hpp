@@ -14,7 +14,8 @@
 
 namespace cayspin::inline v0_2::mpi::detail {
 
-/// Throws std::length_error for a message of 16 GiB or more, whose length MPI's int cannot hold.
+/// Returns the number of 8-byte words. Throws std::length_error for a message of 16 GiB or more,
+/// whose length MPI's int cannot hold.
 inline int words_of_message(std::size_t bytes) {
   auto const words = bytes / sizeof(std::int64_t);
   if (words > static_cast<std::size_t>(std::numeric_limits<int>::max()))
@@ -30,7 +31,7 @@ inline void exchange_with_all(MPI_Comm comm, std::span<std::span<std::byte const
   int own = 0;
   MPI_Comm_rank(comm, &own);
   std::vector<MPI_Request> requests;
-  // Each rank starts with the next one, so that not all start with the first.
+  // Each rank starts with the rank after it, so that not all start with rank 0.
   auto const for_each_rank = [&](auto const& messages, auto const& post) {
     for (std::size_t i = 1; i <= messages.size(); ++i) {
       std::size_t const rank = (static_cast<std::size_t>(own) + i) % messages.size();

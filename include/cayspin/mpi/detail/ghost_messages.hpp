@@ -44,8 +44,9 @@ struct CopyRows {
   }
 };
 
-/// Messages to and from the two neighbours along an axis, each with the boxes of all fields. Two
-/// ranks on a periodic axis are neighbours on both sides, so the direction is the tag.
+/// Messages to and from the two neighbours along an axis, each with one box of every field. If a
+/// periodic axis has only two ranks, they are neighbours on both sides, so the tag tells the
+/// direction.
 class GhostMessages {
  public:
   void exchange(MPI_Comm comm, std::span<FieldNumbers const> fields, Faces const& faces,
@@ -56,8 +57,8 @@ class GhostMessages {
               : exchange_in_place(comm, fields, faces, neighbor);
   }
 
-  /// Exchanges fields in host memory. Steppers pass the same few fields again and again, so their
-  /// messages are kept.
+  /// Exchanges fields in host memory. Steppers pass the same few fields again and again, so the
+  /// messages for up to eight lists of fields are kept.
   void exchange_in_place(MPI_Comm comm, std::span<FieldNumbers const> fields, Faces const& faces,
                          std::array<int, 2> const& neighbor) {
     constexpr std::size_t most = 8;

@@ -31,15 +31,16 @@ struct Faces {
   std::array<Box, 2> sent, received;
 };
 
-/// A box of a field in host memory as equal blocks of bytes at constant strides.
+/// A box of a field in host memory as equal blocks of bytes at constant strides. Throws
+/// std::length_error for a block of 2 GiB or more.
 struct BytesInPlace {
   std::byte* first;
   int bytes;  // of a block
   int planes, components;
   MPI_Aint plane, component;  // strides in bytes
 
-  // The rows of a plane are sent with their padding, so that they are one block. Whole planes
-  // together are one block, too.
+  // The rows of a plane are sent with their padding, so that they are one block. If the box
+  // consists of whole planes, these are one block together.
   BytesInPlace(FieldNumbers const& field, Box const& box)
       : first(static_cast<std::byte*>(field.data) +
               count(field, box.begin[2] * field.plane + box.begin[1] * field.row + box.begin[0])),
@@ -71,8 +72,8 @@ struct BytesInPlace {
   }
 };
 
-/// Persistent MPI messages with some fields in host memory, to and from the two neighbours along an
-/// axis: made once, and started for each exchange.
+/// Persistent MPI messages to and from the two neighbours along an axis, for given fields in host
+/// memory: made once, and started for each exchange.
 class MessagesInPlace {
  public:
   MessagesInPlace(MPI_Comm comm, std::span<FieldNumbers const> fields, Faces const& faces,
@@ -109,8 +110,8 @@ class MessagesInPlace {
  private:
   MPI_Request* next() { return &requests_.emplace_back(MPI_REQUEST_NULL); }
 
-  // Makes one message for all components or, if the components are long and contiguous, one for
-  // each, since MPICH copies those faster.
+  // Makes one message for all fields or, if the parts of components are long and contiguous, one
+  // for each component of each field, because MPICH copies these faster.
   template <class Make>
   void add(Box const& box, Make const& make) const {
     constexpr int long_bytes = 32 * 1024;

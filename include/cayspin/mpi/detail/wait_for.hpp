@@ -8,8 +8,8 @@
 
 namespace cayspin::inline v0_2::mpi::detail {
 
-/// Waits for requests, and soon yields to other threads: MPI's own waiting occupies a core, which
-/// is slow if ranks share cores.
+/// Waits for requests. After a thousand tries it yields to other threads: MPI's own waiting
+/// occupies a core, which is slow if ranks share cores.
 inline void wait_for(std::span<MPI_Request> requests) {
   constexpr int patience = 1000;
   for (int tries = 0;; ++tries) {
