@@ -150,8 +150,8 @@ class Integration {
   virtual bool is_due(Step const& step) = 0;  // true if any observer is due
   virtual Next observe(Step const& step) = 0;
   /// Takes one or more steps after step `number`, at most up to step `due`, and returns how many.
-  /// After step `due` the spins are current; if fewer steps were taken, they may be those of an
-  /// earlier time.
+  /// If it reaches step `due`, the spins are those after that step; otherwise they may be those of
+  /// an earlier time.
   virtual std::int64_t take_steps(Times const& times, std::int64_t number, std::int64_t due) = 0;
 
   /// `looks_ahead`: take_steps can make use of a `due` that is more than one step away.

@@ -136,8 +136,8 @@ class Minimizer {
     detail::Hessian hessian(exec, field, options.time, spins, descent_.is_mobile,
                             detail::HessianArrays<Spins>{descent_.search.trial, pairs.change(2),
                                                          descent_.lbfgs.scratch()});
-    // Curvatures smaller than `tolerance` count as zero: a turn by one radian would keep the torque
-    // below its bound, or within round-off.
+    // Only curvatures below -tolerance count as negative. With others, a turn by one radian would
+    // keep the torque below its bound, or within round-off.
     auto const found = detail::find_lowest_curvature(
         hessian, exec, arrays,
         {.scale = descent_.first_shift(),

@@ -80,10 +80,10 @@ template <class Stepper>
 inline constexpr bool remembers_steps = requires(Stepper& stepper) { stepper.reset(); };
 
 /// Stores the state of `stepper` (or of an EnergyControl) in a checkpoint, or restores it from one.
-/// After that, integrate() with times.continues continues exactly as the stored stepper would have.
-/// Names in the checkpoint start with `prefix`. Work on the stepper's fields must have finished;
-/// waits. Throws what the checkpoint throws, and std::invalid_argument for fields of another size
-/// and counts that the stepper cannot have.
+/// After a restore, integrate() with times.continues goes on exactly as the stored stepper would
+/// have. Names in the checkpoint start with `prefix`. Work on the stepper's fields must have
+/// finished; waits. Throws what the checkpoint throws, and std::invalid_argument for fields of
+/// another size and counts that the stepper cannot have.
 template <class Stepper>
 void serialize(Stepper& stepper, Checkpoint& checkpoint, std::string const& prefix = {}) {
   detail::ExchangeMemory const visit(checkpoint, prefix);
