@@ -16,10 +16,10 @@ namespace cayspin::inline v0_2::detail {
 
 /// The field of interactions between cells, by FFTs. Rows along x are transformed first. Each wave
 /// number along x is then transformed along y and z in one thread's memory, multiplied by the
-/// interactions and transformed back. So no zeros beyond the lattice are stored, and each number of
-/// the spectrum is read and written once. Each part of a lattice transforms its own rows and a
-/// share of the wave numbers; in between, the parts exchange their spectra. The bits do not depend
-/// on the numbers of threads and parts.
+/// interactions and transformed back. So the spectrum needs no padding along y and z, and each of
+/// its numbers is read and written only once between the transforms along x. Each part of a lattice
+/// transforms its own rows and a share of the wave numbers; in between, the parts exchange their
+/// spectra. The results have the same bits for any numbers of threads and parts.
 ///
 /// `Kernel`: holds the transformed interactions, and multiplies the transforms of all sites of a
 /// cell by them.
@@ -103,9 +103,10 @@ class Convolution {
   }
 
  private:
-  /// Neighbouring rows of a plane, which are transformed together; y and z count from the part's
-  /// first row. Each row has the slot that it has in the whole lattice, because FFTW does not
-  /// promise equal bits in different slots.
+  /// Neighbouring rows of a plane, which are transformed together. `y`, `z`: indices of the first
+  /// of them within the part. `slot`: its place among the rows of one transform. Each row has the
+  /// same place as on the whole lattice, because FFTW does not promise equal bits in different
+  /// places.
   struct BlockOfRows {
     std::int64_t y, z;
     int slot, count;
@@ -118,8 +119,9 @@ class Convolution {
     }
   };
 
-  /// Returns the distance between rows of a plane: an odd number of cache lines, so that columns do
-  /// not compete for the same cache sets.
+  /// Returns the distance in memory from row to row of a plane. If there are several rows, it is an
+  /// odd number of cache lines, so that the numbers of a column do not compete for the same cache
+  /// sets.
   static int row_of(int ny, int nz) {
     constexpr int line = 64 / sizeof(Complex);
     return nz == 1 ? ny : ((ny + line - 1) / line | 1) * line;
@@ -156,12 +158,12 @@ class Convolution {
     return spectrum_.of_own_lines(k) + std::int64_t(c) * own_.count() + rows.z * own_.ny + rows.y;
   }
 
-  /// Returns the plane of one component at one site of the cells.
+  /// Returns the plane that holds component c of one site of each cell.
   Complex* plane_of(Complex* planes, std::int64_t site, std::size_t c) const {
     return planes + (std::size_t(site) * 3 + c) * padded_plane_;
   }
-  /// Calls body(row in its plane, row in the spectrum, length of the row) for all rows of one
-  /// component, at one wave number.
+  /// Calls body(row in its plane, row in the spectrum, length of the row) for all rows along y of
+  /// one component, at one wave number along x.
   template <class Body>
   void for_each_row(std::int64_t k, std::size_t c, Complex* planes, Body const& body) const {
     for (std::size_t part = 0; part < rows_of_parts_.size(); ++part) {
@@ -210,9 +212,9 @@ class Convolution {
   RowTransforms<Real> row_transforms_;
   ComplexTransforms<Real> along_y_, along_z_;
   Workers<Real> row_workers_;
-  SpectrumOfParts<Complex> spectrum_;  // wave number along x, component, z, y
+  SpectrumOfParts<Complex> spectrum_;  // order: wave number along x, component, z, y
   Kernel kernel_;
-  Workers<Complex> plane_workers_;  // site of a cell, component, z, y
+  Workers<Complex> plane_workers_;  // order: site of a cell, component, z, y
 };
 
 }  // namespace cayspin::inline v0_2::detail

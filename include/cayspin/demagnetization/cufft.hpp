@@ -43,13 +43,13 @@ inline void require_cufft(cufftResult result) {
 
 class CufftPlan {
  public:
-  /// Strides between the numbers of a transform, and from one transform to the next.
+  /// Distances in memory from number to number of a transform, and from one transform to the next.
   struct Places {
     int stride, distance;
   };
 
   CufftPlan(cufftType type, int length, int count, Places in, Places out) {
-    // cuFFT uses the strides only if `embed` is given; along one axis its value is ignored.
+    // cuFFT uses the strides only if `embed` is given. Its value is ignored in one dimension.
     int embed = length;
     cufftHandle plan{};
     require_cufft(cufftPlanMany(&plan, 1, &length, &embed, in.stride, in.distance, &embed,
@@ -72,7 +72,8 @@ class CufftPlan {
   std::unique_ptr<cufftHandle const, Destroy> plan_;
 };
 
-/// Complex transforms in place: `count` of them, `distance` apart. Unscaled.
+/// `count` complex transforms in place, unscaled. In memory, the numbers of a transform are
+/// `stride` apart, and the transforms `distance`.
 template <class Real>
 class CufftComplexTransforms {
   using Functions = Cufft<Real>;

@@ -14,18 +14,18 @@
 
 namespace cayspin::inline v0_2 {
 
-/// The demagnetising field of a lattice of uniformly magnetized cells, each as large as the
-/// lattice's spacings: H_i = -strength sum_j N_ij m_j, by FFTs. Its energy is -m.H/2. It is a
-/// solver for HostField, which can be put into a SlowField.
+/// The demagnetising field of a lattice of uniformly magnetized cells whose edges are the lattice's
+/// spacings, averaged over each cell: H_i = -strength sum_j N_ij m_j, by FFTs. The energy per site
+/// is -m.H/2. It is a solver for HostField, and the HostField can be put into a SlowField.
 ///
 /// An axis with images is periodic: a cell sees the nearest image of another cell and
-/// `periodic_images` more on both sides of it, whatever boundary the lattice has for other terms.
+/// `periodic_images` more on each side of it, whatever boundary the lattice has for other terms.
 ///
-/// Real and MemorySpace are those of the spins; DemagnetizingField(spins) deduces both. On CUDA the
-/// transforms use cuFFT, elsewhere FFTW on the host. Copies share their work memory, so evaluate
-/// one at a time. On a part of a lattice (mpi::Domain, host only) the field is that of all parts,
-/// with the same bits as on a single one. All parts construct and evaluate it together. Needs the
-/// target cayspin::fftw.
+/// Real and MemorySpace are those of the spins; DemagnetizingField(spins) deduces both. The
+/// transforms use FFTW in host memory and cuFFT on CUDA; other devices do not compile. Copies share
+/// their work memory, so evaluate one at a time. On a part of a lattice (mpi::Domain, host only)
+/// the field is that of the spins of all parts, with the same bits as on the whole lattice. All
+/// parts construct and evaluate it together. Needs the target cayspin::fftw.
 template <class Real, class MemorySpace = Kokkos::HostSpace>
 class DemagnetizingField {
   static constexpr bool on_host = std::is_same_v<MemorySpace, Kokkos::HostSpace>;
@@ -36,10 +36,11 @@ class DemagnetizingField {
  public:
   static constexpr int degree = 2;
 
-  /// Throws std::invalid_argument for a crystal, several replicas, cell edges with a ratio above
-  /// 1e9, a non-finite strength, a negative number of images, and infinitely_many_images along
-  /// three axes, along two whose lengths have a ratio above 1e4, or with another tensor function.
-  /// On a device also for a part of a lattice.
+  /// Throws std::invalid_argument for an invalid lattice, several sites in a cell, several
+  /// replicas, cell edges with a ratio above 1e9, a non-finite strength, a negative number of
+  /// images, and infinitely_many_images along three axes, along two whose lengths have a ratio
+  /// above 1e4, or with another tensor function; on a device also for a part of a lattice. Throws
+  /// std::runtime_error if FFTW or cuFFT fails.
   explicit DemagnetizingField(Lattice const& lattice, DemagnetizationOptions const& options = {})
       : lattice_(lattice),
         convolution_(std::make_shared<Convolution const>(
@@ -49,8 +50,8 @@ class DemagnetizingField {
                               DemagnetizationOptions const& options = {})
       : DemagnetizingField(like.lattice(), options) {}
 
-  /// Returns the bytes of the spectrum and the interactions, and on a device of the padded rows. On
-  /// a part of a lattice, these are the bytes of that part.
+  /// Returns the bytes of the spectrum and of the interactions; on a device, those of the padded
+  /// rows are included. On a part of a lattice, these are the bytes of that part.
   static std::int64_t work_bytes(Lattice const& lattice,
                                  DemagnetizationOptions const& options = {}) {
     return Convolution::work_bytes(lattice, {lattice, options});
@@ -65,7 +66,8 @@ class DemagnetizingField {
     require_lattice("cayspin::DemagnetizingField", lattice_, spins.lattice());
     (*convolution_)(spins, field);
   }
-  /// Writes H into `field` in device memory.
+  /// Writes H of the spins into `field`, both in device memory. Throws std::invalid_argument for
+  /// another lattice, and std::runtime_error if cuFFT fails.
   template <class Exec, class Spins>
     requires(!on_host)
   void operator()(Exec const& exec, Spins const& spins, Spins const& field, double /*t*/) const {

@@ -68,7 +68,7 @@ struct TakeRows {
 template <class Real>
 struct PadPlanes {
   DeviceSpectrum at;
-  Kokkos::complex<Real> const* spectrum;  // starts at the first line
+  Kokkos::complex<Real> const* spectrum;  // from the first of these lines on
   std::int64_t lines, all_lines;
   Kokkos::complex<Real>* planes;
 
@@ -102,7 +102,7 @@ struct CutPlanes {
 template <class Real>
 struct MultiplyPlanes {
   DeviceSpectrum at;
-  Real const* kernel;  // starts at the first wave number along x
+  Real const* kernel;  // from the first of these wave numbers along x on
   std::int64_t waves;
   Kokkos::complex<Real>* planes;
 
@@ -126,9 +126,9 @@ struct MultiplyPlanes {
   }
 };
 
-/// The field of interactions between cells in device memory. Rows along x are transformed first.
-/// Then some wave numbers at a time are copied into planes, transformed along y and z, multiplied
-/// by the interactions and transformed back. Only these planes are padded along y and z.
+/// The field of interactions between cells, computed in device memory. Rows along x are transformed
+/// first. Then some wave numbers at a time are copied into planes, transformed along y and z,
+/// multiplied by the interactions and transformed back. Only these planes are padded along y and z.
 template <class Real, class Exec>
 class DeviceConvolution {
   using Complex = Kokkos::complex<Real>;
@@ -139,8 +139,8 @@ class DeviceConvolution {
                 "Kokkos::HostSpace, in a HostField, goes with any.");
 
  public:
-  /// `bytes_at_once`: the size that the planes should not exceed. 32 MiB stay in the second-level
-  /// cache of a large device.
+  /// `bytes_at_once`: the planes hold no more wave numbers along x than fit into this size, but at
+  /// least one. 32 MiB fit into the second-level cache of a large device.
   DeviceConvolution(Lattice const& lattice, InteractionsOfCells const& interactions,
                     std::int64_t bytes_at_once = 32 << 20)
       : at_(places(interactions, bytes_at_once)),
@@ -160,7 +160,7 @@ class DeviceConvolution {
     Kokkos::deep_copy(kernel_, kernel);
   }
 
-  /// Returns the bytes of everything kept, except the planes and the work memory of the transforms.
+  /// Returns the bytes of all arrays kept, except the planes and the work memory of the transforms.
   static std::int64_t work_bytes(Lattice const&, InteractionsOfCells const& interactions) {
     auto const at = places(interactions, 0);
     return (at.numbers() + 2 * at.spectrum() + static_cast<std::int64_t>(kernel_size(at))) *
@@ -224,6 +224,7 @@ class DeviceConvolution {
   DeviceSpectrum at_;
   typename Transforms::template Rows<Real> row_transforms_;
   typename Transforms::template Lines<Real> along_y_, along_z_;
+  // Indices of each array, the slowest first.
   Kokkos::View<Real*, Memory> numbers_;      // component, z, y, x of a period
   Kokkos::View<Complex*, Memory> spectrum_;  // wave number along x, component, z, y
   Kokkos::View<Complex*, Memory> planes_;    // z of a period, wave number, component, y of a period

@@ -8,11 +8,12 @@
 #include <cayspin/demagnetization/cufft.hpp>
 #endif
 
-// Selects the FFT library of an execution space. The classes of both libraries have the same
-// members.
+// Selects the FFT library of an execution space. The classes for both libraries have the members
+// that device code calls.
 namespace cayspin::inline v0_2::detail {
 
-/// FFTW in a host space, so that tests can run the device code there; none elsewhere.
+/// FFTW in host spaces, so that tests can run the device code there. Other spaces have no
+/// transforms, except CUDA (below).
 template <class Exec>
 struct DeviceTransforms {
   static constexpr bool exist = is_synchronous<Exec>;

@@ -15,15 +15,16 @@
 namespace cayspin::inline v0_2 {
 
 /// The field of point dipoles at the sites of a crystal, by FFTs: H_i = strength V sum_j (3 r
-/// (r.m_j) - m_j r^2) / (4 pi r^5). V is the product of the lattice's spacings, so that a dipole of
-/// 1 corresponds to a box of these edges with magnetization 1. Far away its field is that of
-/// DemagnetizingField's cell. Its energy is -m.H/2. It is a solver for HostField, which can be put
-/// into a SlowField. The spins passed in are taken as dipole moments: multiply them by the moments
-/// of their sites beforehand.
+/// (r.m_j) - m_j r^2) / (4 pi r^5), with the vector r from site j to site i. V is the product of
+/// the lattice's spacings, so that a dipole of 1 corresponds to a box of these edges with
+/// magnetization 1. Far away, the dipole's field is that of such a cell in a DemagnetizingField.
+/// The energy per site is -m.H/2. DipolarField is a solver for HostField, and the HostField can be
+/// put into a SlowField. The spins passed in are taken as dipole moments: multiply them by the
+/// moments of their sites beforehand.
 ///
 /// Copies share their work memory, so evaluate one at a time. On a part of a lattice (mpi::Domain)
-/// the field is that of all parts, with the same bits as on a single one. All parts construct and
-/// evaluate it together. Needs the target cayspin::fftw.
+/// the field is that of the dipoles of all parts, with the same bits as on the whole lattice. All
+/// parts construct and evaluate it together. Needs the target cayspin::fftw.
 template <class Real>
 class DipolarField {
   using Convolution = detail::Convolution<Real, detail::KernelOfPairs<Real>>;
@@ -32,15 +33,17 @@ class DipolarField {
   static constexpr int degree = 2;
 
   /// Sites are at the positions of `crystal`, times the lattice's spacings. Throws
-  /// std::invalid_argument if the lattice and the crystal have different numbers of sites in a
-  /// cell, and for non-finite, negative or contradictory options.
+  /// std::invalid_argument for an invalid lattice or crystal, if they have different numbers of
+  /// sites in a cell, for several replicas, a non-finite strength or demagnetising factor, a
+  /// negative number of images, and infinitely_many_images with another number of images that is
+  /// not 0. Throws std::runtime_error if FFTW fails.
   DipolarField(Lattice const& lattice, Crystal const& crystal, DipolarOptions const& options = {})
       : lattice_(lattice),
         convolution_(std::make_shared<Convolution const>(
             lattice, detail::InteractionsOfDipoles(lattice, crystal, options))) {}
 
-  /// Returns the bytes of the spectrum and the interactions. On a part of a lattice, these are the
-  /// bytes of that part.
+  /// Returns the bytes of the spectrum and of the interactions. On a part of a lattice, these are
+  /// the bytes of that part.
   static std::int64_t work_bytes(Lattice const& lattice, Crystal const& crystal,
                                  DipolarOptions const& options = {}) {
     return Convolution::work_bytes(lattice, {lattice, crystal, options});

@@ -13,11 +13,11 @@
 namespace cayspin::inline v0_2::detail {
 
 /// A lattice with one to three periods a, b, c. It calls a function for all points r + i a + j b +
-/// k c within a distance of the origin.
+/// k c that are within a given distance of the origin.
 class PointsOfLattice {
  public:
   PointsOfLattice() = default;
-  /// `periods`: 1 to 3 vectors.
+  /// `periods`: 1 to 3 linearly independent vectors.
   explicit PointsOfLattice(std::vector<Point> const& periods) : count_(periods.size()) {
     for (std::size_t i = 0; i < count_; ++i) vectors_[i] = periods[i];
     if (count_ == 1) vectors_[1] = across(vectors_[0]);
@@ -34,7 +34,7 @@ class PointsOfLattice {
   }
 
   std::size_t dimensions() const { return count_; }
-  /// Returns the volume of a cell; with two periods its area, with one its length.
+  /// Returns the volume of a cell. With two periods it is the cell's area, with one its length.
   double measure() const { return measure_; }
   /// Returns the unit normal of the plane of two periods.
   Point const& normal() const { return vectors_[2]; }
@@ -67,7 +67,7 @@ class PointsOfLattice {
   }
 
  private:
-  /// Returns a unit vector perpendicular to another one.
+  /// Returns a unit vector perpendicular to `a`.
   static Point across(Point const& a) {
     std::size_t least = 0;
     for (std::size_t axis = 1; axis < 3; ++axis)
@@ -85,12 +85,12 @@ class PointsOfLattice {
 
 /// The tensor of a dipole, summed over infinitely many images along one to three periods. With
 /// three periods, the body that the images fill has no poles on its surface ("tin-foil" boundary),
-/// so that its mean magnetization makes no field.
+/// so that its mean magnetization produces no demagnetising field.
 ///
 /// With two or three periods, Ewald's sums are used: C. Kittel, Introduction to Solid State
 /// Physics, appendix B; D. E. Parry, Surf. Sci. 49, 433 (1975). With one period, the nearest 32
-/// images on each side are summed. The others are replaced by an integral with a correction from
-/// differences over a period.
+/// images on each side are summed. An integral, corrected by differences over a period, replaces
+/// the others.
 class DipoleImages {
  public:
   explicit DipoleImages(std::vector<Point> const& periods) : lattice_(periods) {
@@ -100,12 +100,12 @@ class DipoleImages {
       return;
     }
     bool const is_bulk = periods.size() == 3;
-    // With this value both sums have about equally many terms.
+    // With this value, neither sum has more than about twice as many terms as the other.
     alpha_ = is_bulk ? 2.2 / std::cbrt(lattice_.measure()) : 1.77 / std::sqrt(lattice_.measure());
     lattice_.reciprocal().for_each_within(
         {}, 2 * ewald_reach * alpha_, [&](Point const& g, std::array<int, 3> const& numbers) {
           if (numbers <= std::array{0, 0, 0})
-            return;  // 0, or the opposite of a kept g: their terms are equal
+            return;  // 0, or the opposite of a g that is kept: terms of opposite g are equal
           double const g2 = scalar_product(g, g);
           double const gauss = std::exp(-g2 / (4 * alpha_ * alpha_));
           waves_.push_back({g, std::sqrt(g2), is_bulk ? gauss / g2 : gauss});
@@ -144,7 +144,8 @@ class DipoleImages {
       sum.add_product(factor * weight * std::cos(scalar_product(g, r)), g, g);
   }
 
-  /// Returns exp(g z) erfc(g / (2 alpha) + alpha z) without overflow: 0 where erfc underflows.
+  /// Returns exp(g z) erfc(g / (2 alpha) + alpha z) without overflow: 0 where erfc almost
+  /// underflows, since the product is then negligible.
   double wave_beyond(double g, double z) const {
     double const at = g / (2 * alpha_) + alpha_ * z;
     return at > 26 ? 0 : std::exp(g * z) * std::erfc(at);
@@ -159,8 +160,9 @@ class DipoleImages {
       double const up = wave_beyond(length, z), down = wave_beyond(length, -z);
       double const factor = 2 * std::numbers::pi / (area * length), phase = scalar_product(g, r);
       double const c = factor * std::cos(phase), s = factor * std::sin(phase);
+      // d^2 (up + down) / dz^2
       double const second =
-          length * (length * (up + down) - 4 * alpha_ / root * gauss * of_z);  // d^2/dz^2
+          length * (length * (up + down) - 4 * alpha_ / root * gauss * of_z);
       sum.add_product(-c * (up + down), g, g)
           .add_product(-2 * s * length * (up - down), g, n)
           .add_product(c * second, n, n);
@@ -174,8 +176,8 @@ class DipoleImages {
     DipoleTensor sum;
     for (int i = -images; i <= images; ++i)
       sum += dipole_tensor(add_scaled(i * period_, direction_, r));
-    // Weights of the operator that turns the integral into a sum over images: asinh(d/2) / (d/2),
-    // with the central difference d over a period.
+    // Weights of the operator asinh(d/2) / (d/2), which turns the integral into a sum over images.
+    // d is the central difference over a period.
     constexpr double second = -1. / 24, fourth = 3. / 640, sixth = -5. / 7168;
     constexpr std::array weights{1 - 2 * second + 6 * fourth - 20 * sixth,
                                  second - 4 * fourth + 15 * sixth, fourth - 6 * sixth, sixth};
@@ -187,8 +189,8 @@ class DipoleImages {
                          (images + 0.5 + n) * period_ + side * x, side, rho);
     return sum;
   }
-  /// Adds the integral of the tensor over a half-line of dipoles, which starts u away along the
-  /// line.
+  /// Adds the integral of the tensor over a half-line of dipoles. It starts at the distance u along
+  /// the line from the point, on the side `side` (1 or -1); rho leads from the line to the point.
   void add_rest_of_line(DipoleTensor& sum, double weight, double u, int side,
                         Point const& rho) const {
     auto const& e = direction_;
@@ -204,7 +206,7 @@ class DipoleImages {
   PointsOfLattice lattice_;
   double alpha_ = 0;
   std::vector<Wave> waves_;
-  double period_ = 0;  // of a single-period lattice
+  double period_ = 0;  // of a lattice with one period
   Point direction_{};
 };
 

@@ -25,20 +25,20 @@ namespace cayspin::inline v0_2 {
 struct DipolarOptions {
   double strength = 1;
   /// For each vector of the cell: the number of images on each side beyond the nearest one; 0 for a
-  /// vector along which the lattice is not periodic. infinitely_many_images along one vector cannot
-  /// be combined with a finite number along another.
+  /// vector along which the lattice is not periodic. infinitely_many_images along one vector can be
+  /// combined only with itself or 0 along another.
   std::array<int, 3> periodic_images{};
   /// Demagnetising factors N along x, y and z of the body that the images fill: its mean
-  /// magnetization M adds the field -N M. They are used only with infinitely many images along all
-  /// three vectors. 0: the body has no poles on its surface.
+  /// magnetization M adds the field -strength N M. The factors are used only with infinitely many
+  /// images along all three vectors. 0: the body has no poles on its surface.
   std::array<double, 3> demagnetizing_factors{};
 };
 
 namespace detail {
 
-/// Tensors between the sites of a crystal's cells. If the lattice is a part of another, they are
-/// those of the whole lattice. `period` has the extents of the cyclic convolution in cells: those
-/// of the lattice along vectors with images, and enough for all distances along the others.
+/// Tensors between the sites of a crystal's cells. For a part of a lattice, they are the tensors of
+/// the whole lattice. `period` has the extents of the cyclic convolution in cells: those of the
+/// lattice along vectors with images, and enough for all distances along the others.
 class InteractionsOfDipoles {
  public:
   InteractionsOfDipoles(Lattice const& lattice, Crystal crystal, DipolarOptions const& options)
@@ -82,10 +82,10 @@ class InteractionsOfDipoles {
   std::array<int, 3> const& period() const { return period_; }
   std::size_t sites() const { return crystal_.basis.size(); }
 
-  /// Returns T with H = T m, strength included, for a dipole m at the site `source` of a cell and H
-  /// at the site `site` of another cell. `distance`: from the first cell to the other, as indices
-  /// of the cyclic convolution, so that negative distances count from the end. 0 for distances that
-  /// no two cells have.
+  /// Returns T with H = T m, strength included, for a dipole m at the site `source` of one cell and
+  /// H at the site `site` of another or the same cell. `distance`: from the cell of m to that of H,
+  /// as indices of the cyclic convolution, so that negative distances count from the end. T is 0
+  /// for distances that no two cells have.
   DipoleTensor between(std::array<int, 3> const& distance, std::size_t site,
                        std::size_t source) const {
     DipoleTensor sum;
@@ -119,9 +119,9 @@ class InteractionsOfDipoles {
     if (!holds) throw std::invalid_argument(std::string("cayspin::DipolarField: ") + what);
   }
 
-  /// Returns the distances along an axis that share one index of the convolution. Half a period
-  /// away, two images are nearest. The mean over both choices counts the outermost image on each
-  /// side by half.
+  /// Returns the distances along an axis that share one index of the convolution. For a distance of
+  /// half a period, two images are equally near, one on each side. The mean over both choices gives
+  /// the outermost image on each side the weight 1/2.
   Steps steps_of(std::size_t axis, int distance) const {
     int const images = options_.periodic_images[axis], cells = cells_[axis];
     if (images == 0) {

@@ -40,7 +40,7 @@ inline Point add_scaled(double factor, Point const& a, Point const& b) {
   return {factor * a[0] + b[0], factor * a[1] + b[1], factor * a[2] + b[2]};
 }
 
-/// Returns the tensor at a point that is the vector r away from the dipole; zero for r = 0.
+/// Returns the tensor at the end of the vector r from the dipole; zero for r = 0.
 inline DipoleTensor dipole_tensor(Point const& r) {
   DipoleTensor sum;
   double const r2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];

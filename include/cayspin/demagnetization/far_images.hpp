@@ -14,13 +14,14 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// The sum of tensors between a cell and infinitely many images of another, along one or two
+/// The sum of the tensors between a cell and infinitely many images of another, along one or two
 /// periodic axes, without the nearest images. Beyond 16 periods (or the nearest images, if there
-/// are more), lines of dipoles replace the images along the axis of the shorter period. Sheets
-/// replace the lines that are as far away along the other axis. Fields of lines and sheets are
-/// integrals in closed form. Corrections by differences over a period, up to the sixth, turn the
-/// integrals into sums over images, and the dipoles into cells. The error is below 1e-10, where 1
-/// is the trace of a cell's own tensor.
+/// are more), lines of dipoles replace the images along the axis of the shorter period. Along the
+/// other axis, sheets replace the lines beyond 16 periods of that axis (or its nearest images). The
+/// fields of lines and sheets are integrals in closed form. Corrections by differences over a
+/// period, up to the sixth, turn the integrals into sums over images and average over the cells'
+/// edges along that axis; quadrature averages over the other edges. The error is below 1e-10, where
+/// 1 is the trace of a cell's own tensor.
 class FarImages {
  public:
   /// `period`: 0 along non-periodic axes. `nearest`: images on each side to leave out.
@@ -71,8 +72,8 @@ class FarImages {
   std::size_t normal() const { return 3 - line_ - *sheet_; }
 
   /// Returns the shifts and weights of an operator along a periodic axis: asinh(d/2) / (d/2), which
-  /// turns an integral into a sum over images, times the mean over both cells. d is the central
-  /// difference over a period.
+  /// turns an integral into a sum over images, times the mean over both cells' edges. d is the
+  /// central difference over a period.
   WeightedShifts over_periods(std::size_t axis) const {
     double const edge = cell_[axis] / period_[axis], q = edge * edge;
     double const of_sum[] = {-1. / 24, 3. / 640, -5. / 7168};
@@ -90,9 +91,9 @@ class FarImages {
     return shifts;
   }
 
-  /// Returns the shifts and weights of the mean over both cells along an axis. The cells are
-  /// divided into pieces that are short compared with `distance`, that of the nearest image. Each
-  /// pair of pieces takes a three-point rule of fifth order.
+  /// Returns the shifts and weights of the mean over both cells' edges along an axis. The edges are
+  /// divided into pieces of at most 1/24 of `distance`, at which the lines or sheets begin. For
+  /// each pair of pieces, a rule of three points is exact for polynomials up to degree 5.
   WeightedShifts over_an_edge(std::size_t axis, double distance) const {
     auto const pieces = static_cast<int>(std::ceil(24 * cell_[axis] / distance));
     double const piece = cell_[axis] / pieces, point = std::sqrt(0.4) * piece;
@@ -137,8 +138,8 @@ class FarImages {
     if (i != j) e[j][i] += value;
   }
 
-  /// Adds -d_i d_j of the integral of 1/r over both ends of the line, beyond the images that are
-  /// summed.
+  /// Adds the derivatives -d_i d_j of the integral of 1/r over both ends of the line, beyond the
+  /// images that are summed one by one.
   void add_line(Entries& e, double weight, Lengths const& at) const {
     std::size_t const p = line_, q = (p + 1) % 3, n = (p + 2) % 3;
     double const y = at[q], z = at[n];
@@ -156,7 +157,7 @@ class FarImages {
     }
   }
 
-  /// Adds the field of the two sheets that replace the lines farther away.
+  /// Adds the tensor of the two half-sheets that replace the lines farther away.
   void add_sheet(Entries& e, double weight, double y, double z) const {
     std::size_t const q = *sheet_, n = normal();
     for (int const side : {-1, 1}) {

@@ -17,11 +17,12 @@
 namespace cayspin::inline v0_2::detail {
 
 /// Sums over far images for all distances of a lattice. They vary smoothly along axes with
-/// infinitely many images. There they are computed at ten points and interpolated, with an error of
-/// 1e-12, where 1 is the trace of a cell's own tensor.
+/// infinitely many images. Along such an axis, if it has more than ten distances, they are computed
+/// at ten points and interpolated, with an error of 1e-12, where 1 is the trace of a cell's own
+/// tensor.
 class FarImagesTable {
  public:
-  /// The distances 0, step, 2 step, .. along an axis.
+  /// The distances 0, step, .. (distances - 1) step along an axis.
   struct Axis {
     int distances = 1;
     double step = 1;
@@ -84,7 +85,8 @@ class FarImagesTable {
     return (static_cast<double>(point) + 0.5) * std::numbers::pi / most_points;
   }
 
-  /// Returns the weights of Lagrange interpolation from Chebyshev points, in barycentric form.
+  /// Returns the weights of Lagrange interpolation from Chebyshev points, by the barycentric
+  /// formula.
   static std::vector<OfPoint> interpolated(std::vector<double> const& points, double at) {
     std::vector<OfPoint> weights;
     double sum = 0;

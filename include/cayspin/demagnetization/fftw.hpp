@@ -11,8 +11,8 @@
 #include <type_traits>
 
 // FFTs of the demagnetising field by FFTW, in both precisions. Plans use FFTW_ESTIMATE, which does
-// not measure times. So FFTW always chooses the same plan, and results have the same bits. Arrays
-// are aligned to cache lines, as Kokkos allocates them.
+// not measure times. So FFTW always chooses the same plan, and results have the same bits in every
+// run. Arrays are aligned to cache lines, as Kokkos allocates them.
 namespace cayspin::inline v0_2::detail {
 
 template <class Real>
@@ -79,9 +79,11 @@ auto as_std(Kokkos::complex<Real>* data) {
   return reinterpret_cast<std::complex<Real>*>(data);
 }
 
-// Members that take an execution space match cufft.hpp, so that host spaces can run device code.
+// Members that take an execution space match those in cufft.hpp, so that host spaces can run device
+// code.
 
-/// Complex transforms in place: `count` of them, `distance` apart. Unscaled.
+/// `count` complex transforms in place, unscaled. In memory, the numbers of a transform are
+/// `stride` apart, and the transforms `distance`.
 template <class Real>
 class ComplexTransforms {
  public:

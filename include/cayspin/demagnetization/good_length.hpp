@@ -5,7 +5,8 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Returns the next number with no prime factors but 2, 3, 5 and 7: FFTs of such lengths are fast.
+/// Returns the smallest number from `least` on with no prime factors but 2, 3, 5 and 7: FFTs of
+/// such lengths are fast.
 inline int good_length(int least) {
   for (int length = least;; ++length) {
     int rest = length;

@@ -29,15 +29,15 @@ struct DemagnetizationOptions {
   /// would depend on the shape of the body.
   std::array<int, 3> periodic_images{};
   TensorOfCells* tensor = demagnetizing_tensor;
-  /// Cache for the tensors of a whole lattice. It receives the function that computes them, and
-  /// returns that function's result or a stored one. Empty: no cache.
+  /// Cache for the tensors of a whole lattice, times -strength. It receives the function that
+  /// computes them, and returns that function's result or a stored one. Empty: no cache.
   std::function<DemagnetizingTensors(std::function<DemagnetizingTensors()> const& compute)> kept{};
 };
 
 namespace detail {
 
 /// Interactions -strength N between the cells of a lattice, for the octant of non-negative
-/// distances. If the lattice is a part of another, they are those of the whole lattice.
+/// distances. For a part of a lattice, they are the interactions of the whole lattice.
 class InteractionsOfCells {
  public:
   InteractionsOfCells(Lattice const& lattice, DemagnetizationOptions const& options)
@@ -75,8 +75,9 @@ class InteractionsOfCells {
   /// Returns the number of lines along x in the octant.
   std::int64_t lines() const { return std::int64_t{octant(1)} * octant(2); }
 
-  /// Returns the tensors of `count` lines from number `first` on, for all distances along x. Order:
-  /// x fastest, then y. Tensors are 0 for distances that no two cells have.
+  /// Returns the tensors, times -strength, of `count` lines from number `first` on, for all
+  /// distances of the octant along x. Order: x fastest, then y. Tensors are 0 for distances that no
+  /// two cells have.
   DemagnetizingTensors of_lines(std::int64_t first, std::int64_t count) const {
     if (options_.kept && count == lines())
       return options_.kept([&] { return computed(first, count); });
@@ -118,7 +119,7 @@ class InteractionsOfCells {
   double period_length(std::size_t axis) const { return cells_[axis] * cell_[axis]; }
 
   /// Chooses how many images to sum one by one. Along an axis with infinitely many, these are the
-  /// ones within twice the longest of the infinite axes' periods; FarImages adds the others.
+  /// ones within twice the longest period of such axes; FarImages adds the others.
   void choose_nearest() {
     nearest_ = options_.periodic_images;
     std::vector<double> periods;

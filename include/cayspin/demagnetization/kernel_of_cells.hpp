@@ -59,7 +59,8 @@ class KernelOfCells {
  private:
   std::size_t octant_plane() const { return std::size_t(octant_[1]) * std::size_t(octant_[2]); }
 
-  /// `Sign` and `sign_of_z` are -1 where the mirrored wave number along y or z is the stored one.
+  /// `Sign` is -1 where the stored wave number is the mirrored one along y, and `sign_of_z` along
+  /// z.
   template <int Sign>
   void multiply_row(Real const* kernel, Real sign_of_z, Complex* row, std::size_t plane, int begin,
                     int end) const {
@@ -79,7 +80,7 @@ class KernelOfCells {
   }
 
   std::array<int, 3> period_, octant_;
-  Kokkos::View<Real*, Kokkos::HostSpace> values_;  // wave number, component, z, y of octants
+  Kokkos::View<Real*, Kokkos::HostSpace> values_;  // order: wave number, component, z, y of octants
 };
 
 }  // namespace cayspin::inline v0_2::detail

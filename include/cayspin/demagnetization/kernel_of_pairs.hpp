@@ -18,9 +18,8 @@
 namespace cayspin::inline v0_2::detail {
 
 /// The Fourier transform of the interactions between the sites of a crystal's cells. It is real
-/// between a site and the same site of other cells. Between two different sites a and b of the cell
-/// it is complex. The transform from a to b is the conjugate of that from b to a, so only one of
-/// them is stored.
+/// between equal sites of the cells, and complex between different sites a and b. The transform
+/// from a to b is the conjugate of that from b to a, so only one of them is stored.
 template <class Real>
 class KernelOfPairs {
   using Complex = std::complex<Real>;
@@ -79,7 +78,8 @@ class KernelOfPairs {
 
   std::size_t row_length() const { return std::size_t(period_[1]); }
   /// Returns where the rows xx, yy, zz, xy, xz, yz of a pair of sites a <= b begin. For two
-  /// different sites, the row of imaginary parts follows each row of real parts.
+  /// different sites, each of these rows has real parts and is followed by a row of imaginary
+  /// parts.
   std::size_t place(std::int64_t k, int z, std::size_t a, std::size_t b) const {
     std::size_t const sites_before = a * (2 * sites_ - a - 1) / 2 * 12 + 6 * a;
     std::size_t const in_pairs = sites_before + (b == a ? 0 : 6 + 12 * (b - a - 1));
@@ -134,7 +134,7 @@ class KernelOfPairs {
   };
 
   /// Computes, transforms and stores the interactions of a pair of sites. Threads divide the lines
-  /// along x among themselves, and after the transform along x the wave numbers along x.
+  /// along x among themselves, and after their transform the wave numbers along x.
   void transform(Interactions const& interactions, Parts const& parts, std::size_t a,
                  std::size_t b) {
     auto const [nx, ny, nz] = period_;
@@ -199,7 +199,7 @@ class KernelOfPairs {
 
   std::array<int, 3> period_;
   std::size_t sites_;
-  Kokkos::View<Real*, Kokkos::HostSpace> values_;  // wave number, z, pair, component, y
+  Kokkos::View<Real*, Kokkos::HostSpace> values_;  // order: wave number, z, pair, component, y
 };
 
 }  // namespace cayspin::inline v0_2::detail

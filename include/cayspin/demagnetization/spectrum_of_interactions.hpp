@@ -15,8 +15,8 @@
 namespace cayspin::inline v0_2::detail {
 
 /// The Fourier transform of the interactions, which is real: each component is even or odd along
-/// each axis, and odd along two axes or none. Wave numbers of one octant are kept; along x only the
-/// share of this part.
+/// each axis, and odd along two axes or none. One octant of wave numbers is kept; along x, only
+/// this part's share of them.
 class SpectrumOfInteractions {
  public:
   SpectrumOfInteractions(InteractionsOfCells const& interactions, Parts const& parts)
@@ -86,8 +86,9 @@ class SpectrumOfInteractions {
         whole[i] = value;
         if (i > 0) whole[length - i] = is_odd ? -value : value;
       }
-      // At half a period two images are nearest, and their odd parts cancel to 0. `whole` holds
-      // another number there, but the imaginary part depends neither on it nor on the first number.
+      // At half a period, two images are equally near, and their odd parts cancel to 0. `whole`
+      // holds another number there, but imaginary parts depend neither on it nor on the first
+      // number.
       transforms.forward(whole, waves);
       for (int i = 0; i < count; ++i) result(line, i, is_odd ? waves[i].imag() : waves[i].real());
     });
@@ -100,9 +101,9 @@ class SpectrumOfInteractions {
   SpectrumOfParts<double> along_x_;
 };
 
-/// Writes the transformed interactions, divided by the number of cells in a period, to `kernel` in
-/// host memory. Order: this part's wave numbers along x, components xx, yy, zz, xy, xz, yz, wave
-/// numbers of the octant along z and y.
+/// Writes the transformed interactions to `kernel` in host memory, divided by the number of cells
+/// of the cyclic convolution. Order: this part's wave numbers along x, components xx, yy, zz, xy,
+/// xz, yz, wave numbers of the octant along z and y.
 template <class Kernel>
 void transform_interactions(InteractionsOfCells const& interactions, Parts const& parts,
                             Kernel const& kernel) {

@@ -33,7 +33,7 @@ class Parts {
     return begin_of_share(total, of + 1) - begin_of_share(total, of);
   }
 
-  /// Blocks of numbers, one for each part: block i is begins[i] .. begins[i + 1].
+  /// Blocks of numbers, one for each part: block i is begins[i] .. begins[i + 1] - 1.
   template <class Number>
   struct Blocks {
     Number* data;
@@ -120,23 +120,23 @@ class SpectrumOfParts {
   /// Returns the number of wave numbers in this part's share.
   std::int64_t own_waves() const { return static_cast<std::int64_t>(own_waves_); }
 
-  /// Returns the values of this part's lines at number `wave` of all wave numbers.
+  /// Returns the values of this part's lines at wave number `wave`.
   Number* of_own_lines(std::int64_t wave) const {
     return of_lines_.data() + static_cast<std::size_t>(wave) * own_lines_;
   }
-  /// Returns the values of the lines of `part` at number `wave` of this part's share of wave
-  /// numbers.
+  /// Returns the values of the lines of `part` at wave number `wave`, counted from the first one of
+  /// this part's share.
   Number* of_own_wave(std::int64_t wave, std::size_t part) const {
     return of_waves_.data() + for_waves_[part] + static_cast<std::size_t>(wave) * lines_[part];
   }
 
-  /// Sends the values of this part's lines to the parts whose shares contain the wave numbers. Call
-  /// after all of_own_lines are written.
+  /// Sends the values of this part's lines to the parts whose shares contain the wave numbers.
+  /// Write all of_own_lines first.
   void lines_to_waves() const {
     if (parts_.count() > 1) parts_.exchange<Number>(of_lines(), of_waves());
   }
-  /// Sends the values of this part's share back to the parts with the lines. Call after all
-  /// of_own_wave are written.
+  /// Sends the values of this part's share back to the parts with the lines. Write all of_own_wave
+  /// first.
   void waves_to_lines() const {
     if (parts_.count() > 1) parts_.exchange<Number>(of_waves(), of_lines());
   }
@@ -151,7 +151,7 @@ class SpectrumOfParts {
   std::size_t own_lines_, own_waves_;
   std::vector<std::size_t> lines_;                  // on each part
   std::vector<std::size_t> for_lines_, for_waves_;  // where each part's block begins
-  Memory of_lines_, of_waves_;                      // wave number, line; part, wave number, line
+  Memory of_lines_, of_waves_;                      // orders: wave, line; part, wave, line
 };
 
 }  // namespace cayspin::inline v0_2::detail

@@ -21,12 +21,13 @@ struct DemagnetizingTensor {
 
 using DemagnetizingTensors = std::vector<DemagnetizingTensor>;
 
-/// Function that returns N for two cells whose centres differ by `position`; `cell` has their
-/// edges.
+/// Function that returns N for two cells. `position`: from the centre of one to that of the other.
+/// `cell`: their edges.
 using TensorOfCells = DemagnetizingTensor(std::array<double, 3> const& position,
                                           std::array<double, 3> const& cell);
 
-/// Largest ratio of a cell's edges that DemagnetizingField accepts; the tensor is tested up to it.
+/// Largest ratio between edges of a cell that DemagnetizingField accepts; the tensor is tested up
+/// to it.
 inline constexpr double largest_edge_ratio = 1e9;
 
 namespace detail {
@@ -72,7 +73,7 @@ inline NewellFunctions newell_functions(long double x, long double y, long doubl
   };
 }
 
-/// Returns the tensor from the second differences of Newell's functions along all three axes, which
+/// Returns the tensor from second differences of Newell's functions along all three axes, which
 /// take 27 points.
 inline DemagnetizingTensor near_demagnetizing_tensor(Lengths const& position, Lengths const& cell) {
   using Number = long double;
@@ -99,8 +100,9 @@ constexpr std::array<double, Size> factorials() {
 
 /// Returns coefficients of the Taylor series. The product of the second differences along x, y and
 /// z, each divided by the square of its edge, is d_x^2 d_y^2 d_z^2 times the sum of 8 h_x^2i h_y^2j
-/// h_z^2k / ((2i+2)! (2j+2)! (2k+2)!) d_x^2i d_y^2j d_z^2k. This sum acts on derivatives of 1/r, so
-/// d_z^2 = -(d_x^2 + d_y^2). Element [m][i] is the coefficient of d_x^2i d_y^2j with j = m - i.
+/// h_z^2k / ((2i+2)! (2j+2)! (2k+2)!) d_x^2i d_y^2j d_z^2k. h_x is the edge along x, and d_x the
+/// derivative. This sum acts on derivatives of 1/r, so d_z^2 = -(d_x^2 + d_y^2). Element [m][i] is
+/// the coefficient of d_x^2i d_y^2j with j = m - i.
 template <std::size_t HalfOrder>
 std::array<std::array<double, HalfOrder + 1>, HalfOrder + 1> difference_series(Lengths const& h) {
   constexpr auto factorial = factorials<2 * HalfOrder + 3>();
@@ -263,15 +265,16 @@ inline DemagnetizingTensor slender_demagnetizing_tensor(Lengths const& position,
 /// position 0, and 0 where the cells do not overlap. Its symmetries are exact: xy is odd in x and
 /// in y, and so on.
 ///
-/// At distances below 4 longest edges, N comes from second differences of the functions of Newell,
-/// Williams and Dunlop, J. Geophys. Res. 98, 9551 (1993), eqs. 27 and 32. Farther away it comes
-/// from the Taylor series of these differences in edge / distance, of order 22, 12 (from 8 edges)
-/// and 6 (from 50 edges). Long or flat cells are divided into pieces where the differences would
-/// cancel.
+/// At distances below 4 times the longest edge, N comes from second differences of the functions of
+/// Newell, Williams and Dunlop, J. Geophys. Res. 98, 9551 (1993), eqs. 27 and 32. Farther away it
+/// comes from the Taylor series of these differences in edge / distance, of order 22, 12 (from 8
+/// edges) and 6 (from 50 edges). Where the differences would cancel too many digits, long or flat
+/// cells are divided into pieces.
 ///
-/// For edges of up to 1e6 : 1, the error is at most 3e-11 of the largest entry at this position,
-/// and 1e-12 of it from a distance of 4 edges on. For edges of up to 1e9 : 1, it is at most 1e-8 of
-/// that entry, and at most 1e-15. This needs a long double with a mantissa of 64 bits or more.
+/// For ratios of edges up to 1e6, the error is at most 3e-11 of the largest entry of N at this
+/// position, and at most 1e-12 of it from a distance of 4 longest edges on. For ratios from 1e6 to
+/// 1e9, it is at most 1e-8 of that entry, and also at most 1e-15. This needs a long double with a
+/// mantissa of 64 bits or more.
 inline DemagnetizingTensor demagnetizing_tensor(std::array<double, 3> const& position,
                                                 std::array<double, 3> const& cell) {
   auto const [x, y, z] = position;

@@ -14,8 +14,8 @@ namespace cayspin::inline v0_2::detail {
 template <class Number>
 class Workers {
  public:
-  /// Allocates memory of `numbers` values for each thread: as many threads as the host space has,
-  /// but at most `tasks`.
+  /// Allocates memory of `numbers` values for each thread. There are as many threads as the host
+  /// space has, but at most `tasks`.
   Workers(std::string const& label, std::int64_t tasks, std::size_t numbers)
       : label_(label),
         count_(std::min<std::int64_t>(tasks, Kokkos::DefaultHostExecutionSpace().concurrency())),
