@@ -22,8 +22,8 @@
 // The bonds of each site of a cell, in the order in which kernels sum them.
 namespace cayspin::inline v0_2::detail {
 
-/// Distance in memory to another site, in arrays of doubles and of floats: their rows are padded
-/// differently.
+/// Distance in memory to another site. It differs between arrays of doubles and of floats, because
+/// their rows are padded differently.
 struct OffsetInMemory {
   std::ptrdiff_t of_doubles, of_floats;
 
@@ -55,8 +55,8 @@ struct Reach {
       high[axis] = std::max(high[axis], way[axis]);
     }
   }
-  /// Return true if no bond needs wrapping: along y and z, from the row at y, z; along x, from the
-  /// sites x .. x + lanes - 1.
+  /// Return true if no bond leads out of the lattice: along y and z, from the row at y, z; along x,
+  /// from the sites x .. x + lanes - 1.
   KOKKOS_FORCEINLINE_FUNCTION bool holds_rows(std::int32_t y, std::int32_t z,
                                               std::int32_t const* extent) const {
     return y >= low[1] && y + high[1] < extent[1] && z >= low[2] && z + high[2] < extent[2];
@@ -100,13 +100,14 @@ class BondLists {
   std::vector<Bond> bonds;
   std::vector<BondTensor> tensors;
   /// For lattices that are periodic along x: the wrapped offsets of all bonds of a site, at each of
-  /// the first reach.low[0] and the last reach.high[0] sites of a row.
+  /// the first reach.low[0] and the last reach.high[0] sites of a row. Sites whose bonds reach
+  /// farther along x than a pack of floats have none.
   std::vector<OffsetInMemory> rounds;
   bool has_biquadratic = false;
-  /// Largest |H| of unit spins at each site of a cell, or an upper bound of it.
+  /// Upper bound of |H| at each site of a cell, for spins of length 1.
   std::vector<double> field_bounds;
 
-  /// Throws std::invalid_argument like PairCouplings.
+  /// Throws std::invalid_argument for the couplings for which PairCouplings does.
   BondLists(Lattice const& lattice, std::vector<Coupling> const& couplings) {
     for (int site = 0; site < static_cast<int>(lattice.cell_sites); ++site) {
       auto seen = seen_from(site, lattice, couplings);
@@ -149,7 +150,7 @@ class BondLists {
              t[6] == 0 && t[7] == 0 && t[9] == 0;
     }
     /// Returns an upper bound of the bond's |H| for unit spins: |J| for exchange; otherwise the
-    /// Frobenius norm of T plus that of the biquadratic part.
+    /// Frobenius norm of T plus 2 |B|, with the biquadratic constant B.
     double bound() const {
       if (is_exchange()) return std::abs(tensor.of[0]);
       double sum = 0;
@@ -263,8 +264,8 @@ class BondLists {
     if (!finite) throw std::invalid_argument("cayspin::PairCouplings: a number is not finite");
   }
 
-  /// Shortens an offset by whole turns around a periodic axis. Returns false if it is too long for
-  /// an open axis.
+  /// Shortens an offset by whole turns around each periodic axis. Returns false if it leads out of
+  /// the lattice along an open axis.
   static bool stays(std::array<std::int64_t, 3>& way, Lattice const& of_sites) {
     auto const& lattice = whole(of_sites);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -277,7 +278,7 @@ class BondLists {
   }
 };
 
-/// The tables in a kernel's memory space.
+/// The tables in the memory space of the kernels.
 template <class MemorySpace>
 class BondsOfSites {
  public:

@@ -70,10 +70,10 @@ class UniformBulkDmi {
 /// from spin m along the axis e to its neighbour m' has E = -(D / spacing) (m x m') . e, so that H
 /// = sum over axes of (D / spacing) (m_next - m_previous) x e. A missing neighbour has no bond.
 /// With Exchange(lattice, A), a free spiral along e turns about e by atan(D spacing / A) from site
-/// to site. Reduced units, as in InterfacialDmi. Bak and Jensen 1980.
+/// to site. Reduced units. Bak and Jensen 1980.
 class BulkDmi : public detail::TermOnLattice<detail::UniformBulkDmi> {
  public:
-  /// Throws std::invalid_argument when the constant is not finite.
+  /// Throws std::invalid_argument when the constant is not finite or the lattice is invalid.
   BulkDmi(Lattice const& lattice, double constant)
       : TermOnLattice("cayspin::BulkDmi", lattice,
                       detail::finite(constant, "cayspin::BulkDmi: the constant")) {}

@@ -34,9 +34,9 @@ struct NumbersOfCell {
 template <class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class CellMoments {
  public:
-  /// `gyromagnetic`: all are 1 if it is empty. Throws std::invalid_argument unless there is one
-  /// finite moment >= 0 and one finite gyromagnetic ratio > 0 for each site of a cell, and for a
-  /// part of a lattice.
+  /// `gyromagnetic`: if it is empty, all ratios are 1. Throws std::invalid_argument unless there is
+  /// one finite moment >= 0 and one finite gyromagnetic ratio > 0 for each site of a cell. Also
+  /// throws it for a part of a lattice.
   CellMoments(Lattice const& lattice, std::vector<double> const& moments,
               std::vector<double> const& gyromagnetic = {})
       : lattice_(lattice),

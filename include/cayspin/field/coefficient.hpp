@@ -39,8 +39,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value coefficient(SiteArray<Real, 1> const& numbers,
   return site.load(numbers);
 }
 
-/// Kernels address a coefficient like the spins, by rows whose pitch depends on the type. So both
-/// must have the same type.
+/// Kernels address a coefficient like the spins, by rows whose pitch depends on the type of the
+/// numbers. So both must have the same type.
 template <class Spins, class Real, int Components, class MemorySpace>
 constexpr void require_type_of(SiteField<Real, Components, MemorySpace> const&) {
   static_assert(std::is_same_v<typename Spins::value_type, Real> &&
@@ -58,7 +58,8 @@ void require_lattice_of(Spins const& spins, SiteField<Real, Components, MemorySp
   require_lattice(who, field.lattice(), spins.lattice());
 }
 
-/// Functor that counts sites whose number is non-finite, negative, positive, or 1.
+/// Functor that counts four kinds of sites: those whose number is not finite, negative, positive,
+/// and 1.
 template <class Real>
 struct SignsOfSites {
   SiteArray<Real, 1> numbers;
@@ -76,10 +77,11 @@ struct SignsOfSites {
 
 struct Signs {
   bool negative, positive;
-  bool zero_or_one;  // everywhere
+  bool zero_or_one;  // every number is 0 or 1
 };
 
-/// Throws std::invalid_argument when a number is not finite; waits.
+/// Returns which signs the numbers have, after waiting for the kernel. Throws std::invalid_argument
+/// when a number is not finite.
 template <class Real, class MemorySpace>
 Signs signs_of(ScalarField<Real, MemorySpace> const& numbers, char const* what) {
   typename MemorySpace::execution_space const exec;

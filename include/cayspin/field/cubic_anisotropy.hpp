@@ -18,8 +18,8 @@ class CubicAnisotropy {
   static constexpr double most_skew = 1e-4;
 
   /// Normalises the axes and makes the second orthogonal to the first. Throws std::invalid_argument
-  /// when the constant is not finite, an axis is zero or not finite, or |e1.e2| > 1e-4, which is
-  /// more than rounding to a few digits.
+  /// when the constant is not finite, an axis is zero or not finite, or |e1.e2| > 1e-4, which
+  /// rounding the axes to a few digits does not exceed.
   CubicAnisotropy(double constant, Vec3<double> const& axis1, Vec3<double> const& axis2)
       : constant_(detail::finite(constant, "cayspin::CubicAnisotropy: the constant")),
         axes_{normalized(axis1, "cayspin::CubicAnisotropy: the first axis"),
@@ -60,8 +60,8 @@ class CubicAnisotropy {
   }
 
   KOKKOS_FORCEINLINE_FUNCTION double constant() const { return constant_; }
-  /// Returns a, b and c; x, y and z if all axes are coordinates, since E does not depend on their
-  /// order.
+  /// Returns the components a, b and c of `v`. If all axes are coordinate axes, returns x, y and z,
+  /// since E does not depend on the order.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> parts(Vec3<Value> const& v) const {
     if (along_coordinates_) [[likely]]

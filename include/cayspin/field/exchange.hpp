@@ -50,8 +50,8 @@ class UniformExchange {
     if (couples_[2]) h = second_difference<2>(stencil, h);
     return h;
   }
-  /// Adds H up to a multiple of the spin itself: the sum of neighbours, times A / spacing^2. Past
-  /// an open end, the spin replaces the missing neighbour.
+  /// Adds H up to a multiple of the spin itself: for each axis, the sum of the two neighbours,
+  /// times A / spacing^2. Past an open end, the spin replaces the missing neighbour.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_turning_field(Stencil const& stencil,
                                                                   VectorOf<Stencil> h) const {
@@ -67,8 +67,8 @@ class UniformExchange {
     return h;
   }
 
-  /// Returns H up to a multiple of the spin itself: the sum of existing neighbours, times A /
-  /// spacing^2.
+  /// Returns H up to a multiple of the spin itself: for each axis, the sum of the existing
+  /// neighbours, times A / spacing^2.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
@@ -142,11 +142,11 @@ class UniformExchange {
 }  // namespace detail
 
 /// Exchange with the nearest neighbours along each axis: H = A Lap(m). Lap is the sum over the axes
-/// of the second difference over existing neighbours, divided by the spacing squared.
-/// E = sum over bonds of (A/2) |m_q - m_n|^2 / spacing^2.
+/// of the second difference over existing neighbours, divided by the spacing squared. E = sum over
+/// bonds between sites n and q of (A/2) |m_q - m_n|^2 / spacing^2.
 class Exchange : public detail::TermOnLattice<detail::UniformExchange> {
  public:
-  /// Throws std::invalid_argument when the constant is not finite.
+  /// Throws std::invalid_argument when the constant is not finite or the lattice is invalid.
   Exchange(Lattice const& lattice, double constant)
       : TermOnLattice("cayspin::Exchange", lattice,
                       detail::finite(constant, "cayspin::Exchange: the constant")) {}

@@ -82,9 +82,9 @@ struct AppliedToMoments {
 /// cell: H = -(g / mu) dE/dm, with the energy E of the terms inside. All terms must be inside; for
 /// an applied field use ZeemanOfMoments. Sites without a spin have H = 0. Their spins must be zero
 /// vectors, so that PairCouplings sees none there. Terms like Exchange, which use the lattice's
-/// nearest neighbours, need a FieldWithVacancies for that.
-/// Without damping, E is conserved as usual. But H is not -dE/dm. So EnergyControl, and others that
-/// need H = -dE/dm, refuse this field; they accept the field inside.
+/// nearest neighbours, must be in a FieldWithVacancies to leave these sites out. Without damping, E
+/// is conserved as usual. But H is not -dE/dm. So EnergyControl, and all other code that needs H =
+/// -dE/dm, refuses this field; it accepts the field inside.
 template <class Field, class MemorySpace>
 class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Field> {
  public:
@@ -114,7 +114,8 @@ class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Fie
   CellMoments<MemorySpace> moments_;
 };
 
-/// A uniform field applied to the moments of a crystal's sites: E = -mu m.H, in a FieldOfMoments.
+/// A uniform field `applied` to the moments of a crystal's sites: E = -mu m.applied per site. Use
+/// it in a FieldOfMoments.
 template <class MemorySpace>
 class ZeemanOfMoments : public detail::PreparedOnce {
  public:

@@ -32,8 +32,8 @@ constexpr bool holds() {
   return is_a<Wanted, Term> || any_holds<Wanted>(PartsOfTerm<Term>());
 }
 
-/// A stencil that treats a vacant neighbour as missing: the spin itself, or the vector passed for
-/// missing neighbours, replaces it.
+/// A stencil that treats a vacant neighbour as missing: the spin at the centre, or the vector
+/// passed for missing neighbours, replaces it.
 template <class Stencil, class Real>
 class StencilAmongVacancies {
  public:
@@ -67,7 +67,7 @@ class StencilAmongVacancies {
   template <int Axis, int Direction>
   KOKKOS_FORCEINLINE_FUNCTION vector_type unless_vacant(vector_type const& neighbor,
                                                         vector_type const& missing) const {
-    value_type const zero(0);  // past an open end, which counts as vacant
+    value_type const zero(0);  // also the occupation past an open end
     auto const vacant = site().template neighbor<Axis, Direction>(occupation_, zero) == zero;
     return select<value_type>(vacant, missing, neighbor);
   }
@@ -136,8 +136,8 @@ class FieldAmongVacancies {
 /// A field on a lattice with vacancies. `occupation` is 1 on sites that hold a spin and 0 on vacant
 /// ones. A vacant site has no field and no energy, so its spin does not change; its neighbours see
 /// a missing spin, as past an open end. User terms that use the stencil need no change. Every term
-/// must be inside: a term outside still rotates the vacant spins. A HostField's solver receives the
-/// vacant spins too, and must leave them out.
+/// must be inside: a term outside still rotates the spins of vacant sites. A HostField's solver
+/// receives these spins too, and must leave them out.
 template <class Field, class Real, class MemorySpace>
 class FieldWithVacancies : public Forwarding<FieldWithVacancies<Field, Real, MemorySpace>, Field> {
   static_assert(!detail::holds<PairCouplings, Field>(),

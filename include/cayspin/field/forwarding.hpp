@@ -26,8 +26,8 @@ struct PrepareForRows {
 
 }  // namespace detail
 
-/// CRTP base with the host members of a term or generator made of others: it forwards the members
-/// that are called before a kernel to the parts. Derived has two members:
+/// CRTP base with the host members of a term or generator made of others. Its members are called
+/// before a kernel, and call those of the parts. Derived has two members:
 ///   auto with_parts(make) const    returns the kernel version, made of make(part) for each part
 ///   bool all_parts(test) const     true if test(part) holds for every part
 /// Members that Derived defines take precedence. The result of with_parts may omit gather
@@ -89,12 +89,13 @@ class Forwarding {
 
 namespace detail {
 
-/// Marks a term that is evaluated for all spins, whatever the stencil. parts_of lists it as a part.
+/// Marks a term that sees the spins of all sites, even those that the stencil of a
+/// FieldWithVacancies hides. parts_of lists the mark as a part.
 template <class Term>
 struct SeesAllSpins {};
 
-/// Device members for the energy of a generator that has one part, Derived::part(). They exist if
-/// that part has an energy.
+/// Device members for the energy of a term or generator that has one part, Derived::part(). They
+/// exist if that part has an energy.
 template <class Derived, class Part>
 class ForwardingEnergy {
  public:

@@ -30,11 +30,11 @@ struct StoredField {
 
 }  // namespace detail
 
-/// A field that host code computes from all spins at once, through a mirror copy: use it to add any
-/// non-local field (an FFT demag, a boundary-element solver). Before each stage the spins are
-/// copied to host memory, `solver(spins, field, t)` fills `field`, and `field` is copied back. If
-/// the spins are in host memory, nothing is copied. On a part of a lattice (mpi::Domain) the solver
-/// gets that part, and fills all sites but its ghosts.
+/// A field that host code computes from all spins at once. Use it to add any non-local field (an
+/// FFT demag, a boundary-element solver). For each evaluation, the spins are copied to host memory,
+/// `solver(spins, field, t)` fills `field`, and `field` is copied back. If the spins are in host
+/// memory, nothing is copied. On a part of a lattice (mpi::Domain) the solver gets that part, and
+/// fills all sites but its ghosts.
 ///
 /// Solver: a callable void(SpinField<Real, HostSpace> const& spins, SpinField<Real, HostSpace>
 /// const& field, double t) with a member `degree`: 1 when H does not depend on m (E = -m.H), 2 when
@@ -80,7 +80,7 @@ class HostField {
   template <class Exec, class Others>
   detail::StoredField<Real> prepare(Exec const& exec, Others const& spins, double t) const {
     if constexpr (!std::is_same_v<Others, Spins>) {
-      // check_spins has reported it
+      // check_spins has a static_assert
     } else if constexpr (in_place) {
       solver_(exec, spins, field_, t);
       detail::update_ghosts(exec, field_.lattice(), field_);

@@ -74,12 +74,12 @@ class UniformInterfacialDmi {
 /// Interfacial Dzyaloshinskii-Moriya interaction of a film with unit normal n, with energy density
 /// D (m_n div m - m . grad m_n). A bond from spin m along the axis e to its neighbour m' has E = (D
 /// / spacing) (m x m') . (n x e), so that H = sum over axes of (D / spacing) (n x e) x (m_next -
-/// m_previous). A missing neighbour has no bond. With Exchange(lattice, A), a free spiral along e
-/// turns by atan(D spacing / A) from site to site. Rohart and Thiaville 2013.
+/// m_previous). A missing neighbour has no bond. With Exchange(lattice, A), a free spiral along an
+/// axis e in the film turns by atan(D spacing / A) from site to site. Rohart and Thiaville 2013.
 class InterfacialDmi : public detail::TermOnLattice<detail::UniformInterfacialDmi> {
  public:
-  /// `normal` is normalised. Throws std::invalid_argument when it is zero, or when the constant is
-  /// not finite.
+  /// `normal` is normalised. Throws std::invalid_argument when it is zero or not finite, the
+  /// constant is not finite, or the lattice is invalid.
   InterfacialDmi(Lattice const& lattice, double constant, Vec3<double> const& normal = {0, 0, 1})
       : TermOnLattice("cayspin::InterfacialDmi", lattice,
                       detail::finite(constant, "cayspin::InterfacialDmi: the constant"), normal) {}

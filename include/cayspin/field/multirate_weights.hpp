@@ -12,7 +12,7 @@ namespace cayspin::inline v0_2::detail {
 inline constexpr std::size_t most_multirate_values = 5;
 using MultirateWeights = std::array<double, most_multirate_values>;
 
-/// Returns the weights of the polynomial through the values at `nodes`.
+/// Returns the weights of the values at `nodes` in the polynomial through them, at x.
 inline MultirateWeights interpolating_weights(double x, std::span<double const> nodes) {
   MultirateWeights weights{};
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -23,27 +23,30 @@ inline MultirateWeights interpolating_weights(double x, std::span<double const> 
   return weights;
 }
 
-/// Returns the value at x of a polynomial of degree 2 with a given mean over the step. The mean
-/// determines the order of a method; slope and curvature determine its stability.
+/// Returns the value at x of a polynomial of degree 2 with this mean over the step. `slope`: in the
+/// middle of the step. `curvature`: half the second derivative. The mean determines the order of a
+/// method; slope and curvature affect only its stability.
 inline double with_mean(double mean, double slope, double curvature, double x) {
   return mean + slope * (x - 0.5) + curvature * (x * x - x + 1.0 / 6);
 }
 
-// Polynomials for Multirate of order 4. At half a turn per step, a mode cannot be told from one
-// that turns the other way. The polynomial of degree 3 through the last values amplifies both. The
-// polynomials below keep the conditions of order 4: interpolation of degree 1 (predictor) or 2
-// (corrector), and one mean each. The other 10 numbers come from a search over linear modes m' = (i
-// - damping) (w + D) m with elliptical D: none grows up to the longest step, and linewidths change
-// least.
+// Polynomials for Multirate of order 4. A mode that makes half a turn per step cannot be told from
+// one that turns the other way, and the polynomial of degree 3 through the last values amplifies
+// both. The polynomials below satisfy the conditions of order 4: they interpolate exactly to degree
+// 1 (predictor) or 2 (corrector), and the factor of the next difference (`second` or `third`) has
+// the right mean. Their other 10 numbers come from a search over linear modes
+// m' = (i - damping) (w + D) m, where D is the expensive field and w the rest. D may differ between
+// the two directions across the spin. Up to the longest step no such mode grows, and linewidths
+// change least.
 
-/// Returns predictor weights for values at 0, -1, -2, -3.
+/// Returns the predictor's weights of the values at x = 0, -1, -2, -3.
 inline MultirateWeights damping_predictor(double x, std::span<double const> /*nodes*/) {
   double const second = with_mean(5.0 / 12, -6.58, -0.91, x);
   double const third = with_mean(-0.23, 4.19, 1.32, x);
   return {1 + x + second + third, -x - 2 * second - 3 * third, second + 3 * third, -third, 0};
 }
 
-/// Returns corrector weights for values at 1, 0, -1, -2, -3.
+/// Returns the corrector's weights of the values at x = 1, 0, -1, -2, -3.
 inline MultirateWeights damping_corrector(double x, std::span<double const> /*nodes*/) {
   double const third = with_mean(-1.0 / 24, 0.77, -4.61, x);
   double const fourth = with_mean(0.06, -0.41, 1.8, x);

@@ -18,14 +18,14 @@ namespace cayspin::inline v0_2 {
 /// Bonds between any sites of a crystal: E = -m.T m' - B (m.m')^2 of each Coupling, so that H = T
 /// m' + 2 B (m.m') m' at m, and with T transposed at m'. Bonds past an open end are omitted. A bond
 /// that is longer than a periodic axis wraps around it repeatedly. On a part of a lattice
-/// (mpi::Domain) every evaluation throws, because between the stages of a step no ghosts are
-/// updated as deep as bonds reach.
+/// (mpi::Domain) every evaluation throws std::invalid_argument, because between the stages of a
+/// step the ghosts are not updated as far out as bonds may reach.
 template <class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class PairCouplings {
  public:
-  /// Throws std::invalid_argument for an invalid lattice, a coupling of sites that no cell has or
-  /// of a site with itself, a non-finite number, and a part of a lattice with fewer ghosts than
-  /// bonds reach.
+  /// Throws std::invalid_argument for an invalid lattice, a coupling of a site that no cell has or
+  /// of a site with itself, a non-finite number, and a part of a lattice whose ghosts do not cover
+  /// the reach of the bonds.
   PairCouplings(Lattice const& lattice, std::vector<Coupling> const& couplings)
       : PairCouplings(lattice, detail::BondLists(detail::validated(lattice), couplings)) {}
 
@@ -50,12 +50,12 @@ class PairCouplings {
       return prepare(exec, spins, t);
   }
 
-  /// Returns the largest |H| of unit spins at each site of a cell, or an upper bound of it.
+  /// Returns an upper bound of |H| at each site of a cell, for spins of length 1.
   std::vector<double> const& field_bounds() const { return field_bounds_; }
 
-  /// Returns true without biquadratic bonds: H is then linear in the spins.
+  /// Returns true if no bond is biquadratic. H is then linear in the spins.
   bool is_affine() const { return !has_biquadratic(); }
-  /// Returns true if H is not linear in the spins.
+  /// Returns true if a bond is biquadratic. H is then not linear in the spins.
   bool has_biquadratic() const { return bonds_.table().has_biquadratic; }
 
  private:

@@ -68,8 +68,8 @@ class PairField {
     Real const* const own = spins_.array.data + row.offset;
     if (of_site.last_bond - of_site.first_bond > RowsOfBonds::most ||
         Kokkos::max(of_site.reach.low[0], of_site.reach.high[0]) > lanes) {
-      // Memory may be read at most one pack past the ends of the first and the last row. Bonds that
-      // reach farther are wrapped one by one.
+      // There are too many bonds for RowsOfBonds, or some would read more than one pack past an end
+      // of the first or the last row, which memory does not allow. So bonds are wrapped one by one.
       for (std::int32_t x = begin; x < end; x += lanes)
         store(sum_at_edge(of_site, spins_.template load_at<OnHost>(own + x), x, row.y, row.z),
               to.data + (x - begin));
@@ -84,8 +84,8 @@ class PairField {
   using OnHost = Pack<Real>;
   static constexpr std::int32_t lanes = lanes_of<OnHost>;
 
-  // For each bond, the row to which it leads, shifted along x by the bond: element x is the site to
-  // which the bond of site x leads.
+  // The two types below return, for each bond, the row to which it leads, shifted along x: element
+  // x of the result is the site to which the bond of site x leads.
 
   /// For bonds that all lead to rows inside the lattice.
   struct RowsInPlace {
@@ -95,8 +95,8 @@ class PairField {
 
     Real const* operator[](std::int32_t b) const { return own + bonds[b].template offset<Real>(); }
   };
-  /// For bonds of which some wrap around along y or z, or lead past an open end; these rows are
-  /// null.
+  /// For bonds some of which wrap around along y or z, or lead past an open end there. Rows past an
+  /// open end are null.
   class RowsOfBonds {
    public:
     static constexpr bool all_there = false;
@@ -191,7 +191,7 @@ class PairField {
         add_tensor(of_site, b, m, spins_.template load_at<OnHost>(rows[b] + x), sums);
     store(sums, to);
   }
-  /// Sums the bonds of one site again, some of which lead past an end of the row.
+  /// Sums again the bonds of one site, some of which lead past an end of the row.
   template <class Rows>
   CAYSPIN_DETAIL_NOINLINE void sum_near_end(BondsOfSite const& of_site, Rows const& rows,
                                             std::int32_t x, Real* to) const {
@@ -276,7 +276,7 @@ class PairField {
 };
 
 /// PairCouplings for loops over rows, which call begin_row. A separate type, because g++ does not
-/// keep the spins in registers if the kernel also has H site by site.
+/// keep the spins in registers if the kernel can also compute H site by site.
 template <class Real>
 class PairFieldAlongRows : public PairField<Real> {
  public:
@@ -296,7 +296,7 @@ class PairFieldAlongRows : public PairField<Real> {
   }
 
  private:
-  RowFields<Real> fields_;  // of a piece of a row, from begin_ on
+  RowFields<Real> fields_;  // of sites begin_, begin_ + 1, .. of a row
   std::int32_t begin_ = 0;
 };
 

@@ -13,14 +13,15 @@
 //   gather(take, stencil)    the weighted sum over its parts of take(part, stencil),
 // where `take` is one of the structs below and says which quantity of each part is wanted.
 // Optional:
-//   energy_terms, energy_densities(stencil, energies)    the number of terms, and E of each
-//   energy_magnitude(stencil)    sum of absolute energies, if not the sum over these terms
+//   energy_terms, energy_densities(stencil, energies)    number of terms; energy of each
+//   energy_magnitude(stencil)    sum of absolute energies; default: over these terms
 //   local_field_varies()         true if the local part of H changes with the spin
 // The local part of H at a site depends only on its spin and t; the rest is the neighbour field.
-// RedBlack rotates each spin about the field of its neighbours.
+// RedBlack uses each of the two separately.
 namespace cayspin::inline v0_2::detail {
 
-/// Type list of the parts of a term or generator made of others (Forwarding); empty for all others.
+/// Type list of the parts of a term or generator. It is empty unless the term derives from
+/// Forwarding or defines parts_of.
 template <class... Parts>
 struct PartsOf {};
 PartsOf<> parts_of(void const*);
@@ -95,7 +96,7 @@ struct TurningField {
   }
 };
 
-/// H of the other spins, up to a multiple of the spin.
+/// The neighbour field: the part of H that other spins determine, up to a multiple of the spin.
 struct NeighborField {
   template <class Term>
   static constexpr bool skips = is_local<Term>;
@@ -193,7 +194,7 @@ inline constexpr int energy_terms = [] {
   return 1;
 }();
 
-/// Writes the energy of each of these terms.
+/// Writes the energy density of each term that is summed in the energy of `source`.
 template <class Source, class Stencil, class Value>
 KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Source const& source, Stencil const& stencil,
                                                   Value* energies) {
@@ -205,7 +206,7 @@ KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Source const& source, Stencil 
   }
 }
 
-/// Returns the sum of the absolute energies of these terms.
+/// Returns the sum of the absolute energy densities of the terms of `source`.
 template <class Source, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_magnitude(Source const& source,
                                                               Stencil const& stencil) {

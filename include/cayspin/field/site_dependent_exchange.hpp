@@ -19,8 +19,8 @@ namespace cayspin::inline v0_2 {
 namespace detail {
 
 /// SiteDependentExchange for kernels: H_n = sum of A_nq (m_q - m_n) / spacing^2. `bonds`: A_nq /
-/// spacing^2 of the bond from each site to the next one, for each axis; no data: no bonds along
-/// that axis.
+/// spacing^2 of the bond from each site to the next one, for each axis; an array without data
+/// stands for no bonds along that axis.
 template <class Real>
 struct ExchangeOfSites {
   static constexpr int degree = 2;  // H is linear in the spins
@@ -65,8 +65,8 @@ struct ExchangeOfSites {
     ValueOf<Stencil> on, back;
     VectorOf<Stencil> next, previous;  // from the spin to its neighbours
   };
-  // The bond to the previous site is stored at that site, as its bond to the next one. Past an open
-  // end the constant does not matter, since it multiplies zero.
+  // The bond to the previous site is stored at the previous site, as its bond to the next one. Past
+  // an open end the constant does not matter, since it multiplies zero.
   template <int Axis, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION BondsOfSite<Stencil> with_differences(Stencil const& stencil) const {
     auto const on = stencil.site().load(bonds[Axis]);
@@ -165,9 +165,10 @@ class SiteDependentExchange : public detail::PreparedOnce {
     return prepared;
   }
 
-  /// Multiplies the constant of the bond from each site to the next one along an axis. `factors`
-  /// has one number for each site except ghosts, x fastest. Throws std::invalid_argument for
-  /// another number of factors.
+  /// Multiplies the constant of the bond from each site to the next one along an axis, also for the
+  /// copies of this term. `factors` has one number for each site except ghosts, x fastest. Throws
+  /// std::invalid_argument for another number of factors. Along an axis of one site, it does
+  /// nothing.
   void scale_bonds(int axis, std::vector<double> const& factors) {
     if (!bonds_[axis]) return;
     auto const& bonds = *bonds_[axis];

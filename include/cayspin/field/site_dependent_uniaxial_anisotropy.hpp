@@ -14,7 +14,7 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// Functor that counts sites whose vector differs from length 1 by more than rounding.
+/// Functor that counts sites whose vector has a length that differs from 1 by more than rounding.
 template <class Real>
 struct NotUnitOfSites {
   SiteArray<Real, 3> vectors;
@@ -28,7 +28,7 @@ struct NotUnitOfSites {
   }
 };
 
-/// H = K (m.e) e with K and e of each site; each is stored as one value or as an array.
+/// H = K (m.e) e. K and e may each be one value for all sites, or an array.
 template <class Constant, class Axis>
 struct UniaxialAnisotropyOfSites {
   static constexpr int degree = 2;  // H is linear in the spins
@@ -65,7 +65,8 @@ class SiteDependentUniaxialAnisotropy : public detail::PreparedOnce {
   static constexpr bool is_local = true;
 
   /// A single axis is normalised; a field of axes is used as it is. Throws std::invalid_argument
-  /// when a constant is not finite or a field has an axis whose length is not 1.
+  /// when a constant is not finite, a single axis is zero or not finite, or a field has an axis
+  /// whose length is not 1.
   SiteDependentUniaxialAnisotropy(std::type_identity_t<Constant> constant,
                                   std::type_identity_t<Axis> axis)
       : constant_(std::move(constant)), axis_(std::move(axis)) {

@@ -9,7 +9,8 @@ namespace cayspin::inline v0_2 {
 /// E = strength (m.n)^2 / 2 per site. The normal n is normalised.
 class SlabDemag : public detail::AlongAxis {
  public:
-  /// Throws std::invalid_argument when the strength is not finite, or the normal is zero.
+  /// Throws std::invalid_argument when the strength is not finite, or the normal is zero or not
+  /// finite.
   explicit SlabDemag(Vec3<double> const& normal, double strength = 1)
       : AlongAxis(-detail::finite(strength, "cayspin::SlabDemag: the strength"), normal,
                   "cayspin::SlabDemag: the normal") {}

@@ -21,7 +21,7 @@ class Slonczewski {
   };
 
   ///   Slonczewski({.damping_like = 0.1, .polarization = {0, 0, 1}})
-  /// Throws std::invalid_argument when the polarization is zero, or a number not finite.
+  /// Throws std::invalid_argument when the polarization is zero or a number is not finite.
   explicit Slonczewski(Torque const& torque)
       : damping_like_(
             detail::finite(torque.damping_like, "cayspin::Slonczewski: the damping-like torque") *

@@ -63,8 +63,8 @@ double energy_factor_of(Term const& term) {
 
 /// A field term that costs more than the rest, for example a demagnetising field by FFTs. Multirate
 /// evaluates it once a step and interpolates it in time for the other evaluations. Everywhere else
-/// it behaves as the term itself: every energy evaluation recomputes it. A handle: the copies in a
-/// field and in a Multirate share their memory.
+/// it behaves as the term itself: every evaluation of the energy recomputes it. It is a handle: the
+/// copies in an EffectiveField and in a Multirate share their memory.
 ///
 /// Term: HostField, or a term with a static `degree`, 1 or 2 (concepts.hpp).
 template <class Spins, class Term>
@@ -119,10 +119,10 @@ class SlowField {
   }
   template <class Exec, class Others>
   bool needs_only_time(Exec const&, Others const&) const {
-    return false;  // the stored field belongs to the spins
+    return false;  // the stored field is that of given spins
   }
   bool is_affine() const { return true; }  // by the term's degree
-  /// Returns true while interpolated values replace evaluations.
+  /// Returns true while an Interpolated replaces evaluations.
   bool is_interpolated() const { return state_->count > 0; }
 
   friend auto parts_of(SlowField const*) {

@@ -9,7 +9,7 @@
 namespace cayspin::inline v0_2 {
 
 /// A uniform applied field: H = applied, E = -m.H per site. Evaluation throws std::invalid_argument
-/// when it is not finite.
+/// when `applied` is not finite.
 struct Zeeman {
   static constexpr int degree = 1;  // H does not depend on the spins
   static constexpr bool is_local = true;
@@ -32,8 +32,8 @@ struct Zeeman {
   }
 };
 
-/// A uniform applied field that changes with time: `applied(t)` is called on the host, once per
-/// stage, at the stage's time.
+/// A uniform applied field that changes with time: `applied(t)` is called on the host, once for
+/// each evaluation of the field, at its time t.
 template <class Applied>
 class TimeDependentZeeman {
   static_assert(std::is_invocable_r_v<Vec3<double>, Applied const&, double>,

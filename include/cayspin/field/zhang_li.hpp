@@ -62,7 +62,7 @@ class UniformZhangLi {
 /// and Li 2004.
 class ZhangLi : public detail::TermOnLattice<detail::UniformZhangLi> {
  public:
-  /// Throws std::invalid_argument when a number is not finite.
+  /// Throws std::invalid_argument when a number is not finite or the lattice is invalid.
   ZhangLi(Lattice const& lattice, Vec3<double> const& velocity, double nonadiabaticity = 0)
       : TermOnLattice("cayspin::ZhangLi", lattice,
                       detail::finite(velocity, "cayspin::ZhangLi: the velocity"),
