@@ -18,8 +18,8 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Descent of a Minimizer until the torque vanishes: line searches along L-BFGS directions, and
-/// Newton steps where those are slow.
+/// Descent of a Minimizer until the torque is below its bound, by line searches along L-BFGS
+/// directions, and by Newton steps where these searches are slow.
 template <class Spins>
 class Descent {
   using Real = typename Spins::value_type;
@@ -38,7 +38,8 @@ class Descent {
   Minimum so_far;
 
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
-  /// On leaving a saddle, the spin that turns most turns by at least this angle.
+  /// Once the spin that turns most turns by less than about this angle (rad), no shorter turns are
+  /// tried.
   static constexpr double least_turn = 1e-5;
 
   double strongest_field() const { return strongest_field_; }
@@ -117,8 +118,8 @@ class Descent {
     newton_until_ = so_far.evaluations + 250;
   }
 
-  /// Returns a bound of an energy's round-off, if spin components are rounded independently and the
-  /// sums are in double.
+  /// Returns a bound on the round-off of an energy, for spin components that are rounded
+  /// independently and sums in double.
   double round_off(Energy const& energy) const {
     auto const sites = static_cast<double>(is_mobile.lattice().sites());
     double const of_spins = epsilon / std::sqrt(sites);
@@ -128,8 +129,10 @@ class Descent {
   /// Turns the spins along search.direction, and then corrects them by Newton steps that leave soft
   /// modes alone. Along a curved valley the energy rises in the first turn and falls in the
   /// corrections (the watchdog of Chamberlain, Powell, Lemarechal and Pedersen 1982). Returns true
-  /// if the energy is then lower than before; otherwise tries shorter turns, and at last restores
-  /// the spins. `longest`: the longest vector of search.direction.
+  /// once the energy is lower than before, or the torque where round-off hides the difference of
+  /// energies. Otherwise tries up to two shorter turns, then restores the spins and returns false.
+  /// `slope`: the derivative of the energy along search.direction. `longest`: the length of its
+  /// longest vector.
   template <class Exec, class Field>
   bool move_and_correct(Exec const& exec, Field const& field, Spins& spins, double slope,
                         double longest, MinimizeOptions const& options) {
@@ -165,7 +168,7 @@ class Descent {
       copy(exec, gradient_before, search.gradient);
       copy(exec, direction, search.direction);
       if (factor * longest < least_turn) break;
-      // Goes to the lowest point of the parabola through the slope and the rise.
+      // Next tries the lowest point of the parabola with this slope and this rise.
       factor *= std::clamp(0.5 * factor * slope / (factor * slope - rise), 0.1, 0.5);
     }
     return false;
@@ -179,7 +182,7 @@ class Descent {
   }
 
  private:
-  static constexpr double largest_turn = 1;  // of any spin in a step
+  static constexpr double largest_turn = 1;  // of any spin in a step, rad
   static constexpr double largest_newton_turn = 0.15;
 
   static Spins named(char const* name, Spins const& like) {
@@ -189,7 +192,7 @@ class Descent {
   /// Returns true if round-off of the fields could cause the whole torque.
   bool may_be_round_off(double torque) const { return torque < 16 * epsilon * strongest_field_; }
 
-  /// Takes a step; returns false when no step goes down.
+  /// Takes an L-BFGS step; returns false when no step goes down.
   template <class Exec, class Field>
   bool iterate(Exec const& exec, Field const& field, Spins& spins, MinimizeOptions const& options) {
     for (bool const with_pairs : {true, false}) {
@@ -206,8 +209,9 @@ class Descent {
     return false;
   }
 
-  /// Shortens steps until one goes down. It compares energies, or, where round-off hides their
-  /// difference, the slopes at both ends (Hager and Zhang 2005, eq. 4.1).
+  /// Takes a step along search.direction, shortened until it goes down; returns false after 25
+  /// trials. It compares energies, or, where round-off hides their difference, the slopes at both
+  /// ends (Hager and Zhang 2005, eq. 4.1).
   template <class Exec, class Field>
   bool search_line(Exec const& exec, Field const& field, Spins& spins, double slope, double step,
                    MinimizeOptions const& options) {
@@ -231,8 +235,8 @@ class Descent {
     return false;
   }
 
-  /// Takes a Newton step to lower energy. Where L-BFGS is slow, soft modes are left, along which
-  /// Newton steps go faster.
+  /// Takes a Newton step to lower energy; returns false if none is found. Where L-BFGS is slow,
+  /// soft modes are left, along which Newton steps are faster.
   template <class Exec, class Field>
   bool take_newton_step(Exec const& exec, Field const& field, Spins& spins,
                         MinimizeOptions const& options) {
@@ -269,7 +273,7 @@ class Descent {
   double strongest_field_ = 0, first_step_ = 1;
   double newton_error_ = 1e-2;  // relative error of the next Newton step
   bool takes_newton_ = false;
-  std::int64_t newton_until_ = 0;  // up to this number of evaluations
+  std::int64_t newton_until_ = 0;  // the evaluations at which Newton steps end
 };
 
 }  // namespace cayspin::inline v0_2::detail

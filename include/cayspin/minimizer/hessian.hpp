@@ -12,9 +12,10 @@
 #include <limits>
 #include <utility>
 
-// Hessian of the energy on the tangent planes of mobile spins, P (-dH/dm) P + (H.m). Its products
-// with tangent vectors come from fields at the spins plus a multiple of the vector. Tangent vectors
-// are 0 at immobile spins, which include the zero vectors of vacant sites. So these never change.
+// Hessian of the energy on the tangent planes of mobile spins, P (-dH/dm) P + (H.m), where P
+// projects to these planes. Its products with a tangent vector come from the field at the spins
+// plus a multiple of the vector. Tangent vectors are 0 at immobile spins, which include the zero
+// vectors of vacant sites. So immobile spins never change.
 namespace cayspin::inline v0_2::detail {
 
 /// Functor that computes the tangent part of v on mobile sites, and sets 0 on the others.
@@ -33,8 +34,9 @@ struct KeepTangent {
   }
 };
 
-/// Functor that computes the Hessian times v. `shifted`: spins plus a multiple of v. `before`: the
-/// field at spins from which `shifted` differs by v / inverse_shift. Sums v.product and v.v.
+/// Functor that computes the Hessian times v. `at_rest`: the field at the spins. `shifted`: the
+/// spins plus a multiple of v. `before`: the field at spins from which `shifted` differs by v /
+/// inverse_shift. Sums v.product and v.v.
 template <class Field, class Real>
 struct HessianProduct {
   Field field;
@@ -95,7 +97,7 @@ class Hessian {
   };
 
   /// Linearises at `spins`, which must not change afterwards. A field that is not affine in the
-  /// spins is differentiated by central differences. Evaluates the field.
+  /// spins is differentiated by central differences. Evaluates the field once.
   Hessian(Exec const& exec, Field const& field, double time, Spins const& spins,
           Mobile const& is_mobile, HessianArrays<Spins> const& arrays)
       : exec_(exec),
@@ -148,8 +150,8 @@ class Hessian {
   }
 
  private:
-  /// Returns the shift that balances the errors of a central difference: round-off over the shift,
-  /// and the squared shift.
+  /// Returns the shift that balances the two errors of a central difference: round-off divided by
+  /// the shift, and the square of the shift.
   static double longest_shift() { return 4 * std::cbrt(std::numeric_limits<Real>::epsilon()); }
 
   Exec const& exec_;

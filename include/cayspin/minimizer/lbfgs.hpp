@@ -12,7 +12,8 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// L-BFGS with a preconditioner as the first approximation (Nocedal and Wright 2006, Alg. 7.4).
+/// L-BFGS with a preconditioner as the first approximation of the inverse Hessian (Nocedal and
+/// Wright 2006, Alg. 7.4).
 template <class Spins>
 class Lbfgs {
   using Real = typename Spins::value_type;
@@ -24,7 +25,7 @@ class Lbfgs {
         changes_left_(name + "::changes_left", lattice),
         preconditioned_(name + "::preconditioned", lattice) {}
 
-  /// g.d and the largest |d| of a spin.
+  /// g.d with the gradient g and the direction d, and the largest |d| of a spin.
   struct Direction {
     double slope, longest;
   };
@@ -35,7 +36,7 @@ class Lbfgs {
   /// Memory that `find` overwrites.
   Spins const& scratch() const { return preconditioned_; }
 
-  /// Stores the pair of a step, unless the curvature along it is not clearly positive.
+  /// Stores the pair of a step if the curvature along the step is clearly positive.
   void remember(PointOnPath const& there) {
     if (!(there.curvature > 1e-12 * std::sqrt(there.step_square * there.change_square))) return;
     pairs_.keep(there.curvature);

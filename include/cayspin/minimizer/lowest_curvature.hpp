@@ -13,7 +13,7 @@
 #include <utility>
 
 // Lowest curvature of the energy at an equilibrium: the least eigenvalue of the Hessian, negative
-// at a saddle. Computed by the locally optimal preconditioned conjugate gradients of Knyazev
+// at a saddle. It is computed by the locally optimal preconditioned conjugate gradients of Knyazev
 // (2001).
 namespace cayspin::inline v0_2::detail {
 
@@ -61,17 +61,18 @@ struct LowestCurvature {
 struct CurvatureSearch {
   double scale;      // strength of fields other than exchange
   double tolerance;  // curvatures above -tolerance count as not negative
-  /// Bound on the error of the curvature, unless that is negative. Infinity: only find its sign.
+  /// Bound on the error of the curvature, unless it is below -tolerance. Infinity: only its sign is
+  /// found.
   double error;
   std::int64_t stream;     // of the random start vector
   bool has_start = false;  // arrays.vector holds the start
 };
 
-/// Returns the lowest curvature found. Stops when the Rayleigh quotient is below -tolerance;
-/// otherwise when it will not fall below zero or, if search.error is finite, when its error is
-/// below that. Each saddle needs a new random stream: a start that led out of one saddle can be
-/// orthogonal to the descent from the next. Calls `precondition(from, to)`. Leaves the vector in
-/// arrays.vector.
+/// Returns the lowest curvature found. Stops once the Rayleigh quotient is below -tolerance.
+/// Otherwise stops once its error is below search.error; if that is infinite, once the quotient
+/// will not fall below zero. It takes at most 1000 steps, or 40 if search.error is infinite. Each
+/// saddle needs a new random stream: a start that led out of one saddle can be orthogonal to the
+/// descent from the next. Calls `precondition(from, to)`. Leaves the vector in arrays.vector.
 template <class AnyHessian, class Exec, class Spins, class Precondition>
 LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
                                       CurvatureArrays<Spins> const& arrays,
@@ -121,7 +122,8 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
       if (found.is_negative) break;
     }
     if (step == most_steps) break;
-    // w, the preconditioned residual, and an estimate of how much it will lower the quotient.
+    // Computes w, the preconditioned residual, and an estimate of how much it will lower the
+    // quotient.
     combine(exec, 1, hx, -found.value, x, hw);
     double const rest = length(exec, hw);
     precondition(hw, w);
@@ -138,7 +140,7 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
     if (!(decrease > 0) || is_clear) break;
     bool const has_p = step > 0;
     if (!make_normal(w, has_p)) break;
-    double of_pairs[3][3] = {{found.value}};  // products u.Hv of x, w and p, the previous step
+    double of_pairs[3][3] = {{found.value}};  // products u.Hv of x, w and the previous step p
     auto const set = [&](int i, int j, double value) { of_pairs[i][j] = of_pairs[j][i] = value; };
     set(1, 1, hessian.multiply(w, hw).along);
     set(0, 1, inner_product(exec, x, hw));

@@ -47,8 +47,9 @@ struct Minimum {
   Energy energy = {};
   std::int64_t iterations = 0, evaluations = 0;  ///< evaluations of the field over all sites
   std::int64_t saddles = 0;                      ///< saddles left on the way
-  /// Upper bound of the least eigenvalue of the energy's Hessian on the tangent planes of mobile
-  /// spins, for a converged state; with lowest_curvature, the eigenvalue.
+  /// For a converged state, an upper bound of the least eigenvalue of the energy's Hessian on the
+  /// tangent planes of mobile spins; with lowest_curvature, the eigenvalue. With keep_saddles it is
+  /// not computed, and infinity.
   double curvature = std::numeric_limits<double>::infinity();
 };
 
@@ -61,7 +62,7 @@ struct MinimizeOptions {
   double time = 0;             ///< time at which H is evaluated
   bool preconditioned = true;  ///< by the exchange measured on the field
   bool keep_saddles = false;   ///< accept any state without torque, also a saddle
-  /// Compute Minimum::curvature to 1e-6 of the strongest field; otherwise only its sign.
+  /// Compute Minimum::curvature to about 1e-6 of the strongest field; otherwise only its sign.
   bool lowest_curvature = false;
   std::function<Next(Minimum const&)> observer = {};  ///< called after each iteration
 };

@@ -20,7 +20,7 @@ struct NewtonOptions {
   double error = 0;              // relative error of the step
   double longest = 0;            // largest turn of a spin
   double residual = 0;           // stops when no site has a larger residual
-  bool follows_negative = true;  // follows a direction of negative curvature
+  bool follows_negative = true;  // goes along negative curvature also after the first direction
 };
 
 struct NewtonStep {
@@ -28,7 +28,9 @@ struct NewtonStep {
   bool is_cut = false;            // by negative curvature or the longest turn
 };
 
-/// Writes p, about -H^-1 g, into `step`. Calls `precondition(from, to)`.
+/// Writes p, an approximation of -H^-1 g with the Hessian H and the gradient g, into `step`. Ends
+/// where the curvature along a direction is not positive, after going along that direction if it is
+/// the first or if options.follows_negative. Calls `precondition(from, to)`.
 template <class AnyHessian, class Exec, class Spins, class Precondition>
 NewtonStep find_newton_step(AnyHessian& hessian, Exec const& exec, Spins const& gradient,
                             Spins const& step, NewtonArrays<Spins> const& arrays,

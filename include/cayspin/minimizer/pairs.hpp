@@ -11,7 +11,7 @@
 
 // The last steps s and gradient changes y, from which L-BFGS approximates the inverse Hessian
 // (Nocedal and Wright 2006, Sec. 7.2). Both are tangent where they were made, and are projected to
-// the current tangent planes where they are used. Two passes give all inner products of an
+// the current tangent planes where they are used. Three passes give all inner products of an
 // iteration; the recursion then needs only numbers.
 namespace cayspin::inline v0_2::detail {
 
@@ -68,7 +68,7 @@ struct ProductsOfPairs {
   }
 };
 
-/// Functor that sets q to the tangent part of g - sum of weights y.
+/// Functor that writes the tangent part of g - sum of weights y.
 template <class Real>
 struct WithoutChanges {
   SiteArray<Real, 3> spins, gradient;
@@ -87,7 +87,7 @@ struct WithoutChanges {
   }
 };
 
-/// Functor that computes y_i.z for the tangent part of z.
+/// Functor that computes y_i.z for the tangent part of z, from `vectors`.
 template <class Real>
 struct ProductsWithChanges {
   static constexpr int pairs = static_cast<int>(pairs_kept);
@@ -103,8 +103,8 @@ struct ProductsWithChanges {
   }
 };
 
-/// Functor that sets d = -(scale z + sum of weights s), tangent and zero where spins do not move;
-/// finds g.d and max |d|^2.
+/// Functor that computes d, the tangent part of -(scale z + sum of weights s), or 0 where the spin
+/// is not mobile. Also computes g.d and max |d|^2. z: `vectors`.
 template <class Real>
 struct DirectionWithSteps {
   SiteArray<Real, 3> spins, gradient, vectors;

@@ -33,18 +33,19 @@ class Preconditioner {
 
   std::array<double, 3> const& couplings() const { return couplings_; }
 
-  /// Sets c to the part of the curvature along the last step that exchange does not explain.
-  /// `step_square`: squared length of that step. Far from equilibrium a small c gives long steps.
-  /// Waves as long as the lattice then vanish before walls and vortices form, which would move by
-  /// only a cell per iteration. Near equilibrium a small c slows the convergence of the stiffest
-  /// long waves. There, c is at least its first value.
+  /// Sets c, within limits, to the part of the curvature along the last step s that exchange does
+  /// not explain. `product`: s.y, with the change y of the gradient. `exchange_energy`: s.K s.
+  /// `step_square`: s.s. Far from equilibrium a small c gives long steps. Waves as long as the
+  /// lattice then vanish before walls and vortices form, which would move by only a cell per
+  /// iteration. Near equilibrium a small c slows the convergence of the stiffest long waves. There,
+  /// c is at least its first value.
   void follow_curvature(double product, double exchange_energy, double step_square, double torque) {
     double const rest = (product - exchange_energy) / step_square;
     if (!std::isfinite(rest)) return;
     double const least = torque < first_shift_ ? first_shift_ : 1e-6 * first_shift_;
     shift_ = std::clamp(std::max(rest, 0.25 * shift_), least, 30 * first_shift_);
   }
-  /// Resets to the state before any step.
+  /// Sets c to its first value.
   void forget_curvature() { shift_ = first_shift_; }
   double first_shift() const { return first_shift_; }
 

@@ -35,7 +35,7 @@ struct AlternateSpins {
 };
 
 /// Functor that sets vectors without symmetry: their components have random signs, and sizes that
-/// differ by up to `scatter`. They are different for each `stream`.
+/// differ by up to a factor of 1 + scatter. Each `stream` gives different vectors.
 template <class Real>
 struct RandomSigns {
   std::int64_t nx, ny, stream;
@@ -146,7 +146,8 @@ struct FieldStrengths {
 
 /// Returns the mean |H|^2 of parallel spins, from sums over `sites`. Couplings H = J m' give
 /// parallel spins a field along m, which turns no spin; couplings H = J (m' - m) give no field. So
-/// if H looks like the field of the former, that field, `isotropic`, is subtracted.
+/// if H looks like the field of the former, that field is subtracted. `isotropic`: the sum of m.H
+/// that the former would give.
 inline double rest_of_parallel(double square, double along_square, double along, double isotropic,
                                double sites) {
   bool const is_along = square - along_square < 0.1 * square;
@@ -157,8 +158,8 @@ inline double rest_of_parallel(double square, double along_square, double along,
 }
 
 /// Evaluates the field for parallel spins and for spins that alternate along each axis, on occupied
-/// sites: where `spins` is not the zero vector. Overwrites `pattern`. Sets `is_mobile` to 1 where a
-/// spin sees a field.
+/// sites: where `spins` is not the zero vector. Overwrites `pattern`. If some spins see no field so
+/// far, also evaluates it for random spins. Sets `is_mobile` to 1 where a spin sees a field. Waits.
 template <class Exec, class Field, class Spins>
 FieldStrengths probe(
     Exec const& exec, Field const& field, double time, Spins const& spins, Spins const& pattern,

@@ -14,7 +14,7 @@
 #include <utility>
 
 // A point along the path m(a) = cay(a m x d) m of a line search, and what one evaluation of the
-// field gives there. Spins turn on great circles from m towards d.
+// field gives there. Each spin turns on the great circle from m towards d.
 namespace cayspin::inline v0_2::detail {
 
 /// Returns v without its component along m.
@@ -79,7 +79,7 @@ struct LookAtTrial {
 struct PointOnPath {
   Energy energy;
   double slope = 0;                                          // dE/da
-  double curvature = 0, step_square = 0, change_square = 0;  // of the pair
+  double curvature = 0, step_square = 0, change_square = 0;  // of the pair: s.y, s.s, y.y
   double torque = 0;                                         // max |m x H|
 
   bool is_finite() const { return std::isfinite(energy.value) && std::isfinite(torque); }
@@ -90,7 +90,8 @@ struct SearchArrays {
   Spins trial, gradient, new_gradient, direction;
 };
 
-/// Writes `spins`, turned by `step`, to `search.trial`, and evaluates the field there.
+/// Writes `spins`, turned by `step` times `search.direction`, to `search.trial`, and evaluates the
+/// field there; waits.
 template <class Exec, class Field, class Spins>
 PointOnPath look_along(Exec const& exec, Field const& field, double time, Spins const& spins,
                        double step, SearchArrays<Spins> const& search, Spins const& moved,

@@ -43,7 +43,7 @@ class CellsOfLattice {
   }
 
   Cell cells{};            // count along each axis
-  std::int64_t parts = 0;  // sites per cell
+  std::int64_t parts = 0;  // sites per cell, each of which is called a part
 
   std::int64_t sites() const { return sites_ * extents_[0] * extents_[1] * extents_[2]; }
 
@@ -51,7 +51,8 @@ class CellsOfLattice {
     Cell cell;
     std::size_t part;
   };
-  /// Returns the cell and the part of a site. Sites are numbered as in copy_to_host.
+  /// Returns in which cell a site is, and which part of that cell it is. Sites are numbered as in
+  /// copy_to_host.
   Place operator()(std::int64_t site) const {
     auto const plane = site / (extents_[0] * extents_[1]);
     Cell const at{site % extents_[0], site / extents_[0] % extents_[1], plane / sites_};
@@ -89,14 +90,15 @@ inline void require_periodic_along(std::vector<std::array<double, 3>> const& wav
 
 using Point = Eigen::Vector3d;
 
-/// Returns two axes in the tangent plane of a spin.
+/// Returns two orthogonal unit vectors in the tangent plane of a spin.
 inline std::array<Point, 2> tangent_axes(Point const& m) {
   Point const other = std::abs(m.x()) < 0.6 ? Point(1, 0, 0) : Point(0, 1, 0);
   Point const e = m.cross(other).normalized();
   return {e, m.cross(e)};
 }
 
-/// The Hessian between the first cell and every cell, and how the spins of a cell turn.
+/// The Hessian between the first cell and every cell, and the operator G by which the spins of a
+/// cell turn (vectors.hpp).
 class BlochProblem {
  public:
   struct Block {
@@ -105,11 +107,13 @@ class BlochProblem {
   };
   std::vector<Block> blocks;
   Eigen::MatrixXd turning;
-  std::array<bool, 3> reaches_around{};  // interaction as far as half the lattice
+  std::array<bool, 3> reaches_around{};  // true if the interaction reaches half the lattice
   CellsOfLattice::Cell cells{};
 
   /// Returns the complex rates of waves with this wave vector (in cycles per cell): a wave grows as
-  /// e^(rate t). Only the half of higher frequencies is returned; lowest frequency first.
+  /// e^(rate t). Only the half with the higher frequencies is returned, the lowest of these first.
+  /// Throws std::invalid_argument for a wave vector that does not fit the lattice along an axis
+  /// where the interaction reaches around.
   std::vector<std::complex<double>> rates(std::array<double, 3> const& wave) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double const around = wave[axis] * static_cast<double>(cells[axis]);
@@ -136,8 +140,9 @@ class BlochProblem {
   }
 };
 
-/// Returns the problem, from products of the Hessian with the tangent axes of one cell. Throws
-/// std::invalid_argument where cells differ.
+/// Returns the problem, from products of the Hessian with the tangent axes of one cell. `stops`:
+/// returns true to end early, with an incomplete problem. Throws std::invalid_argument where cells
+/// differ.
 template <class Exec, class Field, class Spins, class Numbers, class Stops>
 BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Spins const& spins,
                            Numbers const& precession, Numbers const& damping, Stops const& stops,

@@ -38,7 +38,7 @@ constexpr std::string_view to_string(ModesEnd end) {
 template <class Spins>
 struct NormalMode {
   double frequency = 0;   ///< angular, not negative
-  double decay = 0;       ///< negative where the motion grows
+  double decay = 0;       ///< negative if the motion grows
   double error = 0;       ///< relative error of the shape, in the energy norm
   Spins real, imaginary;  ///< tangent to the spins; the longest complex vector has length 1
 };

@@ -13,8 +13,8 @@
 #include <limits>
 #include <vector>
 
-// Eigenvalue problems K c = rate S c in a small subspace. K is the Hessian. S (`turning`) is the
-// inverse of the operator G by which spins turn (vectors.hpp).
+// Eigenvalue problems B c = rate S c in a small subspace. B (`hessian`) is the Hessian there. S
+// (`turning`) is the inverse of the operator G by which spins turn (vectors.hpp).
 namespace cayspin::inline v0_2::detail {
 
 /// An eigenvalue, and its vector in the subspace. One mode represents a complex conjugate pair: the
@@ -31,7 +31,7 @@ struct Pencil {
 
   Eigen::Index size() const { return hessian.rows(); }
 
-  /// Changes the basis of the vectors to the columns of `q`.
+  /// Changes the basis of the subspace to the columns of `q`.
   void change_basis(Eigen::MatrixXd const& q) {
     hessian = (q.transpose() * hessian * q).eval();
     turning = (q.transpose() * turning * q).eval();
@@ -43,9 +43,9 @@ inline void sort_by(std::vector<RitzMode>& modes, auto const& number) {
                            [&](auto const& a, auto const& b) { return number(a) < number(b); });
 }
 
-/// Returns modes of undamped motion about a minimum. Their rates are imaginary: the problem is
-/// Hermitian in the inner product of the Hessian. Returns no modes if the Hessian is not clearly
-/// positive definite.
+/// Returns the modes of undamped motion about a minimum, slowest first. Their rates are imaginary:
+/// the problem is Hermitian in the inner product of the Hessian. Returns no modes if the Hessian is
+/// not clearly positive definite.
 inline std::vector<RitzMode> undamped_modes(Pencil const& pencil) {
   using namespace std::complex_literals;
   Eigen::LLT<Eigen::MatrixXd> const factors(pencil.hessian);
@@ -64,10 +64,10 @@ inline std::vector<RitzMode> undamped_modes(Pencil const& pencil) {
   return modes;
 }
 
-/// Returns the modes of any pencil, slowest first. The inverted matrix is shifted to keep it
-/// regular if the Hessian is singular. The shift is positive, and at least `least_shift`. Zero
-/// modes that drift, as an antiferromagnet has, contribute 1 / shift^2 to the inverse. So the shift
-/// must not be small compared with the rates.
+/// Returns the modes of any pencil, slowest first. Unless undamped_modes finds them, the Hessian is
+/// shifted before it is inverted, because it may be singular. The shift is at least `least_shift`,
+/// which is positive. It must not be small compared with the rates: zero modes that drift, as those
+/// of an antiferromagnet do, contribute 1 / shift^2 to the inverse.
 inline std::vector<RitzMode> slowest_modes(Pencil const& pencil, bool is_undamped,
                                            double least_shift) {
   if (is_undamped)
@@ -120,16 +120,17 @@ inline Eigen::MatrixXd columns_of(std::vector<RitzMode> const& modes, std::size_
   return matrix;
 }
 
-/// Returns an orthonormal basis of the columns.
+/// Returns an orthonormal basis of the space that the columns span.
 inline Eigen::MatrixXd orthonormal(Eigen::MatrixXd const& columns) {
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(columns);
   factors.setThreshold(1e-10);
   return factors.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), factors.rank());
 }
 
-/// Returns the coefficients of orthonormal combinations of vectors with this Gram matrix, as
-/// columns. There are fewer columns than vectors if these are linearly dependent (Stathopoulos and
-/// Wu 2002). `least`: eigenvalues of the scaled Gram matrix up to this count as 0.
+/// Returns, as columns, the coefficients of orthonormal combinations of vectors. `products`: the
+/// Gram matrix of the vectors. There are fewer columns than vectors if the vectors are linearly
+/// dependent (Stathopoulos and Wu 2002). `least`: eigenvalues of the scaled Gram matrix up to this
+/// count as 0.
 inline Eigen::MatrixXd orthonormalizing(Eigen::MatrixXd const& products, double least) {
   Eigen::VectorXd scale = products.diagonal();
   for (double& square : scale) square = square > 0 ? 1 / std::sqrt(square) : 0;

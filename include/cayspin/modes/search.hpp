@@ -30,7 +30,7 @@ struct ModeSearchOptions {
   double tolerance = 1e-9;  // largest error of a vector
   std::int64_t evaluations = 0;
   double scale = 1;  // strength of the field without exchange
-  double shift = 0;  // shift of rates, if the Hessian is not positive
+  double shift = 0;  // least_shift of slowest_modes
   bool is_undamped = false;
   bool is_symmetric = false;  // G^-1 = 1: eigenvectors of the Hessian
   std::function<Next()> poll = {};
@@ -166,8 +166,8 @@ class ModeSearch {
     return added;
   }
 
-  /// Appends preconditioned residuals of unconverged modes from `first` on. Returns the first of
-  /// these modes, or count() if all have converged.
+  /// Appends preconditioned residuals of unconverged modes from `first` on. Returns the first
+  /// unconverged mode, or count() if there is none.
   std::size_t improve_modes(std::size_t first, std::size_t& added) {
     std::size_t unconverged = count();
     for (std::size_t mode = first; mode < count() && added < most_added(); mode += block) {
@@ -201,8 +201,8 @@ class ModeSearch {
     exec_.fence(label);
   }
 
-  /// Computes the error of a mode from its residual. If it is too large, appends the preconditioned
-  /// residual to the vectors and returns true.
+  /// Computes the error of a mode from its residual. If the error is too large and `added` is below
+  /// most_added(), appends the preconditioned residual to the vectors and returns true.
   bool improve(std::size_t mode, std::size_t place, std::size_t& added) {
     auto const& found = modes_[mode];
     std::size_t const parts = found.is_real() ? 1 : 2;
@@ -224,8 +224,7 @@ class ModeSearch {
     return true;
   }
 
-  /// Adds the appended vectors to the subspace. Returns false if none of them is linearly
-  /// independent.
+  /// Adds the appended vectors to the subspace. Returns false if all of them are in it already.
   bool extend(std::size_t added) {
     std::size_t const old = size();
     std::size_t const fresh = make_orthonormal(added);

@@ -33,7 +33,7 @@ VectorTable<Spins> table_of_vectors(std::span<Spins const> vectors) {
   return table_of<typename Spins::memory_space>("cayspin::modes::vectors", arrays);
 }
 
-/// Matrix elements, row by row.
+/// Returns the elements of a matrix, row by row.
 template <class Real, class Memory>
 Kokkos::View<Real*, Memory> table_of_numbers(Eigen::MatrixXd const& matrix) {
   std::vector<Real> numbers;
@@ -131,7 +131,7 @@ void combine_vectors(Exec const& exec, std::span<Spins const> from,
   for_each_site<Real>(exec, label, to.front().layout(),
                       CombineVectors<Real, VectorTable<Spins>, Kokkos::View<Real*, Memory>>{
                           table_of_vectors(from), table_of_vectors(to), numbers});
-  exec.fence(label);  // the tables are destroyed
+  exec.fence(label);  // the tables are destroyed at the end
 }
 
 /// Functor that computes G^-1 v = -p m x v - q v, where spins turn by G = a (m x) - b.

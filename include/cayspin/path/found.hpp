@@ -17,7 +17,7 @@ enum class PathEnd {
   converged,         ///< the path and every saddle on it have converged
   ends_not_at_rest,  ///< one of the two states could not be relaxed
   same_ends,         ///< both states relaxed to the same state
-  no_saddle,         ///< a maximum of the energy along the path led to no saddle
+  no_saddle,         ///< no maximum of the energy along the path led to a saddle
   unsettled,         ///< the saddles are found, but the path between them does not converge
   not_finite,        ///< the field or its energy is not finite
   evaluation_limit,  ///< the largest number of evaluations was reached
@@ -50,16 +50,17 @@ constexpr std::string_view to_string(PathEnd end) {
 /// opposite one.
 struct PathSaddle {
   double energy = 0;
-  double curvature = 0;       ///< lowest eigenvalue of the Hessian, which is negative
+  double curvature = 0;       ///< lowest eigenvalue of the Hessian, negative or about 0
   double next_curvature = 0;  ///< upper bound of the next eigenvalue
   double torque = 0;          ///< max |m x H|
-  std::size_t image = 0;      ///< its index on the path
+  std::size_t image = 0;      ///< index of its image on the path
 };
 
 /// The result of a search for a path.
 struct MinimumEnergyPath {
   PathEnd end = PathEnd::evaluation_limit;
-  /// Energy of each image, and its distance from the first one along great circles of all spins.
+  /// Energy of each image, and its distance from the first one along the path. Between neighbouring
+  /// images, the path follows great circles of all spins.
   std::vector<double> energy, distance;
   std::vector<PathSaddle> saddles;  ///< highest first
   /// Largest |g| of a spin, for the gradient g of the energy without its part along the path.
@@ -74,8 +75,8 @@ struct MinimumEnergyPath {
 /// Progress of a search.
 struct PathProgress {
   std::int64_t evaluations = 0;
-  double energy = 0;    ///< of the highest image, or of the state that climbs to a saddle
-  double gradient = 0;  ///< largest |g| of a spin: across the path, or of the climbing state
+  double energy = 0;    ///< of the highest image, or of the state that moves to a saddle or minimum
+  double gradient = 0;  ///< largest |g| of a spin: across the path, or of that state
 };
 
 /// Options of minimum_energy_path.

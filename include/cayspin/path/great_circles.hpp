@@ -15,9 +15,9 @@
 // of a path at one of its states.
 namespace cayspin::inline v0_2::detail {
 
-/// Returns the tangent vector at m that leads along the shorter great circle to p, with the angle
-/// as its length. Between opposite spins all circles are equally short: it takes the one through x,
-/// or through y if m is nearly along x.
+/// Returns the tangent vector at m that leads to p along the shorter arc of the great circle; its
+/// length is the angle. Between opposite spins all great circles are equally long. The one through
+/// x is taken, or through y if m is nearly parallel to x.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> way_to(Vec3<Value> const& m, Vec3<Value> const& p) {
   using Scalar = scalar_t<Value>;
@@ -96,7 +96,7 @@ struct DirectionOfPath {
   }
 };
 
-/// Writes the state at a fraction of the way between two.
+/// Writes the state at a fraction of the way between two states.
 template <class Exec, class Spins>
 void point_between(Exec const& exec, Spins const& from, Spins const& to, double fraction,
                    Spins const& output) {
@@ -115,7 +115,8 @@ double distance_between(Exec const& exec, Spins const& from, Spins const& to) {
                                         SquareOfAngle<Real>{from.array(), to.array()})[0]);
 }
 
-/// Sum t.t for the direction t of a path, and t.g with the gradient g of the energy.
+/// The sums t.t and t.g over the sites, for the direction t of a path and the gradient g of the
+/// energy.
 struct Along {
   double square, slope;
 };

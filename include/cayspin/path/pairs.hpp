@@ -122,7 +122,8 @@ class Recursion {
   static constexpr std::size_t pairs = path_pairs;
   using Numbers = std::array<double, pairs>;
 
-  /// `product(i, j)`: s_i.y_j for i <= j < count; `along[i]`: s_i.g; only pairs with use[i] count.
+  /// Computes alpha. `product(i, j)`: s_i.y_j for i <= j < count; `along[i]`: s_i.g. Pairs without
+  /// use[i] are left out.
   template <class Product>
   void begin(std::size_t count, std::array<bool, pairs> const& use, Numbers const& along,
              Product const& product) {
@@ -134,7 +135,7 @@ class Recursion {
       alpha[i] = sum / product(i, i);
     }
   }
-  /// `along[i]`: y_i.z
+  /// Computes weights. `along[i]`: y_i.z, with z from the preconditioner.
   template <class Product>
   void end(std::size_t count, std::array<bool, pairs> const& use, Numbers const& along,
            Product const& product) {
@@ -146,7 +147,7 @@ class Recursion {
     }
   }
 
-  Numbers alpha{}, weights{};  // coefficients of changes, and of steps
+  Numbers alpha{}, weights{};  // coefficients of the y, and of the s
 };
 
 }  // namespace cayspin::inline v0_2::detail

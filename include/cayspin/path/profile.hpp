@@ -40,8 +40,8 @@ struct Peak {
   double energy, prominence;
 };
 
-/// Returns the slopes at the ends of a cubic between two points, limited so that it has no maximum
-/// inside unless the slopes require one (Fritsch and Carlson 1980).
+/// Returns the slopes at the ends of a cubic between two points, limited so that the cubic has no
+/// maximum or minimum inside unless the slopes have opposite signs (Fritsch and Carlson 1980).
 inline std::array<double, 2> slopes_between(PointOfProfile const& a, PointOfProfile const& b) {
   double const arc = b.distance - a.distance, mean = arc > 0 ? (b.energy - a.energy) / arc : 0;
   if (a.slope * b.slope < 0) return {a.slope, b.slope};

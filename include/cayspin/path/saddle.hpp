@@ -58,7 +58,8 @@ struct SaddleFound {
 
 /// Climbs by Newton's method to a saddle from a state near it. Steps raise the energy along the
 /// vector of the lowest curvature, and lower it across that vector. If another curvature is
-/// negative at the end, the search goes on downhill along the vector of that one.
+/// negative at the end, the state is moved downhill along the vector of that curvature, and the
+/// search goes on.
 template <class Spins>
 class SaddleSearch {
   using Real = typename Spins::value_type;
@@ -77,7 +78,7 @@ class SaddleSearch {
   Spins& spins() { return fields_[0]; }
   Spins const& vector() const { return fields_[1]; }
 
-  /// `proceeds(SaddleFound)`: returns false to stop.
+  /// Returns where the search ended. `proceeds(SaddleFound)`: returns false to stop.
   template <class Exec, class Field, class Proceed>
   SaddleFound find(Exec const& exec, Field const& field, Mobile const& is_mobile,
                    Preconditioner<Spins>& preconditioner, SaddleSearchOptions const& options,

@@ -21,9 +21,9 @@
 namespace cayspin::inline v0_2::detail {
 
 /// A string of images between two states. Each step is a preconditioned L-BFGS step across the path
-/// for all images together, after which they are spaced evenly along it again (the simplified
+/// for all images together. The images are then spaced evenly along the path again (the simplified
 /// string method of E, Ren and Vanden-Eijnden 2007, with the directions of Henkelman and Jonsson
-/// 2000). Fixed images do not move: the ends, and known saddles and minima.
+/// 2000). Fixed images (the ends, and known saddles and minima) do not move.
 template <class Spins>
 class PathString {
   using Real = typename Spins::value_type;
@@ -69,7 +69,8 @@ class PathString {
     return points;
   }
 
-  /// Evaluates all images and returns the largest gradient of a spin across the path.
+  /// Evaluates all images that are not fixed, and returns the largest gradient of a spin across the
+  /// path.
   template <class Exec, class Field>
   double look(Exec const& exec, Field const& field, double time) {
     double largest = 0;
@@ -103,7 +104,7 @@ class PathString {
     return largest;
   }
 
-  /// Moves all images by a step, after an evaluation.
+  /// Moves all images that are not fixed by a step. Call it after look().
   template <class Exec>
   void step(Exec const& exec, Preconditioner<Spins>& preconditioner, Mobile const& is_mobile,
             double longest_turn) {
@@ -155,7 +156,7 @@ class PathString {
                           KeepTangent<Real>{image->spins.array(), next.array(), is_mobile.array(),
                                             next.output(false)});
       longest = std::max(longest, largest_length(exec, next) / longest_turn);
-      // A step longer than the distance to the next image would fold the path.
+      // Steps longer than the distances between images would fold the path.
       double const spacing = 0.5 * (arcs_[k - 1] + arcs_[k]);
       if (spacing > 0) longest = std::max(longest, 2 * length(exec, next) / spacing);
     }
@@ -198,8 +199,9 @@ class PathString {
     }
   }
 
-  /// Makes a state between image `after` and the next one a fixed image; the others shift along the
-  /// path. Returns false if there are too few images.
+  /// Adds a state as a fixed image between image `after` and the next one. The number of images
+  /// stays the same: those that are not fixed shift along the path. Returns false if none is left
+  /// for the state.
   template <class Exec>
   bool insert(Exec const& exec, Spins const& state, Energy const& energy, std::size_t after) {
     std::vector<Spins> nodes;
@@ -275,7 +277,8 @@ class PathString {
     return arrays;
   }
 
-  /// Computes s_i.g and s_i.y_j of each image, and their sums over all images.
+  /// Computes the products of pairs for each image, and sums over all images of s_i.g and s_i.y_j
+  /// across the path.
   template <class Exec>
   void find_products(Exec const& exec) {
     of_pairs_ = {};
@@ -349,7 +352,8 @@ class PathString {
     for (std::size_t k = 0; k + 1 < count; ++k) arcs_[k] = distance_between(exec, at(k), at(k + 1));
   }
 
-  /// Writes states that are evenly spaced along the path of trial states to the spins.
+  /// Sets the spins to states that are evenly spaced along the path of trial states, between fixed
+  /// images.
   template <class Exec>
   void space_evenly(Exec const& exec) {
     measure_arcs(exec, [this](std::size_t k) -> Spins const& { return images_[k].trial; });

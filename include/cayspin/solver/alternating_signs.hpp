@@ -9,7 +9,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// -1 where the indices along some axes have an odd sum, 1 elsewhere.
+/// -1 where the sum of the indices along the axes in `along` is odd, 1 elsewhere.
 struct AlternatingSigns {
   bool along[3] = {false, false, false};
 

@@ -41,7 +41,8 @@ class CellAxis {
     if (cells() == 1 || (!periodic_ && i == 0)) return 0;
     return 2 / (widths_[i] * (widths_[i] + widths_[(i + cells() - 1) % cells()]));
   }
-  /// Returns the largest sum of both. Twice this is an upper bound of the frequencies.
+  /// Returns the largest to_previous + to_next. Twice this is an upper bound of the eigenvalues of
+  /// minus the second difference.
   double largest_sum() const {
     double largest = 0;
     for (std::size_t i = 0; i < cells(); ++i)
@@ -102,7 +103,7 @@ class CellAxis {
 template <class Real>
 struct CellAxisArrays {
   Real const *to_previous = nullptr, *to_next = nullptr;  // multiplied by the coupling
-  Real const *share = nullptr, *weights = nullptr;        // weights[k coarse_cells + coarse]
+  Real const *share = nullptr, *weights = nullptr;        // weights[k * coarse_cells + coarse]
   Real const* mean = nullptr;                             // 1 / (sum of a coarse cell's weights)
   std::int32_t const* beside = nullptr;
   std::int32_t coarse_cells = 0;

@@ -36,7 +36,7 @@ struct CellArray {
     return {detail::load<Value>(from), detail::load<Value>(from + stride),
             detail::load<Value>(from + 2 * stride)};
   }
-  /// Stores only to cells before `end`.
+  /// Stores three components, starting at `component`, but only to cells before x = end.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION void store(Vec3<Value> const& value, CellPlace const& place,
                                          std::int32_t end, int component = 0) const {
@@ -64,7 +64,7 @@ struct CellArray {
   }
 };
 
-/// Returns an array that starts at component `first`.
+/// Returns a field for the kernels of a solver, from component `first` on.
 template <int Components, class Real, int All, class MemorySpace>
 CellArray<Real, Components> cells_of(SiteField<Real, All, MemorySpace> const& field,
                                      int first = 0) {
@@ -82,8 +82,8 @@ struct CellGrid {
 };
 
 /// Kernel loop of a solver on hosts: a task is a row. The functor is called for packs of cells, as
-/// functor.template operator()<Value>(place), or if it has this member for rows, as
-/// functor.row(place, nx).
+/// functor.template operator()<Value>(place). If it has a member `row`, it is called for rows
+/// instead, as functor.row(place, nx).
 template <class Real, class Functor>
 struct RowOfCells {
   Functor functor;
@@ -122,7 +122,8 @@ struct OneCell {
   }
 };
 
-/// Returns the cost of a pass over these cells, as a number of sites of a field evaluation.
+/// Returns the number of sites at which an evaluation of a field costs as much as a pass over these
+/// cells.
 inline std::int64_t sites_worth(RowLayout const& layout) { return layout.sites() / 4; }
 
 /// Launcher that calls a functor for all cells of a grid, in a kernel of its own.

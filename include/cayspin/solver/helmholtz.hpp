@@ -16,10 +16,10 @@ namespace cayspin::inline v0_2::detail {
 
 /// Solver that approximates z = (c + b K)^-1 r for fields of vectors, with K = -J Lap over the
 /// neighbours of a lattice, b >= 0 and c > 0. Along an axis with J < 0, K has |J| and adds
-/// neighbours rather than subtract them, so that K >= 0: this is -|J| Lap for vectors whose sign
-/// alternates along the axis. If only one axis couples, z is the exact solution. Otherwise z is the
-/// result of one multigrid cycle V(2, 2) in single precision, which leaves a fifth to a half of the
-/// residual. A cycle is a linear map, symmetric to round-off, and positive definite.
+/// neighbours instead of subtracting them, so that K >= 0: this is -|J| Lap for vectors whose sign
+/// alternates along the axis. If at most one axis couples, z is the exact solution. Otherwise z is
+/// the result of one multigrid cycle V(2, 2) in single precision, which leaves a fifth to a half of
+/// the residual. A cycle is a linear map, symmetric to round-off, and positive definite.
 template <class Real, class MemorySpace>
 class Helmholtz {
  public:

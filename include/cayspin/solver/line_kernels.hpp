@@ -11,11 +11,12 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Coefficients of lines that are solved from both ends, with equal factors for both halves: y_i =
-/// inverse_i r_i + ratio_i y_(i-1) towards the middle, z_i = y_i + ratio_i z_(i+1) back. The first
-/// z_(i+1), beyond the middle, is same y + other y' + middle r, where y and y' are the last ones of
-/// this half and of the other, and r is that of the site in the middle of an odd line. A periodic
-/// line finally adds closing_i (z_0 + sign z_0'), where z_0' is at the other end.
+/// Coefficients of lines that are solved from both ends, with equal factors for both halves. In
+/// each half, i counts from its end of the line: y_i = inverse_i r_i + ratio_i y_(i-1) towards the
+/// middle, z_i = y_i + ratio_i z_(i+1) back. The z next to the half is same y + other y' + middle
+/// r, where y and y' are the last ones of this half and of the other half, and r is that of the
+/// site in the middle of a line with an odd number of sites. A periodic line finally adds closing_i
+/// (z_0 + sign z_0'), where z_0' is at the other end.
 template <class Scalar>
 struct LineFactors {
   Scalar const *inverse = nullptr, *ratio = nullptr, *closing = nullptr;
@@ -75,7 +76,7 @@ struct LineEnds {
     }
   }
 
-  /// Multiplies the imaginary part by sign.
+  /// Returns these ends with the imaginary part multiplied by sign.
   KOKKOS_FORCEINLINE_FUNCTION LineEnds with_imaginary(Real sign) const {
     LineEnds ends = *this;
     if constexpr (Parts == 2)
@@ -106,7 +107,7 @@ struct SolveLines {
   int axis;
   SiteArray<Real, RightHandComponents> r;
   SiteArray<Real, 3 * parts> z;
-  Real imaginary_sign;  // of r
+  Real imaginary_sign;  // multiplies the imaginary part of r
 
   /// Returns the number of tasks side by side along x. A task is one line along x; along other axes
   /// it is as many adjacent lines as there are lanes.

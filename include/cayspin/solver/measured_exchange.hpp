@@ -34,8 +34,8 @@ struct FillWaves {
   }
 };
 
-/// Functor that counts a site's bonds along each axis to spins whose waves have the opposite sign.
-/// Each bond is thus counted at both of its ends.
+/// Functor that counts a site's bonds along each axis to sites where the wave has the opposite
+/// sign. Each bond is thus counted at both of its ends.
 template <class Real>
 struct OpposedBonds {
   SiteArray<Real, 3> waves;
@@ -77,17 +77,18 @@ struct ResponseToWaves {
 };
 
 /// The exchange in a generator A = precession H + damping m x H, measured by the response to the
-/// shortest waves along each axis on uniform spins. H is a sum over the axes of a coupling times
-/// the second difference of the spins; local terms cancel. If the exchange depends on the site, the
-/// couplings are means over the bonds between spins. (For minimisers `probe` uses m.H of a field
-/// instead, and finds couplings of either sign.)
+/// shortest waves along each axis on uniform spins. H is taken to be a sum over the axes of a
+/// coupling times the second difference of the spins; local terms cancel. If the exchange depends
+/// on the site, the couplings are means over the bonds between spins. (For minimisers `probe` uses
+/// m.H of a field instead, and finds couplings of either sign.)
 struct MeasuredExchange {
   std::array<double, 3> couplings{};
   double precession = 1, damping = 0;
   bool known = false;
 
-  /// Evaluates the generator twice, and twice more for each axis with neighbours. Returns how often
-  /// it did so. Overwrites `work`, with waves where `spins` are not zero. Waits.
+  /// Evaluates the generator twice, and twice more for each axis with neighbours. Returns the
+  /// number of evaluations. Overwrites `work`: with waves where `spins` is not zero, else with 0.
+  /// Waits.
   template <class Exec, class Generator, class Spins>
   int measure(Exec const& exec, std::string const& label, Generator const& generator,
               Spins const& spins, Spins const& work, double t) {

@@ -20,7 +20,8 @@ namespace cayspin::inline v0_2::detail {
 /// One multigrid cycle on cell-centred grids for an Operation, ShiftedExchange or ShiftedSpinWaves,
 /// in precision Real. It relaxes after the coarse-grid correction and, if IsSymmetric, equally
 /// often before it, which makes the cycle a symmetric map. On hosts, the small grids share one
-/// kernel on the calling thread. Bits do not depend on threads or host spaces.
+/// kernel on the calling thread. Results have the same bits for any number of threads and in any
+/// host space.
 template <class Operation, int Relaxations, bool IsSymmetric, class Real, class MemorySpace>
 class Multigrid {
   static constexpr int right_components = Operation::right_components;
@@ -38,7 +39,7 @@ class Multigrid {
         restrict_label_("cayspin::" + name + "::restrict"),
         interpolate_label_("cayspin::" + name + "::interpolate"),
         coarse_label_("cayspin::" + name + "::coarse") {
-    lattice.cell_sites = 1;  // a coarse grid need not hold whole cells
+    lattice.cell_sites = 1;  // coarse grids need not hold whole cells of a crystal
     std::vector<CellAxis> axes;
     for (std::size_t axis = 0; axis < 3; ++axis)
       axes.emplace_back(lattice.shape[axis], lattice.boundary[axis] == Boundary::periodic);

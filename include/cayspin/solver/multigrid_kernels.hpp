@@ -19,7 +19,8 @@ struct ShiftedExchange {
 
   Real b, weight;
 
-  /// Returns the operation whose relaxation is exact for waves of frequency s of K.
+  /// Returns the operation whose relaxation is exact for waves with the frequency (eigenvalue) s of
+  /// K.
   static ShiftedExchange relaxing(double b, double s) {
     return {static_cast<Real>(b), static_cast<Real>(1 / (1 + b * s))};
   }
@@ -68,7 +69,7 @@ struct ShiftedSpinWaves {
     Vec3<Value> const f = right.template load<Value>(place),
                       m = right.template load<Value>(place, 3), turned_ku = cross(m, ku);
     Value const shortness = multiply_add(Value(magnitude), dot(m, m), Value(Real(-magnitude)));
-    // m x (m x .) is -1 on vectors normal to m.
+    // m x (m x v) is -|m|^2 v for vectors v normal to m.
     Vec3<Value> const rest =
         multiply_add(shortness, ku,
                      multiply_add(Value(along), cross(m, turned_ku),
@@ -147,6 +148,7 @@ struct RelaxCells {
 };
 
 /// Functor that keeps only the part of u normal to m, since ShiftedSpinWaves is for such vectors.
+/// Where m is shorter than 1, a part along m is left.
 template <class Real>
 struct KeepAcross {
   std::int32_t nx;
@@ -203,8 +205,9 @@ struct ScaleCells {
 };
 
 /// Functor that writes (r x m, m), with m of length 1, or 0 where there is no spin: a right side of
-/// ShiftedSpinWaves. If d is the solution for it, m x d is the solution for r. Six components of r
-/// stand for r' + sign m x r''. `same_directions`: m is already there.
+/// ShiftedSpinWaves. If d is the solution for this right side, m x d is the solution for r. Six
+/// components of r stand for r' + sign m x r''. `same_directions`: m is there already, and is not
+/// written.
 template <int Components, class FromReal, class Real>
 struct TurnRightSide {
   std::int32_t nx;

@@ -59,7 +59,7 @@ struct MultigridLevel {
   CellGrid<Real> grid{};
   std::array<CellAxisTables<Real, MemorySpace>, 3> tables;
   double least = 0, largest = 0;  // range of frequencies of K to smooth
-  std::vector<int> coarsened;     // axes
+  std::vector<int> coarsened;     // axes, in the order of coarsening
   Right right;
   Field one, other;
   std::vector<Right> rights_between;  // right sides with only some axes coarsened

@@ -9,14 +9,15 @@
 // Transfers between a grid and the next coarser one, one axis at a time.
 namespace cayspin::inline v0_2::detail {
 
-/// Zeroes the padding after a row, up to the end of a pack: packs read it and multiply it by zero.
+/// Zeroes the padding after a row, up to the end of a pack, because packs read it and multiply it
+/// by zero.
 template <class Real>
 KOKKOS_FORCEINLINE_FUNCTION void clear_beside_row(Real* row, std::int32_t nx) {
   for (std::int32_t x = nx; x % host_lanes<Real> != 0; ++x) row[x] = 0;
 }
 
 /// Restriction along y or z: `to` has about half the cells along the axis. Components from the
-/// fourth on (directions) become means instead.
+/// fourth on are directions, and become means instead.
 template <class Real, int Components>
 struct RestrictRows {
   int axis;
@@ -95,8 +96,8 @@ struct RestrictAlongRows {
   }
 };
 
-/// Interpolation along y or z: `to` has about twice the cells along the axis. Adds to the values of
-/// `to`, or else replaces them.
+/// Interpolation along y or z: `to` has about twice the cells along the axis. If Adds, it adds to
+/// the values of `to`; otherwise it replaces them.
 template <class Real, bool Adds>
 struct InterpolateRows {
   int axis;
