@@ -51,7 +51,7 @@ class FftwPlan {
   using Plan = typename Functions::Plan;
 
  public:
-  /// make(): calls an FFTW planner.
+  /// make(): returns a plan from an FFTW planner. Throws std::runtime_error if there is none.
   template <class Make>
   explicit FftwPlan(Make const& make) {
     std::scoped_lock const alone(fftw_planner);

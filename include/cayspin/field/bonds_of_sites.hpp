@@ -41,7 +41,7 @@ struct Shell {
   std::int32_t first, last;
   double exchange;
 };
-/// T row by row, and the biquadratic constant.
+/// T of a bond row by row, and its biquadratic constant.
 struct BondTensor {
   double of[10];
 };

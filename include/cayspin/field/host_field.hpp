@@ -80,7 +80,7 @@ class HostField {
   template <class Exec, class Others>
   detail::StoredField<Real> prepare(Exec const& exec, Others const& spins, double t) const {
     if constexpr (!std::is_same_v<Others, Spins>) {
-      // check_spins has a static_assert
+      // a static_assert in check_spins refuses these spins
     } else if constexpr (in_place) {
       solver_(exec, spins, field_, t);
       detail::update_ghosts(exec, field_.lattice(), field_);

@@ -119,7 +119,7 @@ class SlowField {
   }
   template <class Exec, class Others>
   bool needs_only_time(Exec const&, Others const&) const {
-    return false;  // the stored field is that of given spins
+    return false;  // the stored field depends on the spins
   }
   bool is_affine() const { return true; }  // by the term's degree
   /// Returns true while an Interpolated replaces evaluations.

@@ -69,10 +69,10 @@ struct CurvatureSearch {
 };
 
 /// Returns the lowest curvature found. Stops once the Rayleigh quotient is below -tolerance.
-/// Otherwise stops once its error is below search.error; if that is infinite, once the quotient
-/// will not fall below zero. It takes at most 1000 steps, or 40 if search.error is infinite. Each
-/// saddle needs a new random stream: a start that led out of one saddle can be orthogonal to the
-/// descent from the next. Calls `precondition(from, to)`. Leaves the vector in arrays.vector.
+/// Otherwise stops once its error is below search.error; if that is infinite, once the quotient is
+/// unlikely to fall below zero. It takes at most 1000 steps, or 40 if search.error is infinite.
+/// Each saddle needs a new random stream: a start that led out of one saddle can be orthogonal to
+/// the descent from the next. Calls `precondition(from, to)`. Leaves the vector in arrays.vector.
 template <class AnyHessian, class Exec, class Spins, class Precondition>
 LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
                                       CurvatureArrays<Spins> const& arrays,

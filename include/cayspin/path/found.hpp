@@ -17,7 +17,7 @@ enum class PathEnd {
   converged,         ///< the path and every saddle on it have converged
   ends_not_at_rest,  ///< one of the two states could not be relaxed
   same_ends,         ///< both states relaxed to the same state
-  no_saddle,         ///< no maximum of the energy along the path led to a saddle
+  no_saddle,         ///< a maximum of the energy led to no saddle, or there is no maximum
   unsettled,         ///< the saddles are found, but the path between them does not converge
   not_finite,        ///< the field or its energy is not finite
   evaluation_limit,  ///< the largest number of evaluations was reached

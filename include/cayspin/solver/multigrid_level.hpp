@@ -47,7 +47,7 @@ struct MultigridLevel {
         rights_between.emplace_back(name + "::right_between", lattice);
       }
       coarsened.push_back(number);
-      // Three cells merged into one hide longer waves than two cells do.
+      // Where a coarse cell holds three cells, the coarse grid also loses longer waves.
       double const lowest = !smooths_only_after ? 1.5 : axes[axis].cells() % 2 == 1 ? 0.6 : 1.2;
       least = std::min(least, lowest * strengths[axis]);
       axes[axis] = axes[axis].coarser();
