@@ -129,7 +129,7 @@ struct FieldAlongSpins {
 
 /// Measured strengths of a field.
 struct FieldStrengths {
-  /// Mean J of a bond along each axis: H = J (m' - m). Negative ones are replaced by 0 if a
+  /// Mean J of a bond along each axis: H = J (m' - m). All negative ones are replaced by 0 if any
   /// periodic axis has an odd number of sites and a negative J. Spins cannot alternate there, and
   /// the pattern of their order is not known beforehand.
   std::array<double, 3> couplings{};

@@ -21,8 +21,8 @@
 
 // Solves B v = rate G^-1 v, with the Hessian B and the operator G by which spins turn. The subspace
 // of the solution is extended by preconditioned residuals (Davidson 1975; Morgan and Scott 1986).
-// The search restarts with the current approximate modes and those of the previous step
-// (Stathopoulos 2007).
+// When the subspace is full, the search restarts with the current approximate modes and those of
+// the previous step (Stathopoulos 2007).
 namespace cayspin::inline v0_2::detail {
 
 struct ModeSearchOptions {

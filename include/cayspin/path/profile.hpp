@@ -53,8 +53,9 @@ inline std::array<double, 2> slopes_between(PointOfProfile const& a, PointOfProf
 }
 
 /// Returns the maxima of the energy between fixed images, highest first, from cubics between the
-/// images. The prominence of a maximum is its height above the higher of two points, the lowest
-/// ones on either side. A side ends before a point of higher energy, or at a fixed image.
+/// images. On either side of a maximum, the lowest energy is found, up to a point above the maximum
+/// or to a fixed image. The prominence is the height of the maximum above the higher of these two
+/// energies.
 inline std::vector<Peak> peaks_of(std::vector<PointOfProfile> const& points) {
   constexpr std::size_t pieces = 50;
   struct Sample {
