@@ -22,7 +22,7 @@ class AppliedField {
   bool present() const { return present_; }
   bool depends_on_time() const { return depends_on_time_; }
 
-  /// Returns mu0 applied at t. Throws NumbersFailed when a component is not finite there.
+  /// Returns mu0 applied(t). Throws NumbersFailed if a component is not finite at t.
   Vec3<double> operator()(double t) const;
 
  private:

@@ -17,8 +17,9 @@
 // Bonds between regions, for FieldInPass. Included by compile_field_in_pass.hpp.
 namespace cayspin::simulation {
 
-// Half a sweep multiplies the error of the spins at a face by at most r / (1 - r), where r is the
-// strength of the bond over that of the exchange in half a cell.
+// A sweep of InterlayerOfSites updates the spins on both sides of a face in turn. Each of the two
+// updates multiplies the error by at most r / (1 - r), where r is the strength of the bond divided
+// by that of the exchange in half a cell.
 template <class Spins>
 void FieldInPass<Spins>::Terms::add_exchange_at_faces(io::Scene const& scene,
                                                       io::SiteBox const& box) {
@@ -48,8 +49,8 @@ void FieldInPass<Spins>::Terms::add_exchange_at_faces(io::Scene const& scene,
   sweeps_of_faces_ = ratio > 0 ? 1 + static_cast<std::int32_t>(std::ceil(steps / 2)) : 1;
 }
 
-// Each site has the bond to its next one. If a lattice is divided, the bond of a part's last site
-// leads to a site of another part.
+// The arrays store, at each site, the bond to the next site along an axis. If the lattice is
+// divided, the bond stored at a part's last site leads to a site of another part.
 template <class Spins>
 void FieldInPass<Spins>::Terms::add_bonds_between(io::Scene const& scene, io::SiteBox const& box) {
   auto const& field = scene.field;

@@ -37,7 +37,7 @@ class CheckpointFromRanks final : public Checkpoint {
       on_first([&] { writer_->planes(name, of_site, planes); });
     }
   }
-  /// Throws the first rank's error on all ranks.
+  /// If the first rank has failed, throws its error there, and OtherRankFailed on the other ranks.
   void commit() {
     on_first([&] { writer_->commit(); });
     ranks_.together([&] {
@@ -46,8 +46,8 @@ class CheckpointFromRanks final : public Checkpoint {
   }
 
  private:
-  // Keeps an error until commit(): even if it cannot write, the first rank takes part in later
-  // calls, for which the others wait.
+  // Keeps an error until commit(), because the first rank has to take part in the later calls even
+  // if it cannot write: the other ranks wait for it in these.
   template <class Work>
   void on_first(Work const& work) {
     if (!writer_ || error_) return;

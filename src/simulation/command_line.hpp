@@ -19,8 +19,8 @@
 // Code that the main functions of the programs share.
 namespace cayspin::simulation {
 
-/// Returns an exit status if the command line only asked for help or the version. Throws
-/// UsageError.
+/// Returns an exit status if the command line only asked for help or the version. Throws UsageError
+/// for an invalid command line.
 inline std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
@@ -34,8 +34,9 @@ inline std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   return std::nullopt;
 }
 
-/// Prints an error in one line on standard error: messages about a file start with its name, those
-/// about the command line with the program's. Returns the exit status.
+/// Prints an error as one line on standard error, unless another rank reports it. Messages about a
+/// file start with the name of the file, and those about the command line with "cayspin". Returns
+/// the exit status.
 inline int report(std::exception_ptr const& thrown) {
   auto const say = [](std::string const& message) {
     std::fflush(stdout);
@@ -62,7 +63,7 @@ inline void require_output_written() {
                                        errno == 0 ? "some of it was lost" : std::strerror(errno)));
 }
 
-/// Returns the exit status of perform(argc, argv), which may throw.
+/// Returns the exit status of perform(argc, argv). If it throws, reports the error.
 inline int perform_and_report(int (*perform)(int, char**), int argc, char** argv) {
   try {
     int const status = perform(argc, argv);

@@ -9,8 +9,9 @@
 
 namespace cayspin::simulation {
 
-/// While in scope, this thread and those it starts treat denormal numbers as zero. Components that
-/// decay for long become denormal, and arithmetic on these is ten times slower.
+/// While in scope, this thread and those that it starts treat denormal numbers as zero, if the
+/// processor is x86 or ARM. Components that keep decaying become denormal, and arithmetic on
+/// denormal numbers is about ten times slower.
 class FlushDenormals {
  public:
   FlushDenormals() : before_(control()) { set_control(before_ | flush_bits); }

@@ -32,7 +32,7 @@ EnsembleRun::EnsembleRun(io::Scene const& scene, RunSettings const& settings, bo
     : scene_(scene), settings_(settings) {
   auto const replicas = static_cast<std::size_t>(scene.ensemble.replicas);
   at_rest_.assign(replicas, false);
-  runs_.reserve(replicas);  // no reallocation, because other threads read the first one
+  runs_.reserve(replicas);  // no reallocation, because other threads read the first run
   for (std::size_t number = 0; number < replicas; ++number) {
     auto const at = static_cast<std::int64_t>(number);
     auto const replica = relaxes ? io::replica_to_relax(scene, at) : io::replica_of(scene, at);
@@ -179,7 +179,8 @@ Advanced EnsembleRun::advance_columns(std::int64_t target, Looks const& looks) {
   auto const ended = columns_->advance(target, looks);
   steps_ = columns_->steps();
   if (ended.error) {
-    // A lattice of columns does not tell which of its replicas failed: separate runs of them do.
+    // A lattice of columns does not tell which of its replicas failed; separate runs of the
+    // replicas do.
     for (auto const number : ended.failed) {
       auto const run = SceneRun::open(io::replica_of(scene_, number), settings_);
       columns_->continue_in(*run, number);

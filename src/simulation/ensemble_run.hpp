@@ -22,7 +22,7 @@ namespace cayspin::simulation {
 /// columns of a few lattices (ReplicaColumns); otherwise each is a run of its own, and small ones
 /// run side by side on the threads of the host. Replica r is bit-identical to a run of
 /// io::replica_of(scene, r). Calls from several threads take turns, as with SceneRun; steps() and
-/// time() do not wait.
+/// time() do not wait for a turn.
 class EnsembleRun {
  public:
   /// Opens the replicas for `cayspin run`, or with `relaxes` for `cayspin relax`. settings.restart
@@ -36,9 +36,9 @@ class EnsembleRun {
   /// Returns the run of the first replica. If the replicas are columns, its spins do not advance
   /// with them.
   SceneRun const& first() const { return *runs_.front(); }
-  /// Continues from the last frame of an ensemble's file. Returns one line that names unexpected
-  /// differences from the scene of the file. Throws UsageError for a file that does not fit, and
-  /// for a method that remembers more than the spins.
+  /// Continues from the last frame of an ensemble's file. If the scene of the file differs
+  /// unexpectedly, returns one line that names the differences. Throws UsageError for a file that
+  /// does not fit, and for a method that remembers more than the spins.
   std::optional<std::string> continue_from(std::filesystem::path const& file);
 
   /// Returns the first warning of a replica about its steps, with the replica's number. If the
@@ -51,22 +51,22 @@ class EnsembleRun {
   double time() const { return first().time_at(steps_); }  // at steps()
   std::int64_t evaluations() const;
   double step_seconds() const;
-  /// Returns true if every replica has ended early, because its torque vanished.
+  /// Returns true if every replica has ended early, because its torque fell below until_torque.
   bool is_at_rest() const;
 
   /// Returns when advance() checks the replicas: at its last step, and before that only every 100
-  /// steps, because a check of a small lattice takes as long as a step. If the scene has
-  /// until_torque, as often as in a run of a single replica, so that each replica ends at the same
-  /// step as such a run.
+  /// steps, because a check of a small lattice takes as long as a step. If `until_torque` is true
+  /// and the scene has that key, it checks as often as a run of a single replica, so that each
+  /// replica ends at the same step as such a run.
   Looks looks(bool until_torque, std::function<bool()> interrupted) const;
 
   /// Advances all replicas to step steps() + count. With looks.until_torque, those that have ended
-  /// early stay where they are. If one fails or is interrupted, some others may already be beyond
-  /// steps(); when the run goes on, they wait until it has caught up.
+  /// early stay where they are. If one fails or is interrupted, others may already be beyond
+  /// steps(); when the run goes on, these wait until all have caught up.
   Advanced advance(std::int64_t count, Looks const& looks);
 
   /// Moves each replica to its own equilibrium; small ones are moved side by side. If one is
-  /// interrupted, some of the others have not moved. Throws what SceneRun::relax throws.
+  /// interrupted, others may not have moved yet. Throws what SceneRun::relax throws.
   std::vector<Minimum> relax(RelaxSettings const& settings);
 
   std::vector<io::Scalars> scalars();

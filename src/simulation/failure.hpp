@@ -15,14 +15,14 @@ class NumbersFailed : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The command line is invalid: exit status 2. what() is one line.
+/// The command line, or a file that it names, is invalid: exit status 2. what() is one line.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Thrown on all other ranks when one fails, which reports the error. `status`: the exit status of
-/// the rank that failed.
+/// Thrown on all other ranks when one rank fails, which then reports the error. `status`: the exit
+/// status of the rank that failed.
 struct OtherRankFailed : std::runtime_error {
   explicit OtherRankFailed(int status_of_it)
       : std::runtime_error("another rank failed"), status(status_of_it) {}

@@ -15,15 +15,15 @@ struct Scene;
 
 namespace cayspin::simulation {
 
-/// What a field is for. generator: H times the gyromagnetic ratio, which turns the spins; itself:
-/// H, for output; energy: -dE/dm, for searches that lower the energy. The last two are zero where a
-/// spin is frozen.
+/// The purpose of a field. generator: H times the gyromagnetic ratio, for the generator that turns
+/// the spins; itself: H, for output; energy: -dE/dm, for searches that lower the energy. The last
+/// two are zero at frozen spins.
 enum class FieldFor { generator, itself, energy };
 
-/// The field of a scene with rarely used terms: couplings, sublattices, currents, vacancies. A
-/// separate pass evaluates all terms into memory before each stage (on a host, row by row as a
-/// Runge-Kutta stage reaches each row), and the kernels of the methods load the result. So the
-/// terms are compiled once, not once for each method. Compiled by field_in_pass_double.cpp and
+/// The field of a scene with rarely used terms, such as couplings, sublattices, currents and
+/// vacancies. A separate pass evaluates all terms into memory before each stage (on a host, row by
+/// row as a Runge-Kutta stage reaches each row), and the kernels of the methods load the result. So
+/// the terms need not be compiled again for each method. Compiled by field_in_pass_double.cpp and
 /// field_in_pass_single.cpp for the spaces of space.hpp. A handle: copies share their data.
 template <class Spins>
 class FieldInPass {
@@ -33,13 +33,16 @@ class FieldInPass {
  public:
   FieldInPass(io::Scene const& scene, Lattice const& lattice);
 
-  /// `usual`: the scene's other terms.
+  /// Evaluates H and E of all sites into memory, and returns a field that loads them. `usual`: the
+  /// scene's other terms.
   template <class Exec>
   SceneFieldNow<Real> evaluate(Exec const& exec, SceneFieldNow<Real> const& usual,
                                Spins const& spins, double t, FieldFor purpose) const;
 
-  /// Prepares the terms for a loop over rows on a host, which evaluates all of them, or only those
-  /// that are not compiled into stages; without energies. Elsewhere it works like evaluate.
+  /// Prepares the terms for a loop over rows on a host. The loop evaluates either all terms, or
+  /// only those that are not compiled into stages; it computes no energies. On devices, for a
+  /// purpose other than the generator, and if terms reach beyond the ghosts of a part, it works
+  /// like evaluate.
   template <class Exec>
   SceneFieldNow<Real> along_rows(Exec const& exec, SceneFieldNow<Real> const& usual,
                                  Spins const& spins, double t, FieldFor purpose) const;
@@ -53,7 +56,7 @@ class FieldInPass {
   /// Returns the site-dependent numbers that change how spins turn in H.
   OwnOfSites<Real> own_of_sites() const;
 
-  /// Returns the gyromagnetic ratio if all spins have the same.
+  /// Returns the gyromagnetic ratio of the spins, which must all have the same one.
   double gyromagnetic() const;
 
   /// Returns the mean of m weighted by moments, over the sites that have a spin.
@@ -64,7 +67,7 @@ class FieldInPass {
   template <class Exec>
   double norm_defect(Exec const& exec, Spins const& spins) const;
 
-  /// Returns the moments; empty if each depends only on the site of the cell.
+  /// Returns the moments; empty if a moment depends only on the site of the cell.
   std::optional<ScalarField<Real, Memory>> moments_of_sites() const;
 
   /// Returns 0 where a spin is frozen and 1 elsewhere; empty if none is frozen.

@@ -53,8 +53,8 @@ struct PlaceOfCharge {
   }
 };
 
-/// Functor that gives each site the spin of the next or previous one along an axis. A site at the
-/// end keeps its own.
+/// Functor that gives each site the spin of the next or previous site along an axis. A site at an
+/// open end keeps its own spin.
 template <class Real>
 struct TakeNeighbor {
   cayspin::SiteArray<Real, 3> spins;

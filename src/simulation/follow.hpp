@@ -13,7 +13,7 @@ namespace cayspin::simulation {
 
 /// Keeps the object that lattice.follow names, such as a domain wall, in the middle of the lattice,
 /// by moving all spins along the axis by whole cells. Cells that enter at an end are copies of the
-/// last ones there. Compiled in follow.cpp, for the spaces of space.hpp.
+/// last cell at that end. Compiled in follow.cpp, for the spaces of space.hpp.
 template <class Spins>
 class Follower {
   using Real = typename Spins::value_type;
@@ -23,8 +23,8 @@ class Follower {
 
   bool due(Step const& step) const { return step.number % period_ == 0; }
 
-  /// Returns by how many cells the object is off the middle; 0 if by less than one, or if there is
-  /// no object.
+  /// Returns by how many cells the object is off the middle, at most half the lattice; 0 if it is
+  /// off by less than one, or if there is no object.
   template <class Exec>
   std::int64_t cells_off(Exec const& exec, Spins const& spins) const;
 

@@ -8,8 +8,8 @@
 
 namespace cayspin::simulation {
 
-/// Modes of a scene on the host, slowest first. Frequencies are angular in reduced units, and in Hz
-/// in SI; decays are in 1/s in SI.
+/// Modes of a scene, in host memory, slowest first. In reduced units the frequencies are angular;
+/// in SI they are in Hz, and the decays in 1/s.
 struct FoundModes {
   ModesEnd end = ModesEnd::evaluation_limit;
   std::vector<double> frequencies, decays, errors;
@@ -18,7 +18,7 @@ struct FoundModes {
   std::int64_t evaluations = 0;
 };
 
-/// The lowest eigenvalues of the Hessian of the energy, in units of energy.
+/// The lowest eigenvalues of the Hessian of the energy, in units of energy, and their eigenvectors.
 struct FoundCurvatures {
   ModesEnd end = ModesEnd::evaluation_limit;
   std::vector<double> values, errors;

@@ -16,9 +16,9 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-/// Returns B = G^-1, one block for each spin, where G maps the field on a spin to the velocity of
-/// the spin. A motion x exp(rate t) about a state obeys rate x = -G H x with the Hessian H, that is
-/// (H + rate B) x = 0.
+/// Returns B = G^-1, with a 2 x 2 block for each spin, where G maps the field on a spin to the
+/// velocity of that spin. With the Hessian H, a motion x exp(rate t) about a state obeys rate x =
+/// -G H x, that is, (H + rate B) x = 0.
 Matrix inverse_turning(io::Scene const& scene, StateHessian const& state) {
   auto const [precession, damping] = turning_of_sites(scene);
   auto const n = static_cast<Eigen::Index>(state.size());
@@ -34,7 +34,7 @@ Matrix inverse_turning(io::Scene const& scene, StateHessian const& state) {
 }
 
 /// Estimates the rate of growth: the positive root of det(H + rate B), with both matrices
-/// restricted to two vectors, the unstable mode and the same turned by 90 degrees in each tangent
+/// restricted to two vectors, the unstable mode and that mode turned by 90 degrees in each tangent
 /// plane.
 double growth_of_two(Matrix const& hessian, Matrix const& inverse, Vector const& mode) {
   Matrix two(mode.size(), 2);

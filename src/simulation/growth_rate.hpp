@@ -7,10 +7,10 @@
 
 namespace cayspin::simulation {
 
-/// Returns the rate at which deviations from a saddle grow in the motion with damping: the only
-/// positive rate, found by inverse iteration, or 0 if none grows. `unstable`: the eigenvector of
-/// the Hessian along which the energy falls. Throws NumbersFailed if a spin has neither precession
-/// nor damping.
+/// Returns the rate at which deviations from a saddle grow in the motion with damping. There is
+/// only one positive rate; it is found by inverse iteration. Returns 0 if none is found.
+/// `unstable`: the eigenvector of the Hessian along which the energy falls. Throws NumbersFailed if
+/// a spin has neither precession nor damping.
 double growth_rate(io::Scene const& scene, StateHessian const& saddle,
                    Eigen::MatrixXd const& hessian, Eigen::VectorXd const& unstable);
 

@@ -22,12 +22,13 @@ inline bool energy_must_fall(io::Scene const& scene) {
 /// Check of the state of a run. All numbers must be finite. If the method conserves lengths, they
 /// must be 1 within 64 epsilon at step 0, and later within 64 epsilon times the number of steps (at
 /// least a million), but at most 0.01. An energy that can only fall must not rise by more than
-/// round-off: 64 epsilon times the sum of its terms' absolute values. If an adaptive method's
-/// tolerance (an angle of the spins) is larger than 64 epsilon, it replaces that factor.
+/// round-off: 64 epsilon times the sum of its terms' absolute values. An adaptive method's
+/// tolerance (an angle of the spins) replaces the factor of 64 epsilon in the bound of the energy
+/// if it is larger.
 class Guard {
  public:
-  /// `epsilon`: of the run's precision. Small lattices are due after every step, large ones after
-  /// every tenth.
+  /// `epsilon`: of the run's precision. A check is due after every step for up to 4096 sites, and
+  /// after every tenth step for more.
   Guard(io::Scene const& scene, double epsilon)
       : energy_must_fall_(energy_must_fall(scene)),
         keeps_norm_(scene.integrator.method->keeps_length),
@@ -41,10 +42,11 @@ class Guard {
 
   bool due(Step const& step) const { return (step.number - begin_) % period_ == 0; }
 
-  /// Returns what is wrong with a state, if anything: one line with step and time.
+  /// Returns what is wrong with a state, if anything: one line that starts with the step and the
+  /// time.
   std::optional<std::string> judge(Step const& step, Energy const& energy, double norm_defect);
 
-  /// Call when spins were replaced: `change` is the resulting change of the energy, which no step
+  /// Call it after spins were replaced. `change`: the resulting change of the energy, which no step
   /// has caused.
   void add_to_energies(double change) {
     if (first_) first_->energy += change;

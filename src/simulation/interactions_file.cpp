@@ -50,7 +50,7 @@ DemagnetizingTensors InteractionsFile::read_or(std::function<DemagnetizingTensor
   return tensors;
 }
 
-/// Returns the tensors of the file; empty if it is missing, damaged or has others.
+/// Returns the tensors of the file; empty if it is missing or damaged, or holds other tensors.
 DemagnetizingTensors InteractionsFile::read() const {
   std::error_code error;
   auto const size = fs::file_size(path_, error);
@@ -69,8 +69,8 @@ DemagnetizingTensors InteractionsFile::read() const {
   return tensors;
 }
 
-// Writes under a temporary name, then renames the file: runs that start together may all do so,
-// with equal contents.
+// Writes under a temporary name, then renames the file. Runs that start together may all do so,
+// because they write equal contents.
 void InteractionsFile::write(DemagnetizingTensors const& tensors) const {
   auto const partial = fs::path(path_.string() + ".partial" + std::to_string(::getpid()));
   std::error_code error;

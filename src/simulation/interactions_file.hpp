@@ -16,8 +16,9 @@ class InteractionsFile {
   /// `of`: one line with everything that the tensors depend on.
   InteractionsFile(std::filesystem::path path, std::string of);
 
-  /// Returns the tensors of the file. If it is missing, damaged or has others, returns those of
-  /// `compute`, and stores them if they took at least `least_seconds` and the folder is writable.
+  /// Returns the tensors of the file. If it is missing or damaged, or holds other tensors, returns
+  /// those of `compute`, and stores them if `compute` took at least `least_seconds` and the folder
+  /// is writable.
   DemagnetizingTensors read_or(std::function<DemagnetizingTensors()> const& compute,
                                double least_seconds = 2) const;
 

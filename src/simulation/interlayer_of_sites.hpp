@@ -21,12 +21,13 @@ struct DistantBonds {
   double per_square = 0;                      // 2 over the spacing squared
 };
 
-/// Bonds to the next and the previous site along each axis, E = -J s.s' - B (s.s')^2, where s is
-/// the spin at the face of a cell. The arrays have the bonds to next sites; without data, there are
-/// none along that axis. In the half cell between the centre and the face, exchange A adds the
-/// energy k (1 - m.s), where k = 2 A over the spacing squared, and s minimises the total. This is
-/// the boundary condition of exchange at the face. It makes thick layers accurate to second order
-/// in the spacing (as in Suess et al., PRB 107, 104424, 2023). Without A, s is m.
+/// Bonds to the next and the previous site along each axis, E = -J s.s' - B (s.s')^2, where s and
+/// s' are the spins on the two sides of the face between the cells. The arrays have the bonds to
+/// next sites; without data, there are none along that axis. In the half cell between the centre
+/// and the face, exchange A adds the energy k (1 - m.s), where k = 2 A over the spacing squared; s
+/// and s' minimise the total energy. This is the boundary condition of exchange at the face. It
+/// makes thick layers accurate to second order in the spacing (as in Suess et al., PRB 107, 104424,
+/// 2023). Without A, s is m.
 template <class Real>
 struct InterlayerOfSites {
   cayspin::detail::DistantSites<Real> spins;
@@ -47,7 +48,7 @@ struct InterlayerOfSites {
     sum.add_all();
     return sum.field;
   }
-  /// Returns half the energy of each bond of the site.
+  /// Returns half the energy of the site's bonds.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
       Stencil const& stencil) const {
@@ -131,7 +132,8 @@ struct InterlayerOfSites {
         energy = energy + Value(0.5) * select<Value>(has_none, none, bond);
       }
     }
-    /// Returns the s that minimises k (1 - m.s) - J s.s' - B (s.s')^2, starting from a close one.
+    /// Returns a better approximation of the s that minimises k (1 - m.s) - J s.s' - B (s.s')^2;
+    /// for B = 0 it is exact at the given s'. If k = 0, s is m.
     KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> at_face(Value const& k, Vec3<Value> const& m,
                                                            Value const& J, Value const& B,
                                                            Vec3<Value> const& s,

@@ -8,8 +8,8 @@
 
 namespace cayspin::simulation {
 
-/// Asks a question at most about twenty times a second, however often it is called. Once the answer
-/// is true, it stays true.
+/// Function that asks a question at most twenty times a second, however often it is called. It
+/// returns false until the answer is true, and true from then on.
 class InterruptPoll {
  public:
   explicit InterruptPoll(std::function<bool()> question) : question_(std::move(question)) {}

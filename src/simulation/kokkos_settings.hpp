@@ -20,18 +20,19 @@ std::string space_name() {
   return name;
 }
 
-/// Returns true if `word` names this space. "serial" is the host's space with one thread.
+/// Returns true if `word` names this space. "serial" names any host space, which then runs with one
+/// thread.
 template <class Space>
 bool has_name(std::string const& word) {
   return word == space_name<Space>() ||
          (word == "serial" && cayspin::detail::is_host_execution<Space>);
 }
 
-/// Returns true for a host execution space.
+/// Returns true if this is the name of a host execution space.
 bool is_on_host(std::string const& space);
 
-/// Returns the requested name, or Kokkos' default. Throws UsageError if it is not compiled in, and
-/// for "serial" if Kokkos already runs with more threads.
+/// Returns the requested name, or that of Kokkos's default space. Throws UsageError for a space
+/// that is not compiled in, and for "serial" if Kokkos already runs with more than one thread.
 std::string chosen_space(std::optional<std::string> const& asked);
 
 /// Returns the number of threads; 1 on devices.
@@ -46,7 +47,8 @@ int expected_threads();
 /// Scope in which Kokkos is initialised.
 class KokkosSession {
  public:
-  /// Throws UsageError if the device does not exist, and if a device is given with a host space.
+  /// Throws UsageError if the device does not exist, if a device is given with a host space, and
+  /// for "serial" with more than one thread.
   KokkosSession(std::string const& space, std::optional<int> threads, std::optional<int> device);
   ~KokkosSession() { Kokkos::finalize(); }
   KokkosSession(KokkosSession const&) = delete;

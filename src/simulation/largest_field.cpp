@@ -67,7 +67,7 @@ Range range_of_sites(io::Scene const& scene, io::SiteNumbers const& numbers, std
   return range;
 }
 
-// Ignores vacant sites.
+// Returns the range of the moments of all sites that are not vacant.
 Range range_of_moments(io::Scene const& scene) {
   Range range;
   for_each_box(scene, [&](io::SiteBox const& box) {
@@ -84,7 +84,7 @@ double least_moment(io::Scene const& scene) {
 }
 
 // Returns the largest of_bonds(|number|, largest |number|) over the occupied sites, divided by the
-// site's moment if each has its own.
+// site's moment if each site has its own.
 template <class OfBonds>
 double largest_over_moments(io::Scene const& scene, io::SiteNumbers const& numbers,
                             std::string_view key, double largest, OfBonds const& of_bonds) {
@@ -220,8 +220,8 @@ double largest_gyromagnetic(io::Lattice const& lattice) {
 }
 
 // Returns the largest bound at any site of a cell, whose sites may have different terms. `of_all`:
-// bound of the terms that all sites have; `of_moments`: of the fields that the moments themselves
-// create.
+// the bound for terms that all sites have; `of_moments`: the bound for fields that the moments
+// themselves create.
 double bound_of_sites(io::Scene const& scene, Lattice const& lattice, double of_all,
                       double of_moments, LargestFactors const& factors) {
   auto const field = io::without_numbers_of_sites(scene.field);

@@ -9,11 +9,12 @@
 
 namespace cayspin::simulation {
 
-/// Returns the largest damping of a site. Throws io::SceneError for a negative one.
+/// Returns the largest damping of any site. Throws io::SceneError if one is negative.
 double largest_damping(io::Scene const& scene);
 
-/// Returns an upper bound of |H| at any site and time of a run, torques included. Throws
-/// io::SceneError for an invalid applied field or site-dependent constant.
+/// Returns an upper bound of |H| at any site and time of a run, including torques and multiplied by
+/// gyromagnetic ratios. Throws io::SceneError for an invalid applied field or site-dependent
+/// constant.
 double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& times,
                    TimeFeatures const& features);
 

@@ -21,7 +21,7 @@ struct MethodChoice {
   /// Writes the choice into a scene's [integrator].
   void put_into(io::Integrator& integrator) const;
 
-  /// Returns keys of [integrator], "key=value" separated by commas, without defaults.
+  /// Returns the keys as "key=value", separated by commas, without those that have their default.
   std::string keys() const;
 };
 

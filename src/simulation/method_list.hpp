@@ -10,11 +10,11 @@
 #include <tuple>
 #include <type_traits>
 
-// The methods that a scene can choose, one row each. The rows define their names in scenes and the
-// options that each accepts, the list of `cayspin methods`, the candidates of `cayspin trade`, and
-// which steppers are compiled. The file needs no Kokkos, because it only declares steppers. To add
-// a tableau, write a struct in cayspin/stepper/tableau.hpp and a row; to add a stepper, declare it
-// here and add a row.
+// The methods that a scene can choose, one row each. The rows define the methods' names in scenes,
+// the options that each method accepts, the list of `cayspin methods`, the candidates of `cayspin
+// trade`, and which steppers are compiled. The file needs no Kokkos, because it only declares
+// steppers. To add a tableau, write a struct in cayspin/stepper/tableau.hpp and a row; to add a
+// stepper, declare it here and add a row.
 namespace cayspin::inline v0_2 {
 
 template <class Spins, class Isotropy, class Rotation>
@@ -70,8 +70,8 @@ struct Cayley;
 namespace cayspin::simulation {
 
 /// A family defines the steppers of a method. Its template Stepper takes the type of the spins, an
-/// isotropy and a rotation, and ignores what the method has no choice of. If the method accepts the
-/// generator "tangent", the family also has Chart.
+/// isotropy and a rotation, and ignores those of which the method offers no choice. If the method
+/// accepts the generator "tangent", the family also has Chart.
 namespace family {
 
 template <template <class> class Of>
@@ -97,8 +97,8 @@ struct OfOrder {
   using Stepper = Of<Spins, Order>;
 };
 
-/// A Runge-Kutta method in space instead of on the sphere, which spins leave unless each step is
-/// projected to it.
+/// A Runge-Kutta method in space instead of on the sphere. Spins leave the sphere unless each step
+/// is projected onto it.
 template <template <class, class> class Of, class Tableau>
 struct InSpace {
   using tableau_type = Tableau;
@@ -141,7 +141,7 @@ struct Series {
                           std::conditional_t<std::is_same_v<Isotropy, isotropy::Energy>,
                                              isotropy::Energy, isotropy::Zero>,
                           Of>;
-  /// Without a sigma, it solves linear equations by the same steps as RKMK4.
+  /// Without a sigma and for linear equations, its steps equal those of RKMK4.
   template <class Spins>
   using StableAs = Rkmk4<Spins, isotropy::Zero, Cayley>;
   static constexpr bool distinguishes_rigid_bodies = true;
@@ -161,8 +161,8 @@ using enum io::Trial;
 inline constexpr io::SetOf<io::Rotation> both_rotations{cayley, exponential};
 }  // namespace sets
 
-/// A method and its family of steppers. If the family has a tableau, the order and the number of
-/// evaluations are the tableau's.
+/// A method and its family of steppers. If the family has a tableau, the order is the tableau's,
+/// and so is the number of evaluations unless the method is adaptive.
 template <class Family>
 struct Row : io::Method {
   using family = Family;
@@ -175,8 +175,9 @@ struct Row : io::Method {
   }
 };
 
-/// A method on the Lie group. By default it uses Cayley coordinates, and accepts all generators and
-/// isotropies that its steppers support.
+/// A method on the Lie group. By default it uses Cayley coordinates, and accepts the generators
+/// standard, orthogonal and, if the family has a chart, tangent, and the isotropies zero and, if
+/// the family takes a sigma, constant.
 template <class Family>
 constexpr Row<Family> row(io::Method method) {
   using namespace sets;
@@ -193,7 +194,7 @@ constexpr Row<Family> row(io::Method method) {
   return {method};
 }
 
-/// Rows of a method in space, and of "auto", for which the program chooses a method.
+/// The rows of a method in space and of "auto", for which the program chooses a method.
 template <template <class, class> class Of, class Tableau>
 constexpr Row<family::InSpace<Of, Tableau>> baseline(io::Method const& method) {
   return {method};

@@ -9,9 +9,9 @@
 
 namespace cayspin::simulation {
 
-/// Returns true if, besides site-dependent moments, there are only the usual terms of
-/// micromagnetics: exchange (uniform or site-dependent), uniform DMI, uniaxial anisotropies, the
-/// demagnetising field and an applied field.
+/// Returns true for the field (not the gradient) of a scene with site-dependent moments and
+/// otherwise only the usual terms of micromagnetics: exchange (uniform or site-dependent), uniform
+/// DMI, uniaxial anisotropies, the demagnetising field and an applied field.
 template <class Real>
 bool has_few_beside_moments(PassTerms<Real> const& terms) {
   return terms.per_moments.data && !terms.has_pairs && !terms.has_torques() && !terms.is_gradient &&
@@ -20,7 +20,8 @@ bool has_few_beside_moments(PassTerms<Real> const& terms) {
          terms.anisotropy_factor == 1;
 }
 
-/// Computes H along a row in that case, like PassTerms, but without tests for other terms.
+/// Computes H along a row if has_few_beside_moments; like PassTerms, but without tests for other
+/// terms.
 template <class Real, bool ExchangeOfSites, bool Vacancies>
 struct LoopOfMoments {
   PassTerms<Real> const& terms;

@@ -64,7 +64,8 @@ void FieldInPass<Spins>::Terms::add_rates(io::Scene const& scene, io::SiteBox co
   if (!ratios.empty() || scene.system.gilbert_of_sites)
     rates_ = scalar_field_of<Real, Memory>("rates", lattice_, moves);
   // Slonczewski strengths in T are fields, which turn spins by the site's material.gamma. Other
-  // torques do not depend on it, and are divided by the ratio by which all of A is multiplied.
+  // torques do not depend on gamma, so they are divided by the ratio by which all of A is
+  // multiplied.
   bool const are_fields =
       scene.material && scene.material->gamma_factors.there() && scene.field.torque.slonczewski;
   if (!ratios.empty() && io::has_torque(scene.field) && !are_fields) {

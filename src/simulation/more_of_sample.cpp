@@ -15,10 +15,11 @@ namespace cayspin::simulation {
 
 inline constexpr int regions_at_once = 4;
 
-/// Functor that sums the weights (moments) of a group of regions, which starts at `first`.
+/// Functor that sums the weights (moments) in each region of a group, which starts at region
+/// `first`.
 template <class Real>
 struct WeightsOfRegions {
-  cayspin::SiteArray<Real, 1> regions, moments;  // without data: 1
+  cayspin::SiteArray<Real, 1> regions, moments;  // without moments: 1
   double first;
 
   template <class Site, class Value>
@@ -34,7 +35,7 @@ struct WeightsOfRegions {
   }
 };
 
-/// Functor that sums the weighted spins and the energy of a group of regions.
+/// Functor that sums the weighted spins and the energy in each region of a group.
 template <class Source, class Real>
 struct SumsOfRegions {
   WeightsOfRegions<Real> of;

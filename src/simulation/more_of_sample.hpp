@@ -13,13 +13,13 @@
 
 namespace cayspin::simulation {
 
-/// Energy of each term of a scene; rigid bodies have the one term "rotation".
+/// Energy of each term of a scene; rigid bodies have only the term "rotation".
 template <class Spins>
 class TermEnergies {
  public:
   TermEnergies(io::Scene const& scene, Lattice const& lattice);
 
-  /// Returns energies in the order of names().
+  /// Returns energies in reduced units, in the order of names().
   template <class Exec>
   std::vector<double> operator()(Exec const& exec, Step const& step, Spins const& spins) const;
 

@@ -13,21 +13,22 @@
 namespace cayspin::simulation {
 
 /// Returns true if a term of the scene's field is multirate: slab_demag if slab_demag.multirate is
-/// set, demag if demag.multirate is set or, by default, if the method supports it, and a program's
-/// own nonlocal field if there are substeps.
+/// true, demag if demag.multirate is true or, by default, if the method and the rest of the scene
+/// support it, and a program's own nonlocal field if there are substeps.
 bool has_slow_field(io::Scene const& scene);
 
 /// Throws io::SceneError for substeps without an expensive field, and for an expensive field with a
-/// method or a feature that cannot be combined with it: one that needs the field at each stage,
-/// remembers earlier steps, or chooses its steps.
+/// method or a feature that cannot be combined with it: a method that needs the field at each
+/// stage, remembers earlier steps, iterates or chooses its steps, energy control, and a
+/// temperature.
 void require_slow_field_fits(io::Scene const& scene, Variant const& variant);
 
 /// Returns an override of a key with which no term of the scene is multirate.
 std::string without_multirate(io::Scene const& scene);
 
-/// Returns the order in time to which an expensive field is interpolated: 4 for methods of a higher
-/// order, and for those of order 4 if the damping is small, because order 3 would add to the
-/// damping; otherwise 3.
+/// Returns the order in time to which an expensive field is interpolated: 4 for methods of order 5
+/// and higher, and also for those of order 4 if the damping is small, because order 3 would add to
+/// the damping; otherwise 3.
 int order_of_multirate(io::Scene const& scene, Variant const& variant);
 /// Returns the order of the method in a scene with an expensive field.
 inline int order_with_multirate(io::Scene const& scene, Variant const& variant) {

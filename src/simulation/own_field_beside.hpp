@@ -8,8 +8,8 @@
 namespace cayspin::simulation {
 
 /// Joins a program's own nonlocal field with demag, dipoles or a slab computed on the host. In the
-/// returned field, own.nonlocal is their sum, and the other term is removed. Without both, returns
-/// the field unchanged.
+/// returned field, own.nonlocal is their sum, and the other term is removed. If one of the two is
+/// missing, returns the field unchanged.
 template <class Real>
 io::Field with_joined_own_field(io::Scene const& scene, io::Field field, Lattice const& lattice);
 

@@ -47,7 +47,7 @@ std::array<int, 2> read_parts(std::string const& text, cayspin::Lattice const& l
 
 double repeated_share(cayspin::Lattice const& lattice, int ghosts,
                       std::array<int, 2> const& parts) {
-  // A part in the middle has these extents along y and z, and so many ends inside the lattice.
+  // Extents of a part in the middle along y and z, and how many of its ends are inside the lattice.
   std::array<double, 2> extent{}, ends{};
   for (std::size_t i = 0; i < 2; ++i) {
     extent[i] = static_cast<double>(lattice.shape[i + 1]) / parts[i];

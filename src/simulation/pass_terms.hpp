@@ -24,8 +24,8 @@ struct CellSite {
   std::int32_t first_cubic = 0, last_cubic = 0;
 };
 
-/// H = (K (m.e) + K2 (m.e)^3) e, site-dependent. If `axes` has no data, all sites have the same
-/// axis; if `second` has none, K2 is 0.
+/// H = (K (m.e) + K2 (m.e)^3) e with site-dependent K, K2 and e. If `axes` has no data, all sites
+/// have the same axis; if `second` has none, K2 is 0.
 template <class Real>
 struct AnisotropyOfSites {
   cayspin::SiteArray<Real, 1> constants;
@@ -60,8 +60,7 @@ struct AnisotropyOfSites {
   }
 };
 
-/// Functor that stores the sum of the exchange constants of a site's bonds to vacancies, over the
-/// spacing squared.
+/// Functor that stores, for each site, the sum of `bonds` over its neighbours that are vacant.
 template <class Real>
 struct FindMissing {
   cayspin::SiteArray<Real, 1> moments;  // 0: a vacancy
@@ -92,8 +91,8 @@ struct FindMissing {
 
 /// Dzyaloshinskii-Moriya interaction with a site-dependent constant. A bond along the axis e has
 /// the mean D of its ends: H = sum of D v x m' over next and -D v x m' over previous neighbours. v
-/// is n x e / spacing for an interface, -e / spacing for the bulk; for D2d symmetry it is x /
-/// spacing along x and -y / spacing along y.
+/// is n x e / spacing for an interface and -e / spacing for the bulk; for D2d symmetry it is x /
+/// spacing along x, -y / spacing along y and zero along z.
 template <class Real>
 struct DmiOfSites {
   cayspin::SiteArray<Real, 1> constants;
@@ -159,7 +158,7 @@ struct FieldAndEnergy {
     field = field + h;
     energy = energy + Value(-0.5) * dot(stencil.center(), h);
   }
-  /// Adds `factor` times the sum of others.
+  /// Adds `factor` times `others`.
   KOKKOS_FORCEINLINE_FUNCTION void add_times(double factor, FieldAndEnergy const& others) {
     auto const times = as_value<Value>(factor);
     field = multiply_add(times, others.field, field);
@@ -184,11 +183,11 @@ struct PassTerms {
   AnisotropyOfSites<Real> const* anisotropies_of_sites;
   CrystalAnisotropyOfSites<Real> const* crystals_of_sites;
   std::int32_t dmis, anisotropies, crystals, cubics_of_cell;
-  std::int32_t anisotropies_in_time;  // how many of the first `anisotropies` have the factor
+  std::int32_t anisotropies_in_time;  // the number of anisotropies, from the first on, with the factor
   double exchange_factor, anisotropy_factor;  // uniform exchange already includes its factor
   cayspin::SiteArray<Real, 1> moments;        // 0 where there is no spin
   SourcesNow<Real> sources;
-  cayspin::SiteArray<Real, 1> per_moments;  // without data: equal for equal sites of the cell
+  cayspin::SiteArray<Real, 1> per_moments;  // without data: the same in every cell
   cayspin::SiteArray<Real, 1>
       per_gyromagnetic;                       // for torques, if all of A is scaled; or without data
   cayspin::detail::StoredField<Real> of_all;  // acts on moments like an applied field
@@ -304,8 +303,8 @@ struct PassTerms {
     return sites[pairs.site_of_plane(z)];
   }
 
-  /// Returns H of a site's moment times its gyromagnetic ratio, where `h` is -dE/dm without the
-  /// applied field.
+  /// Returns H on a site's moment times the gyromagnetic ratio. `h`: -dE/dm without the applied
+  /// field.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> seen_by_moment(CellSite const& site,
                                                                 Vec3<double> const& applied,

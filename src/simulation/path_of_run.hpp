@@ -19,8 +19,8 @@ struct EndOfPath {
 
 /// Finds a path of least energy between two states, in the scene, space and precision of a run,
 /// whose own spins do not change. `interrupted` is asked between steps of the search. Throws what
-/// require_path and find_scene_path throw, and UsageError for an end that is not a state of the
-/// scene.
+/// require_path, require_memory and find_scene_path throw, and UsageError for an end that is not a
+/// state of the scene.
 ScenePath path_of_run(SceneRun const& run, EndOfPath const& from, EndOfPath const& to,
                       ScenePathOptions options, std::function<bool()> const& interrupted,
                       std::string const& git_commit);

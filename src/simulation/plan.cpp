@@ -87,7 +87,7 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
     memory.work += work_fields_of_multirate(scene, variant) * memory.spins;
     memory.field += memory.spins;
   }
-  // The search for a descent direction, which runs when the torque is small.
+  // Memory of the search for a descent direction, which runs when the torque is small.
   if (scene.integrator.until_torque && lattice.part == nullptr)
     memory.work += (1 + Minimizer<SpinField<double>>::work_fields) * memory.spins;
   // A rank reads its part of a start a few planes at a time, but an OVF file as a whole. The first
@@ -124,8 +124,8 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
   return memory;
 }
 
-// Returns the largest damping times temperature times gyromagnetic ratio over moment, at 1001
-// equally spaced times of the run.
+// Returns the largest value of damping * temperature * gyromagnetic ratio / moment at any site and
+// at 1001 equally spaced times of the run.
 double largest_heat(io::Scene const& scene, Times const& times) {
   TemperatureInTime const temperature(*scene.thermal);
   double const begin = times.at(times.first), end = times.at(times.steps);
@@ -256,7 +256,8 @@ std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units) 
     return fmt::format("{} is above the stable {}", text, time_text(units, plan.stable_dt, 6));
   if (dt > plan.stable_dt)
     return fmt::format("{} is not stable: at this damping the method amplifies at every dt", text);
-  // Methods of order 8 are stable even at steps that no longer resolve the motion.
+  // A stable dt is not always short enough: methods of order 8 are stable even at steps that no
+  // longer resolve the motion.
   double const most = std::isfinite(plan.stable_dt) ? 3 : 2;
   if (!(plan.turn <= most))
     return fmt::format("{} turns spins by up to {:.3g} radians a step, too many to follow", text,

@@ -44,12 +44,12 @@ struct Plan {
   static constexpr double most_noise = 0.5;  // radians per step
 };
 
-/// Throws io::SceneError, for example for an invalid lattice. `features`: those of the scene if
+/// Throws io::SceneError, for example for an invalid lattice. `features`: the scene's, if they are
 /// already known.
 Plan make_plan(io::Scene const& scene, Precision precision,
                std::shared_ptr<TimeFeatures const> features = nullptr);
 
-/// Returns why dt is too large, if it is: it is above the stable one, turns spins by more than 2
+/// Returns why dt is too large, if it is: it is above the stable dt, turns spins by more than 2
 /// radians a step (3 if a stable dt is known), is longer than a feature of a field, or lets noise
 /// turn spins by more than most_noise.
 std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units);
@@ -60,8 +60,8 @@ std::optional<std::string> dt_warning(io::Scene const& scene, Plan const& plan);
 /// Returns true if there is memory for the run.
 bool fits(Plan const& plan);
 
-/// Reduces the plan to one of several ranks: to its part of the lattice, and the memory for that.
-/// The first rank also holds `planes_at_once` planes of the whole lattice.
+/// Reduces the plan to that of one of several ranks: to its part of the lattice, and the memory for
+/// this part. The first rank also holds `planes_at_once` planes of the whole lattice.
 void keep_part(Plan& plan, io::Scene const& scene, Precision precision, Lattice const& local,
                std::int64_t planes_at_once);
 

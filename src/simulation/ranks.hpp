@@ -62,7 +62,7 @@ class Ranks {
   /// Replaces the text by that of the first rank.
   virtual void tell(std::string& text) const = 0;
   /// Gathers `planes` planes along z of the whole lattice, from plane `first` on, into `gathered`,
-  /// which only the first rank has. `own`: the numbers of this part's own sites, x fastest.
+  /// which is used only on the first rank. `own`: the numbers of this part's own sites, x fastest.
   virtual void gather(cayspin::Lattice const& local, std::size_t bytes_of_site, std::int64_t first,
                       std::int64_t planes, void const* own, void* gathered) const = 0;
 
@@ -73,8 +73,8 @@ class Ranks {
     return !any({of_first != text, false})[0];
   }
 
-  /// Returns the result of work(). Throws on all ranks when it throws on one: that exception there,
-  /// OtherRankFailed elsewhere.
+  /// Returns the result of work(). If work() throws on one rank, throws on all: that exception
+  /// there, OtherRankFailed elsewhere.
   template <class Work>
   auto together(Work const& work) {
     using Result = std::invoke_result_t<Work>;

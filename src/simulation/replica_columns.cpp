@@ -77,7 +77,8 @@ io::Scene scene_of_columns(io::Scene const& one, std::int64_t first, std::int64_
   constexpr double far_apart = 1e200;  // its square is infinite
   auto columns = one;
   auto const& lattice = one.lattice;
-  // Random numbers are drawn row by row. A row of a replica is along x there, and along y here.
+  // Random numbers are drawn row by row. A row of a replica is along x in its own lattice, and
+  // along y here.
   std::array<std::size_t, 2> const axes{0, lattice.shape[1] > 1 ? 1U : 2U};
   columns.lattice.shape[0] = count;
   columns.lattice.spacing[0] = far_apart;

@@ -19,13 +19,13 @@ namespace cayspin::simulation {
 class ReplicaColumns {
  public:
   /// `one`: the scene of the first replica. Returns nothing if there are few replicas, if the
-  /// lattice has three axes or many sites, if a term other than exchange or the method couples
-  /// sites, if the replicas differ in more than seeds and temperatures, or if separate runs would
-  /// be faster.
+  /// lattice has three axes or many sites, if constants are site-dependent, if the method or a term
+  /// other than exchange couples sites, if the replicas differ in more than seeds and temperatures,
+  /// or if separate runs would be faster.
   static std::optional<ReplicaColumns> open(io::Scene const& scene, io::Scene const& one,
                                             RunSettings const& settings);
 
-  /// Returns the temperatures of the replicas, reduced; empty if all have the scene's.
+  /// Returns the temperatures of the replicas in reduced units; empty if all have the scene's.
   std::vector<double> const& temperatures() const { return temperatures_; }
 
   /// Returns the number of steps that all replicas have taken.
@@ -43,7 +43,7 @@ class ReplicaColumns {
   /// failed.
   Ended advance(std::int64_t target, Looks const& looks);
 
-  /// Continues after this step from the given spins: those of all replicas, one after the other.
+  /// Continues after step `step` from `spins`: those of all replicas, one after the other.
   void continue_from(std::int64_t step, std::vector<double> const& spins);
 
   /// Sets a separate run of a replica to the step and the spins that the replica has here.

@@ -28,9 +28,9 @@ class RestSearch {
 
   RestSearch(io::Scene const& scene, double bound) : scene_(scene), bound_(bound) {}
 
-  /// `torque`: max |m x H|. `fell`: the energy is below that of the first check; in a field that
-  /// changes, instead, the field has reached its last change. `field`: made for energies. With
-  /// `at_end` a saddle is always reported.
+  /// `torque`: max |m x H|. `fell`: the energy is below that of the first check or, if the field
+  /// changes in time, the last change is over. `field`: made for FieldFor::energy. With `at_end`,
+  /// reports a saddle even if no search is due.
   Found look(Space const& exec, Step const& step, Spins const& spins,
              SceneField<Spins> const& field, double torque, bool fell, bool at_end) {
     bool const grew = torque > last_torque_;
@@ -43,7 +43,7 @@ class RestSearch {
     if (!may_be_at_rest && !at_end) return {};
     bool const at_saddle = is_saddle(exec, step.time, spins, field);
     if (!may_be_at_rest || !at_saddle) return {may_be_at_rest && !at_saddle, at_saddle};
-    // Spins may stay at a saddle for the rest of the run: intervals between searches grow.
+    // Spins may stay at a saddle for the rest of the run, so the intervals between searches grow.
     wait_ = std::max<std::int64_t>(1, 2 * wait_);
     next_ = step.number + wait_;
     return {.at_saddle = true};
@@ -73,8 +73,8 @@ class RestSearch {
       trial_ = Spins("RestSearch::trial", spins.lattice());
     }
     // With site-dependent moments or gyromagnetic ratios, the search's own measure of the torque
-    // may exceed the bound. It would then simply descend from here; only below its bound does it
-    // look for a way off a saddle. So the bound is raised until it does.
+    // may exceed the bound. The search would then simply descend from here: it looks for a way off
+    // a saddle only below its bound. So the bound is raised until the search does so.
     double bound = bound_;
     for (int attempt = 0; attempt < 30; ++attempt, bound *= 4) {
       Kokkos::deep_copy(exec, trial_.allocation(), spins.allocation());

@@ -45,8 +45,8 @@ bool remembers(io::Scene const& scene, Variant const& variant) {
          scene.lattice.follow.has_value();
 }
 
-// Returns true if the scene ran with the plan's method, and with the same keys that need a memory
-// of steps.
+// Returns true if the scene ran with the plan's method, and if the keys that need a memory of steps
+// have not changed.
 bool ran_alike(io::Scene const& before, io::Scene const& scene, Plan const& plan) {
   return io::has_integrator(before) && !before.integrator.method->automatic &&
          &find_variant(before) == &plan.variant &&
@@ -239,13 +239,13 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
   if (stored != to_string(precision))
     refuse(fmt::format("its spins are in {} precision", stored),
            fmt::format("--precision {}", stored));
-  // Computed like the file's times, so that those of the same scene have equal bits.
+  // Computed like the times in the file, so that times of the same scene have equal bits.
   double const dt = scene.integrator.dt * units.time;
   auto const is_at = [&](std::int64_t step) {
     return std::abs(time - plan.times.at(step) * units.time) <= 1e-9 * dt;
   };
   if (!is_at(step_)) {
-    // Noise depends on the number of the step, so a run with noise must keep its numbers.
+    // Noise depends on the number of the step, so a run with noise must keep its step numbers.
     auto const step = std::llround(std::min(time / dt, 1e15));
     if (alike || scene.begin != io::StageBegin{} || scene.thermal || !is_at(step))
       refuse(

@@ -26,7 +26,7 @@ struct LastFrame {
 
 /// Returns the last frame of a file. Each stage starts after the last frame of the previous one,
 /// except the stage in which the file starts. Throws UsageError if the frames belong to other
-/// stages.
+/// stages than `stages`.
 LastFrame last_frame(io::TrajectoryInfo const& trajectory, std::vector<io::Stage> stages);
 
 /// Files of an earlier run: a trajectory and, if there is one, the checkpoint next to it; or only a
@@ -36,14 +36,14 @@ struct EarlierRun {
   /// The last frame of an ensemble's file, which has no checkpoint.
   EarlierRun(std::filesystem::path path, io::EnsembleInfo const& info);
 
-  /// Returns the scene as it ran, with the chosen method if its own is "auto".
+  /// Returns the scene as it ran, with the chosen method if its own method is "auto".
   std::string const& scene_as_run() const;
   /// Returns the scene as typed; resolved_scene is empty unless its method is "auto".
   std::string const& scene_text() const;
   std::string const& resolved_scene() const;
 
-  /// Returns where a scene continues: in the current stage of the run, or in the next one if that
-  /// had ended. Discards frames or a checkpoint of other stages. Throws UsageError if the scene has
+  /// Returns where a scene continues: in the current stage of the run or, if that has ended, in the
+  /// next one. Discards frames or a checkpoint of other stages. Throws UsageError if the scene has
   /// no such stage.
   io::StageBegin enter(std::vector<io::Stage> stages);
 
@@ -65,14 +65,14 @@ class Restart {
           std::int64_t end);
 
   std::int64_t step() const { return step_; }
-  /// Returns the spins of a box, or of the whole lattice, bit by bit, in the order of
+  /// Returns the spins of a box, or of the whole lattice, bit for bit, in the order of
   /// io::read_spins. Throws UsageError if the vacant sites differ from those of the scene. Not for
   /// ensembles.
   std::vector<double> spins(io::Scene const& scene, io::SiteBox const& box) const;
   std::vector<double> spins(io::Scene const& scene) const;
   /// Returns the checkpoint with the run's memory of earlier steps; null if it is not needed.
   io::CheckpointReader* memory() const { return memory_; }
-  /// Returns the cells by which the lattice had followed.
+  /// Returns by how many cells the lattice had moved to follow its object.
   std::int64_t shift() const { return shift_; }
   /// Returns one line that names unexpected differences from the scene of the file, or nothing.
   std::optional<std::string> const& warning() const { return warning_; }

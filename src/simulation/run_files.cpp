@@ -36,7 +36,7 @@ void require_free_output(std::filesystem::path const& path, bool overwrite) {
 }
 
 // Returns the positions in the order of the file: those of the cell's first site in all cells, then
-// of the next one.
+// those of its next site.
 std::vector<double> positions(io::Lattice const& lattice, io::Triple const& spacing) {
   auto const [nx, ny, planes] = lattice.shape;
   auto const nz = planes / std::ssize(lattice.basis);

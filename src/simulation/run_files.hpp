@@ -35,9 +35,9 @@ io::TrajectoryStorage storage_of(io::Scene const& scene);
 
 io::RunOutputOptions run_output_options(io::Scene const& scene, bool overwrite);
 
-/// Opens the trajectory `path` of a new run, and its other files. Throws if one of them, or a file
-/// with the name of the checkpoint, must not be replaced. Removes an old checkpoint without a
-/// trajectory, which would be taken for this run's.
+/// Opens the trajectory `path` of a new run, and its other files. Throws std::runtime_error if one
+/// of them, or a file with the name of the checkpoint, must not be replaced. Removes an old
+/// checkpoint, which would be taken for this run's.
 io::RunOutput open_output(std::filesystem::path const& path, io::TrajectoryHeader const& header,
                           io::RunOutputOptions const& options);
 

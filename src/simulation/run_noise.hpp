@@ -17,8 +17,8 @@
 namespace cayspin::simulation {
 
 /// The thermal noise of a run: half before each step and half after it. Between two steps, the
-/// halves of both are applied in one pass, unless the spins are observed in between. They use the
-/// temperature at that time.
+/// halves of both are applied in one pass, unless the spins are observed in between. Both halves
+/// then use the temperature at the time between the steps.
 template <class Spins>
 class RunNoise {
  public:
@@ -27,7 +27,7 @@ class RunNoise {
 
   /// Applies the noise after step `step`, calls look() if `wanted`, and applies the noise before
   /// the next step, unless look() returns stop or the step is the last. `first`: the step from
-  /// which the run continues; no noise follows it.
+  /// which the run continues; the noise after this step is not applied.
   template <class Exec, class Look>
   Next operator()(Exec const& exec, Step const& step, std::int64_t first, Spins const& spins,
                   bool wanted, Look const& look) {

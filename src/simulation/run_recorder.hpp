@@ -17,7 +17,8 @@ namespace cayspin::simulation {
 ///   recorder.finish();
 class RunRecorder {
  public:
-  /// Throws std::runtime_error for an invalid file, or one that exists if `overwrite` is false.
+  /// Throws std::runtime_error if the file cannot be created, or if it exists and `overwrite` is
+  /// false.
   RunRecorder(SceneRun& run, std::int64_t end, std::filesystem::path const& path, bool overwrite,
               std::string const& git_commit);
   RunRecorder(RunRecorder const&) = delete;
@@ -28,7 +29,8 @@ class RunRecorder {
   std::int64_t next() const;
   /// Writes what is due at the current step; with `last`, always a frame.
   void look(bool last = false);
-  /// Closes the file, marks whether the run went as planned, and stores or removes the checkpoint.
+  /// Closes the file, marks in it whether the run went as planned, and stores or removes the
+  /// checkpoint.
   void finish(bool as_planned = true);
 
  private:

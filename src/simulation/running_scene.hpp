@@ -60,8 +60,8 @@ class RunningScene : public Simulation<Real, Space> {
   RunningScene(RunningScene const&) = delete;  // the method refers to this object
   RunningScene& operator=(RunningScene const&) = delete;
 
-  /// Runs to the end of the times, or until a failure or a stop by `looks`. The cost of control and
-  /// noise is included in that of the steps.
+  /// Runs to the end of the times, or until a failure or a stop by `looks`. The cost of the steps
+  /// includes the evaluations of energy control and the time of noise.
   Ending advance(Looks& looks) {
     if (!control_ && !noise_ && !follower_) return Base::advance(*method_, looks);
     Between between(*this, looks);
@@ -85,13 +85,13 @@ class RunningScene : public Simulation<Real, Space> {
 
   Guard const& guard() const { return guard_; }
 
-  /// Returns the cells by which the lattice has followed.
+  /// Returns by how many cells the lattice has moved to follow its object.
   std::int64_t shift() const { return follower_ ? follower_->shift() : 0; }
   void go_on_from(std::int64_t shift) {
     if (follower_) follower_->go_on_from(shift);
   }
 
-  /// Returns the numbers of a sample besides Scalars, in the order of more_scalars().
+  /// Returns the numbers of a sample that are not in Scalars, in the order of more_scalars().
   std::vector<double> more(Space const& exec, Step const& step, Spins const& spins) const {
     auto numbers = more_ ? (*more_)(exec, this->generator, step, spins) : std::vector<double>();
     if (follower_) numbers.push_back(static_cast<double>(shift()));
@@ -120,7 +120,7 @@ class RunningScene : public Simulation<Real, Space> {
     return found;
   }
 
-  /// Call after the spins were replaced: forgets the state that belongs to the earlier ones.
+  /// Call it after the spins were replaced: forgets the state that belongs to the earlier spins.
   void begin_again(io::Scene const& scene) {
     guard_ = Guard(scene, epsilon);
     if (rest_) rest_->begin_again();
@@ -146,7 +146,7 @@ class RunningScene : public Simulation<Real, Space> {
  private:
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
 
-  /// Observer that calls the run's observer, and changes the spins around and after that call.
+  /// Observer that calls the run's observer, and changes the spins before and after that call.
   class Between final : public Looks {
    public:
     Between(RunningScene& scene, Looks& looks) : scene_(scene), looks_(looks) {}

@@ -13,7 +13,7 @@
 
 namespace cayspin::simulation {
 
-/// Rigid bodies with a common inertia, or one each; selected at run time.
+/// Rigid bodies with one inertia for all, or with one for each body; selected at run time.
 template <class Many>
 struct SceneBodiesNow : cayspin::detail::BodyGenerator<SceneBodiesNow<Many>> {
   RigidBody one;
@@ -31,8 +31,8 @@ struct SceneBodiesNow : cayspin::detail::BodyGenerator<SceneBodiesNow<Many>> {
   }
 };
 
-/// The generator of rigid bodies for methods that treat them separately; with or without the
-/// component along the spin, selected at run time.
+/// The generator of rigid bodies, for methods that treat them differently from spins; with or
+/// without the component along the spin, selected at run time.
 template <class Bodies>
 struct RigidBodiesNow {
   static constexpr bool is_local = true;

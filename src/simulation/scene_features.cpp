@@ -126,7 +126,7 @@ class Known {
   std::deque<std::pair<std::string, std::shared_ptr<TimeFeatures const>>> all_;
 };
 
-// Vectors that are not finite are left to make_plan, which throws for them.
+// Returns false if a vector is not finite at one of 101 times. make_plan throws for such vectors.
 bool are_finite(std::vector<TimeDependent> const& vectors, FeatureSearch const& search) {
   constexpr int times = 100;
   double three[3];
@@ -143,8 +143,8 @@ FeatureSearch search_of(io::Scene const& scene, std::optional<double> error) {
   FeatureSearch search;
   search.begin = scene.begin.time;
   search.end = search.begin + integrator.dt * static_cast<double>(integrator.steps);
-  // The same for all errors of at least 1e-6, so that a run and trials at other tolerances see the
-  // same features.
+  // All errors of at least 1e-6 give the same angle, so that a run and trials at other tolerances
+  // see the same features.
   search.angle = std::clamp(0.01 * error.value_or(1e-6), 1e-10, 1e-8);
   if (scene.field.own.uniform) {  // a call may take long
     search.samples = 1 << 12;

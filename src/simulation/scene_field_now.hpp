@@ -27,7 +27,7 @@ class QuadraticTerms {
     form_ = along_z && form_ != Form::any ? Form::along_z : Form::any;
   }
 
-  /// Returns `factor` times the sum of these terms and others.
+  /// Returns `factor` times the sum of these terms and `others`.
   QuadraticTerms with(QuadraticTerms const& others, double factor) const {
     QuadraticTerms both;
     both.sum_ = sum_.with(others.sum_, factor);
@@ -89,9 +89,9 @@ class QuadraticTerms {
   Form form_ = Form::none;
 };
 
-/// H along a piece of a row, by a function that is compiled once for all methods; null `evaluate`
-/// if there is none. `is_whole`: stages add nothing, except axes and the applied field if
-/// lacks_local.
+/// A function that computes H along a piece of a row, and is compiled once for all methods;
+/// `evaluate` is null if there is none. `is_whole`: stages add nothing to its result, except, if
+/// `lacks_local`, anisotropy axes and the applied field.
 template <class Real>
 struct FieldAlongRows {
   using Fields = cayspin::detail::RowFields<Real>;
@@ -161,7 +161,7 @@ struct SceneFieldNow {
   /// Returns true if the on-site part depends on the spin.
   KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return quadratic.present(); }
 
-  /// Returns the linear part: without the applied field.
+  /// Returns the part of H that is linear in the spins: H without the applied field.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
       Stencil const& stencil) const {
