@@ -76,7 +76,7 @@ struct SceneGeneratorNow {
     return other;
   }
 
-  // For series of spins only: those of rigid bodies have a separate generator.
+  // For series of spins only: series of rigid bodies have a separate generator.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> series_source(
       Stencil const& stencil) const {
@@ -128,10 +128,10 @@ struct SceneGeneratorNow {
 template <class Spins>
 class SceneGenerator {
  public:
-  /// Throws io::SceneError for an invalid inertia.
+  /// Throws io::SceneError, for example for an invalid inertia.
   SceneGenerator(io::Scene const& scene, Lattice const& lattice);
 
-  /// For rigid bodies whose inverse inertia is in memory; ignores the scene's own.
+  /// For rigid bodies whose inverse inertia is in memory; ignores the inertia of the scene.
   SceneGenerator(io::Scene const& scene, Lattice const& lattice,
                  std::vector<SymmetricTensor> const& inverse_inertia);
 
@@ -177,8 +177,9 @@ class SceneGenerator {
       SceneBodiesNow<typename SceneBodies<Spins>::Many> const& bodies) const;
 };
 
-/// cayspin::sample, with the magnetization weighted by a scene's moments, and the norm defect of
-/// the sites that have a spin. `of_scene`: its generator or its field, which gives the energy.
+/// Like cayspin::sample, but with the magnetization weighted by a scene's moments, and the norm
+/// defect only of sites that have a spin. `of_scene`: the generator or the field of the scene,
+/// which gives the energy.
 template <class Exec, class OfScene, class Spins, class... Generators>
 Sample sample_scene(Exec const& exec, OfScene const& of_scene, Step const& step, Spins const& spins,
                     Generators const&... generators) {
@@ -196,7 +197,7 @@ Sample sample_scene(Exec const& exec, OfScene const& of_scene, Step const& step,
   return found;
 }
 
-/// Isotropies with a constant sigma, which is selected at run time and may be zero.
+/// Isotropy with a constant sigma, which is selected at run time and may be zero.
 struct SceneIsotropy {
   double sigma = 0;
 

@@ -30,7 +30,8 @@ class SceneMinimizer {
                    Spins& spins, MinimizeOptions const& options);
 
   /// Like minimize, but options.torque and Minimum::torque are max |m x H|. If not all moments are
-  /// 1, it repeats the search with other bounds until max |m x H| is below options.torque.
+  /// 1, it repeats the search with other bounds, up to 20 times, until max |m x H| is below
+  /// options.torque.
   Minimum relax(Space const& exec, io::Scene const& scene, SceneField<Spins> const& field,
                 Spins& spins, MinimizeOptions const& options);
 

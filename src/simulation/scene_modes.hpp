@@ -16,7 +16,8 @@ namespace cayspin::simulation {
 io::Scene without_torque(io::Scene scene);
 
 /// Plans a search for modes after one for the equilibrium. Throws like make_plan_to_relax, except
-/// that torques are accepted, for up to most_sites_with_torques sites.
+/// that torques are accepted, for up to most_sites_with_torques sites. Throws io::SceneError also
+/// for spins that have neither precession nor damping.
 Plan make_plan_of_modes(io::Scene const& scene, Precision precision, ModesOptions const& options,
                         bool with_hessian);
 
@@ -28,8 +29,8 @@ Minimum find_rest_with_torques(Space const& exec, io::Scene const& scene,
                                SpinField<Real, typename Space::memory_space> const& spins,
                                ModesOptions const& options, double torque, bool at_rest);
 
-/// Finds the normal modes of a scene at an equilibrium. `field`: made for energies; not used for
-/// scenes with torques.
+/// Finds the normal modes of a scene at an equilibrium. `field`: made for FieldFor::energy; not
+/// used for scenes with torques.
 template <class Real, class Space>
 FoundModes find_modes(Space const& exec, io::Scene const& scene,
                       SceneField<SpinField<Real, typename Space::memory_space>> const& field,
@@ -45,15 +46,16 @@ FoundCurvatures find_curvatures(
 /// Limit for --wave-vector: for larger cells, the eigenvalues take minutes.
 constexpr std::int64_t most_sites_of_a_cell = 1024;
 
-/// Throws io::SceneError if a scene has no periodic axis, more than most_sites_of_a_cell sites in a
-/// cell, or bonds that are too long for its lattice; UsageError for wave vectors with a component
-/// along an open axis. Wave vectors are in cycles per cell.
+/// Throws io::SceneError if a scene has no precession and no damping, no periodic axis, more than
+/// most_sites_of_a_cell sites in a cell, or bonds that are too long for its lattice; UsageError for
+/// wave vectors with a component along an open axis. Wave vectors are in cycles per cell.
 void require_bands(io::Scene const& scene, std::vector<std::array<double, 3>> const& wave_vectors);
 
-/// Returns the bytes that find_bands takes besides those of a search for an equilibrium.
+/// Returns the bytes that find_bands takes in addition to those of a search for an equilibrium.
 std::int64_t memory_of_bands(io::Scene const& scene);
 
-/// Finds the spin waves of these wave vectors. Throws UsageError like bloch_modes.
+/// Finds the spin waves of these wave vectors. Throws UsageError where bloch_modes throws
+/// std::invalid_argument.
 template <class Real, class Space>
 FoundBands find_bands(Space const& exec, io::Scene const& scene,
                       SceneField<SpinField<Real, typename Space::memory_space>> const& field,

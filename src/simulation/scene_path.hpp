@@ -17,17 +17,17 @@ namespace cayspin::simulation {
 /// Options of a search for a path, in the units of the scene.
 struct ScenePathOptions {
   std::int64_t images = 16;
-  double torque = 1e-6;  // of the ends and the saddles
+  double torque = 1e-6;  // bound for the ends and the saddles
   std::int64_t evaluations = 1000000;
   bool rates = false;
   std::function<Next(PathProgress const&)> observer = {};
 };
 
-/// Largest number of sites for rates, which need matrices of (2 sites) squared numbers each.
+/// Largest number of sites for rates, which need several matrices of (2 sites)^2 numbers.
 inline constexpr std::int64_t most_sites_for_rates = 4096;
 
 /// Throws io::SceneError for scenes that have no path of least energy or are too large for rates,
-/// and UsageError for invalid options; its message begins with the option's name.
+/// and UsageError for invalid options, with a message that begins with the option's name.
 void require_path(io::Scene const& scene, ScenePathOptions const& options);
 
 /// Plans the memory of a search for a path. Throws like make_plan_to_relax.
@@ -39,8 +39,9 @@ struct ScenePath {
   PathEnd end;
   io::Path path;
 };
-/// Finds a path between two states, sites x 3 as from io::initial_spins. Fills everything in it but
-/// `from` and `to`. Throws NumbersFailed for a field that is not finite.
+/// Finds a path between two states, sites x 3 as from io::initial_spins. Fills all members of the
+/// path except `from` and `to`. Throws io::SceneError if a frozen spin differs between the states,
+/// and NumbersFailed for a field that is not finite.
 ScenePath find_scene_path(io::Scene const& scene, std::vector<double> const& from,
                           std::vector<double> const& to, std::string const& space,
                           Precision precision, ScenePathOptions const& options,

@@ -92,12 +92,12 @@ void scale_by_site(io::HostVectors const& vectors, std::vector<double> const& fa
   }
 }
 
-// Converts the program's own fields, which are in the units of the scene.
+// Converts the program's own fields from the units of the scene to reduced units.
 io::Scene with_reduced_own_field(io::Scene scene) {
   auto const units = scene.units;
   auto& own = scene.field.own;
-  // If the sites of the cell have moments, kernels divide this field by them, as they divide
-  // -dE/dm. So it is multiplied by them first.
+  // If the sites of the cell have moments, kernels divide the nonlocal field by these, as they
+  // divide -dE/dm. So the field is multiplied by the moments first.
   if (auto const& moments = scene.lattice.moments;
       own.nonlocal && !moments.empty() && !io::has_moments_of_sites(scene))
     own.nonlocal = [given = own.nonlocal, moments](io::HostVectors const& spins,
@@ -122,7 +122,7 @@ io::Scene with_reduced_own_field(io::Scene scene) {
 }
 
 // Returns the start of a scene. Errors in vectors passed by a program name the argument `name`,
-// because these have no key.
+// because these vectors have no key.
 template <class Error>
 std::vector<double> normalised(io::Scene const& scene, std::string const& name) {
   constexpr std::string_view key = "initial.given: ";

@@ -26,7 +26,7 @@ namespace cayspin::simulation {
 
 struct RunSettings {
   Precision precision = Precision::double_precision;
-  std::optional<std::string> space = {};  // default: Kokkos' default
+  std::optional<std::string> space = {};  // default: Kokkos's default
   std::optional<int> threads = {};        // of host spaces; only the first run of a process sets it
   std::optional<std::filesystem::path> restart = {};  // a checkpoint or trajectory to continue from
 };
@@ -63,8 +63,10 @@ struct RelaxSettings {
 /// N calls of advance(1) give the same bits as advance(N), and as `cayspin run`.
 class SceneRun {
  public:
-  /// Opens a run. The functions of the calling program in scene.field.own are also in the scene's
-  /// units. Throws io::SceneError, or UsageError for a space that is not compiled in.
+  /// Opens a run. The functions of the calling program in scene.field.own take and return numbers
+  /// in the scene's units. Throws io::SceneError for an invalid scene, and UsageError for invalid
+  /// settings: a space that is not compiled in, less than one thread, or a restart that does not
+  /// fit the scene.
   static std::unique_ptr<SceneRun> open(io::Scene const& scene, RunSettings const& settings);
 
   virtual ~SceneRun() = default;
@@ -106,11 +108,11 @@ class SceneRun {
   /// Throws what advance(count) would throw before its first step.
   void require_reachable(std::int64_t count) const;
 
-  /// Takes `count` more steps, or fewer if the run ends early. Throws UsageError when an adaptive
-  /// method would go beyond the scene's end, NumbersFailed when the numbers become invalid, and any
-  /// exception of a field of the program. If a step fails, steps() and the spins are those before
-  /// it (of an adaptive method, up to 1000 steps before); if a check by the guard fails, those that
-  /// it checked.
+  /// Takes `count` more steps, or fewer if the run ends early. Throws UsageError for a negative
+  /// `count`, for a scene without [integrator], and when an adaptive method would go beyond the
+  /// scene's end, NumbersFailed when the numbers become invalid, and any exception of a field of
+  /// the program. If a step fails, steps() and the spins are those before it (of an adaptive
+  /// method, up to 1000 steps before); if a check by the guard fails, those that it checked.
   Advanced advance(std::int64_t count, Looks const& looks = {});
 
   /// Result of advance_all for one run.
@@ -161,7 +163,8 @@ class SceneRun {
   Minimum relax(RelaxSettings const& settings = {});
 
   /// Returns the normal modes about the spins, which must be at equilibrium, in the current field.
-  /// Throws UsageError for invalid options, and what relax() throws.
+  /// Throws UsageError for invalid options, and what relax() throws, except that torques are
+  /// accepted.
   FoundModes modes(ModesOptions const& options = {});
 
   /// Returns the spins, on hosts without a copy. If the memory is still lent when the run
@@ -171,7 +174,7 @@ class SceneRun {
   /// UsageError for a zero or non-finite spin, or another shape.
   void set_spins(io::HostVectors const& from);
 
-  /// Continues after this step from unit vectors, sites x 3 with x fastest, which are not
+  /// Continues after step `step` from unit vectors, sites x 3 with x fastest, which are not
   /// normalised again. Multistep methods restart.
   void continue_from(std::int64_t step, std::vector<double> const& spins);
 
@@ -184,7 +187,7 @@ class SceneRun {
   Sample sample();
   /// Returns the further numbers of a sample, in the order of more_scalars().
   std::vector<double> more_of_sample();
-  /// Returns the cells by which the lattice has followed.
+  /// Returns by how many cells the lattice has moved to follow its object.
   virtual std::int64_t shift() const = 0;
   /// Returns name and energy of each term of the scene; for rigid bodies "rotation".
   std::vector<std::pair<std::string, double>> energies();

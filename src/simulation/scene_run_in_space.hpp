@@ -85,8 +85,8 @@ class SceneRunInSpace final
 
   // Implements RunObserver.
   bool due(Step const& step) const override {
-    // If an adaptive method fails, it leaves the spins as they were when last due, at most 1000
-    // steps ago.
+    // If an adaptive method fails, it leaves the spins as they were when due() last returned true,
+    // at most 1000 steps ago.
     bool const is_adaptive = scene_.integrator.tolerance.has_value();
     if (!is_adaptive) seen_ = step.number;
     // Do not poll after the last step: integrate() ignores a stop there.
@@ -191,7 +191,7 @@ class SceneRunInSpace final
     return find_modes<Real, Space>(simulation_->exec, scene_, field, simulation_->spins, options);
   }
 
-  // Call after the spins were replaced.
+  // Call it after the spins were replaced.
   void begin_again() {
     continues_ = false;
     looked_ = -1;
@@ -262,7 +262,7 @@ class SceneRunInSpace final
   Advanced ended_ = Advanced::whole;
   bool continues_ = false;
   std::int64_t looked_ = -1, next_look_ = 0;  // steps of the guard's checks
-  mutable std::int64_t seen_ = 0;             // the step of the spins if a later one fails
+  mutable std::int64_t seen_ = 0;             // the step of the spins if a later step fails
   static constexpr std::int64_t most_unseen = 1000;
 };
 

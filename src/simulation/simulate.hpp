@@ -67,7 +67,7 @@ template <class, class... Spaces>
 struct SpaceList {
   using AnySimulation = std::variant<Simulation<double, Spaces>*..., Simulation<float, Spaces>*...>;
 
-  /// Calls visit.template operator()<Space>() for each.
+  /// Calls visit.template operator()<Space>() for each space.
   template <class Visitor>
   static void for_each(Visitor&& visit) {
     (visit.template operator()<Spaces>(), ...);

@@ -28,8 +28,8 @@ void keep_numbers_of_free_sides(io::Scene const& scene, std::vector<io::Anisotro
   }
 }
 
-// With dipoles, each site has its own moment. So it has to in a scene with only one term, without
-// the dipoles.
+// With dipoles, each site has its own moment. A scene with only another term has no dipoles, but
+// must keep these moments.
 void keep_moments_of_sites(io::Scene const& scene, io::Lattice& lattice) {
   if (!io::has_moments_of_sites(scene) || lattice.moments_of_sites.there()) return;
   lattice.moments_of_sites.key = "lattice.moments";

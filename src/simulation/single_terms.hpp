@@ -13,7 +13,7 @@ namespace cayspin::simulation {
 /// Returns a scene for each term of the field, with only that term, and the name of the term's key.
 std::vector<std::pair<std::string, io::Scene>> single_terms(io::Scene const& scene);
 
-/// Returns which numbers a scene's samples have besides Scalars. Rigid bodies have one term,
+/// Returns which numbers a scene's samples have in addition to Scalars. Rigid bodies have one term,
 /// "rotation".
 io::MoreScalars more_scalars(io::Scene const& scene);
 

@@ -54,7 +54,8 @@ struct RowPiece {
   }
 };
 
-/// Correction of exchange that takes vacancies for neighbours: it lacks H = A m for each vacancy.
+/// Correction of exchange that takes vacancies for neighbours: such exchange lacks H = A m for each
+/// vacancy.
 template <class Real>
 struct MissingNeighbors {
   cayspin::SiteArray<Real, 1> exchange;
@@ -67,7 +68,7 @@ struct MissingNeighbors {
 };
 
 /// H that a stage adds to the terms compiled into it, in scenes without couplings. A single term
-/// has its own loop; several share one that tests for each.
+/// has its own loop; several terms share a loop that tests for each of them.
 template <class Real>
 struct AddedTerms {
   PassTerms<Real> terms;

@@ -29,7 +29,7 @@
 #include <vector>
 
 // The terms of FieldInPass for a scene. Further headers define the functions that add them;
-// compile_field_in_pass.hpp includes them all.
+// compile_field_in_pass.hpp includes all these headers.
 namespace cayspin::simulation {
 
 // Returns the largest magnitude over all parts. Parts compare the bits of doubles as integers,
@@ -43,8 +43,8 @@ inline double largest_of_parts(Lattice const& lattice, std::vector<double> const
   return std::bit_cast<double>(words[0]);
 }
 
-// Returns which site of its cell site `number` of a part is: all sites of a plane along z are the
-// same one.
+// Returns which site of its cell site `number` of a part is: all sites with the same z are the same
+// site of their cells.
 inline std::size_t site_of_cell(Lattice const& lattice, std::size_t number) {
   auto const in_plane = static_cast<std::size_t>(lattice.own(0) * lattice.own(1));
   return number / in_plane % static_cast<std::size_t>(lattice.cell_sites);
@@ -80,8 +80,8 @@ class FieldInPass<Spins>::Terms {
   /// Returns true if bonds may reach beyond the neighbours of a site.
   bool reaches_far() const { return has_pairs_ || distant_bonds_.size() > 0; }
 
-  /// Returns true if all sites of a cell have equal anisotropy axes, and a moment and gyromagnetic
-  /// ratio of 1.
+  /// Returns true if all sites of a cell have equal anisotropy axes, and a moment and a
+  /// gyromagnetic ratio of 1.
   bool sites_are_alike() const {
     return !per_moments_ && std::ranges::all_of(cell_, [&](auto const& site) {
       return site.gyromagnetic == 1 && site.per_moment == 1 && site.quadratic == cell_[0].quadratic;
@@ -121,7 +121,7 @@ class FieldInPass<Spins>::Terms {
   // In sources_of_scene.hpp.
   void add_sources(io::Scene const& scene, io::SiteBox const& box);
   SourcesNow<Real> sources_at(double t) const;
-  /// Returns the largest |energy| of a site in the applied field and the sources.
+  /// Returns a bound of a site's |energy| in the applied field and in the fields of the sources.
   double applied_magnitude(Vec3<double> const& applied, SourcesNow<Real> const& sources) const;
 
   // In torques_of_scene.hpp.
@@ -162,7 +162,7 @@ class FieldInPass<Spins>::Terms {
   Table<CubicAnisotropy> cubics_;
   bool has_lattice_terms_ = false, has_pairs_, has_vacancies_, is_affine_;
   std::optional<ScalarField<Real, Memory>> moves_, dampings_;
-  // moves_ times gyromagnetic ratios, over Gilbert's 1 + damping^2.
+  // moves_ times gyromagnetic ratios, divided by Gilbert's 1 + damping^2.
   std::optional<ScalarField<Real, Memory>> rates_;
   std::optional<ScalarField<Real, Memory>> per_gyromagnetic_;  // for torques; or empty
   std::optional<SiteDependentExchange<Real, Memory>> exchange_of_sites_;

@@ -15,7 +15,7 @@ std::string bytes_text(double bytes);
 std::string bytes_text(std::int64_t bytes);
 /// Returns "3 min 20 s", for example.
 std::string duration_text(double seconds);
-/// Returns "1 step", "2 steps".
+/// Returns "1 step" or "2 steps", for example.
 std::string counted(std::int64_t count, std::string_view what);
 /// Returns the cells of a lattice in the form of TrajectoryHeader: "4 x 3 x 2", or "4 x 3 x 2 cells
 /// of 3 sites".
@@ -29,7 +29,7 @@ std::string time_text(io::Units const& units, double time, int digits = 9);
 std::string energy_text(io::Units const& units, double energy, int digits = 9);
 /// Returns one word of a command line, quoted if a shell would change it.
 std::string shell_word(std::string const& text);
-/// Returns the text without line breaks and control characters.
+/// Returns the text with spaces in place of line breaks and other control characters.
 std::string one_line(std::string text);
 
 }  // namespace cayspin::simulation

@@ -27,15 +27,15 @@ class TimeSamples {
   double range(std::size_t component) const { return ranges_[component]; }
   /// Returns |sample(i + 1) - sample(i)|.
   double change(std::size_t i, std::size_t component) const;
-  /// Returns true if that change is at least three times as large as most changes nearby.
+  /// Returns true if change(i, component) is at least three times as large as most changes nearby.
   bool changes_unusually(std::size_t i, std::size_t component) const;
   /// Returns the time from which on no component changes.
   double last_change() const;
   /// Returns the number of the first sample between two times, and the number after the last one.
   std::pair<std::size_t, std::size_t> within(double begin, double end) const;
 
-  /// Returns all components at t, and stores them. If a vector is not finite at t, it has the value
-  /// very close to t or, if that is not finite either, 0.
+  /// Returns all components at t, and stores them. A vector that is not finite at t is replaced by
+  /// its value very close to t or, if that is not finite either, by 0.
   std::vector<double> const& evaluate(double t);
   double value(double t, std::size_t component) { return evaluate(t)[component]; }
   std::int64_t evaluations() const { return evaluations_; }

@@ -23,8 +23,8 @@ struct TorqueMotion {
   std::function<bool()> is_interrupted;
 };
 
-/// Largest number of sites of a scene with torques: the matrix has 2 x 2 numbers for each pair of
-/// sites.
+/// Largest number of sites for modes of scenes with torques: the matrix has 2 x 2 numbers for each
+/// pair of sites.
 constexpr std::int64_t most_sites_with_torques = 1024;
 
 struct RestWithTorques {
@@ -42,7 +42,7 @@ RestWithTorques find_rest_with_torques(TorqueMotion const& motion, Vectors const
                                        double torque, std::int64_t evaluations);
 
 /// Returns the modes about a state of rest, in reduced units. The shapes are not normalised. Throws
-/// NumbersFailed if the spins are not at rest.
+/// NumbersFailed if the spins are not at rest, or if the motion is not finite.
 FoundModes find_modes_with_torques(TorqueMotion const& motion, Vectors const& spins,
                                    std::size_t count, std::int64_t evaluations);
 
