@@ -12,7 +12,7 @@ bool is_terminal(std::FILE* stream);
 /// Returns true if the locale has block characters.
 bool has_blocks();
 
-/// Returns "[#####...................]".
+/// Returns "[#####...................]", for example.
 std::string bar(double share);
 
 /// Returns how many lines the terminal shows.

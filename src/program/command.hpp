@@ -55,7 +55,7 @@ struct DeviceOptions : SceneOptions {
   bool overwrite = false;
 };
 
-/// Returns the precision "double" or "single". Throws UsageError for any other.
+/// Returns the precision "double" or "single". Throws UsageError for any other name.
 Precision precision_named(std::string const& name);
 
 /// Adds SCENE, --set and --precision.

@@ -15,7 +15,7 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
 /// Describes the units: reduced, or the SI value of each.
 std::string describe_units(io::Units const& units);
 
-/// Returns, for example, "rkmk4, orthogonal generator, sigma = 0.7, cayley rotation".
+/// Returns, for example, "rkmk4, orthogonal generator, cayley rotation, sigma = 0.7".
 std::string describe_method(io::Scene const& scene);
 
 /// Returns, for example, "uniform (0, 0, 1)".

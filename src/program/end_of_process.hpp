@@ -8,9 +8,9 @@
 
 namespace cayspin::program {
 
-/// Returns the status of a child that is about to end, as waitpid() gives it. Kills it if it has
-/// not ended within `longest`, and gives up if the system cannot end it. Returns nothing if there
-/// is no status.
+/// Returns the status of a child that is about to end, as waitpid() gives it. If the child has not
+/// ended within `longest`, kills it. Returns nothing if there is no status, or if the system does
+/// not end the child within another 10 s.
 std::optional<int> end_of_process(pid_t child,
                                   std::chrono::milliseconds longest = std::chrono::seconds(10));
 

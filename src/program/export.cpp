@@ -59,7 +59,7 @@ bool is_rectangular(io::Lattice const& lattice) {
 }
 
 // Returns a mesh with nodes in the middle of the lattice's cells. Ignores the start of the scene,
-// which may be vectors that only the program of that run had in its memory.
+// which may be vectors in the memory of the program that ran it.
 io::OvfMesh mesh_of(io::TrajectoryInfo const& info) {
   auto const scene = io::parse_scene_to_run_or_relax(info.header.scene_text, info.path,
                                                      {"initial={uniform=[0,0,1]}"});

@@ -42,7 +42,7 @@ void print_frame(char const* name, io::TrajectoryInfo const& info, std::size_t f
   }
 }
 
-// Prints the numbers of the last sample besides its scalars.
+// Prints those numbers of the last sample that are not in its scalars.
 void print_more(io::TrajectoryInfo const& info) {
   constexpr std::int64_t most_regions = 16;
   auto const& more = info.header.more;

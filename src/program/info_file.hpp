@@ -17,12 +17,13 @@ namespace cayspin::program {
 /// Contents of a file for `cayspin info`: everything but its spins.
 struct InfoFile {
   std::filesystem::path path;
-  std::optional<bool> being_written;  ///< the result of io::is_being_written before it was read
+  std::optional<bool> being_written;  ///< by io::is_being_written, before the file was read
   std::variant<io::TrajectoryInfo, io::SweepInfo, io::EnsembleInfo, io::Path, io::BandsContents>
       contents;
 };
 
-/// Reads a file of any kind, also while a run writes it. Throws std::runtime_error with one line.
+/// Reads a file of any kind, and a trajectory also while a run writes it. Throws std::runtime_error
+/// with one line.
 InfoFile read_info_file(std::filesystem::path const& path);
 
 /// Returns the numbers of a file by the names of its attributes and datasets.

@@ -22,11 +22,11 @@ struct RunProgress {
   std::optional<double> seconds_left = {};
 };
 
-/// `being_written`: the result of io::is_being_written for its file, obtained before `info` was
+/// `being_written`: the result of io::is_being_written for the file, obtained before `info` was
 /// read.
 RunProgress progress_of(io::TrajectoryInfo const& info, std::optional<bool> being_written);
 
-/// Returns the progress as headings and lines.
+/// Returns the progress as lines, each with its heading.
 std::vector<std::pair<std::string, std::string>> progress_lines(io::TrajectoryInfo const& info,
                                                                 std::optional<bool> being_written);
 

@@ -152,7 +152,8 @@ int perform(int count, char** given) {
     return Status::done;
   } catch (...) {
     if (!ranks->many()) throw;
-    // Reports before this rank ends, because launchers stop all others as soon as one has failed.
+    // Reports before this rank ends, because launchers stop all other ranks as soon as one has
+    // failed.
     int const status = report(std::current_exception());
     if (!ranks->agreed()) ranks->leave_by(status);
     return status;

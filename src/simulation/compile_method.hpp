@@ -13,8 +13,8 @@
 
 #include <limits>
 
-// Converts a row of the list of methods into its variants: one compiled stepper for each choice of
-// options that changes the stepper's type.
+// Converts a row of the list of methods into its variants: one for each choice of options, except
+// the rotation, that changes the type of the stepper.
 namespace cayspin::simulation {
 
 /// Template parameters that distinguish the variants of a row.

@@ -18,10 +18,10 @@
 #include <utility>
 
 // Harmonic transition state theory for spins: Bessarab, Uzdin and Jonsson, Phys. Rev. B 85, 184409
-// (2012). The rate is the flux by precession across the dividing plane at the saddle, over the
-// partition function of the minimum; damping does not enter. A mode without stiffness contributes
-// its whole volume, a translation only that of one cell. In Langer's theory, Ann. Phys. 54, 258
-// (1969), the flux is that of the mode that grows at the saddle, with damping.
+// (2012). The rate is the flux by precession across the dividing plane at the saddle, divided by
+// the partition function of the minimum; damping does not enter. A mode without stiffness
+// contributes its whole volume, a translation only that of one cell. In Langer's theory, Ann. Phys.
+// 54, 258 (1969), the flux is that of the mode that grows at the saddle, with damping.
 namespace cayspin::simulation {
 namespace {
 
@@ -31,7 +31,7 @@ using Numbers = std::vector<double>;
 
 constexpr double pi = std::numbers::pi;
 constexpr double boltzmann = 1.380649e-23;  // J/K
-/// Eigenvalues below this fraction of a bound on the largest count as zero.
+/// Eigenvalues below this fraction of a bound on the largest one count as zero.
 constexpr double zero = 1e-5;
 
 Eigen::Map<Eigen::Vector3d const> at(Numbers const& spins, std::size_t site) {
@@ -48,7 +48,7 @@ Eigen::Vector3d way_between(Eigen::Vector3d const& m, Eigen::Vector3d const& p) 
 class State {
  public:
   /// `unstable`: approximate lowest curvature of a saddle; 0 for minima. Throws NumbersFailed if
-  /// another one is negative.
+  /// another curvature is negative.
   State(StateHessian const& state, char const* name, double unstable)
       : state_(state),
         name_(name),
@@ -114,8 +114,9 @@ class State {
   }
 
  private:
-  /// Returns the `count` eigenvectors of a matrix that inverse iteration with `inverse` (of the
-  /// matrix itself, or shifted) converges to, and their eigenvalues in ascending order.
+  /// Returns the `count` eigenvectors of a matrix that inverse iteration with `inverse` (the
+  /// inverse of the matrix, or of the shifted matrix) converges to, with their eigenvalues in
+  /// ascending order.
   static std::pair<Matrix, Vector> near_vectors(Matrix const& matrix, auto const& inverse,
                                                 Eigen::Index count) {
     auto const n = matrix.rows();
@@ -177,7 +178,7 @@ class State {
   }
 
   /// Returns rotations of all spins by a radian, about those of three orthogonal axes for which
-  /// they are zero modes.
+  /// such a rotation is a zero mode.
   std::vector<Vector> rotations() const {
     Matrix turned(static_cast<Eigen::Index>(state_.size()), 3);
     for (Eigen::Index axis = 0; axis < 3; ++axis)
@@ -224,7 +225,8 @@ class State {
   double log_determinant_ = 0;
 };
 
-/// Returns the gyromagnetic ratio over the moment of each site, in reduced units.
+/// Returns the gyromagnetic ratio divided by the moment, in reduced units, for each site that has
+/// coordinates.
 Numbers mobilities(io::Scene const& scene, StateHessian const& state) {
   auto const& lattice = scene.lattice;
   io::SiteBox const box{{0, 0, 0}, lattice.shape};
@@ -243,7 +245,7 @@ Numbers mobilities(io::Scene const& scene, StateHessian const& state) {
   return found;
 }
 
-/// Returns the mean square of the velocity along the unstable mode, over kT.
+/// Returns the mean square of the velocity along the unstable mode, divided by kT.
 double square_of_velocity(State const& saddle, Numbers const& mobilities) {
   Vector const& mode = saddle.mode();
   Vector turned(mode.size());

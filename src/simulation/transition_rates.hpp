@@ -26,8 +26,8 @@ struct StateHessian : TangentBasis {
 
   using TangentBasis::TangentBasis;
 
-  /// Returns the spins after a common rotation of all of them and a different one of each. `sample`
-  /// chooses the rotations.
+  /// Returns the spins after a random rotation of all and a random change of each. `sample`: the
+  /// seed of the random numbers.
   std::vector<double> far_state(unsigned sample) const;
   void add_torque(std::vector<double> const& state, std::vector<double> const& field);
 };
@@ -35,7 +35,8 @@ struct StateHessian : TangentBasis {
 /// Returns the prefactors of harmonic transition state theory, in the units of the scene.
 /// `saddle_curvature`: the approximate curvature along the unstable mode of the saddle. Throws
 /// NumbersFailed for zero modes that are neither translations nor rotations of all spins, for a
-/// saddle on a plateau, and for states with other negative curvatures.
+/// saddle on a plateau, for states with other negative curvatures, and for spins with neither
+/// precession nor damping.
 io::RatesOfPath rates_between(io::Scene const& scene, StateHessian const& start,
                               StateHessian const& saddle, StateHessian const& end,
                               double saddle_curvature);

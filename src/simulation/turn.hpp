@@ -7,8 +7,9 @@
 
 namespace cayspin::simulation {
 
-/// A thread's turn to use Kokkos, which other threads wait for: an execution space accepts work
-/// from only one thread at a time. Throws UsageError within the step of a run.
+/// A thread's turn to use Kokkos. Other threads wait for its end, because an execution space
+/// accepts work from only one thread at a time. Throws UsageError if it is taken within the step of
+/// a run.
 class Turn {
  public:
   Turn() : lock_(mutex_of_others()) {

@@ -32,7 +32,8 @@ class OpenMethod {
   virtual void serialize(Checkpoint& checkpoint) = 0;
 };
 
-/// One compiled integrator: a method with all options that change its stepper's type.
+/// One compiled integrator: a method with all options, except the rotation, that change the type of
+/// its stepper.
 struct Variant {
   io::Method const* method;
   io::Isotropy isotropy = io::Isotropy::zero;  // zero also stands for a constant
@@ -47,8 +48,8 @@ struct Variant {
   int ghosts = 0;       // rows of ghosts around a part of a lattice; 0: only whole lattices
   int work_fields = 0;  // spin fields of work memory, if stages run one by one
 
-  /// Returns bytes of work memory. by_time_only: to prepare the scene's field takes only t, not the
-  /// spins.
+  /// Returns the bytes of work memory. `by_time_only`: the scene's field can be prepared from t,
+  /// without the spins.
   std::int64_t (*work_bytes)(Lattice const& lattice, bool by_time_only, Precision precision) = {};
   /// cayspin::largest_stable_step of the stepper; infinity if no bound is known.
   double (*stable_step)(double field_bound, double damping, bool precession,
@@ -60,7 +61,7 @@ struct Variant {
 /// Returns all variants, method by method in the order of the list.
 std::span<Variant const> variants();
 
-/// Compiled in source files generated from method_shard.cpp.in.
+/// Returns the variants of one shard. Compiled in source files generated from method_shard.cpp.in.
 template <int Shard>
 std::vector<Variant> method_shard();
 
