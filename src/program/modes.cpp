@@ -106,8 +106,8 @@ void check_files(io::Scene const& scene, std::filesystem::path const& file) {
   }
 }
 
-// Reads the scene. The scene of a trajectory file starts at the last frame, in the last field if it
-// has a list of fields.
+// Reads the scene. The scene of a trajectory file starts at the last frame, in the last field if
+// that scene has a list of fields.
 io::Scene scene_of(ModesCommand const& options) {
   if (!is_hdf5(options.scene)) {
     auto const scene =

@@ -68,7 +68,7 @@ void Progress::show(Step const& step) {
   std::chrono::duration<double> const of_stage = now - stage_begin_, pause = now - shown_;
   double const seconds = std::max(of_stage.count(), 1e-9);
   double const rate = static_cast<double>(step.number - first_) / seconds;
-  // Reading the clock costs as much as a small step, so it is done about ten times a second.
+  // Reading the clock costs as much as a small step, so the clock is read about ten times a second.
   next_ = step.number + std::max<std::int64_t>(1, static_cast<std::int64_t>(0.1 * rate));
   double const least_pause = listener_ == Listener::program ? 0.2 : terminal_ ? 0.1 : 5;
   if (step.number == first_) {

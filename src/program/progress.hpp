@@ -10,18 +10,18 @@
 
 namespace cayspin::program {
 
-/// Makes SIGINT and SIGTERM end a run after its step instead of killing it, and a write past the
-/// file size limit an error like any other.
+/// Makes SIGINT and SIGTERM end a run after its step instead of killing it, and makes a write past
+/// the file size limit fail like any other write.
 void catch_signals();
 
-/// Returns true once one of these signals has arrived.
+/// Returns true once SIGINT or SIGTERM has arrived.
 bool interrupt_requested();
 
 /// The reader of a run's progress messages.
 enum class Listener { nobody, user, program };
 
-/// Progress report of a run on standard output: a bar on a terminal, otherwise a line now and
-/// then. For a program, a line "STEP STEPS" several times a second.
+/// Progress report of a run on standard output: a bar on a terminal, otherwise a line now and then.
+/// For a program, a line with the current and the last step several times a second.
 class Progress {
  public:
   Progress(std::int64_t sites, Listener listener);
@@ -67,9 +67,11 @@ class TrialProgress {
   TrialProgress(TrialProgress const&) = delete;
   TrialProgress& operator=(TrialProgress const&) = delete;
 
-  /// Call before the first trial. `most_seconds`: the longest that all trials together may take.
+  /// Call before the first trial. `most_seconds`: the longest time that all trials together may
+  /// take.
   void announce(double most_seconds);
-  /// Call before each trial. `share`: of the work that is done; `what`: the name of the trial.
+  /// Call before each trial. `share`: the share of the work that is done; `what`: the name of the
+  /// trial.
   void show(double share, std::string const& what);
   void clear();
 

@@ -9,7 +9,8 @@ namespace cayspin::program {
 
 /// Runs `reading` in a forked child. A damaged file can make HDF5 crash, loop, or ask for any
 /// amount of memory; then only the child suffers. Throws std::runtime_error with one line if that
-/// happens, and the child's message if `reading` threw. A trial for io::set_trial().
+/// happens, or with the child's message if `reading` threw std::runtime_error. To be passed to
+/// io::set_trial().
 void try_in_child(std::filesystem::path const& path, std::function<void()> const& reading);
 
 /// Like the above, but with a time limit of `longest` for the child, instead of one by the size of

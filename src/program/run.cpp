@@ -52,8 +52,8 @@ Restart restart_of(EarlierRun left, io::Stage const& stage, Plan const& plan,
   });
 }
 
-// Reads the scene as typed, and makes all checks that need nothing else. Throws if the ranks were
-// given different scenes.
+// Reads the scene as typed, and makes all checks that need nothing else. Throws UsageError if the
+// ranks were given different scenes or options.
 io::Scene typed_scene(RunOptions const& options, Ranks& ranks) {
   auto typed = ranks.together([&] {
     auto scene = io::with_shape_of_start(io::read_scene(options.scene, options.overrides));

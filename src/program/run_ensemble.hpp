@@ -16,7 +16,8 @@ struct RelaxEnsembleOptions {
   bool keep_saddles = false, quiet = false, json = false;
 };
 
-/// Performs `cayspin relax` for such a scene: moves each replica to its own equilibrium.
+/// Performs `cayspin relax` for a scene with [ensemble]: moves each replica to its own equilibrium.
+/// Returns the exit status.
 int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
                    RelaxEnsembleOptions const& search);
 

@@ -37,7 +37,7 @@ struct RunOptions : DeviceOptions {
   Listener listener = Listener::user;
 };
 
-/// A stage with its plan. Stages before the one in which a restart continues have none.
+/// A stage with its plan. Stages before the one in which a restart continues have no plan.
 struct PlannedStage {
   io::Stage stage;
   std::optional<Plan> plan;
@@ -59,7 +59,8 @@ auto as_restart(Work const& work) {
   }
 }
 
-/// Runs one stage after another, beginning with the first that has a plan, into one file.
+/// Runs one stage after another, beginning with the first that has a plan, and writes all into one
+/// file.
 template <class Real, class Space>
 class RunOfStages {
   using Spins = SpinField<Real, typename Space::memory_space>;
@@ -116,8 +117,8 @@ class RunOfStages {
 
   std::vector<double> start() const {
     auto const own = own_sites(plan().lattice);
-    // Evaluates these already here, inside together(): an expression that fails at a site of one
-    // rank must end all ranks.
+    // Evaluates lattice.occupied and lattice.frozen already here, inside together(): an expression
+    // that fails at a site of one rank must end all ranks.
     io::occupied(scene(), own);
     io::frozen(scene(), own);
     if (!restart_) return io::initial_spins(scene(), own);
@@ -220,7 +221,7 @@ class RunOfStages {
       std::filesystem::remove(io::checkpoint_beside(path_));
   }
 
-  // If the stage has ended early, plans the later ones again, and stores a checkpoint, because no
+  // If the stage has ended early, plans the later stages again, and stores a checkpoint, because no
   // frame tells where the next stage starts.
   void enter_next() {
     auto& next = stages_[now_ + 1];
@@ -334,7 +335,7 @@ class RunOfStages {
   std::filesystem::path path_;
   std::size_t now_ = 0, first_ = 0;  // indices of stages
   std::int64_t step_ = 0, frames_ = 0;
-  std::int64_t shift_ = 0;     // cells by which the lattice has followed
+  std::int64_t shift_ = 0;     // cells by which the lattice has moved
   std::vector<double> start_;  // initial spins of the stage
   Progress progress_;
   RunWriter<Real, Space> writer_;

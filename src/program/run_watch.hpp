@@ -21,8 +21,8 @@ namespace cayspin::program {
 
 using namespace simulation;
 
-/// Observer of a stage of `cayspin run`: writes frames and scalars, stops early, shows progress. It
-/// is due at the same steps on all ranks.
+/// Observer of a stage of `cayspin run`: writes frames, scalars and checkpoints, ends the stage
+/// early, and shows progress. It is due at the same steps on all ranks.
 template <class Real, class Space>
 class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_space>> {
   using Spins = SpinField<Real, typename Space::memory_space>;

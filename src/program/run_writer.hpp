@@ -44,8 +44,9 @@ class RunWriter {
         frame_("cayspin::frame", on_host ? 0 : static_cast<std::size_t>(sites)),
         part_("cayspin::part_of_frame", ranks.many() ? static_cast<std::size_t>(sites) : 0) {}
 
-  /// `scene`: gives the stage and units of the state; `shift`: of the lattice; `more`: numbers of a
-  /// sample besides its scalars. Without it no sample is written.
+  /// `scene`: gives the stage and the units of the state; `shift`: of the lattice; `frame`: true to
+  /// write a frame; `more`: the numbers of a sample that are not in its scalars. Without `more` no
+  /// sample is written.
   void write(Space const& exec, io::Scene const& scene, Sample const& now, Spins const& spins,
              std::int64_t shift, bool frame, std::optional<std::vector<double>> const& more) {
     auto const scalar_values = as_scalars(now, scene.units);

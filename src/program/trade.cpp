@@ -43,7 +43,7 @@ struct AdviseOptions : TryOptions {
 constexpr double errors_compared[] = {1e-2, 1e-4, 1e-6, 1e-8};
 constexpr double least_error_of_trade = 1e-9;
 
-// Describes the steps of a rung or of an advice: a tolerance or dt.
+// Describes the steps of a Rung or of an Advice: a tolerance or dt.
 template <class Run>
 std::string steps_text(Pilot const& pilot, Candidate const& candidate, Run const& run) {
   auto const& units = pilot.scene().units;

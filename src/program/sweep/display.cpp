@@ -59,8 +59,8 @@ void Display::show(std::vector<Running> const& running) {
     fmt::print("{}\n", fitted(fmt::format("{} {:5.1f} %  {}", bar(share), 100 * share, text)));
     ++lines_;
   };
-  // Lines that have scrolled off the top cannot be erased. Two lines remain for all runs and for
-  // the cursor.
+  // Lines that have scrolled off the top cannot be erased. Two lines are kept for the bar of all
+  // runs and for the cursor.
   int const most_bars = terminal_lines() - 2;
   double done = cost_ended_;
   for (auto const& [run, share] : running) {

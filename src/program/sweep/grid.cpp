@@ -61,8 +61,8 @@ std::vector<io::SweptKey> read_keys(SweepOptions const& options) {
   return keys;
 }
 
-// Does not search fields for features in time, which each run does itself, unless the scene sets
-// refuse_unstable.
+// Searches fields for features in time only if the scene sets refuse_unstable: each run does that
+// itself.
 Plan plan_of(io::Stage const& stage, Precision precision) {
   auto const& scene = stage.scene;
   if (stage.relax) return make_plan_to_relax(scene, precision);

@@ -26,7 +26,7 @@ bool has_ended(io::SweptRun const& run) {
   return run.status == Status::done || run.status == Status::numbers_failed;
 }
 
-// Describes the sweep in the file if it is another one; otherwise empty.
+// Describes the sweep in the file if it is not this one; otherwise returns an empty text.
 std::string difference(io::SweepHeader const& now, io::SweepHeader const& before) {
   auto const keys = [](io::SweepHeader const& header) {
     std::string text;

@@ -16,8 +16,9 @@ namespace cayspin::program::sweep {
 /// other processes.
 class Session {
  public:
-  /// Continues the sweep in the file, or starts one. Throws UsageError when the file has other
-  /// contents, or another process works on it.
+  /// Continues the sweep in the file; without a file, or with `overwrite`, starts one. Throws
+  /// UsageError if the file has other contents (without `overwrite`), if its folder does not exist
+  /// or the file cannot be written, and if another process works on it.
   Session(std::filesystem::path file, Grid const& grid, bool overwrite);
   ~Session();
   Session(Session const&) = delete;

@@ -30,7 +30,7 @@ namespace cayspin::program::sweep {
 namespace {
 
 constexpr std::size_t most_text = 4096;
-// A line of the worker's output that ends a command: this word and the status.
+// The line of the worker's output that ends a command consists of this word and the status.
 constexpr std::string_view end_word = "end ";
 
 using Pipe = std::array<int, 2>;
@@ -58,8 +58,8 @@ Pipe open_pipe() {
   ::_exit(127);
 }
 
-// Reads a request: words, each followed by a zero, and one more zero. Returns false if the other
-// end has closed.
+// Reads a request: words, each followed by a zero byte, and one more zero byte. Returns false if
+// the other end has closed.
 bool read_request(std::vector<std::string>& words) {
   words.clear();
   std::string word;

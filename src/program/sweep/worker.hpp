@@ -13,7 +13,7 @@
 namespace cayspin::program::sweep {
 
 /// Space and threads of the runs of a worker. If other workers run at the same time
-/// (is_one_of_many), it does not bind its threads to cores.
+/// (is_one_of_many), the worker does not bind its threads to cores.
 struct WorkerOptions {
   std::string space;
   std::optional<int> threads;
@@ -21,16 +21,16 @@ struct WorkerOptions {
 };
 
 /// Another process of this program, which performs one command after another: starting a process
-/// for each would take longer than a short run. It ends when this process does.
+/// for each command would take longer than a short run. The process ends when this one does.
 class Worker {
  public:
   explicit Worker(WorkerOptions const& options);
-  /// Kills it if it has not ended.
+  /// Kills the process if it has not ended.
   ~Worker();
   Worker(Worker const&) = delete;
   Worker& operator=(Worker const&) = delete;
 
-  /// Starts a command with these arguments; none may be running.
+  /// Starts a command with these arguments. No other command may be running.
   void begin(std::vector<std::string> const& arguments);
   void add_to(std::vector<pollfd>& polled) const;
   /// Reads the output so far, without waiting.

@@ -16,7 +16,7 @@
 namespace cayspin::program::trade {
 namespace {
 
-// Limits of a search: share of the duration of the run, but at least this many seconds.
+// Limits of a search: a share of the duration of the run, but at least this many seconds.
 constexpr double most_share = 0.1, least_limit = 2;
 // Approximate shares of that limit: for a coarse run, for the fine solution, and those at which the
 // first trials and all trials end.
@@ -116,8 +116,8 @@ class Search {
     if (!candidate.method->adaptive && !is_representative_) return;
     auto coarsest = coarsest_steps(pilot_, candidate, horizon_.time, horizon_.own_steps);
     if (pilot_.scene().integrator.refuse_unstable && !candidate.method->adaptive) {
-      // Starts at the stable dt, since a larger one is the usual reason for a refusal. Only then,
-      // because it takes long to compute.
+      // Starts at the stable dt, since a larger one is the usual reason for a refusal. Not without
+      // refuse_unstable, because the stable dt takes long to compute.
       double const stable = pilot_.plan(candidate, horizon_.time, coarsest).stable_dt;
       if (!(stable > 0)) return;
       coarsest.count =
@@ -132,7 +132,8 @@ class Search {
     double const order =
         candidate.substeps > 0 ? order_with_multirate(scene, variant) : variant.order;
     bool const adaptive = candidate.method->adaptive;
-    // The error of an adaptive method is close to its tolerance, on which its cost depends little.
+    // The error of an adaptive method is close to its tolerance, and its cost depends little on the
+    // tolerance.
     auto first = coarsest;
     if (adaptive) first.tolerance = std::min(coarsest.tolerance, 30 * goal_);
     constexpr double of_iterations = 20, error_of_own_steps = 1e-2;
@@ -269,7 +270,7 @@ double limit_of(Pilot const& pilot) {
 }
 
 // Returns a solution up to the horizon, which is halved until the solution's error is below a
-// fraction of `error` and it takes at most `seconds`.
+// fraction of `error` and the solution takes at most `seconds`.
 Known fine_solution(Pilot const& pilot, Horizon& horizon, double error, double seconds) {
   auto const by = fine_tsit5();
   double const tightest = by.least_tolerance();
@@ -298,10 +299,10 @@ Known fine_solution(Pilot const& pilot, Horizon& horizon, double error, double s
   throw NumbersFailed("there is no solution to compare with: " + horizon.why_shorter);
 }
 
-// Tries the steps of the actual run, if no trial has shown their error: an extrapolated error may
-// be far off, and in a field that depends on t, the error depends on where the steps are, and the
-// scene's frames may have shortened them. Shortens the steps until they meet the error; returns
-// false if they do not.
+// Tries the steps of the actual run, if no trial has shown their error. An extrapolated error may
+// be far off; and in a field that depends on t, the error depends on where the steps are, which the
+// times of the scene's frames may have changed. Shortens the steps until they meet the error;
+// returns false if they do not.
 bool holds(Pilot const& pilot, Horizon const& horizon, Known const& fine, double error,
            Advice& advice) {
   bool const adaptive = advice.candidate.method->adaptive;

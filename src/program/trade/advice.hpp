@@ -35,9 +35,10 @@ struct Advised {
   double seconds = 0;  // duration of the search
 };
 
-/// Tries every candidate with coarse steps, compares them with one fine solution, and continues
-/// with those predicted to be the cheapest. Takes at most a tenth of the duration of the run, or 2
-/// s, plus the trials that measure the advice; longer only if nothing has met the error by then.
+/// Tries the candidates with coarse steps, compares them with one fine solution, and continues with
+/// those predicted to be the cheapest. Takes at most a tenth of the duration of the run, or 2 s if
+/// that is longer, plus the trials that measure the advice; longer only if nothing has met the
+/// error by then.
 Advised advise(Pilot const& pilot, AdviceRequest const& request);
 
 }  // namespace cayspin::program::trade

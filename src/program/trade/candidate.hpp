@@ -21,7 +21,7 @@ struct Candidate : MethodChoice {
   Precision precision = Precision::double_precision;
 
   double least_tolerance() const;
-  /// Returns the error of a run due to round-off, below which no error is requested.
+  /// Returns the error of a run due to round-off. The candidate is not tried for smaller errors.
   double least_error() const { return 2 * least_tolerance(); }
   /// Returns a name such as "rkmk4 tangent, single" or "rkmk4, multirate, 4 substeps".
   std::string name() const;
@@ -41,8 +41,9 @@ struct Try {
   std::int64_t evaluations = 0;
 };
 
-/// Returns all candidates that can run a scene, high orders first; in one precision, if it is
-/// given. Some evaluate an expensive field once a step, others in each stage.
+/// Returns all candidates that can run a scene, in double and then in single precision, each with
+/// high orders first; only those in `precision`, if it is given. Some evaluate an expensive field
+/// once a step, others in each stage.
 std::vector<Candidate> candidates(io::Scene const& scene, std::optional<Precision> precision = {});
 
 /// Returns the scene up to `horizon` with a candidate. Adaptive methods are observed after equal

@@ -86,7 +86,7 @@ Ladder climb(Pilot const& pilot, Candidate const& candidate, Reference const& re
     double most = infinite;
     for (auto const& other : others)
       most = std::min(most, limits.far_behind * seconds_to(other, error));
-    // Round-off is reached, or the method is too slow at this dt.
+    // The error is small enough, the run takes too long, or finer steps no longer reduce the error.
     if (error < limits.least_error || run.seconds > std::min(limits.seconds, most) ||
         (worse > 2 && best < 1e-3) || worse > 12)
       break;

@@ -31,14 +31,14 @@ struct LadderLimits {
   double share = 0;  // share of all ladders done
 };
 
-/// Return the coarsest possible steps of a candidate, for its first rung, and those of the rung
-/// after `steps`.
+/// Return the steps of a candidate's first rung, which are the coarsest, and those of the rung that
+/// follows one with `steps`.
 Steps coarsest_steps(Pilot const& pilot, Candidate const& candidate, double horizon,
                      std::int64_t own_steps);
 Steps finer(Candidate const& candidate, Steps const& steps);
 
-/// Runs a candidate with finer and finer steps, until a limit is reached. `others`: the ladders so
-/// far.
+/// Runs a candidate with finer and finer steps, until a limit is reached. `others`: the ladders of
+/// other candidates so far.
 Ladder climb(Pilot const& pilot, Candidate const& candidate, Reference const& reference,
              std::vector<Ladder> const& others, LadderLimits const& limits = {});
 
@@ -46,9 +46,9 @@ Ladder climb(Pilot const& pilot, Candidate const& candidate, Reference const& re
 void mark_front(std::vector<Ladder>& ladders);
 
 /// Returns the time in which a ladder's candidate reaches an error, interpolated logarithmically
-/// between rungs; infinite if it does not.
+/// between rungs; infinite if it does not reach it.
 double seconds_to(Ladder const& ladder, double error);
-/// Returns the ladder with only the rungs that determine this time: two, one or none.
+/// Returns the ladder with only the rungs that determine seconds_to: two, one or none.
 Ladder around(Ladder const& ladder, double error);
 double evaluations_to(Ladder const& ladder, double error);
 

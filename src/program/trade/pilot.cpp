@@ -159,8 +159,8 @@ Outcome Pilot::run(Candidate const& candidate, double horizon, Steps const& step
 Outcome Pilot::run(Candidate const& candidate, Stretch const& stretch, Steps const& steps,
                    Repeats const& repeats) const {
   auto const scene = with(scene_, candidate, stretch.length, stretch.looks.intervals, steps);
-  // Plans without the sigma, because the stable dt with it takes long to compute, and no run here
-  // needs that.
+  // Plans without the sigma, because the stable dt with a sigma takes long to compute, and no run
+  // here needs it.
   auto planned = scene;
   if (candidate.isotropy == io::Isotropy::constant)
     planned.integrator.isotropy = io::Isotropy::zero;

@@ -40,7 +40,7 @@ struct Outcome : Ending {
 
 /// Returns the largest distance of any spin between two states.
 double distance(std::vector<double> const& a, std::vector<double> const& b);
-/// Returns the largest distance at any stored step; infinite if a state is not finite.
+/// Returns the largest distance at any stored step; infinite if a run has failed.
 double distance(Outcome const& a, Outcome const& b);
 
 /// Runs one scene with different methods, in one execution space. Exists only inside a

@@ -31,8 +31,8 @@ void Prospect::add(Try one, double unknown) {
   double const now = resolution(one.steps);
   auto const finer = std::ranges::upper_bound(
       tries_, now, {}, [this](Try const& other) { return resolution(other.steps); });
-  // If the error is near the uncertainty of the solution, extrapolates it by the order, within that
-  // uncertainty.
+  // If the error is near the uncertainty of the solution, replaces it by an extrapolation from the
+  // next coarser trial, within that uncertainty.
   if (finer != tries_.begin() && one.error < 5 * unknown) {
     auto const& coarser = *std::prev(finer);
     double const by_order = coarser.error * std::pow(now / resolution(coarser.steps), -order_);
@@ -64,7 +64,7 @@ double Prospect::seen_order() const {
   return std::isfinite(seen) ? seen : order_;
 }
 
-// Interpolates by a power law. Errors drop abruptly at steps that become stable: then bisects,
+// Interpolates by a power law. Errors drop abruptly where steps become stable; there it bisects,
 // until the drop is close.
 double Prospect::between(Try const& failing, Try const& passing, double error) const {
   double const from = resolution(failing.steps), to = resolution(passing.steps);

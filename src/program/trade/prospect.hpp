@@ -7,12 +7,12 @@
 
 namespace cayspin::program::trade {
 
-/// Trials of a candidate, and predictions from them. Resolution: its number of steps, or 1 /
-/// tolerance.
+/// Trials of a candidate, and predictions from them. Resolution means the number of steps or, for
+/// an adaptive method, 1 / tolerance.
 class Prospect {
  public:
   /// `order`, `cost_order`: the error falls as resolution^-order, and the cost grows as
-  /// resolution^cost_order. `evaluations`: their expected number, before any trial.
+  /// resolution^cost_order. `evaluations`: the number expected before any trial.
   Prospect(Candidate const& candidate, Steps const& coarsest, Steps const& first, double order,
            double cost_order, double evaluations)
       : candidate_(candidate),
@@ -29,7 +29,7 @@ class Prospect {
   bool is_dropped() const { return dropped_; }
   void drop() { dropped_ = true; }
 
-  /// Adds a trial, whose error is known up to `unknown`.
+  /// Adds a trial, whose error is known to within `unknown`.
   void add(Try one, double unknown);
   /// Adds the duration of a run with these steps.
   void add_time(Steps const& steps, double seconds);

@@ -14,9 +14,8 @@ namespace cayspin::program::trade {
 /// just after a field jumps or has its shortest feature.
 std::vector<std::int64_t> times_of_looks(TimeFeatures const& features, double horizon);
 
-/// A solution by an adaptive method up to a horizon, with which runs are compared.
-///
-/// Runs are compared after their first step, and after the first steps that end at or after one of
+/// A solution by an adaptive method up to a horizon, with which runs are compared.  Runs are
+/// compared after their first step, and after the first step that ends at or after each of
 /// times_of_looks, so that the error covers the whole motion. Motion that decays does so early,
 /// hence half of the times are in the first quarter: at four equally spaced times, any stable step
 /// would pass. Steps need not end exactly at these times, since that would exclude coarse ones; the
@@ -36,9 +35,9 @@ class FineSolution {
     return distance(solution_, other.solution_);
   }
 
-  /// From now on continues the solution by constant steps of this method, as long as possible, if
-  /// there are steps whose error is at most `error` at all times at which they can be compared.
-  /// They make short continuations cheaper than the tolerance does.
+  /// From now on continues the solution by constant steps of `method`: the longest whose error is
+  /// at most `error` at all times at which they can be compared. Without such steps, changes
+  /// nothing. Constant steps make short continuations cheaper than steps by the tolerance.
   void continue_by(Candidate const& method, double error);
 
   /// Measures a candidate's run to the horizon. `guarded`: the run fails if the guard of `cayspin
@@ -71,8 +70,8 @@ struct Horizon {
 /// Returns tsit5 in a form whose error follows its tolerance.
 Candidate fine_tsit5();
 
-/// Halves the time up to the scene's end until a coarse run covers it in `seconds`, or in ten
-/// steps; at most twenty times.
+/// Returns the longest horizon that a coarse run covers in `seconds`, or in ten steps: the scene's
+/// end, halved at most twenty times. Throws NumbersFailed if a coarse run fails.
 Horizon horizon_within(Pilot const& pilot, double seconds);
 
 /// A converged solution of a scene, up to its end or as far as it converges.
@@ -83,7 +82,7 @@ struct Reference {
 };
 
 /// Starts from a horizon that a coarse run covers in a tenth of `seconds`, and halves it until two
-/// methods at their tightest tolerance agree.
+/// methods at a tolerance of 1e-13 agree. Throws NumbersFailed if they never do.
 Reference converged_reference(Pilot const& pilot, double seconds);
 
 }  // namespace cayspin::program::trade

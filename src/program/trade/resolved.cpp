@@ -13,7 +13,7 @@
 namespace cayspin::program::trade {
 namespace {
 
-// Limits a period of output to the number of steps: nothing is due beyond the last one.
+// Limits a period of output to the number of steps: nothing is due beyond the last step.
 std::int64_t within(io::Integrator const& integrator, std::int64_t every) {
   return std::clamp<std::int64_t>(integrator.steps, 1, every);
 }
@@ -28,7 +28,8 @@ std::int64_t steps_between_looks(io::Scene const& scene, bool adaptive) {
                            within(integrator, scene.output.scalars_every)));
 }
 
-// Returns the complete table, since the scene's may have keys that the method does not accept.
+// Returns the complete table [integrator], since that of the scene may have keys that the method
+// does not accept.
 std::string integrator_table(io::Scene const& scene, Advice const& advice, double dt,
                              std::int64_t steps) {
   auto const& of_scene = scene.integrator;
@@ -70,7 +71,8 @@ Resolved resolve(io::Scene const& scene, Advice const& advice) {
   auto const looks = integrator.steps / together;
   std::int64_t parts = 1;
   if (!advice.candidate.method->adaptive) {
-    // The total is a multiple of four steps, so that a restart can end at quarters.
+    // The total is a multiple of four steps, so that a run can end at a quarter, and be continued
+    // by a restart.
     std::int64_t const unit = looks > 0 ? 4 / std::gcd<std::int64_t>(4, looks) : 1;
     auto const least = static_cast<std::int64_t>(std::ceil(time / advice.dt - 1e-9));
     parts = (least + unit - 1) / unit * unit;

@@ -27,7 +27,8 @@ io::Scene with_method(io::Scene const& scene, std::string const& space, Precisio
                       TrialProgress* progress = nullptr);
 
 /// Returns a scene of method "auto" with the method that an earlier run chose, given that run's
-/// scene as typed and as resolved. Empty if there was no such choice.
+/// scene as typed and as resolved. Empty if there was no such choice, or if it does not fit this
+/// scene's error, dt and steps.
 std::optional<io::Scene> with_method_of(io::Scene const& scene, std::string const& typed_before,
                                         std::string const& resolved_before);
 

@@ -8,7 +8,7 @@
 
 namespace cayspin::program::trade {
 
-/// Comparison of an advice with the ladders.
+/// Comparison of the advice for an error with the ladders.
 struct Verdict {
   double asked;
   Advised advised;
