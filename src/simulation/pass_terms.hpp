@@ -183,7 +183,7 @@ struct PassTerms {
   AnisotropyOfSites<Real> const* anisotropies_of_sites;
   CrystalAnisotropyOfSites<Real> const* crystals_of_sites;
   std::int32_t dmis, anisotropies, crystals, cubics_of_cell;
-  std::int32_t anisotropies_in_time;  // how many, from the first on, have the factor
+  std::int32_t anisotropies_in_time;          // how many, from the first on, have the factor
   double exchange_factor, anisotropy_factor;  // uniform exchange already includes its factor
   cayspin::SiteArray<Real, 1> moments;        // 0 where there is no spin
   SourcesNow<Real> sources;

@@ -33,7 +33,9 @@ struct Plan {
   MethodOptions options;
   Times times;
   double stable_dt;  // infinity without a limit, 0 when every dt amplifies
-  double turn;  // radians: bound on a spin's turn in a step; without exchange if stable_dt is known
+  // Bound on a spin's turn in `substep`, in radians; without exchange if stable_dt is finite or the
+  // method is stiff.
+  double turn;
   Memory memory;
   std::int64_t frames;
   double file_bytes;                             // may exceed the range of an integer

@@ -32,6 +32,7 @@ LastFrame last_frame(io::TrajectoryInfo const& trajectory, std::vector<io::Stage
 /// Files of an earlier run: a trajectory and, if there is one, the checkpoint next to it; or only a
 /// checkpoint.
 struct EarlierRun {
+  /// Throws UsageError for the file of an ensemble, and if the checkpoint is of another scene.
   explicit EarlierRun(std::filesystem::path path);
   /// The last frame of an ensemble's file, which has no checkpoint.
   EarlierRun(std::filesystem::path path, io::EnsembleInfo const& info);

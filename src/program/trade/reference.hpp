@@ -14,9 +14,10 @@ namespace cayspin::program::trade {
 /// just after a field jumps or has its shortest feature.
 std::vector<std::int64_t> times_of_looks(TimeFeatures const& features, double horizon);
 
-/// A solution by an adaptive method up to a horizon, with which runs are compared.  Runs are
-/// compared after their first step, and after the first step that ends at or after each of
-/// times_of_looks, so that the error covers the whole motion. Motion that decays does so early,
+/// A solution by an adaptive method up to a horizon, with which runs are compared.
+///
+/// Runs are compared after their first step, and after the first step that ends at or after each
+/// of times_of_looks, so that the error covers the whole motion. Motion that decays does so early,
 /// hence half of the times are in the first quarter: at four equally spaced times, any stable step
 /// would pass. Steps need not end exactly at these times, since that would exclude coarse ones; the
 /// solution is continued to where they end.

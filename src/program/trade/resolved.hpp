@@ -12,8 +12,9 @@ namespace cayspin::program::trade {
 /// The keys of a scene with the advised method. Frames and samples keep their times: the steps
 /// between two of them are a whole number, so dt may be shorter than advised.
 struct Resolved {
-  double
-      dt;  // as in the scene; for adaptive methods the interval between observations of the spins
+  // In the units of the scene. For adaptive methods it is the interval between observations of the
+  // spins.
+  double dt;
   std::int64_t steps;
   std::vector<std::string> overrides;  // of the scene, including the whole [integrator]
 };
