@@ -31,7 +31,7 @@ bool has_name(std::string const& word) {
 /// Returns true if this is the name of a host execution space.
 bool is_on_host(std::string const& space);
 
-/// Returns the requested name, or that of Kokkos's default space. Throws UsageError for a space
+/// Returns the requested name, or that of Kokkos' default space. Throws UsageError for a space
 /// that is not compiled in, and for "serial" if Kokkos already runs with more than one thread.
 std::string chosen_space(std::optional<std::string> const& asked);
 

@@ -26,7 +26,7 @@ namespace cayspin::simulation {
 
 struct RunSettings {
   Precision precision = Precision::double_precision;
-  std::optional<std::string> space = {};  // default: Kokkos's default
+  std::optional<std::string> space = {};  // default: Kokkos' default
   std::optional<int> threads = {};        // of host spaces; only the first run of a process sets it
   std::optional<std::filesystem::path> restart = {};  // a checkpoint or trajectory to continue from
 };

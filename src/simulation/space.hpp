@@ -3,7 +3,7 @@
 
 #include <Kokkos_Core.hpp>
 
-// The execution spaces that the program is compiled for: Kokkos's default on the host, and a device
+// The execution spaces that the program is compiled for: Kokkos' default on the host, and a device
 // if Kokkos has one. CAYSPIN_FOR_EACH_SPACE(apply, ...) expands apply(Space, ...). With the
 // emulated device of the tests, it expands only for that device, which halves the time to compile.
 #if defined(CAYSPIN_HOST_DEVICE)
