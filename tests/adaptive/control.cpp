@@ -42,8 +42,8 @@ template <class Type>
 struct AdaptiveOn : ::testing::Test {};
 TYPED_TEST_SUITE(AdaptiveOn, Backends, BackendName);
 
-// Serial and the threaded space choose equal dt, and so have equal bits, also at frames within a
-// step. A device is compared with a second run of its own.
+// Serial and the threaded space choose equal dt and so give equal bits, also at frames within a
+// step. On a device, two runs are compared with each other.
 TYPED_TEST(AdaptiveOn, HasTheBitsOfSerial) {
   using Field = typename TypeParam::Spins;
   using Exec = typename TypeParam::Exec;
@@ -82,9 +82,9 @@ TEST(AdaptiveTolerance, HoldsAcrossAFieldSwitchedOnInMidStep) {
   }
 }
 
-// Without a field, steps become long. In the step in which the field is switched on, the rotation
-// is so large that the Cayley map makes nearly half a turn of any estimate: the embedded solutions
-// agree although both are wrong.
+// Without a field, steps become long. The rotation in the step in which the field is switched on is
+// so large that the Cayley map turns any estimate of it into nearly half a turn: the embedded
+// solutions agree although both are wrong.
 TEST(AdaptiveTolerance, HoldsWhereAFieldIsSwitchedOnAtRest) {
   double const tolerance = 1e-4;
   auto const start = [] {
@@ -110,7 +110,7 @@ struct Pulse {
   }
 };
 
-// Behaviour common to all methods with adaptive steps.
+// Behaviour that methods with adaptive steps have in common.
 template <class Stepper>
 struct EveryAdaptive : ::testing::Test {};
 using AllAdaptive =
@@ -157,7 +157,8 @@ TYPED_TEST(EveryAdaptive, AskingOftenDoesNotChangeTheSteps) {
   EXPECT_EQ(copy_to_host(seldom), copy_to_host(often));
 }
 
-/// An observer due at certain step numbers, and unpredictably at every n-th call of due().
+/// An observer that is due at certain step numbers and, unpredictably for the caller, at each
+/// calls_to_a_sudden_one-th call of due().
 struct LooksNowAndThen {
   int calls_to_a_sudden_one;
   std::map<std::int64_t, std::vector<double>> seen = {};
@@ -319,7 +320,7 @@ TEST(AdaptiveFailure, AStepBelowTheLeastAllowed) {
   EXPECT_THROW(stepper.step(Space(), coupled_chain(0.1).natural(), spins, 0, 1), StepTooSmall);
 }
 
-/// A field that is undefined after the end.
+/// A field that is undefined after the time `end`.
 struct EndingField {
   static constexpr bool depends_on_time = true;
   double end;
@@ -345,7 +346,8 @@ TEST(AdaptiveAtRest, NothingMovesAndStepsGrow) {
   Tsit5 stepper(spins, {.tolerance = 1e-6});
   stepper.step(Space(), LandauLifshitz(EffectiveField(Zeeman{{0, 0, 1}}), 0.1), spins, 0, 1e3);
   EXPECT_EQ(copy_to_host(spins), start);
-  // Devices fuse other products and sums than hosts, so their error is round-off instead of zero.
+  // Devices fuse other products and sums than hosts, so there the estimated error is round-off
+  // instead of zero.
   EXPECT_LT(stepper.accepted_steps(), detail::is_host_execution<Space> ? 20 : 30);
 }
 

@@ -25,8 +25,8 @@ class WithinAStep {
     return spins;
   }
 
-  /// Expects an error of order dense_order + 1 in a step, from steps of `longest`, 1/2 and 1/4 of
-  /// it.
+  /// Expects the error within a step to be of order dense_order + 1 in the step's length. Measured
+  /// with the lengths `longest`, longest / 2 and longest / 4.
   void expect_order(char const* name, int dense_order, double longest, double tolerance) const {
     for (double const s : {0.35, 0.8}) {
       SCOPED_TRACE(s);
@@ -39,8 +39,8 @@ class WithinAStep {
     }
   }
 
-  /// Expects the spins near each end of a step to move towards those at this end at the right
-  /// rates.
+  /// Expects difference quotients of the dense output at both ends of a step to equal the rates of
+  /// the spins there.
   void expect_joined(char const* name, double dt, double tolerance) const {
     double const near = 1e-5;
     auto const start = chain_start();

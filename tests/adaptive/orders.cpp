@@ -28,13 +28,13 @@ class Embedded : public ChainOrder {
 };
 
 TEST_P(Embedded, Tsitouras5) {
-  order_tolerance = 1;  // its terms of order 5 are so small that those of order 6 show
+  order_tolerance = 1;  // its error terms of order 5 are so small that those of order 6 show
   expect<Rkmk<Spins, tableau::Tsitouras5>>("default", 5, slab.natural());
   expect<StereographicRungeKutta<Spins, tableau::Tsitouras5>>("tangent", 5, slab.natural());
 }
 
 TEST_P(Embedded, DormandPrince5) {
-  order_tolerance = 0.65;  // small terms of order 5 here too
+  order_tolerance = 0.65;  // its error terms of order 5 are small, too
   expect<Rkmk<Spins, tableau::DormandPrince5>>("default", 5, slab.natural());
   expect<ProjectedRungeKutta<Spins, tableau::DormandPrince5>>("projected", 5, slab.natural());
 }

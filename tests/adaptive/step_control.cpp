@@ -19,7 +19,8 @@ class FifthOrder : public ::testing::Test {
  protected:
   StepController control = controller({.tolerance = 12e-6});
 
-  /// Returns the ratio of the next dt to the last one after an error of `ratio` step tolerances.
+  /// Returns the ratio of the next dt to the last one after an error of `ratio` times the step
+  /// tolerance.
   double factor(double ratio) { return control.next_dt(0.25, ratio * 1e-6) / 0.25; }
 };
 
@@ -110,8 +111,8 @@ TEST(StepControl, NoStepIsAboveTheLargest) {
   EXPECT_EQ(free.next_dt(9e99, 0), 1e100);
 }
 
-// A spin that turns by 1 radian per unit of time: the first dt shows which order the tableau gives
-// to its error.
+// A spin that turns by 1 radian per unit of time: the first dt shows which order the method gives
+// to its error estimate.
 template <class Stepper>
 void expect_error_order(char const* name, int order, double divisor) {
   SCOPED_TRACE(name);

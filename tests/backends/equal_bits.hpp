@@ -28,8 +28,8 @@ inline std::string name_of(Lattice const& lattice) {
   return name;
 }
 
-/// Lattices with irregular extents, open and periodic: rows shorter and longer than a pack and than
-/// a task; few sites, for the calling thread only, and many.
+/// Lattices with irregular extents, open and periodic: with rows shorter and longer than a pack and
+/// than a task; with few sites, which the calling thread computes by itself, and with many.
 inline std::vector<Lattice> odd_lattices() {
   std::vector<Lattice> lattices;
   std::array<std::int64_t, 3> const shapes[] = {

@@ -32,7 +32,7 @@ void allocate(Kokkos_Profiling_SpaceHandle, char const* label, void const*, std:
 }
 void begin_fence(char const* name, std::uint32_t, std::uint64_t*) {
   std::string const fence = name;
-  if (!fence.starts_with("Kokkos::Tools::")) events.fences.push_back(fence);  // not those of tools
+  if (!fence.starts_with("Kokkos::Tools::")) events.fences.push_back(fence);  // by tools
 }
 void begin_copy(Kokkos_Profiling_SpaceHandle, char const* to, void const*,
                 Kokkos_Profiling_SpaceHandle, char const*, void const*, std::uint64_t) {
@@ -165,8 +165,8 @@ TEST(Labels, IterationsAndEnergies) {
   EXPECT_EQ(seen.regions.front(), "cayspin::ImplicitLieEuler");
 }
 
-/// Expects a stepper to allocate so many fields, labelled with its name, of the size that it
-/// states.
+/// Expects a stepper to make `fields` allocations, labelled with its name, and their total size to
+/// be the stepper's work_bytes().
 template <class Stepper, class... Options>
 void expect_work_memory(std::string const& name, std::size_t fields, Options const&... options) {
   Field const spins("spins", slab.lattice);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Streaming stores, which steppers choose for large fields, give the results of plain stores.
+// Streaming stores, which steppers choose for large fields, give the same results as plain stores.
 #include "equal_bits.hpp"
 
 #include <limits>

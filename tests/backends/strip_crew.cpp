@@ -42,8 +42,8 @@ std::vector<std::uint64_t> expected(std::int32_t strips) {
   return neighbours.numbers[steps % 2];
 }
 
-/// Runs so many threads, each of which calls work() for its strips one after the other. `late`: one
-/// thread starts late, and one strip is slow at some steps.
+/// Starts `threads` threads, each of which calls work() for its own strips one after the other.
+/// `late`: one thread starts late, and one strip is slow at some steps.
 std::vector<std::uint64_t> by_crew(std::int32_t strips, int threads, bool late) {
   Neighbours neighbours(strips);
   std::vector<StripProgress> progress(static_cast<std::size_t>(strips) + 1);
@@ -75,7 +75,7 @@ TEST(StripCrew, OutlastsLateThreads) {
   for (int const threads : {2, 5}) EXPECT_EQ(by_crew(5, threads, true), expected(5));
 }
 
-// A single thread calls work() for each strip in turn; while in the first call, it has to do steps
+// A single thread calls work() for each strip in turn. During the first call, it has to take steps
 // of all other strips.
 TEST(StripCrew, NeedsNoSecondThread) { EXPECT_EQ(by_crew(9, 1, false), expected(9)); }
 

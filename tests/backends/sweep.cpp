@@ -80,7 +80,7 @@ TYPED_TEST(Sweep, Compensated) {
   expect_same_on_both_paths<Compensated<Rkmk4<typename TestFixture::Field>>>(turning);
 }
 
-// Coefficients and vacancies are read from the lattice, not from the buffers.
+// Coefficients and vacancies are read from fields on the whole lattice, not from a sweep's buffers.
 TYPED_TEST(Sweep, SiteDependentCoefficients) {
   using Field = typename TestFixture::Field;
   expect_same_on_both_paths<LieHeun<Field>>(site_dependent<Field>);
@@ -107,7 +107,8 @@ TYPED_TEST(Sweep, ChosenAndPredictedBySize) {
   expect_memory<Compensated<Rkmk4<Field>>>(3, 5);
 }
 
-// On wide lattices of few rows, the buffers of twelve stages would exceed all fields of passes.
+// On wide lattices with few rows, a sweep's buffers for twelve stages would take more memory than
+// all fields of a pass.
 TYPED_TEST(Sweep, IsLeftWhereItsBuffersExceedFields) {
   using Field = typename TestFixture::Field;
   auto const expect_bounded = [](std::size_t (*work_bytes)(Lattice const&, PredictedRun const&)) {

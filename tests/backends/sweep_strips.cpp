@@ -19,7 +19,7 @@ template <class Real>
 using SweepStrips = InHostMemory<Real>;
 TYPED_TEST_SUITE(SweepStrips, Precisions, PrecisionName);
 
-/// Base of the fields below, which are all zero.
+/// Base of the field terms below, whose fields and energies are zero.
 struct NoField {
   static constexpr int degree = 1;
 
@@ -29,7 +29,7 @@ struct NoField {
   }
 };
 
-/// A field that counts its evaluations, once for each pack of a row.
+/// A term that counts its evaluations, one for each pack of a row.
 struct CountedCalls : NoField {
   std::int64_t* calls;
 
@@ -101,7 +101,7 @@ TYPED_TEST(SweepStrips, CutFewThreadsIntoPartsAlone) {
   EXPECT_GT(plan_for<TypeParam>(Lattice::cubic(128, 128, 128), 64).strips, 1);
 }
 
-/// A field that is slow at a few sites.
+/// A term whose evaluation is slow at a few sites.
 struct SlowRows : NoField {
   template <class Stencil>
   KOKKOS_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const& stencil) const {

@@ -23,7 +23,7 @@ inline std::vector<Lattice> swept_lattices() {
   return lattices;
 }
 
-/// The smaller ones of these, for tests of methods with many stages.
+/// The lattices of swept_lattices() with at most 60000 sites, for methods with many stages.
 inline std::vector<Lattice> smaller_swept_lattices() {
   auto lattices = swept_lattices();
   std::erase_if(lattices, [](Lattice const& lattice) { return lattice.sites() > 60000; });
@@ -45,7 +45,7 @@ inline auto turning(Slab const& slab) {
                         slab.damping);
 }
 
-/// Expects no sweep for a field that needs all spins of a stage.
+/// Expects passes instead of sweeps under a field that depends on the spins of all sites.
 template <class Stepper, class... Options>
 void expect_passes_under_a_nonlocal_field(double dt, Options const&... options) {
   using Field = typename Stepper::spins_type;
@@ -63,7 +63,8 @@ void expect_passes_under_a_nonlocal_field(double dt, Options const&... options) 
   expect_equal_bits(copy_to_host(one), copy_to_host(other), "nonlocal");
 }
 
-/// Expects 8^3 sites to be passed and n^3 sites to be swept, with as much memory as predicted.
+/// Expects a stepper to choose passes for 8^3 sites and sweeps for n^3 sites, and to take as much
+/// memory as predicted.
 template <class Stepper, class... Options>
 void expect_chosen_and_predicted(std::int64_t n, Options const&... options) {
   int const threads = Threaded().concurrency();

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# cmake -D CMAKE_NM=NM -P StartsNoProcess.cmake LIBRARY...: checks that none of them calls a
-# function that starts a process or waits for one.
+# cmake -D CMAKE_NM=NM -P StartsNoProcess.cmake LIBRARY...: checks that no LIBRARY calls a function
+# that starts a process or waits for one. There have to be at least three libraries.
 set(calls
     fork
     vfork

@@ -11,8 +11,8 @@
 
 namespace cayspin::test {
 
-/// Returns a scene of two free spins that precess about z, with period 2 pi. `more` comes before
-/// [initial].
+/// Returns a scene of two uncoupled spins that precess about z, with period 2 pi. `more` comes
+/// before [initial].
 inline std::string scene_text(std::string const& more = {}, std::string const& end = "steps = 10") {
   return "[system]\nkind = \"llg\"\ndamping = 0.0\n[lattice]\nshape = [2]\n"
          "[field]\napplied = [0.0, 0.0, 1.0]\n" +
@@ -41,7 +41,8 @@ inline Simulation open(std::string const& text, cayspin_precision precision = CA
   return Simulation(simulation);
 }
 
-/// Expects a call to fail with this status, and with these words in its message.
+/// Expects the status `is` of a failed call to be `expected`, and the message to be one line that
+/// contains `words`.
 inline void expect_failure(cayspin_status is, cayspin_status expected, std::string const& words) {
   EXPECT_EQ(is, expected);
   EXPECT_NE(std::string(cayspin_last_error()).find(words), std::string::npos)

@@ -57,7 +57,8 @@ TYPED_TEST(CInterface, StepsAndLendsSpins) {
 TYPED_TEST(CInterface, TakesSpinsOfItsOwnStrides) {
   auto* const simulation = this->simulation.get();
   ASSERT_EQ(cayspin_step(simulation, 3), CAYSPIN_OK);
-  // All x components come first, then y and z; sites are in reverse order, and spins of any length.
+  // All x components come first, then y and z. The sites are in reverse order, and the spins do not
+  // have unit length.
   TypeParam const numbers[] = {0, 3, 2, 0, 0, 4};
   cayspin_array const mine{&numbers[1], this->precision, {1, 1, 2, 3}, {0, 0, -1, 2}};
   ASSERT_EQ(cayspin_set_spins(simulation, &mine), CAYSPIN_OK) << cayspin_last_error();
@@ -72,8 +73,8 @@ TYPED_TEST(CInterface, TakesSpinsOfItsOwnStrides) {
   EXPECT_NEAR(energy, -0.8, 2 * this->epsilon);
 }
 
-// On hosts, spins are lent without a copy. After an even number of steps, which swap two arrays,
-// they are in the original memory. Lent memory may be the input of set_spins.
+// On hosts, spins are lent without a copy. Each step swaps two arrays, so after an even number of
+// steps the spins are in the original memory. Lent memory may be the input of set_spins.
 TYPED_TEST(CInterface, LendsAndTakesBack) {
   auto* const simulation = this->simulation.get();
   cayspin_array first{}, second{}, later{};
@@ -91,7 +92,8 @@ TYPED_TEST(CInterface, LendsAndTakesBack) {
   EXPECT_NEAR(m[1], std::sin(0.02), 1e-10 + 8 * this->epsilon);
 }
 
-// Easy axis z, a field along x below saturation: at equilibrium m_x = h / K, H = (h, 0, K m_z).
+// An easy axis along z and a field h along x that is too weak for saturation: at equilibrium,
+// m_x = h / K and H = (h, 0, K m_z).
 TYPED_TEST(CInterface, RelaxesAndLendsTheField) {
   std::string text = scene_text("anisotropy = { constant = 2.0, axis = [0, 0, 1] }\n");
   text.replace(text.find("[0.0, 0.0, 1.0]"), 15, "[1.0, 0.0, 0.0]");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Every way in which a call fails: its status, its message, and the state that it preserves.
+// Calls that fail: their status, their message, and the state that they preserve.
 #include "c_interface_test.hpp"
 
 #include <cmath>
@@ -58,7 +58,7 @@ TEST(CInterfaceErrors, NullPointers) {
   EXPECT_EQ(cayspin_close(nullptr), CAYSPIN_OK);
 }
 
-/// A failed call does not change the targets of its pointers.
+/// A failed call does not change the variables that its arguments point to.
 TEST(CInterfaceErrors, LeaveWhatPointersPointTo) {
   auto* const before = reinterpret_cast<cayspin_simulation*>(&expect_failure);
   auto* simulation = before;
@@ -147,7 +147,7 @@ TEST(CInterfaceErrors, WrongSpins) {
     }
   refuses({numbers, CAYSPIN_DOUBLE, {2, 1, 1, 3}, {3, 3, 3, 1}}, "(2, 1, 1, 3)");
   refuses({numbers, static_cast<cayspin_precision>(0), {1, 1, 2, 3}, {6, 6, 3, 1}}, "precision 0");
-  // The message starts with the caller's argument, and names no line of a scene.
+  // The message starts with the name of the argument, and names no line of a scene.
   auto const refuses_second = [&] {
     refuses({numbers, CAYSPIN_DOUBLE, {1, 1, 2, 3}, {6, 6, 3, 1}},
             "spins: the spin of site (1, 0, 0)");
@@ -213,7 +213,7 @@ TEST(CInterfaceErrors, NumbersThatFail) {
   auto const simulation = open(text);
   expect_failure(cayspin_step(simulation.get(), 200), CAYSPIN_NUMBERS_FAILED, "step");
 
-  // All other calls still work, and new spins start a new run.
+  // Other calls still work, and new spins start a new run.
   auto* const failed = simulation.get();
   double time = -1, energy = -1, m[3] = {};
   int64_t steps = -1;

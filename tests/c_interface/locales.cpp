@@ -46,7 +46,7 @@ std::string film(std::string const& start) {
          "[output]\nevery = 5\nscalars_every = 1\ntable = true\nxdmf = true\n";
 }
 
-/// Results of all functions that read or write numbers as text, by name.
+/// Results of functions that read or write numbers as text, by name.
 using Results = std::map<std::string, std::string>;
 
 std::string said(auto const& call) {

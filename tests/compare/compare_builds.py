@@ -65,7 +65,7 @@ def words(cell):
 
 
 def listed_combinations(program):
-    """The rows of `cayspin methods`, multiplied out."""
+    """Returns all combinations that the rows of `cayspin methods` stand for."""
     lines = subprocess.run([program, "methods"], check=True, capture_output=True,
                            text=True).stdout.splitlines()
     titles = ("isotropy", "generator", "rotation", "order", "evaluations")
@@ -85,7 +85,7 @@ def listed_combinations(program):
 
 
 def other_combinations(listed):
-    """Returns further combinations of these words, most of which are refused."""
+    """Yields the other combinations of the same words. Most of them are refused."""
     adaptive = {combination.method: combination.adaptive for combination in listed}
     known = set(listed)
     for method, compensated, *choice in itertools.product(
@@ -119,7 +119,7 @@ def scene_text(scene, combination, steps):
     if combination.adaptive:
         integrator.setdefault("tolerance", 1e-5)
     elif integrator.pop("tolerance", None):
-        integrator["dt"] /= 20  # with an adaptive method, dt is the time between frames
+        integrator["dt"] /= 20  # the adaptive method of the scene may take much shorter steps
     if combination.isotropy == "constant":
         integrator["isotropy"] = {"constant": 5e10 if in_si else 0.3}
     elif combination.isotropy:
@@ -157,7 +157,7 @@ def run(program, scene, output, case, options):
 
 
 def compare(case, scene, arguments):
-    """The outcome, a word of OUTCOMES, and a remark."""
+    """Returns the outcome, which is one of OUTCOMES, and a remark."""
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         path = folder / "scene.toml"

@@ -101,15 +101,15 @@ static_assert(!Observer<Zeeman> && !Observer<int>);
 static_assert(detail::changes_spins<Every<Every<Normalize>>> && detail::changes_spins<Control> &&
               !detail::changes_spins<Every<Record<Zeeman>>>);
 
-// The template arguments of HostField are deduced from spins, or from a lattice and the solver.
+// The template arguments of HostField are deduced from the solver and from spins or a lattice.
 using OnHost = SlabDemagOnHost;
 static_assert(std::is_same_v<decltype(HostField(std::declval<Spins<float>>(), OnHost({0, 0, 1}))),
                              HostField<Spins<float>, OnHost>>);
 static_assert(std::is_same_v<decltype(HostField(Lattice(), OnHost({0, 0, 1}))),
                              HostField<SpinField<double>, OnHost>>);
 
-/// Uses numbers of any type times vectors of any value type, and next and previous without the
-/// keyword `template`.
+/// Multiplies vectors of any value type by numbers of any type, and calls next and previous without
+/// the keyword `template`.
 struct Operators {
   template <class Stencil>
   KOKKOS_FUNCTION auto field(Stencil const& stencil) const {

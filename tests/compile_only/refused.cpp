@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Mistake number CAYSPIN_TEST_MISTAKE, or all of them for -1; the compiler has to answer with
-// sentences of the library. CMakeLists.txt takes the name of a mistake from its #if, and the
-// sentence, a regular expression, from the next line.
+// The mistake with the number CAYSPIN_TEST_MISTAKE; -1: all mistakes, 0: none. The compiler has to
+// answer each with a sentence of the library. CMakeLists.txt takes the name of a mistake from the
+// line of its #if, and the sentence, a regular expression, from the next line.
 #include <cayspin/cayspin.hpp>
 #include <cayspin/field/field_of_moments.hpp>
 #include <cayspin/field/slow_field.hpp>

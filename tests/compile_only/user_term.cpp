@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Valid user code: terms and generators as plain structs, observers of either kind. Compiled, not
-// run.
+// Valid user code: terms and generators as plain structs, and observers with and without a result.
+// Compiled, not run.
 #include <cayspin/cayspin.hpp>
 
 namespace cayspin::test {
 
 #if !defined(__CUDA_ARCH__) && !defined(__HIP_DEVICE_COMPILE__) && !defined(__SYCL_DEVICE_ONLY__)
-// Host loops use whole registers even if the default execution space is a device; Kokkos' own
-// choice of a pack depends on that space.
+// Host loops use whole registers even if the default execution space is a device. The pack that
+// Kokkos itself would choose depends on that space.
 #if defined(KOKKOS_ARCH_AVX512XEON)
 static_assert(sizeof(detail::Pack<double>) == 64 && sizeof(detail::Pack<float>) == 64);
 #elif defined(KOKKOS_ARCH_AVX2)
@@ -42,7 +42,7 @@ struct Growing {
   }
 };
 
-/// A generator that defines only its A.
+/// A generator that has only the call operator, which returns A.
 struct Spinning {
   template <class Stencil>
   KOKKOS_FUNCTION auto operator()(Stencil const& stencil) const {

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# compilers.sh KOKKOS_SOURCE BUILD_FOLDER [THREADS] runs test_contracted with g++ and clang, for
-# AVX2 and AVX-512. Both contract across expressions; clang is also tested contracting only within
-# them. Builds Kokkos for each. Status 1 if a combination fails, 77 if none fails but one cannot be
-# tried here.
+# compilers.sh KOKKOS_SOURCE BUILD_FOLDER [THREADS] compiles test_contracted with g++ and with
+# clang, for AVX2 and for AVX-512, and runs it. Both compilers contract across expressions; clang is
+# also tested with contraction only within an expression. Kokkos is built for each compiler and
+# architecture, with THREADS jobs (2 by default). Status 1 if a combination fails, 77 if none fails
+# but one cannot be tried here.
 set -uo pipefail
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 kokkos=$1 build=$2 threads=${3:-2}

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # Reports lines of include/ and src/ that the tests execute, per file and in total. Usage:
 # bash tests/coverage/coverage.sh [--report]
-# --report: report the last run, without a new one. A line of a template counts once, and as
-# executed if any of its instances executes it. A line that no test instantiates is not compiled and
-# not counted.
+# --report: reports the last run instead of running the tests again. A line of a template counts
+# once, and as executed if any instance of the template executes it. A line of a template that no
+# test instantiates is not compiled and not counted.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)

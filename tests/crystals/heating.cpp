@@ -95,8 +95,8 @@ class HeatedCrystal : public ::testing::Test {};
 TYPED_TEST_SUITE(HeatedCrystal, Backends, BackendName);
 
 // The high-temperature series in K = 1 / T: each path of n bonds between the two ends of a bond
-// adds (coth K - 1 / K)^n to the bond's energy. There is one path of one bond, the bond itself;
-// there are 12 of 3 bonds, and 222 of 5.
+// adds (coth K - 1 / K)^n to the mean of m.m' on this bond, which is minus its energy. There is one
+// path of one bond, the bond itself; there are 12 of 3 bonds, and 222 of 5.
 TYPED_TEST(HeatedCrystal, HasTheEnergyOfTheHighTemperatureSeries) {
   Crystals<typename TypeParam::Spins> const crystals(16);
   double const temperature = 8, of_bond = 1 / std::tanh(1 / temperature) - temperature;
@@ -150,8 +150,8 @@ class Cumulants {
 
   std::size_t crystals() const { return sums_.size(); }
 
-  /// Returns the cumulants without crystal `left_out`; of all crystals if there is none of this
-  /// number.
+  /// Returns the cumulants without the crystal number `left_out`; if there is no such crystal,
+  /// those of all crystals.
   Ends without(std::size_t left_out) const {
     Ends ends{};
     for (std::size_t end = 0; end < 2; ++end) {
@@ -168,7 +168,8 @@ class Cumulants {
   std::vector<std::array<std::array<double, 3>, 2>> sums_;
 };
 
-/// Returns where the cumulants of 8^3 and 16^3 cells cross, and the standard error.
+/// Returns the temperature at which the cumulants of 8^3 and 16^3 cells cross, and its standard
+/// error.
 std::pair<double, double> crossing(double temperature, double dt, std::int64_t steps_per_look,
                                    std::int64_t looks, std::uint64_t seed) {
   // Rows of 8 doubles and of 16 floats consist of whole packs, which is fastest.
@@ -194,8 +195,8 @@ std::pair<double, double> crossing(double temperature, double dt, std::int64_t s
   return {all, std::sqrt(variance)};
 }
 
-// Run by ctest -C long -L long. Steps heat the crystal in proportion to dt^2, which lowers the
-// crossing by about 22 dt^2.
+// Run by ctest -C long -L long. The error of the steps heats the crystal in proportion to dt^2,
+// which lowers the crossing by about 22 dt^2.
 TEST(HeisenbergCrystal, DISABLED_BinderCumulantsCrossAtTheCriticalTemperature) {
   auto const [fine, its_error] = crossing(2.036, 0.03, 40, 2000, 100);
   auto const [coarse, error_of_coarse] = crossing(1.979, 0.06, 20, 600, 200);

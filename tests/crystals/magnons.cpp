@@ -63,8 +63,8 @@ class Magnons : public ::testing::Test {
           amplitude.push_back(a);
           start.insert(start.end(), {a.real(), a.imag(), site == down ? -z : z});
         }
-    // The wave turns by 2.3 radians, if it does so within 20 units of time. A field of 10, the
-    // largest here, turns a spin by 0.25 radians in a step.
+    // The wave turns by 2.3 radians, or for 20 units of time if it is slower. A field of 10, the
+    // largest in these tests, turns a spin by 0.25 radians in a step.
     double const end = std::min(2.3 / std::abs(frequency), 20.0);
     int const steps = static_cast<int>(std::ceil(end * 10 / 0.25));
     auto const numbers = run(lattice, field, start, end, steps);
@@ -102,7 +102,7 @@ std::vector<Coupling> honeycomb_bonds(double exchange) {
   return bonds({0, 1}, {{0, 0, 0}, {-1, 0, 0}, {0, -1, 0}}, exchange);
 }
 
-// omega = J0 - J_k, with J_k = 8 J cos(kx / 2) cos(ky / 2) cos(kz / 2).
+// omega = (8 J - J_k) cos(opening), with J_k = 8 J cos(kx / 2) cos(ky / 2) cos(kz / 2).
 TYPED_TEST(Magnons, OfABodyCentredCrystal) {
   Cells const cells{24, 6, 5};
   auto const crystal = Crystal::bcc();
@@ -124,7 +124,8 @@ TYPED_TEST(Magnons, OfABodyCentredCrystal) {
   }
 }
 
-// omega = J (3 -+ |f|), f = sum of exp(i k.delta) over the three neighbours.
+// omega = J (3 -+ |f|) cos(opening), where f is the sum of exp(i k.delta) over the offsets delta of
+// the three neighbours.
 TYPED_TEST(Magnons, OfAHoneycomb) {
   Cells const cells{18, 12, 1};
   auto const crystal = Crystal::honeycomb();
@@ -134,7 +135,7 @@ TYPED_TEST(Magnons, OfAHoneycomb) {
     for (double const branch : {1.0, -1.0}) {
       double const a = 2 * pi * static_cast<double>(mode[0]) / 18,
                    b = 2 * pi * static_cast<double>(mode[1]) / 12;
-      auto const f = 1.0 + std::polar(1.0, -a) + std::polar(1.0, -b);  // with phases of cells
+      auto const f = 1.0 + std::polar(1.0, -a) + std::polar(1.0, -b);  // offsets of cells
       this->expect_turns(
           crystal, cells, field,
           [&](Cells const& cell, int site) {
@@ -148,7 +149,7 @@ TYPED_TEST(Magnons, OfAHoneycomb) {
 
 // At the corner K of the Brillouin zone, a sublattice can precess with the other one at rest. D
 // between second neighbours, along z and in the sense of the hexagons, splits the two frequencies
-// by 6 sqrt(3) D.
+// by 6 sqrt(3) D cos(opening).
 TYPED_TEST(Magnons, OfAHoneycombWithAGap) {
   Cells const cells{12, 12, 1};
   constexpr double D = 0.04;
@@ -176,8 +177,8 @@ TYPED_TEST(Magnons, OfAHoneycombWithAGap) {
   EXPECT_NEAR(std::abs(found[0] - found[1]), 6 * std::sqrt(3.0) * D * std::cos(opening), 1e-14);
 }
 
-// The flat band of a kagome lattice: 6 J, at any k; here with phases that differ by a third of a
-// turn between the three sites.
+// The flat band of a kagome lattice: omega = 6 J cos(opening) at any k. Here the phases of the
+// three sites of a cell differ by a third of a turn.
 TYPED_TEST(Magnons, OfAKagome) {
   Cells const cells{9, 8, 1};
   auto const crystal = Crystal::kagome();

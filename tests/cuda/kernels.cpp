@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The kernels of every stepper, isotropy policy, generator, field term and scalar, compiled in both
+// Kernels of steppers, isotropy policies, generators, field terms and scalars, compiled in both
 // precisions for the device that Kokkos is configured for. Nothing is run.
 #include <cayspin/cayspin.hpp>
 
@@ -14,7 +14,7 @@ namespace cayspin::test {
 using Exec = Kokkos::DefaultExecutionSpace;
 using MemorySpace = Exec::memory_space;
 
-/// Takes a step of each of the steppers.
+/// Takes a step with each stepper.
 template <class Generator, class Spins, class... Steppers>
 void step_each(Generator const& generator, Spins& spins, std::tuple<Steppers...>& steppers) {
   std::apply([&](auto&... stepper) { (stepper.step(Exec(), generator, spins, 0, 0.1), ...); },

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Compiles layouts.cpp and fails if a struct that kernels take has another size on the device than
-on the host: kernels would look for its members in wrong places. nvcc 12.9 and 13 have such sizes
-for structs with [[no_unique_address]] members."""
+on the host: kernels would look for its members in wrong places. nvcc 12.9 and 13 give structs with
+[[no_unique_address]] members such different sizes."""
 
 import pathlib
 import re

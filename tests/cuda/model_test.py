@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Tests the model of the kernels' times on a GPU, and that the kernels reach the required share of
-the bandwidth by it. Tests the report of a run on a GPU, with made-up results."""
+"""Tests the model of the kernels' times on a GPU, and that, according to this model, the kernels
+reach the required share of the bandwidth. Tests the report of a run on a GPU, with made-up
+results."""
 
 import json
 import pathlib
@@ -84,8 +85,8 @@ class Report(unittest.TestCase):
         text, complete = self.report(0.0262, "100% tests passed, 0 tests failed out of 3\n")
         self.assertTrue(complete)
         self.assertIn("measured on NVIDIA H200; copy of the memory 4.000 TB/s, 0.83 of", text)
-        # The model says 13.1 ps, limited by the second cache; 48 bytes at the rate of the copy take
-        # 12 ps.
+        # The model says 13.1 ps, limited by the second-level cache; 48 bytes at the rate of the
+        # copy take 12 ps.
         self.assertIn("| f64/Euler/256 | 26.2 | 13.1 | 2.00 | 0.46 |", text)
         self.assertIn("a table", text)
 

@@ -7,7 +7,7 @@ A thread walks over a few sites. The instructions of this loop, which run once f
 counted by kind; the rest of a kernel, which runs once for each thread, counts only in "total".
 Every instruction of the loop has a kind. "integer" is any that is neither arithmetic of the method,
 nor a load, a store or a load of a constant: addressing, ends of the lattice, branches. In double
-precision there may not be more of these than of arithmetic."""
+precision, a kernel may have no more of these than arithmetic instructions."""
 
 import collections
 import pathlib
@@ -37,7 +37,7 @@ METHODS = {
 
 
 def kernel_name(symbol):
-    """Precision, method and stage of a symbol; None for the kernels of lattices beyond 32 bits."""
+    """Precision, method and stage of a symbol; None for kernels whose indices have 64 bits."""
     name = subprocess.run(["c++filt", symbol], check=True, text=True,
                           stdout=subprocess.PIPE).stdout
     found = re.search(r"TileLoop<int, .*?OnDeviceSite<(float|double), .*?RungeKuttaStage<"
@@ -71,7 +71,7 @@ def instructions(lines):
 
 
 def site_loop(code, name):
-    """The innermost loop with loads."""
+    """Returns the instructions of the shortest loop that loads from memory."""
     at = {label: index for index, (labels, _) in enumerate(code) for label in labels}
     loops = []
     for index, (_, text) in enumerate(code):

@@ -17,7 +17,8 @@ inline long number_from(char const* variable, long otherwise) {
   return text ? std::atol(text) : otherwise;
 }
 
-/// Random numbers equal on every platform, unlike the distributions of the standard library.
+/// Random numbers that are the same on every platform, unlike those of the standard library's
+/// distributions.
 class Chance {
  public:
   explicit Chance(std::uint64_t seed) : engine_(seed) {}
@@ -28,7 +29,7 @@ class Chance {
   std::mt19937_64 engine_;
 };
 
-/// Counts of each outcome.
+/// Counts of each outcome, by what was tried.
 using OutcomeCounts = std::map<std::string, std::map<std::string, long>>;
 
 inline void print(OutcomeCounts const& tried) {

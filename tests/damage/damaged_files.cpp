@@ -25,7 +25,7 @@ dt = 0.1
 steps = 10
 )";
 
-// Returns everything that the readers of a trajectory report about it, as text to compare.
+// Returns what read_info() reports about a trajectory, as text to compare.
 std::string all_of(TrajectoryInfo const& info) {
   auto const& header = info.header;
   std::string text =

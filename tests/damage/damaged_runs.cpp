@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The program on damaged files: it reads the original content, or refuses them with one line.
+// The program on damaged files: it reads the original content, or refuses the file with one line.
 // CAYSPIN_DAMAGED_RUNS and CAYSPIN_SEED: number of files, and the seed.
 #include "damaged_bytes.hpp"
 #include "inertia_file.hpp"
@@ -42,7 +42,7 @@ class DamagedRuns : public ProgramTest {
                 more);
   }
 
-  /// Starts the program; a signal ends an endless loop, after 20 s of processor time.
+  /// Runs the program. After 20 s of processor time a signal ends it, in case of an endless loop.
   Outcome started(Arguments const& arguments) const {
     return start(arguments, {.seconds_limit = 20});
   }
@@ -52,7 +52,7 @@ class DamagedRuns : public ProgramTest {
     char const* name;
     Arguments arguments;
     char const* output;      ///< the file whose last spins are compared; nullptr: standard output
-    bool is_checked = true;  ///< has checksums: unless refused, the content is the original one
+    bool is_checked = true;  ///< the file has checksums: it is refused, or read as it was written
   };
 
   std::string result(Use const& use, Outcome const& outcome) const {

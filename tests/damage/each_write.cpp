@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A process that is killed before any of its writes to a trajectory file, or at any page within
-// one, leaves every frame that was reported as written.
+// A process that is killed before any of its writes to a trajectory file, or at any page boundary
+// within a write, leaves every frame that was reported as written.
 #include "known_run.hpp"
 
 #include <sys/mman.h>
@@ -11,8 +11,8 @@
 
 namespace {
 
-// Moments before the kill; -1: no kill. A write has one moment before it, and one at the end of
-// each page within it.
+// Moments before the kill; -1: no kill. A write has one moment before it, and one at each page
+// boundary within it.
 long moments_left = -1;
 
 }  // namespace
@@ -35,7 +35,7 @@ namespace cayspin::inline v0_2::io {
 namespace {
 
 struct Course : KnownRun {
-  std::int64_t first_frames = 0;  // before the kill becomes possible
+  std::int64_t first_frames = 0;  // frames written before the kill becomes possible
 };
 
 Course course(std::int64_t first_frames, std::int64_t frames, std::int64_t cell_sites = 1) {
@@ -53,7 +53,7 @@ class Killed : public TrajectoryTest {
   }
   ~Killed() override { ::munmap(told_, sizeof(Told)); }
 
-  // Returns false when the run ended before that moment.
+  // Returns false if the run ended before that moment.
   bool run_to(Course const& course, long moment) {
     *told_ = {};
     std::filesystem::remove_all(folder_);

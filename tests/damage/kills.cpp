@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // `cayspin run`, killed at random times, without disk space, or with its file cut. CAYSPIN_KILLS
-// and CAYSPIN_SEED: number of runs of each kind, and the seed.
+// and CAYSPIN_SEED: number of runs of each kind (half as many as with SIGKILL), and the seed.
 #include "damaged_bytes.hpp"
 #include "program/program_test.hpp"
 
@@ -50,7 +50,8 @@ class Kills : public ProgramTest {
 
   std::string fresh_name() { return "run_" + std::to_string(number_++) + ".h5"; }
 
-  // Returns what another process reads from the file while it is written.
+  // Returns what another process can read from the file while it is written; an empty result if the
+  // file is missing or half written.
   io::TrajectoryInfo visible(fs::path const& path) const {
     try {
       return io::read_info_while_written(path);
@@ -59,8 +60,8 @@ class Kills : public ProgramTest {
     }
   }
 
-  // Expects the file to have every step that was seen, with its spins, and the run to continue from
-  // it.
+  // Expects the file to be readable and to have every frame and sample that was seen, and a run to
+  // continue from it.
   void expect_nothing_lost(std::string const& name, io::TrajectoryInfo const& seen) {
     auto const path = in_folder(name);
     if (!fs::exists(path)) {
@@ -73,7 +74,7 @@ class Kills : public ProgramTest {
     auto const file = io::read_info(path);
     EXPECT_FALSE(file.complete);
     ASSERT_EQ(file.frame_steps.size(), static_cast<std::size_t>(file.frames));
-    // A sample of a frame's step is in the file before the frame.
+    // At a step with a frame, the sample is in the file before the frame.
     auto const last_seen = seen.last_sample ? seen.last_sample->step : 0;
     EXPECT_GE(file.samples, seen.samples);
     EXPECT_GE(file.frames, seen.frames);
@@ -163,7 +164,7 @@ TEST_F(Kills, SigkillLosesNoFrameThatWasSeen) {
   print_summary("SIGKILL");
 }
 
-// `cayspin info` has added what was in a journal to its file, and removed the journal.
+// `cayspin info` completes each file that has a journal, and removes the journal.
 TEST_F(Kills, SigkillWithSyncLosesNoFrameThatWasSeen) {
   kill_with(SIGKILL, kills_, {"--set", "output.sync=true"});
   for (auto const& entry : fs::directory_iterator(folder_))

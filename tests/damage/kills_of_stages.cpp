@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A run in stages, killed at random times, continues in its stage with the bits of an uninterrupted
-// run. CAYSPIN_KILLS and CAYSPIN_SEED: number of kills / 4, and the seed.
+// run. CAYSPIN_KILLS and CAYSPIN_SEED: a quarter of the number of kills, and the seed.
 #include "damaged_bytes.hpp"
 #include "program/program_test.hpp"
 
@@ -16,7 +16,7 @@ namespace {
 using cayspin::test::Chance;
 using cayspin::test::number_from;
 
-// Some methods remember steps; the stage before the last ends early.
+// tsit5 remembers the previous step; the stage before the last ends early.
 std::string const scene = R"toml([system]
 kind = "llg"
 damping = 0.1
@@ -87,7 +87,7 @@ TEST_F(KillsOfStages, GoOnToTheSameBits) {
       continue;
     }
     auto const outcome = start(into("on.h5", {"--restart", file}));
-    // Before its first checkpoint, a multistep method cannot continue with the same bits.
+    // Before its first checkpoint, a method that remembers steps cannot go on with the same bits.
     if (outcome.errors.find("checkpoint.h5 is not there") != std::string::npos) {
       from.clear();
       continue;

@@ -21,7 +21,7 @@ struct Recording {
   KnownRun run = {};
   std::vector<DiskEvent> events = {};
   std::vector<Told> told = {};  // indexed by the numbers given to note_told
-  std::size_t first_cut = 0;    // events before it write an older file
+  std::size_t first_cut = 0;    // the events before this one write an older file
 
   Told told_before(std::size_t cut) const {
     for (auto i = cut; i-- > 0;)
@@ -101,7 +101,7 @@ class PowerCuts : public testing::Test {
     for (long history = 0; history < histories; ++history) {
       auto const cut =
           recording.first_cut + chance_.below(recording.events.size() + 1 - recording.first_cut);
-      auto const share = chance_.below(5) * 25;  // percent of the sectors that are there
+      auto const share = chance_.below(5) * 25;  // percentage of sectors that are there
       auto const any = [&](std::size_t end) { return chance_.below(end); };
       auto const there = [&](std::size_t end) {
         return end == 2 ? std::size_t{chance_.below(100) < share} : chance_.below(end);
@@ -149,8 +149,9 @@ TrajectoryHeader header_of(std::array<std::int64_t, 3> const& shape, char const*
   return header;
 }
 
-// Frames that share a chunk, that fill several, compressed ones; frames beyond the first blocks of
-// HDF5's index; more samples than a chunk holds; a file that replaces another; cells of two sites.
+// Frames that share a chunk, frames that fill several chunks, compressed frames, and frames beyond
+// the first blocks of HDF5's index; more samples than a chunk holds; a file that replaces another;
+// cells of two sites.
 TEST_F(PowerCuts, LoseAtMostTheFrameBeingWritten) {
   std::vector<KnownRun> const runs{
       {.header = header_of({4, 3, 2}, "double"), .frames = 12, .samples = 3},
@@ -197,7 +198,7 @@ class AllChoices {
   std::size_t next_ = 0;
 };
 
-// With the writes in their order, tries all choices if they are few.
+// Tries all choices wherever they are few. The writes reach the disk in a fixed order.
 TEST_F(PowerCuts, LoseNothingWhateverOfFewWritesIsThere) {
   auto const recording = record(
       {.header = header_of({2, 1, 1}, "double"), .frames = 2, .samples = 1, .replaces = true});
@@ -205,7 +206,7 @@ TEST_F(PowerCuts, LoseNothingWhateverOfFewWritesIsThere) {
   double const most = std::getenv("CAYSPIN_POWER_CUTS") ? 4096 : 32;
   long histories = 0, cuts = 0;
   for (auto cut = recording.first_cut; cut <= recording.events.size() && !HasFailure(); ++cut) {
-    double count = 1;  // if all names are there
+    double count = 1;  // of choices, if all names are there
     auto const counted = [&](std::size_t end) {
       count *= static_cast<double>(end);
       return end - 1;

@@ -83,7 +83,7 @@ class RandomKills : public testing::Test {
     return course;
   }
 
-  // In one of four cases, lets the run start from the last frame of a file that a kill has left.
+  // In one case in four, lets the run start from the last frame of a file that a kill has left.
   void restart_from_last(Course& course) {
     if (!last_ || chance_.below(4) != 0) return;
     auto const info = read_info(*last_);

@@ -32,7 +32,7 @@ bool is_recorded(fs::path const& path) {
   return recording && fs::absolute(path).parent_path() == recorded_folder;
 }
 
-// A file's creation is recorded with its first operation.
+// The creation of a file is recorded just before the first other operation on it.
 DiskEvent* add_event(DiskEvent::Kind kind, int file) {
   auto const name = recording ? name_of(file) : "";
   if (name.empty() || !is_recorded(name)) return nullptr;
@@ -50,7 +50,7 @@ DiskEvent* add_event(DiskEvent::Kind kind, int file) {
   return &recorded.back();
 }
 
-// An inode's number is reused once its file is removed.
+// After a file is removed, another one may get the number of its inode.
 void forget(char const* path) {
   struct stat status {};
   if (::stat(path, &status) == 0) numbers.erase(status.st_ino);

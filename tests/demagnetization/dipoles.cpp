@@ -29,8 +29,7 @@ struct Evaluated {
   using Spins = SpinField<Real, Kokkos::HostSpace>;
   Spins spins, field;
 
-  // Gives the moments lengths other than 1. The second evaluation uses work memory left by the
-  // first.
+  // Gives the moments different lengths. The second evaluation uses work memory left by the first.
   Evaluated(Sample const& sample, DipolarOptions const& options,
             std::vector<double> const& directions)
       : spins(spins_of<Spins>(sample.lattice(), directions)), field("field", sample.lattice()) {
@@ -86,7 +85,8 @@ TYPED_TEST(DipolarFields, OfOpenCrystalsAreSumsOverPairs) {
   }
 }
 
-// Sums images less than periodic_images + 1/2 periods away; those at just this distance count half.
+// Images less than periodic_images + 1/2 periods away are summed; those at just this distance count
+// half.
 TYPED_TEST(DipolarFields, SumSomeImages) {
   using Real = TypeParam;
   for (auto const& sample : {open_crystals[2], open_crystals[4], open_crystals[6]})
@@ -130,7 +130,7 @@ TYPED_TEST(DipolarFields, SumSomeImages) {
     }
 }
 
-// The field does not change if two periods with repeated spins become the lattice.
+// The field does not change if the lattice consists of two periods, with repeated spins.
 TYPED_TEST(DipolarFields, OfPeriodicCrystalsAreThoseOfLargerOnes) {
   using Real = TypeParam;
   for (auto const& sample : open_crystals)

@@ -17,7 +17,8 @@ namespace {
 template <class Real>
 using HostSpins = SpinField<Real, Kokkos::HostSpace>;
 
-/// Returns the distances along an axis at which a cell sees another one, and the weight of each.
+/// Returns the distances along an axis from a cell to another cell and its images, and the weight
+/// of each. `apart`: difference of the indices of the two cells.
 std::vector<std::pair<double, double>> seen(Film const& film, std::size_t axis,
                                             std::int64_t apart) {
   int const n = static_cast<int>(film.shape[axis]), images = film.images[axis];

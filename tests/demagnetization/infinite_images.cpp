@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The demagnetising field of infinite lattices along one or two axes, against closed forms and
-// against the field of a lattice of several periods.
+// The demagnetising field of lattices that are infinite along one or two axes, against closed forms
+// and against the field of a lattice of several periods.
 #include "../support/wrong_call.hpp"
 #include "films.hpp"
 
@@ -23,7 +23,7 @@ class InfiniteImages : public ::testing::Test {};
 using Precisions = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(InfiniteImages, Precisions);
 
-/// Bound on errors: that of the sums over images, and that of the transforms.
+/// Bound on the error: that of the sums over images plus that of the transforms.
 template <class Real>
 constexpr double limit = 1e-10 + 80 * std::numeric_limits<Real>::epsilon();
 
@@ -64,8 +64,8 @@ TYPED_TEST(InfiniteImages, OfAFilmHaveATraceAlongItsNormal) {
   }
 }
 
-/// Returns N along the edge a of an infinite bar of edges a and b: Aharoni, J. Appl. Phys. 83, 3432
-/// (1998), eq. 1 with the third edge infinite.
+/// Returns N along the edge a of an infinite bar with the edges a and b: Aharoni, J. Appl. Phys.
+/// 83, 3432 (1998), eq. 1 with the third edge infinite.
 double of_bar(double a, double b) {
   double const p = a / b;
   return ((1 - p * p) / (2 * p) * std::log1p(p * p) + p * std::log(p) + 2 * std::atan(1 / p)) /

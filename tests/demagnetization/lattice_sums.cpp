@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The field of dipoles in uniformly magnetised crystals against lattice sums, and the bound on its
-// eigenvalues.
+// The field of dipoles in uniformly magnetised crystals against lattice sums, and the bound on the
+// eigenvalues of the matrix from moments to fields.
 #include "crystals.hpp"
 
 #include <cayspin/demagnetization/demagnetizing_field.hpp>
@@ -58,13 +58,14 @@ TEST(LatticeSums, OfChainsAndSquareLattices) {
   auto const chain = of_uniform(cubic, {5, 1, 1}, {.periodic_images = {all, 0, 0}}, {1, 1, 0});
   EXPECT_NEAR(chain.x, 4 * zeta3 / (4 * pi), 1e-14);
   EXPECT_NEAR(chain.y, -2 * zeta3 / (4 * pi), 1e-14);
-  // 4 zeta(3/2) beta(3/2).
+  // The sum is 4 zeta(3/2) beta(3/2).
   double const square_sum = 4 * std::riemann_zeta(1.5) * 0.8645026534612020;
   auto const square = of_uniform(cubic, {4, 3, 1}, {.periodic_images = {all, all, 0}}, {0, 1, 1});
   EXPECT_NEAR(square.z, -square_sum / (4 * pi), 1e-13);
   EXPECT_NEAR(square.y, square_sum / (8 * pi), 1e-13);
   EXPECT_NEAR(square_sum, 9.0336216831, 1e-9);
-  // Triangular: 6 zeta(3/2) L(3/2), L of the characters 1, -1, 0, 1, -1, 0.
+  // On a triangular lattice it is 6 zeta(3/2) L(3/2), with the Dirichlet series L of the
+  // coefficients 1, -1, 0, 1, -1, 0, ...
   double l = 0;
   for (int n = 2000000; n >= 0; --n) l += std::pow(3. * n + 1, -1.5) - std::pow(3. * n + 2, -1.5);
   Crystal const triangular{Crystal::honeycomb().cell, {{0, 0, 0}}};
@@ -146,7 +147,7 @@ TEST(DipolarBound, IsAboveTheLargestEigenvalueAndNotFarAbove) {
     }
 }
 
-// Chains along y, whose sites are images of each other.
+// Infinite or long chains along y; the sites of a chain are images of one site.
 TEST(DipolarBound, CountsImagesAlongAnAxisOfOneCell) {
   Crystal const chains{{{{1, 0, 0}, {0, 0.3, 0}, {0, 0, 1}}}, {{0, 0, 0}}};
   for (int const images : {1, 20, all}) {

@@ -58,8 +58,8 @@ double distance(TensorEntry const& one) {
   return std::hypot(one.position[0], one.position[1], one.position[2]) / longest(one.cell);
 }
 
-/// Returns the largest error at distances from `begin` to `end` longest edges, relative to the
-/// largest entry of the tensor in question.
+/// Returns the largest error at distances from `begin` to `end` longest edges. Each error is
+/// relative to the largest entry of its tensor.
 double error_between(double begin, double end) {
   double worst = 0;
   for (TensorEntry const& one : tensor_table)
@@ -79,7 +79,7 @@ TEST(DemagnetizingTensor, IsThatOfTheTableFarAway) {
   EXPECT_LE(error_between(50, 1e6), 1e-12);
 }
 
-// Absolute errors: the trace of the cell's own tensor is 1.
+// Bounds on absolute errors: the tensor of a cell with itself has the trace 1.
 TEST(DemagnetizingTensor, IsThatOfTheTableToRoundOffBesideTheCell) {
   for (TensorEntry const& one : tensor_table) {
     if (distance(one) > 1.5) continue;
@@ -90,7 +90,7 @@ TEST(DemagnetizingTensor, IsThatOfTheTableToRoundOffBesideTheCell) {
   }
 }
 
-// 1 in the cell itself, 0 outside: the divergence of the field.
+// The trace is 1 for the cell itself and 0 elsewhere, as the divergence of the field requires.
 TEST(DemagnetizingTensor, HasTheTraceOfTheDivergence) {
   for (TensorEntry const& one : tensor_table) {
     auto const n = demagnetizing_tensor(one.position, one.cell);

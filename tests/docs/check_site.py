@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Builds the site and checks it: links, descriptions, alternative texts, one heading a page.
+"""Builds the site and checks it: links, descriptions, alternative texts, one main heading a page,
+and dark colours.
 
 Usage: check_site.py DOXYGEN ROOT FOLDER     builds FOLDER/site first
        check_site.py SITE                    checks a site that is there
@@ -13,7 +14,7 @@ import urllib.parse
 
 
 class PageOfSite(html.parser.HTMLParser):
-    """Links of a page of the site, and its anchors."""
+    """Links, anchors, descriptions and main headings of a page, and images without a text."""
 
     def __init__(self, path):
         super().__init__()

@@ -12,7 +12,8 @@ NO_SENTENCE_END = re.compile(r"\b(?:e\.g|i\.e|cf|Sec|Fig|Eq|vs|al)\.\s")
 
 
 class Page:
-    """The lines of a page by kind: prose, table, code, heading or blank. Lines count from 1."""
+    """The lines of a page by kind: prose, table, code, heading, link definition or blank. Lines
+    count from 1."""
 
     def __init__(self, path, text):
         self.path = path
@@ -80,7 +81,8 @@ class Page:
         return anchors
 
     def sentences(self):
-        """(line number of the paragraph, sentence) of prose; code is one word, a link its text."""
+        """(line number of the paragraph, sentence) of prose. A piece of code counts as one word, a
+        link as its text, and an image as nothing."""
         blocks, previous = [], "blank"
         for number, (line, kind) in enumerate(zip(self.lines, self.kinds), 1):
             if kind == "prose":

@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Runs the examples of the README, the guide and three reference pages, each page in a folder.
+"""Runs the examples of the README, the guide and three reference pages, each page in a new folder.
 
 Usage: page_examples.py PROGRAM, with the package cayspin on PYTHONPATH
 Blocks of `cayspin` and `python3` commands are run, and a block of output after them is compared.
 In a block of `console`, lines that begin with `$ ` are run and may fail; they have to print the
 other lines, where `...` stands for any text.
 Blocks of Python are run as one script after the commands: `print(...)  # text` has to print the
-text, and blocks of output after Python have to be printed, too. Scenes are checked, and saved by
-the name in the sentence before, or as scene.toml; keys without [system] are set in that scene.
-A page without any of these has to name a program of examples/ that is built and tested. Blocks of
-C++ in a tutorial have to be parts of the programs that it names.
+text, and blocks of output after Python have to be printed, too. Scenes are checked. A
+scene is saved under the name in the sentence before it, or as scene.toml; the keys of a block
+without [system] are set in that scene. A page without any of these has to name a program of
+examples/ that is built and tested. Each block of C++ in a tutorial has to be part of a program that
+the tutorial names.
 """
 import collections
 import glob

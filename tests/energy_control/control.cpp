@@ -30,6 +30,7 @@ Lattice periodic_cube() {
 }
 
 /// Records the largest |E - E_0| per spin and | |m| - 1 | at the ends of steps, before the control.
+/// E_0 is the energy at step 0.
 template <class Source>
 struct Drift {
   Source source;
@@ -155,7 +156,7 @@ Field turned(Source const& source, Field const& start, double higher,
 }
 
 // Compares with the Cayley map of kappa m x A, with one kappa for all spins, written out for each
-// spin: m + kappa A_o + O(kappa^2).
+// spin: m + kappa A_o + O(kappa^2), where A_o is the part of A orthogonal to m.
 template <class Source, class Field>
 void expect_turn(Source const& source, Field const& start) {
   using Real = typename Field::value_type;
@@ -199,8 +200,8 @@ TEST(EnergyControl, ReachesTheEnergy) {
   expect_order("left of the energy", fitted_order(asked, left), 2, 0.1);
 }
 
-// However far away the energy is, spins move by at most a fraction of their motion in a step; at
-// equilibrium they do not move.
+// However far away the energy is, no spin moves by more than 0.1 dt times the largest rate. At
+// equilibrium, spins do not move.
 TYPED_TEST(OneCall, IsBounded) {
   using Field = typename TestFixture::Field;
   Field const start = random_spins<Field>(slab.lattice, 3);
@@ -241,7 +242,7 @@ TEST(EnergyControl, HoldsTheEnergyOfTheFirstCall) {
     return energy(Space{}, slab.natural(), spins).value;
   };
   EnergyControl control(start, slab.natural(), {.period = 5});
-  EXPECT_TRUE(control.due(Step{3}));  // a run may start anywhere
+  EXPECT_TRUE(control.due(Step{3}));  // a run may start at any step
   control(Space{}, Step{3, 0, 0.1}, start);
   EXPECT_EQ(*control.energy(), energy_of(start));
   for (int const number : {4, 6, 9}) EXPECT_FALSE(control.due(Step{number}));

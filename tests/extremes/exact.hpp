@@ -19,8 +19,8 @@ inline long double exact_angle(Setting const& setting, bool body, long double ti
   return (body ? -along : 1.0L) * setting.field * time;
 }
 
-/// Returns the exact solution for one spin in a constant field: the azimuth grows as field t, and
-/// tan(theta / 2) falls as exp(-damping field t).
+/// Returns the exact solution at `time`. While the field is on, the azimuth of a spin grows as
+/// field t, and tan(theta / 2) falls as exp(-damping field t). A rigid body only turns.
 inline Vec3<double> exact_end(Setting const& setting, bool body, long double time) {
   if (setting.along_field) return {0, 0, 1};
   long double const angle =

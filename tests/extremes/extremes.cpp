@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The tables equal those of docs/reports/extremes_tables.md, and every run keeps its promise.
+// The tables equal those of docs/reports/extremes_tables.md, and every run keeps the promise of its
+// table.
 #include "io/method.hpp"
 #include "page.hpp"
 
@@ -65,7 +66,7 @@ void for_each_run(std::string const& situation, Expect const& expect) {
   }
 }
 
-/// Returns the names of methods with adaptive steps, or of all others.
+/// Returns the names of the methods with adaptive steps, or of those with constant steps.
 std::vector<std::string> words_of_methods(bool adaptive) {
   std::vector<std::string> all;
   for (auto const* const method : io::methods())
@@ -89,7 +90,6 @@ TEST(Extremes, RunsKeepTheirPromises) {
     }
 }
 
-// Checks the promises again, from the numbers only.
 TEST(Extremes, FatesAgreeWithTheNumbers) {
   for (auto const& entry : runs())
     for_each_run(entry.first, [](Table::Run const& run) {

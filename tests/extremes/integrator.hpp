@@ -19,7 +19,7 @@ struct Integrator : MethodChoice {
   /// Returns the method's name, with its isotropy and whether it is tangent, compensated, or for
   /// bodies.
   std::string name() const;
-  /// Returns generator and rotation; empty if the method has no choice of them.
+  /// Returns the generator and the rotation; an empty text if the method has no choice of them.
   std::string variant() const;
 };
 
@@ -27,10 +27,10 @@ struct Integrator : MethodChoice {
 /// it accepts.
 std::vector<Integrator> with_equal_steps();
 
-/// Returns every method with adaptive steps.
+/// Returns every method with adaptive steps, with every generator and rotation that it accepts.
 std::vector<Integrator> with_adaptive_steps();
 
-/// Returns `cayspin relax`.
+/// Returns the integrator that stands for `cayspin relax`.
 Integrator relaxation();
 
 }  // namespace cayspin::extremes

@@ -6,8 +6,8 @@
 
 namespace cayspin::extremes {
 
-/// Returns the scene of a setting, written to a file and read like any other. Throws
-/// io::SceneError.
+/// Returns the scene of a setting. It is written to a file and read like any other scene. Throws
+/// io::SceneError if it is refused.
 io::Scene scene_of(Integrator const& integrator, Setting const& setting);
 
 }  // namespace cayspin::extremes

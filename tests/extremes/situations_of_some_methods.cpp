@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Situations for only some methods: with adaptive steps, or that accept a temperature or an
-// expensive field.
+// Situations for only some methods: those with adaptive steps, and those that accept a temperature
+// or an expensive field.
 #include "situation.hpp"
 
 namespace cayspin::extremes {

@@ -53,7 +53,7 @@ std::vector<Table::Row> Table::rows() const {
     if (found == rows.end()) found = rows.insert(rows.end(), {{}, cells});
     found->integrators.push_back(integrator);
   }
-  // The most common results come last, for "all others".
+  // The row with the most integrators comes last, as "all others".
   auto const most =
       std::ranges::max_element(rows, {}, [](Row const& row) { return row.integrators.size(); });
   std::rotate(most, most + 1, rows.end());

@@ -13,7 +13,7 @@ class Table {
  public:
   Table(Section section, std::vector<Integrator> integrators);
   Table(Table&&) = default;
-  Table(Table const&) = delete;  // runs point into it
+  Table(Table const&) = delete;  // runs_ points into it
 
   struct Run {
     Integrator const* integrator;

@@ -119,7 +119,7 @@ struct Run {
   }
 };
 
-/// Returns the largest difference of any spin from that of a lattice of one site.
+/// Returns the largest difference of any component from that of the spin of a one-site lattice.
 double largest_difference(auto const& spins, auto const& one) {
   auto const numbers = copy_to_host(spins), expected = copy_to_host(one);
   double largest = 0;

@@ -73,7 +73,7 @@ TYPED_TEST(Fields, WhatTurnsSpinsDiffersByAMultipleOfThem) {
   }
 }
 
-// Half a million equal shares: a sum in float would have large rounding errors.
+// The shares of half a million sites: a sum in float would have large rounding errors.
 TYPED_TEST(Fields, EnergiesAreSummedInDouble) {
   using Real = typename TypeParam::Real;
   auto const lattice = Lattice::square(8200, 64);

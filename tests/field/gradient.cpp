@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Every term with uniform coefficients: H = -dE/dm, and both H and E equal formulas written by
-// hand.
+// Terms with uniform coefficients: H = -dE/dm, and both H and E equal formulas written by hand.
 #include "gradient.hpp"
 
 #include "../support/mean_field.hpp"

@@ -5,7 +5,7 @@
 
 namespace cayspin::test {
 
-// Rows longer than a pack, a periodic pair, rows shorter than a pack; different spacings.
+// Rows longer and shorter than a pack; a periodic axis of two sites; different spacings.
 inline std::vector<Lattice> const lattices{
     {{9, 3, 2}, {0.5, 0.8, 1.25}, {Boundary::open, Boundary::open, Boundary::open}},
     {{9, 3, 2}, {0.5, 0.8, 1.25}, {Boundary::periodic, Boundary::open, Boundary::periodic}},
@@ -20,8 +20,8 @@ class GradientTest : public ::testing::Test {
   using Spins = typename Backend::Spins;
 
   /// `term`: a field term or EffectiveField. Spins change their lengths here: E and H are defined
-  /// for all vectors. `precision`: epsilon of the energy, limited by a field or bonds stored in
-  /// float.
+  /// for all vectors. `precision`: epsilon of the energy; that of float if a field or bonds are
+  /// stored in float.
   template <class Term>
   static void check(std::string const& what, Lattice const& lattice, Term const& term,
                     ByHand const& by_hand, double t = 0, double precision = epsilon<double>) {
@@ -34,7 +34,8 @@ class GradientTest : public ::testing::Test {
     exec.fence();
     auto const field = numbers_of(result);
     Energy const total = energy(exec, term, spins, t);
-    // All coefficients are below 8; exchange adds six differences, each divided by at least 1/4.
+    // All coefficients are below 8. Exchange adds six differences, each divided by a square of at
+    // least 1/4.
     double const field_size = 64, energy_size = total.magnitude + 1;
     EXPECT_NEAR(total.value, by_hand.energy(m), 16 * precision * energy_size) << what;
 

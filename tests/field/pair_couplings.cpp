@@ -144,7 +144,7 @@ TYPED_TEST(Pairs, OfNeighboursAreTheExchange) {
     EXPECT_NEAR(pairs[i], exchange[i], 32 * epsilon<typename TypeParam::Real>);
 }
 
-/// A term that has no code for rows: couplings are evaluated site by site.
+/// A term without code for rows, so that its couplings are evaluated site by site.
 template <class Term>
 struct BySite {
   Term term;
@@ -217,7 +217,7 @@ TYPED_TEST(Pairs, ThatCannotBe) {
                                  0.1);
   typename TypeParam::Exec const exec;
   EXPECT_THROW(stepper.step(exec, generator, spins, 0, 0.1), std::invalid_argument);
-  // Series4 would, too, also within a sum of terms and an orthogonal generator.
+  // So would Series4, also within a sum of terms and an orthogonal generator.
   Series4<typename TypeParam::Spins> series(spins);
   EXPECT_THROW(series.step(exec, generator, spins, 0, 0.1), std::invalid_argument);
   EXPECT_THROW(series.step(exec,

@@ -26,7 +26,8 @@ struct RateOfField {
   }
 };
 
-/// H of a local term is a polynomial of degree 3 in the spin, so these differences are exact.
+/// H of these local terms is a polynomial in the spin of degree 3 at most, so the differences are
+/// exact.
 template <class Backend, class Term>
 void expect_rates(Term const& term) {
   using Real = typename Backend::Real;

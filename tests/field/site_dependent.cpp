@@ -97,7 +97,7 @@ TYPED_TEST(SiteDependent, UniformStatesHaveNoExchange) {
     }
 }
 
-// With a term that is not symmetric over a bond, or not -dE/dm, energy changes however small dt is.
+// If H were not symmetric over a bond, or not -dE/dm, the energy would change however small dt is.
 TEST(SiteDependentCoefficients, ConserveEnergyToTheMethodsOrder) {
   Space const exec;
   Lattice const lattice{
@@ -118,7 +118,8 @@ TEST(SiteDependentCoefficients, ConserveEnergyToTheMethodsOrder) {
   expect_order("order of the energy error", fitted_order(dts, errors), 5, 0.4);
 }
 
-// Compares spins without exchange, and with different dampings, with runs of one damping.
+// Spins that are not coupled and have different dampings are compared with runs in which all have
+// the same damping.
 TYPED_TEST(SiteDependent, DampingActsSiteBySite) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::cubic(19, 3, 2);

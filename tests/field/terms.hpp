@@ -13,7 +13,8 @@ namespace cayspin::test {
 
 inline Vec3<double> unit(Vec3<double> const& v) { return normalized(v, "a test's vector"); }
 
-/// Field and energy of a term, by hand, on the host: H of a site, and E, from numbers (sites, 3).
+/// Field and energy of a term, computed on the host by simple formulas: H of a site, and E, from
+/// the spins (sites, 3).
 struct ByHand {
   std::function<Vec3<double>(std::vector<double> const&, std::int64_t site)> field;
   std::function<double(std::vector<double> const&)> energy;
@@ -53,9 +54,9 @@ inline ByHand each_site(std::function<Vec3<double>(Vec3<double> const&)> field,
           }};
 }
 
-/// Returns a term that is a sum over bonds. A bond adds field(bond, m, other, sign) to H at its end
-/// with the spin m, with sign = 1 at its start and -1 at its end, and energy(bond, first, second)
-/// to E.
+/// Returns a term that is a sum over bonds. A bond adds field(bond, m, other, sign) to H at both of
+/// its sites: m is the spin of the site, `other` that at the other end, and `sign` is 1 at
+/// bond.from and -1 at bond.to. It adds energy(bond, first, second) to E.
 template <class AnyBond, class Field, class Energy>
 ByHand each_bond(std::vector<AnyBond> const& bonds, Field const& field, Energy const& energy) {
   return {[=](std::vector<double> const& m, std::int64_t site) {

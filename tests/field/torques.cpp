@@ -19,7 +19,7 @@ class Torques : public ::testing::Test {
   using Method = Rkmk4<Spins, isotropy::Zero, Exponential>;
   typename Backend::Exec exec;
 
-  /// Expects m' = t + damping m x t at every site.
+  /// Expects m' = t + damping m x t at every site, where t is torque(m, site).
   template <class Term, class Torque>
   void check(Lattice const& lattice, Term const& term, Torque const& torque) const {
     auto const spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 11));
@@ -131,7 +131,7 @@ TYPED_TEST(Torques, AHelixUnderZhangLi) {
   }
 }
 
-// Methods that split or differentiate the field move spins like Runge-Kutta methods.
+// Methods that split or differentiate the field move spins like a Runge-Kutta method.
 TYPED_TEST(Torques, EveryKindOfMethodTakesTheNewTerms) {
   using Spins = typename TypeParam::Spins;
   double const bound = 1e-7 + 400 * epsilon<typename TypeParam::Real>;

@@ -30,7 +30,7 @@ auto bonds_and_torques(Lattice const& lattice) {
       Slonczewski({.damping_like = 0.2, .field_like = 0.1, .polarization = {1, 0, 1}}));
 }
 
-/// A box of sites, surrounded by vacant sites; all others are occupied.
+/// A box of occupied sites, surrounded by vacant sites. All other sites are occupied.
 struct Box {
   Lattice lattice;
   std::array<std::int64_t, 3> begin, shape;
@@ -48,7 +48,7 @@ struct Box {
   }
   bool is_vacant(std::int64_t site) const { return holds(site, 1) && !holds(site); }
 
-  /// Returns the numbers of the box out of numbers (sites, 3) on the lattice.
+  /// Returns the part of an array (sites, 3) on the lattice that belongs to the box.
   std::vector<double> part(std::vector<double> const& numbers) const {
     std::vector<double> found;
     for (std::int64_t site = 0; site < lattice.sites(); ++site)
@@ -100,7 +100,7 @@ class Vacancies : public GradientTest<Backend> {
 };
 TYPED_TEST_SUITE(Vacancies, Backends, BackendName);
 
-// Spins outside the box, beyond the vacant sites, do not affect it, to the bit.
+// Spins beyond the vacant sites do not change a bit of the spins in the box.
 TYPED_TEST(Vacancies, CutAClusterOff) {
   using Spins = typename TypeParam::Spins;
   this->template expect_cut_off<Rkmk4<Spins>>(every_term);

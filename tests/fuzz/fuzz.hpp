@@ -13,7 +13,8 @@
 
 namespace cayspin::fuzz {
 
-/// Calls `reading`. It may throw only std::runtime_error with one line.
+/// Calls `reading`, which may throw only std::runtime_error with one line. Anything else ends the
+/// process.
 template <class Reading>
 void refuse_or_read(Reading const& reading) {
   try {
@@ -24,7 +25,7 @@ void refuse_or_read(Reading const& reading) {
   }
 }
 
-/// Writes these bytes to a file in memory, replaced at each call, and returns its path.
+/// Writes these bytes to a file in memory, which each call overwrites, and returns its path.
 inline std::filesystem::path file_with(std::uint8_t const* data, std::size_t bytes,
                                        char const* extension) {
   static auto const path = "/dev/shm/cayspin_fuzz_" + std::to_string(::getpid()) + extension;

@@ -25,7 +25,7 @@ class LandauLifshitzGenerator : public ::testing::Test {
 };
 TYPED_TEST_SUITE(LandauLifshitzGenerator, Backends, BackendName);
 
-// A x m is that of the equation, and damping turns m towards H.
+// A x m is the rate of m in the equation, and damping turns m towards H.
 TYPED_TEST(LandauLifshitzGenerator, MovesSpinsByTheEquation) {
   auto const h = evaluated(this->exec, this->field, this->spins);
   for (bool const precession : {true, false})

@@ -39,8 +39,8 @@ class Wrapping : public ::testing::Test {
   Lattice lattice = Lattice::square(13, 4);
   Spins spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 17));
 
-  /// Expects a step of the wrapped generator to equal one of the plain generator of twice the
-  /// length.
+  /// Expects a step with the doubled generator to equal a step of twice the length with the plain
+  /// generator.
   template <class Field>
   void expect_doubled(Field const& field) const {
     LandauLifshitz const generator(field, 0.2);

@@ -53,7 +53,7 @@ TYPED_TEST(GuardIn, LengthsMayBeOffByRoundOff) {
 }
 
 TYPED_TEST(GuardIn, EnergiesMayRiseByRoundOff) {
-  double const rise = 5 * 64 * std::numeric_limits<TypeParam>::epsilon();  // of magnitude 5
+  double const rise = 5 * 64 * std::numeric_limits<TypeParam>::epsilon();  // at a magnitude of 5
   EXPECT_FALSE(this->damped.judge(at(0), {0, 5}, 0));
   EXPECT_FALSE(this->damped.judge(at(1), {rise, 5}, 0));
   EXPECT_FALSE(this->damped.judge(at(2), {0, 5}, 0));
@@ -64,7 +64,8 @@ TYPED_TEST(GuardIn, EnergiesMayRiseByRoundOff) {
   EXPECT_NE(failure->find("from 0 at step 2"), std::string::npos) << *failure;
 }
 
-// The limit follows the current magnitude, and each rise is measured from the energy before.
+// The limit follows the current magnitude, and each rise is measured from the energy of the call
+// before.
 TYPED_TEST(GuardIn, SmallRisesDoNotAddUp) {
   double const rise = 60 * std::numeric_limits<TypeParam>::epsilon();
   double energy = 1;
@@ -73,8 +74,8 @@ TYPED_TEST(GuardIn, SmallRisesDoNotAddUp) {
   EXPECT_TRUE(this->damped.judge(at(20), {energy, 0.5}, 0));
 }
 
-// Steps chosen by a tolerance are as accurate as it says; at equilibrium, their energy fluctuates
-// by it.
+// Steps that are chosen by a tolerance have errors of its size, so that at equilibrium the energy
+// fluctuates by up to the tolerance times its magnitude.
 TYPED_TEST(GuardIn, EnergiesMayRiseByTheToleranceOfTheSteps) {
   double const rise = 5 * 0.0078125;
   Guard guard(scene(0.5, "tsit5", "tolerance = 0.0078125\n"),

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Compiles the device code of a source with hipcc and prints the registers that its kernels take;
-fails if a kernel spills vector registers to memory and is not known to (--may-spill). Scalar
-registers spill into lanes of vector registers."""
+fails if a kernel that does not match --may-spill spills vector registers to memory. Scalar
+registers may spill: into lanes of vector registers."""
 
 import pathlib
 import re

@@ -28,7 +28,7 @@ std::recursive_mutex& device_mutex() {
   return mutex;
 }
 
-/// All of the device's memory: one range of addresses, accessible only to its kernels.
+/// All of the device's memory: one range of addresses, accessible only to its kernels and copies.
 class Arena {
  public:
   static Arena& the() {
@@ -180,7 +180,8 @@ class HostDeviceQueue {
     for (HostDeviceQueue* const queue : all()) queue->run();
     release();
   }
-  /// Frees memory once no queued work may use it, so that destroying a View is not a fence.
+  /// Frees memory once no queued work may use it, so that destroying a View is not a fence, except
+  /// once in 256 MiB.
   static void free_later(void* address, std::size_t bytes) {
     std::lock_guard const lock(device_mutex());
     to_free().push_back(address);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A device emulated by the host's threads, for tests without a real one. It is as strict as a
-// device may be: kernels and copies wait in a queue until a fence, and only kernels and copies can
-// access its memory, so that a host dereference ends the program.
+// device may be: kernels and copies wait in a queue until a fence or until the queue is full, and
+// only kernels and copies can access its memory, so that a host dereference ends the program.
 #pragma once
 
 #include <Kokkos_Concepts.hpp>
@@ -50,8 +50,8 @@ class HostDeviceMemory {
   static constexpr char const* name() { return "HostDeviceMemory"; }
 };
 
-/// An execution space. A separate instance has a separate queue; default-constructed ones share
-/// one.
+/// An execution space. Each instance that with_own_queue() returns has its own queue;
+/// default-constructed instances share one queue.
 class HostDevice {
  public:
   using execution_space = HostDevice;
@@ -65,7 +65,8 @@ class HostDevice {
   static HostDevice with_own_queue();
 
   void fence(std::string const& name = "HostDevice::fence: unnamed") const;
-  /// Queues `task` after this instance's earlier work; it runs at the next fence.
+  /// Queues `task` after this instance's earlier work. It runs at the next fence, or earlier if the
+  /// queue is full.
   void enqueue(std::function<void()> task) const;
   int concurrency() const;
   std::uint32_t impl_instance_id() const noexcept;
@@ -85,7 +86,7 @@ class HostDevice {
   std::shared_ptr<HostDeviceQueue> queue_;
 };
 
-/// While one of these exists, the device's memory can be accessed: for kernels and copies.
+/// While such an object exists, the device's memory can be accessed. Kernels and copies make one.
 class HostDeviceAccess {
  public:
   HostDeviceAccess();
@@ -110,8 +111,8 @@ void copy_in_order(Exec const& exec, void* to, void const* from, std::size_t byt
   }
 }
 
-/// Calls run(body, begin, end) for blocks of 0 .. count - 1 on host threads; at once if there are
-/// at most two blocks.
+/// Calls run(body, begin, end) for blocks of 0 .. count - 1 on host threads. If there are at most
+/// two blocks, makes one call for all.
 void run_blocks(std::int64_t count, std::int64_t block, void const* body,
                 void (*run)(void const* body, std::int64_t begin, std::int64_t end));
 

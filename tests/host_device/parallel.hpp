@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Kernels on the device of host_device.hpp: each waits in the queue of its instance. Loops do not
-// use Kokkos' loops for host threads, so that a kernel compiles fast.
+// Kernels on the device of host_device.hpp: each waits in the queue of its instance. Kernels do not
+// instantiate Kokkos' loops for host threads, so that they compile fast.
 #pragma once
 
 #include "host_device.hpp"
@@ -25,7 +25,7 @@ struct LoopOverRange {
   }
 };
 
-/// Reduction that sums each block separately, so that sums do not depend on the threads.
+/// Reduction of each block by itself, so that sums do not depend on the number of threads.
 template <class FunctorReducer, class Tag, class Index>
 struct ReductionOfBlocks {
   using Functor = typename FunctorReducer::functor_type;
@@ -99,7 +99,8 @@ class ParallelFor<Functor, MDRangePolicy<Traits...>, cayspin::test::HostDevice> 
   Tiles const tiles_;
 };
 
-/// Takes results only in host memory, as every reduction to a number has: they are there on return.
+/// The result has to be in host memory, as it is in every reduction to a number. It is there on
+/// return.
 template <class FunctorReducer, class... Traits>
 class ParallelReduce<FunctorReducer, RangePolicy<Traits...>, cayspin::test::HostDevice> {
  public:

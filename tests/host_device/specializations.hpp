@@ -44,7 +44,8 @@ std::vector<cayspin::test::HostDevice> impl_partition_space(cayspin::test::HostD
 
 namespace Impl {
 
-// Before each access, Views ask whether the host may reach their memory: it may, in a kernel.
+// Before each access, Views ask whether the host may reach their memory: it may during a kernel or
+// a copy.
 template <class, class, bool>
 struct RuntimeCheckBasicViewMemoryAccessViolation;
 template <>

@@ -9,7 +9,7 @@
 
 namespace cayspin::test {
 
-/// Runs each of the steppers.
+/// Takes four steps with each stepper.
 template <class Generator, class Spins, class... Steppers>
 void run_each(Generator const& generator, Spins& spins, Steppers&&... steppers) {
   (integrate(Exec(), steppers, generator, spins, {.begin = 0, .dt = 0.01, .steps = 4}), ...);
