@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # Installs into a clean prefix, builds the projects SOURCES against it, and runs their tests.
-# Configures the first project again, for the warning of a build without optimisation.
+# Configures the first project again, to check the warning about a build without optimisation.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${CAYSPIN_BUILD} --prefix ${WORK}/prefix)

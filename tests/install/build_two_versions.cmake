@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Copies cayspin, with another version in its namespace and a negative number of sites in a lattice,
-# and builds a program that uses both versions.
+# Makes a copy of cayspin with another version in its namespace and with lattices whose number of
+# sites is negative, and builds a program that uses both versions.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK})
 file(COPY ${CAYSPIN_SOURCE}/include DESTINATION ${WORK}/other)

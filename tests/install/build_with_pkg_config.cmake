@@ -40,8 +40,7 @@ if(libraries)
     message(FATAL_ERROR "${program} does not take ${libraries}; it misses: ${missing}")
   endif()
 endif()
-# To the flags of Kokkos, cayspin.pc adds none, and cayspin_same_bits.pc only the one for equal
-# bits.
+# cayspin_same_bits.pc adds only the flag for equal bits to the flags of cayspin.pc.
 ask(flags cayspin --cflags)
 ask(with_same_bits cayspin_same_bits --cflags)
 list(REMOVE_ITEM with_same_bits -ffp-contract=off)
@@ -49,7 +48,7 @@ if("-ffp-contract=off" IN_LIST flags OR NOT flags STREQUAL with_same_bits)
   message(FATAL_ERROR "cayspin.pc: ${flags}\ncayspin_same_bits.pc: ${with_same_bits}")
 endif()
 
-# A scene from C and from Fortran, where the C interface is built.
+# Runs a scene from C and, if there is a compiler, from Fortran, where the C interface is built.
 if(NOT EXISTS ${folder}/cayspin_c.pc)
   return()
 endif()

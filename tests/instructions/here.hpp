@@ -43,7 +43,7 @@ struct Kokkos::SpaceAccessibility<cayspin::instructions::Here, cayspin::instruct
   static constexpr bool accessible = true;
 };
 
-/// Minimal replacement of a View.
+/// Minimal replacement for a View.
 template <class Real>
 class Kokkos::View<Real*, cayspin::instructions::Memory> {
  public:

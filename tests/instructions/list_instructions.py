@@ -43,8 +43,8 @@ def has_memory_operand(text):
 
 
 def counts_of_dump(text):
-    """Executions of each instruction, by address as loaded, and the first address of each
-    function."""
+    """Returns the number of executions of each instruction, by its address in memory, and the
+    lowest address of each function."""
     executed, entries = collections.Counter(), {}
     names, address, function, after_call = {}, 0, None, False
     for line in text.splitlines():
@@ -80,7 +80,7 @@ def disassembly(program):
 
 
 def load_offset(counted, functions):
-    """Returns address in memory - address in the file, as found for most functions."""
+    """Returns the address in memory minus that in the file, as most functions have it."""
     offsets = collections.Counter(entries[name] - functions[name] for _, entries in counted
                                   for name in entries if name in functions)
     if not offsets:
@@ -93,7 +93,7 @@ def table(name, executed, texts, offset):
     inside, outside = collections.Counter(), collections.Counter()
     references = 0
     unknown = sum(count for address, count in executed.items() if address - offset not in texts)
-    # A sample's five exact sums are zeroed by memset, which counts as an instruction for each byte.
+    # A sample's five exact sums are zeroed by memset, which counts as one instruction per byte.
     most = 0.06 if name.endswith("sample") else 0.02
     if unknown > most * sum(executed.values()):
         sys.exit(f"{name}: {unknown} of {sum(executed.values())} instructions are not the program's")

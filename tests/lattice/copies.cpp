@@ -107,8 +107,8 @@ TYPED_TEST(Copies, HandlesAndSwap) {
   EXPECT_EQ(copy_to_host(b), copy_to_host(same));
 }
 
-// Streaming stores and whole packs need rows and components on cache lines; a pack that starts in
-// a row never leaves the allocation.
+// Streaming stores and whole packs need rows and components that begin at a cache line. A pack that
+// starts in a row never leaves the allocation.
 TYPED_TEST(Copies, RowsLieOnCacheLines) {
   using Real = typename TypeParam::Real;
   auto const line = static_cast<std::ptrdiff_t>(detail::cache_line_bytes / sizeof(Real));
@@ -131,7 +131,8 @@ TYPED_TEST(Copies, RowsLieOnCacheLines) {
   }
 }
 
-// Bonds read rows of several planes at once, which would compete for the same cache sets.
+// Bonds read rows of several planes at once. If planes were whole pages apart, these rows would
+// compete for the same cache sets.
 TEST(Layouts, PlanesAreNoWholePagesApart) {
   for (std::int64_t const nx : {17, 32, 64, 100})
     for (std::int64_t const ny : {16, 31, 32, 64, 128}) {

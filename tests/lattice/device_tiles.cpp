@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// How the threads of a device find their sites and these sites' numbers, and how they divide.
+// How the threads of a device find their sites and the numbers of these sites, and how they compute
+// quotients.
 #include <cayspin/detail/device_site.hpp>
 #include <cayspin/detail/device_tiles.hpp>
 #include <cayspin/detail/quotient.hpp>
@@ -145,7 +146,7 @@ TEST(DeviceSites, NeighborsAtAllEnds) {
     }
 }
 
-/// Returns a layout of nz planes of 2^20 numbers, never allocated.
+/// Returns a layout of nz planes of 2^20 numbers, for which no memory is allocated.
 RowLayout large_layout(std::int32_t nz) {
   RowLayout layout;
   layout.nx = layout.ny = 1 << 10;
@@ -195,7 +196,7 @@ TEST(DeviceTiles, ManyThreadsOfALongChain) {
   EXPECT_EQ(met, 8);
 }
 
-/// Returns 1 / b with only so many bits, as a device approximates it.
+/// Returns 1 / b with only `bits` bits after the leading one, like a device's approximation.
 template <class Real, class Bits>
 Real rough_inverse(Real b, int bits) {
   Bits const dropped = (Bits(1) << (std::numeric_limits<Real>::digits - 1 - bits)) - 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Neighbours in a stencil against an index calculation, for every row length around whole packs.
+// Neighbours in a stencil against an index calculation, for every row length up to 40 sites.
 #include "../support/evaluate.hpp"
 
 #include <cayspin/detail/unrolled.hpp>
@@ -18,7 +18,7 @@ struct Neighbor {
   }
 };
 
-/// A generator that returns the numbers of a field before the site, on it and after it.
+/// A generator that returns the numbers of a field at the previous site, the site and the next one.
 template <int Axis, class Real>
 struct Numbers {
   SiteArray<Real, 1> numbers;
@@ -147,7 +147,7 @@ TYPED_TEST(Neighbors, OfFieldsOfNumbers) {
     }
 }
 
-// Rows divided among several tasks, cut at a pack, inside a pack, at the end.
+// Rows that are divided among several tasks, and end with a whole pack or within one.
 TYPED_TEST(Neighbors, LongRows) {
   std::int64_t const task = detail::sites_per_task;
   for (std::int64_t const nx : {2 * task, 2 * task + 1, 3 * task - 1, 3 * task + 13})

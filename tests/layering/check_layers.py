@@ -54,7 +54,8 @@ BACKEND_MACRO = re.compile(r"\bKOKKOS_(?:ENABLE|ARCH)_\w+|"
 BACKEND_HEADERS = ("/detail/backend.hpp", "/detail/execution.hpp",
                    "/demagnetization/device_transforms.hpp")
 
-# Where "a quoted include" may lie besides its own folder, and what the build writes.
+# Folders in which an "include" in quotes may lie, in addition to that of the file itself; and files
+# that the build writes.
 INCLUDE_FOLDERS = ["src", "src/io", "src/simulation", "paper", "tests"]
 GENERATED = {"cayspin_git_commit.hpp", "cayspin/version.hpp"}
 PUBLIC_FOLDERS = {"cayspin/": "include", "cayspin_paper/": "paper/include"}
@@ -90,7 +91,7 @@ class Tree:
         return path.relative_to(self.root).as_posix()
 
     def resolve(self, path, public, quoted):
-        """The included file's name, or None for one that the build writes."""
+        """The included file's name; None if the build writes it, or if it is missing."""
         if (public or quoted) in GENERATED:
             return None
         if public:
@@ -106,7 +107,7 @@ class Tree:
         return None
 
     def check_layers(self, layers, prefix=""):
-        """Nothing includes a higher layer; every file below `prefix` has a layer."""
+        """Checks that no file includes one of a higher layer, and each below `prefix` has a layer."""
         for name, included in self.includes.items():
             if not name.startswith(prefix):
                 continue
@@ -159,7 +160,8 @@ class Tree:
                 self.problems.append(f"{name}: not all of it is in {expected}")
 
     def check_members_without_address(self):
-        """Without the macro they have another size in device code: see detail/backend.hpp."""
+        """Without the macro, structs with such members have another size in device code: see
+        detail/backend.hpp."""
         for name in self.includes:
             text = (self.root / name).read_text(encoding="utf-8")
             if "[[no_unique_address]]" in text and not name.endswith("/detail/backend.hpp"):
@@ -167,7 +169,7 @@ class Tree:
 
 
     def check_backends(self):
-        """A port to another backend edits these few headers."""
+        """Checks that only BACKEND_HEADERS test such macros: a port has to edit only these."""
         for name in self.includes:
             if not name.startswith("include/") or name.endswith(BACKEND_HEADERS):
                 continue

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Checks that files which are compiled as one define no name twice in their anonymous namespaces:
-check_names.py ROOT, or check_names.py --self-test. The fuzzers, which
-ordinary tests do not build, compile the readers in this way."""
+check_names.py ROOT, or check_names.py --self-test. The fuzzers, which ordinary tests do not build,
+compile the readers in this way."""
 
 import pathlib
 import re
@@ -22,7 +22,7 @@ FUNCTION = re.compile(r"^[A-Za-z][\w:<>,\s&*]*?[ &*](\w+)\(([^)]*)\)[^;{]*\{", r
 
 def names(text):
     """Returns (name, kind, meaning) of each name. The kind of a function is the types of its
-    arguments, so that overloads differ. Aliases may be repeated, with one meaning."""
+    arguments, so that overloads differ. An alias may be repeated with the same meaning."""
     found = []
     for block in ANONYMOUS.findall(text):
         for name, meaning in ALIAS.findall(block):
@@ -36,7 +36,7 @@ def names(text):
 
 
 def repeated(files):
-    """Returns a sentence for each name of two of the files, given as (path, text)."""
+    """Returns a sentence for each name that two of the files, (path, text), both define."""
     seen, sentences = {}, []
     for path, text in files:
         for name, kind, meaning in names(text):

@@ -78,7 +78,7 @@ def includes_of_layers(tree):
 
 
 def reduced(includes):
-    """The includes without those that follow from others."""
+    """Returns the includes without those that follow from others."""
     def below(layer):
         return includes[layer].union(*map(below, includes[layer]))
     return {layer: sorted(includes[layer] - set().union(*map(below, includes[layer])), key=list(

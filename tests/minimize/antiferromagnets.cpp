@@ -80,8 +80,8 @@ struct Layers {
   }
 };
 
-// Along one axis, exchange has another sign than along the others. An odd ring of layers cannot
-// alternate: its spins turn from layer to layer by a little less than pi.
+// Along one axis, exchange has another sign than along the others. Spins of an odd ring of layers
+// cannot alternate: they turn by a little less than pi from layer to layer.
 TYPED_TEST(Antiferromagnets, OfSomeAxes) {
   for (auto const& [in_plane, between] : {std::pair{40.0, -30.0}, {-40.0, 30.0}})
     for (std::int64_t const layers : {10, 11})

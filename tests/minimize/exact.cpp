@@ -56,7 +56,8 @@ TYPED_TEST(Exact, StonerWohlfarth) {
   }
 }
 
-// m_z = tanh(x / sqrt(A / K)); the energy per area is 2 sqrt(A K), to second order in the spacing.
+// m_z = tanh(x / sqrt(A / K)). The energy per area is 2 sqrt(A K), with an error of second order in
+// the spacing.
 TYPED_TEST(Exact, BlochWall) {
   double const a = 1, k = 1;
   double error[2];

@@ -40,7 +40,7 @@ TYPED_TEST(Films, TakeSeventyEvaluations) {
       // Checks the torque with code that the minimiser does not use.
       LandauLifshitz const generator(film(this->spins.lattice(), exchange), 0);
       EXPECT_LT(largest_rate(this->exec, generator, this->spins), 1.1e-6);
-      // With weak exchange, a vortex ends with walls.
+      // With weak exchange, a vortex relaxes to a state with walls.
       if (exchange > 2 || i > 0)
         EXPECT_NEAR(found.energy.value, easy, 1e-9 * width * width) << exchange << " " << i;
       else
@@ -61,7 +61,7 @@ TYPED_TEST(Films, TakeFewEvaluationsFarWiderThanAWall) {
   }
 }
 
-// Without the preconditioner evaluations grow as the root of the exchange.
+// Without the preconditioner, the number of evaluations grows as the root of the exchange.
 TYPED_TEST(Films, TakeManyMoreWithoutThePreconditioner) {
   auto const start = random_directions(width * width, 1);
   auto const with = this->relax(1000, start, {.torque = 1e-2});

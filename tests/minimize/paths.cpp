@@ -46,8 +46,8 @@ auto macrospin(double easy, double hard, Vec3<double> const& applied) {
                         Zeeman{applied});
 }
 
-// Henkelman and Jonsson's tangent: at a maximum, the larger difference of energies is the weight of
-// the side with the higher neighbour.
+// Henkelman and Jonsson's tangent: at an extremum, the larger difference of energies is the weight
+// of the side with the higher neighbour.
 TEST(PathDirection, WeighsBothSidesOfAPeak) {
   using Weights = std::array<double, 2>;
   EXPECT_EQ(detail::weights_of_direction(1, 3, 2), (Weights{1, 2}));
@@ -82,7 +82,8 @@ TYPED_TEST(Paths, OfAMacrospinAlongAField) {
               this->exact());
 }
 
-// Against a strong field, the barrier is a thirtieth of the energy between the ends.
+// The path leaves a state against a strong field. Its barrier is about a thirtieth of the difference
+// in energy between the ends.
 TYPED_TEST(Paths, OfAMacrospinWithALowBarrier) {
   double const easy = 1.3, applied = 0.9;
   auto const found = this->find(macrospin(easy, 0.7, {0, 0, applied}), Lattice::chain(1), down, up,
@@ -135,8 +136,8 @@ TYPED_TEST(Paths, HaveTwoSaddles) {
       this->find(field, lattice, {0, 0, 1, 0, 0, 1}, {0, 0, -1, 0, 0, -1}, this->options());
   ASSERT_EQ(found.end, PathEnd::converged);
   ASSERT_EQ(found.saddles.size(), 2U);
-  // At each saddle, one spin is near the plane, and the other is tilted by the coupling; both
-  // angles are found by Newton's method.
+  // At each saddle, one spin is nearly perpendicular to its easy axis, and the other is tilted by
+  // the coupling. Newton's method finds both angles.
   auto const energy = [&](double a, double b) {
     return -0.5 * std::pow(std::cos(a), 2) - 0.85 * std::pow(std::cos(b), 2) -
            coupling * (std::cos(a - b) - 1);
@@ -221,7 +222,8 @@ TYPED_TEST(Paths, OfASkyrmionThatCollapses) {
   }
 }
 
-// The first image is relaxed beforehand; the number of evaluations does not depend on the lattice.
+// The first image is relaxed beforehand. The number of evaluations does not depend on the size of
+// the lattice.
 TYPED_TEST(Paths, TakeFewEvaluations) {
   double const torque = this->is_double ? 1e-6 : 1e-3;
   for (std::int64_t const n : {16, 48}) {
