@@ -36,7 +36,7 @@ def names(text):
 
 
 def repeated(files):
-    """Returns a sentence for each name that two of the files, (path, text), both define."""
+    """Returns a sentence for each name that two of the files define. A file: (path, text)."""
     seen, sentences = {}, []
     for path, text in files:
         for name, kind, meaning in names(text):

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Random fields on small lattices: the energy falls from iteration to iteration, and converged
-// states have no torque and no descent direction, by the eigenvalues of the Hessian.
+// Random fields on small lattices: the energy falls from iteration to iteration. Converged states
+// have no torque and, as the eigenvalues of the Hessian show, no direction of descent.
 #include "films.hpp"
 #include "least_curvature.hpp"
 

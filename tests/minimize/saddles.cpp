@@ -26,7 +26,7 @@ TYPED_TEST(Saddles, HardAxesOfAFilm) {
     EXPECT_EQ(found.end, MinimizeEnd::converged);
     EXPECT_GE(found.saddles, 1);
     EXPECT_NEAR(found.energy.value, -0.05 * sites, 1e-6 * sites);
-    // The least curvature there is that of turning all spins out of the easy axis.
+    // The least curvature of the minimum is that of turning all spins out of the easy axis.
     EXPECT_NEAR(found.curvature, 0.1, 0.01);
   }
 }
@@ -83,8 +83,8 @@ TYPED_TEST(Saddles, NotWhereTheEnergyIsFlat) {
   }
 }
 
-/// H = -4 c m_i^3: E = c sum of m_i^4, which is not quadratic. Minima point to the corners of a
-/// cube.
+/// H_i = -4 c m_i^3 for each component i: E = c sum of m_i^4, which is not quadratic. In minima,
+/// spins point to the corners of a cube.
 struct CubicAnisotropy {
   double constant;
   template <class Stencil>
@@ -141,8 +141,8 @@ TYPED_TEST(Saddles, WhereTheTorqueStaysAboveTheBound) {
     }
 }
 
-// Rings and films of either sign of exchange, at fields next to those where their states lose
-// stability: where the torque vanishes, no curvature is below zero by much.
+// Chains and films with exchange of either sign, at fields close to those at which their states
+// lose stability: no state that is found has a curvature far below zero.
 TYPED_TEST(Saddles, NearInstabilities) {
   std::mt19937 engine(5);
   auto const uniform = [&](double low, double high) {

@@ -11,6 +11,7 @@ template <class Backend>
 class MacrospinModes : public ModesTest<Backend> {};
 TYPED_TEST_SUITE(MacrospinModes, Backends, BackendName);
 
+// With the curvatures bx along x and by along y,
 // rate^2 + damping (bx + by) rate + (1 + damping^2) bx by = 0.
 TYPED_TEST(MacrospinModes, AreThoseOfKittelWithDamping) {
   double const bx = 1.05, by = 0.35;
@@ -48,7 +49,7 @@ TYPED_TEST(MacrospinModes, DecayWithoutPrecession) {
   EXPECT_EQ(found.modes[0].frequency, 0);
 }
 
-// At a saddle there are two motions without oscillation: one grows, and one decays at an equal
+// At a saddle there are two motions without oscillation: one grows, and one decays at the same
 // rate.
 TYPED_TEST(MacrospinModes, GrowAtASaddle) {
   double const h = 0.2, k = 0.9;
@@ -66,8 +67,8 @@ TYPED_TEST(MacrospinModes, GrowAtASaddle) {
   EXPECT_NEAR(curvatures.curvatures[1].value, h, this->accurate);
 }
 
-// The longest vector has length 1, and its largest component is real and positive; the ratio of the
-// axes of the ellipse is the root of the ratio of the curvatures.
+// The longest vector of a mode has length 1. Each spin moves on an ellipse; the ratio of the axes
+// is the square root of the ratio of the curvatures.
 TYPED_TEST(MacrospinModes, HaveShapesOfLengthOne) {
   EffectiveField const field(SlabDemag({1, 0, 0}, 0.7), Zeeman{{0, 0, 0.4}});
   auto const m = this->uniform(Lattice::chain(3), {0, 0, 1});

@@ -28,7 +28,8 @@ class ModesTest : public ::testing::Test {
     return spins_of<Spins>(lattice, numbers);
   }
 
-  /// Expects the frequencies of the modes to be the least of `all`.
+  /// Expects the frequencies of the modes to be the least of `all`, and each decay to be `damping`
+  /// times the frequency.
   template <class Modes>
   void expect_frequencies(Modes const& modes, std::vector<double> all, double damping) const {
     std::ranges::sort(all);

@@ -61,7 +61,8 @@ TYPED_TEST(WaveModes, AreNotReciprocalWithDmi) {
   this->expect_frequencies(normal_modes(this->exec, LandauLifshitz(field, 0.0), m), all, 0);
 }
 
-// w = sqrt((2 J + K)^2 - (2 J cos k)^2), split into w + h and |w - h| by the field along the axis.
+// w = sqrt((2 J + K)^2 - (2 J cos k)^2), which a field h along the easy axis splits into w + h and
+// |w - h|.
 TYPED_TEST(WaveModes, OfAnAntiferromagnetInAField) {
   double const j = 1, anisotropy = 0.1, h = 0.07;
   auto const lattice = Lattice::chain(20, 1, Boundary::periodic);
@@ -80,7 +81,8 @@ TYPED_TEST(WaveModes, OfAnAntiferromagnetInAField) {
   this->expect_frequencies(normal_modes(this->exec, LandauLifshitz(field, 0.0), m), all, 0);
 }
 
-// Spins in an easy plane turn together without a force, at a rate of zero; other modes are waves.
+// There is no torque against a turn of all spins together in the easy plane: the rate of this mode
+// is 0. All other modes are waves.
 TYPED_TEST(WaveModes, HaveAZeroModeInAnEasyPlane) {
   double const a = 0.8, hard = 0.5;
   auto const lattice = Lattice::chain(16, 1, Boundary::periodic);
@@ -105,7 +107,7 @@ TYPED_TEST(WaveModes, HaveAZeroModeInAnEasyPlane) {
     EXPECT_NEAR(rates[i], all[i], 10 * this->accurate) << i;
 }
 
-// The number of evaluations hardly grows with the lattice.
+// The number of evaluations hardly grows with the number of sites.
 TYPED_TEST(WaveModes, TakeAsManyEvaluationsOnFineLattices) {
   std::int64_t least = 0, most = 0;
   for (std::int64_t const n : {16, 32, 64}) {

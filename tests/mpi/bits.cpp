@@ -50,8 +50,8 @@ class EqualBits : public ::testing::Test {
   using Spins = typename Backend::Spins;
   using Real = typename Backend::Real;
 
-  /// `make`: returns a stepper for spins. Lattices that it refuses are skipped. `one_in`: takes
-  /// only one lattice in so many, for steppers that communicate often.
+  /// make(spins) returns a stepper. Lattices that it refuses are skipped. `one_in`: 2 takes only
+  /// every second lattice, and so on, for steppers that communicate often.
   template <class Motion = Turning, class Make>
   void expect_equal_bits(int depth, Make const& make, int steps = 3, std::size_t one_in = 1) {
     int compared = 0;
@@ -86,7 +86,7 @@ class EqualBits : public ::testing::Test {
   }
 
  private:
-  // All numbers of samples at the start and after each step, and the stepper's counts.
+  // Returns the numbers of samples at the start and after each step, and the stepper's counts.
   template <class Motion, class Make>
   std::vector<double> run(Spins& spins, Make const& make, int steps) {
     auto const generator = Motion::generator_on(spins.lattice());
@@ -189,7 +189,7 @@ TYPED_TEST(EqualBits, RedBlackAndSeries) {
 
 TYPED_TEST(EqualBits, FieldOfAllSpins) {
   using Spins = typename TypeParam::Spins;
-  // On devices sums depend on the division.
+  // On devices, sums depend on the division.
   if constexpr (std::is_same_v<typename Spins::memory_space, Kokkos::HostSpace>) {
     this->template expect_equal_bits<OfAllSpins>(
         2, [](Spins const& spins) { return LieHeun<Spins>(spins); });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Scenes of crystals, couplings, currents and site-dependent numbers give the numbers of one rank.
+// Scenes with crystals, couplings, currents and site-dependent numbers give the same numbers on
+// several ranks as on one.
 #include "on_ranks.hpp"
 
 #include <hdf5.h>
@@ -74,7 +75,7 @@ class CrystalsOnRanks : public OnRanks {
     }
   }
 
-  /// Returns FOLDER/name with /values of these extents.
+  /// Writes a file with /values of these extents into the folder of the test, and returns its path.
   std::string values_file(std::string const& name, std::vector<hsize_t> const& extents) const {
     hsize_t count = 1;
     for (auto const extent : extents) count *= extent;
@@ -116,7 +117,7 @@ TEST_F(CrystalsOnRanks, HaveDipoles) {
   }
 }
 
-// Bonds of every kind that reach further than a step has stages.
+// Bonds of every kind, which reach over more rows and planes than a step has stages.
 TEST_F(CrystalsOnRanks, MayHaveBondsOfLongReach) {
   for (std::string const boundary : {"open", "periodic"}) {
     SCOPED_TRACE(boundary);
@@ -192,7 +193,7 @@ slonczewski = { damping_like = "0.1*t", field_like = 0.2, polarization = [0, 1, 
                      {{2, "1,2"}, {3, "3,1"}, {4, "2,2"}});
 }
 
-// Bonds reach over three rows and planes, further than a stage does.
+// Interlayer bonds reach over three rows and planes, further than the other terms of a stage.
 TEST_F(CrystalsOnRanks, HaveTorquesOfSitesAndBondsAcrossSpacers) {
   std::string const layers = R"toml([lattice]
 shape = [6, 12, 14]
@@ -221,7 +222,7 @@ TEST_F(CrystalsOnRanks, StepByEveryKindOfMethod) {
         "implicit_midpoint", "projected_rk5"}) {
     SCOPED_TRACE(method);
     auto const integrator = fmt::format("method = \"{}\"\ndt = 0.02", method);
-    // rkmk8 has 13 stages: its parts have at least as many planes.
+    // rkmk8 has 12 stages, and a part needs at least as many planes.
     expect_bits_of_one(scene_of(bcc, integrator), {{2, "1,2"}},
                        {"--set", "lattice.shape=[4,5,14]"});
   }
@@ -268,7 +269,7 @@ TEST_F(CrystalsOnRanks, NeedPartsOfWholeCellsAsThickAsBondsReach) {
   expect_refused(start_on(2, run_of(stiff, "out.h5")), "runs only on one rank");
 }
 
-// An expression that fails on a rank ends all of them with one line.
+// An expression that fails on one rank ends the run on all ranks, with one line.
 TEST_F(CrystalsOnRanks, SayOnceWhatIsWrongAtOneSite) {
   auto const text = [&](std::string const& lattice, std::string const& damping) {
     return write("scene.toml",

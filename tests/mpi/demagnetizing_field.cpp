@@ -40,8 +40,8 @@ class DemagnetizingFieldOnRanks : public ::testing::Test {
     return {numbers.begin(), numbers.end()};
   }
 
-  /// work(body, spins): returns numbers: first those of sites, (sites, 3), then any that all ranks
-  /// share.
+  /// work(body, spins) returns numbers: first those of the sites, (sites, 3), then any that are
+  /// equal on all ranks.
   template <class Work>
   void expect_equal_bits(Boundary boundary, int depth, Work const& work) {
     int compared = 0;
@@ -85,7 +85,7 @@ TYPED_TEST(DemagnetizingFieldOnRanks, HasEqualBits) {
   });
 }
 
-// Ranks share the memory of one rank; several of them need one spectrum more.
+// Several ranks together need the memory that a single rank needs, and that of one more spectrum.
 TEST(DemagnetizingFieldOfParts, SharesItsMemory) {
   auto const lattice = Lattice::cubic(31, 16, 16);
   auto const of_one = DemagnetizingField<double>::work_bytes(lattice);

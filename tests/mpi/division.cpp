@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Divisions of lattices, and wrong ones refused in one sentence.
+// Divisions of lattices, and the refusal of wrong ones.
 #include <cayspin/cayspin.hpp>
 #include <cayspin/crystal.hpp>
 #include <cayspin/field/pair_couplings.hpp>
@@ -57,7 +57,7 @@ TEST(Division, PartsOfCrystalsHoldWholeCells) {
   EXPECT_EQ(local.ghosts[1], Ghosts{});
 }
 
-// Every rank gets the error, whichever differs.
+// Every rank throws, whichever rank differs.
 TEST(Division, RanksThatDisagreeAreRefused) {
   int rank = 0, ranks = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
@@ -97,8 +97,8 @@ TEST(Division, CouplingsNeedGhostsAsFarAsTheyReach) {
   mpi::Domain const thin(MPI_COMM_WORLD, lattice, 1, {1, ranks}),
       thick(MPI_COMM_WORLD, lattice, {1, 2}, {1, ranks});
   EXPECT_THROW(PairCouplings(thin.local(), bonds), std::invalid_argument);
-  // Evaluations are refused: between the stages of a step no ghosts are updated as deep as bonds
-  // reach.
+  // Evaluations are refused, because between the stages of a step no ghosts are updated as deep as
+  // bonds reach.
   PairCouplings const field(thick.local(), bonds);
   SpinField<double> const spins("spins", thick.local());
   EXPECT_THROW(energy(Kokkos::DefaultExecutionSpace(), field, spins), std::invalid_argument);

@@ -51,7 +51,7 @@ inline std::string name_of(Lattice const& lattice, mpi::Division const& division
   return name + "in " + std::to_string(division.y) + " x " + std::to_string(division.z) + " parts";
 }
 
-/// Returns the numbers of a part out of those of a whole lattice, (sites, 3).
+/// Returns the numbers of a part's own sites, out of those of the whole lattice, (sites, 3).
 inline std::vector<double> numbers_of_part(Lattice const& local, std::vector<double> const& all) {
   auto const& shape = whole(local).shape;
   auto const begin = local.part->begin();

@@ -17,7 +17,7 @@
 namespace cayspin::program::test {
 namespace {
 
-/// Returns the processes that a process started.
+/// Returns the processes that `parent` started.
 std::vector<pid_t> children_of(pid_t parent) {
   std::vector<pid_t> found;
   for (auto const& entry : fs::directory_iterator("/proc")) {
@@ -103,7 +103,7 @@ TEST_F(OnRanks, EndTogetherWhenInterrupted) {
   interrupted.program = CAYSPIN_MPIEXEC;
   interrupted.interrupt_after = 0.3;
   interrupted.interrupt_when = in_folder("out.h5");
-  // An interrupted launcher may lose the statuses of its ranks, so each stores its own.
+  // An interrupted launcher may lose the statuses of its ranks, so each rank stores its own.
   auto command = launch(3, run_of(scene, "out.h5", {"--set", "integrator.steps=1000000"}));
   command.insert(command.begin() + 2,
                  {"sh", "-c", "trap : INT; \"$@\"; echo $? > status.$$", "sh"});

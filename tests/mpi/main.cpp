@@ -6,7 +6,8 @@
 
 namespace {
 
-/// Listener that reports failures of other ranks on the rank that prints.
+/// Listener that makes a test fail on all ranks if it fails on one, so that the rank that prints
+/// reports it.
 class FailuresOfOthers : public ::testing::EmptyTestEventListener {
   void OnTestEnd(::testing::TestInfo const& test) override {
     int failed = test.result()->Failed() ? 1 : 0, here = failed;

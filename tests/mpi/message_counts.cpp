@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Messages of a step, counted by intercepting MPI: one message per face, or on hosts one per
-// component of a large face, and nothing between the stages.
+// component of a large face between planes, and nothing between the stages.
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -22,7 +22,7 @@ extern "C" int MPI_Send_init(void const* data, int count, MPI_Datatype type, int
 extern "C" int MPI_Recv_init(void* data, int count, MPI_Datatype type, int from, int tag,
                              MPI_Comm comm, MPI_Request* request) {
   int const result = PMPI_Recv_init(data, count, type, from, tag, comm, request);
-  sends.erase(*request);  // a freed request
+  sends.erase(*request);  // the handle of a freed request
   return result;
 }
 extern "C" int MPI_Startall(int count, MPI_Request* requests) {

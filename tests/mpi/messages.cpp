@@ -33,7 +33,7 @@ void for_all(HostField<Real, Components> const& field, Work const& work) {
           work({x, y, z}, c, array.data[c * array.stride + layout.row_offset(y, z) + x]);
 }
 
-/// Sets the part's own numbers to number_of() their place, and ghosts to -1.
+/// Sets each number of the part's own sites to number_of() of its place, and those of ghosts to -1.
 template <class Real, int Components>
 void fill(Domain const& domain, HostField<Real, Components> const& field) {
   auto const& local = domain.local();
@@ -66,7 +66,7 @@ TEST(Ghosts, HoldWhatTheNeighboursHold) {
   for (auto const boundary : {Boundary::open, Boundary::periodic})
     for (Division const& division :
          {Division{1, ranks}, Division{ranks, 1}, Division{2, ranks / 2}})
-      for (std::int64_t const nx : {1, 5, 19, 700}) {  // the last by components
+      for (std::int64_t const nx : {1, 5, 19, 700}) {  // 700: sent by components
         if (division.y * division.z != ranks) continue;
         SCOPED_TRACE(testing::Message() << division.y << " x " << division.z << ", " << nx);
         Domain const domain(MPI_COMM_WORLD, Lattice::cubic(nx, 13, 15, 1, boundary), 3, division);

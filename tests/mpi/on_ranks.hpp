@@ -38,7 +38,8 @@ class OnRanks : public ProgramTest {
     return all;
   }
 
-  /// Expects two files to contain equal runs: all frames and samples, to the bit, and counts.
+  /// Expects two files to contain equal runs: the same bits in all frames and samples, and the same
+  /// steps and evaluations.
   void expect_same(std::string const& one, std::string const& other) const {
     auto const first = io::read_info(in_folder(one)), second = io::read_info(in_folder(other));
     EXPECT_TRUE(second.complete);

@@ -59,7 +59,7 @@ TEST_F(OnRanks, HaveASlabOnTheHost) {
   }
 }
 
-// A wall across the parts, and one along them.
+// Walls across the parts, and walls along them.
 TEST_F(OnRanks, FollowAWallAndSumRegionsAndTerms) {
   for (auto const& [axis, shape, wall] : {std::tuple{"y", "[3, 40, 8]", "j - 23"},
                                           {"z", "[3, 8, 40]", "k - 23"},
@@ -171,8 +171,8 @@ TEST_F(OnRanks, GoOnFromFilesOfOtherRanks) {
         "method = \"tsit5\"\ntolerance = 1e-5"}) {
     SCOPED_TRACE(method);
     auto const scene = write("scene.toml", film("[5, 8, 13]", method));
-    // An adaptive method shortens its last steps to end with a run, so runs are compared that end
-    // at equal times.
+    // An adaptive method shortens its last steps to end at the end of a run, so only runs that end
+    // at equal times are compared.
     auto const in_parts = [&](std::array<int, 3> const& ranks, std::string const& name) {
       std::string before;
       for (int part = 0; part < 3; ++part) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Expensive fields: orders, stability where a single pass fails, and conservation of energy.
+// Expensive fields: orders, stability where a single pass fails, and energies.
 #include "long_range.hpp"
 
 #include <algorithm>
@@ -108,8 +108,8 @@ std::vector<double> energies(Generator const& generator, Spins const& start, int
   return found;
 }
 
-// With 4 times the largest stable step of RK4, one pass gains energy; two lose it from sample to
-// sample.
+// With 4 times the largest stable step of RK4, one pass gains energy, but two passes lose energy
+// from sample to sample.
 TEST(SlowField, SecondPassKeepsTheEnergyLaw) {
   Lattice const film{{24, 8, 1}, {1, 1, 1}, {Boundary::open, Boundary::open, Boundary::open}};
   Spins const start = make_spins(film, [](auto i, auto j, auto) {
@@ -143,8 +143,8 @@ TEST(SlowField, SecondPassKeepsTheEnergyLaw) {
   EXPECT_GT(one_pass.back(), two_passes.front());
   EXPECT_GT(rk4.back(), rk4.front());
 
-  // It follows RK4 with steps as long as its substeps, with 1 evaluation of the field instead of
-  // 20.
+  // Compared with RK4 with steps as long as a substep, which evaluates the expensive field 20 times
+  // in a step instead of once.
   Spins spins = copy_of(start);
   stepper.reset();
   advance(stepper, generator, spins, dt, 20);

@@ -13,7 +13,7 @@
 namespace cayspin::test {
 
 /// H_i = -strength sum_j e^(-|i-j|/2) D m_j with D = diag(1, 0.6, 0.2), over sites in memory order.
-/// Its eigenvalues are between -4.1 strength and 0.
+/// The eigenvalues of this map are between -4.1 strength and 0.
 struct LongRange {
   static constexpr int degree = 2;
   double strength = 0;
@@ -27,8 +27,8 @@ struct LongRange {
       auto const m = spins.get(i);
       return Vector{double(m.x), 0.6 * double(m.y), 0.2 * double(m.z)};
     };
-    // Sums over the sites before a site, and over those after it: each is found from the sum of the
-    // site next to it.
+    // Sums over the sites before a site, and over those after it: each sum follows from that of the
+    // next site.
     std::vector<Vector> before(static_cast<std::size_t>(sites), Vector{0, 0, 0});
     for (std::int64_t i = 1; i < sites; ++i) before[i] = decay * (before[i - 1] + at(i - 1));
     Vector after{0, 0, 0};
@@ -48,7 +48,7 @@ MultirateLongRange<Field> multirate_long_range(Field const& like, double strengt
   return {like, HostField<Field, LongRange>(like, LongRange{strength})};
 }
 
-/// A uniform field that rotates.
+/// A uniform field that rotates about z.
 struct Turning {
   double amplitude = 0;
   Vector operator()(double t) const {

@@ -53,8 +53,8 @@ TEST(SlowField, StartsAnew) {
   stepper.reset();
   EXPECT_EQ(again(), fresh);
 
-  // A step that is much longer than the last or changes sign starts anew; one of length 0 does
-  // nothing.
+  // At a step that is more than twice as long as the last one or has the other sign, the method
+  // starts anew. A step of length 0 does nothing.
   Spins spins = copy_of(start);
   auto const evaluations_of = [&](double dt) {
     auto const before = stepper.slow_evaluations_done();

@@ -57,8 +57,8 @@ Spins almost_along_x(Lattice const& lattice, double angle) {
   });
 }
 
-/// A linear mode about x, u' = M u of u = (y, z) with M = [-damping a, -b; a, -damping b], and its
-/// energy (a y^2 + b z^2) / 2, both by formulas.
+/// A linear mode about x: u' = M u for u = (m_y, m_z), with M = [-damping a, -b; a, -damping b],
+/// and the energy (a m_y^2 + b m_z^2) / 2, both in closed form.
 struct Mode {
   double along, y, z, damping;
 
@@ -107,15 +107,15 @@ TEST(MultirateModes, KeepTheirLinewidths) {
     double const now = error_of_linewidths<4, Spins>(damping, dt);
     expect_below("order 4, damping " + std::to_string(damping), now, 0.0005);
   }
-  // Order 3 changes a damping of .008 by more than 1 %.
+  // Order 3 changes a damping of 0.008 by more than 1 %.
   EXPECT_GT((error_of_linewidths<3, Spins>(0.008, dt)), 0.01);
   using Floats = SpinField<float, Space::memory_space>;
   expect_below("order 4, floats", error_of_linewidths<4, Floats>(0.008, dt), 5e-3);
   expect_below("order 4, half the step", error_of_linewidths<4, Spins>(0.008, dt / 2), 5e-5);
 }
 
-/// Returns the largest growth of an angle among spins with w dt from 0 to 12, over the second half
-/// of the steps, when what depends on the start has decayed.
+/// Returns the largest factor by which the angle of a spin grows over the second half of the steps,
+/// among spins with w dt from 0.05 to 12. By then, what depends on the start has decayed.
 template <int Order>
 double growth(double damping, double dt_times_d, Elliptical const& shape, int steps) {
   constexpr std::int64_t count = 241;
@@ -144,7 +144,7 @@ double growth(double damping, double dt_times_d, Elliptical const& shape, int st
   std::vector<double> const end = angles_now();
   double worst = 0;
   for (std::size_t i = 0; i < half.size(); ++i) {
-    // The angle of an elliptical mode goes up and down by this factor.
+    // The angle of an elliptical mode oscillates by up to this factor.
     double const w = fields.at(static_cast<std::int64_t>(i));
     double const ellipse = std::sqrt((w + dt_times_d) / w);
     worst = std::max(worst, end[i] / (half[i] * ellipse));
@@ -163,7 +163,7 @@ TEST(MultirateModes, DoNotGrow) {
       EXPECT_LT(growth<4>(damping, stable, shape, 400), 1) << damping << " " << shape.z;
       EXPECT_LT(growth<3>(damping, of_order_3, shape, 400), 1) << damping << " " << shape.z;
     }
-  // The bounds are close to the largest ones.
+  // The bounds are close to the largest possible ones.
   EXPECT_GT((growth<4>(0.008, 0.35, {0, 1}, 400)), 10);
   EXPECT_GT((growth<3>(0.008, 0.22, {0, 1}, 400)), 10);
 }
