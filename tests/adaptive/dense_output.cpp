@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Dense output, the spins within a step: its order, and that spins and their rates are continuous
-// at both ends of the step. The spins are a coupled chain whose torques do not commute.
+// at both ends of the step. The spins form a coupled chain, in which the rotations of a step do not
+// commute.
 #include "../order/chain.hpp"
 #include "../support/backends.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Events seen by profilers: every kernel and allocation has the library's prefix, and a step does
+// Events seen by profilers: the library's kernels and allocations have its prefix, and a step does
 // not allocate, copy or fence.
 #include "../support/landau_lifshitz.hpp"
 

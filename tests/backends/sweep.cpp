@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A sweep, which takes all stages through the lattice together, gives the bits of one kernel per
-// stage.
+// A sweep, which takes all stages through the lattice together, gives the same bits as one kernel
+// per stage.
 #include "sweeping.hpp"
 
 using namespace cayspin;

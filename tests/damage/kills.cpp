@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // `cayspin run`, killed at random times, without disk space, or with its file cut. CAYSPIN_KILLS
-// and CAYSPIN_SEED: number of runs of each kind (half as many as with SIGKILL), and the seed.
+// and CAYSPIN_SEED: number of runs of each kind (plain SIGKILL: twice as many), and the seed.
 #include "damaged_bytes.hpp"
 #include "program/program_test.hpp"
 

@@ -96,7 +96,8 @@ inline void require_known_samples(std::filesystem::path const& path, KnownRun co
   }
 }
 
-/// Throws unless everything reported is in the file, and the file's content is correct.
+/// Throws std::runtime_error unless everything reported is in the file, and all that is in the file
+/// is correct.
 inline void require_known(std::filesystem::path const& path, KnownRun const& run,
                           Told const& told) {
   auto const info = read_info(path);

@@ -53,7 +53,7 @@ TYPED_TEST(DemagnetizingFieldOnDevices, IsThatOfTheHost) {
   }
 }
 
-// The same code works for hosts and for devices; on a device, no spins are copied to the host.
+// This code works for hosts and for devices; on a device, no spins are copied to the host.
 TYPED_TEST(DemagnetizingFieldOnDevices, IsATerm) {
   Film const& film = films.front();
   auto const directions = random_directions(film.lattice().sites(), 3);

@@ -147,7 +147,7 @@ TEST(DipolarBound, IsAboveTheLargestEigenvalueAndNotFarAbove) {
     }
 }
 
-// Infinite or long chains along y; the sites of a chain are images of one site.
+// Chains along y, each of which consists of one site and its images.
 TEST(DipolarBound, CountsImagesAlongAnAxisOfOneCell) {
   Crystal const chains{{{{1, 0, 0}, {0, 0.3, 0}, {0, 0, 1}}}, {{0, 0, 0}}};
   for (int const images : {1, 20, all}) {

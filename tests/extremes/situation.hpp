@@ -13,7 +13,7 @@ namespace cayspin::extremes {
 /// Possible results of a run.
 enum class Fate {
   exact,     // the exact solution, to round-off
-  bounded,   // on the sphere, within the error of the method's order
+  bounded,   // on the sphere, with an error of the method's order
   warned,    // the program warns that dt is too large; on the sphere, or stopped
   drifts,    // |m| is not conserved
   refused,   // before the first step

@@ -34,8 +34,8 @@ class GradientTest : public ::testing::Test {
     exec.fence();
     auto const field = numbers_of(result);
     Energy const total = energy(exec, term, spins, t);
-    // All coefficients are below 8. Exchange adds six differences, each divided by a square of at
-    // least 1/4.
+    // All coefficients are below 8. Exchange adds six differences, each divided by the square of a
+    // spacing, which is at least 1/4.
     double const field_size = 64, energy_size = total.magnitude + 1;
     EXPECT_NEAR(total.value, by_hand.energy(m), 16 * precision * energy_size) << what;
 

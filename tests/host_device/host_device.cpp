@@ -181,7 +181,7 @@ class HostDeviceQueue {
     release();
   }
   /// Frees memory once no queued work may use it, so that destroying a View is not a fence, except
-  /// once in 256 MiB.
+  /// once for every 256 MiB that are freed.
   static void free_later(void* address, std::size_t bytes) {
     std::lock_guard const lock(device_mutex());
     to_free().push_back(address);

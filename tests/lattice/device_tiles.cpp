@@ -86,7 +86,8 @@ TEST(DeviceTiles, EachSiteOfARangeOnce) {
   }
 }
 
-/// Returns the offset of a site's neighbour, by definition; of the site itself at an open end.
+/// Returns the offset of a site's neighbour, computed from the definition; at an open end, that of
+/// the site.
 std::int64_t beside(RowLayout const& layout, std::array<std::int32_t, 3> at, int axis, int step) {
   auto const along = static_cast<std::size_t>(axis);
   std::int32_t const extent = std::array{layout.nx, layout.ny, layout.nz}[along];

@@ -107,7 +107,7 @@ class Tree:
         return None
 
     def check_layers(self, layers, prefix=""):
-        """Checks that no file includes one of a higher layer, and each below `prefix` has a layer."""
+        """Checks that no file includes a higher layer, and that each below `prefix` has a layer."""
         for name, included in self.includes.items():
             if not name.startswith(prefix):
                 continue

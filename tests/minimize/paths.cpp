@@ -82,8 +82,8 @@ TYPED_TEST(Paths, OfAMacrospinAlongAField) {
               this->exact());
 }
 
-// The path leaves a state against a strong field. Its barrier is about a thirtieth of the difference
-// in energy between the ends.
+// The path leaves a state against a strong field. Its barrier is about a thirtieth of the
+// difference in energy between the ends.
 TYPED_TEST(Paths, OfAMacrospinWithALowBarrier) {
   double const easy = 1.3, applied = 0.9;
   auto const found = this->find(macrospin(easy, 0.7, {0, 0, applied}), Lattice::chain(1), down, up,

@@ -70,7 +70,8 @@ TYPED_TEST(Saddles, WhereTheSearchOnlyJustFindsTheWay) {
   EXPECT_GT(converged, 10);
 }
 
-// Spins parallel to each other may point anywhere: no saddle, also in single precision.
+// The energy of parallel spins does not depend on their direction: this is no saddle, also in
+// single precision.
 TYPED_TEST(Saddles, NotWhereTheEnergyIsFlat) {
   auto const lattice = Lattice::cubic(7, 6, 5);
   for (double const exchange : {1.0, 1000.0}) {

@@ -18,7 +18,7 @@ class ModesTest : public ::testing::Test {
   using Real = typename Backend::Real;
   using Spins = typename Backend::Spins;
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
-  /// 1e-10 in double.
+  /// Bound on errors, 1e-10 in double.
   static constexpr double accurate = 5e5 * epsilon;
 
   Spins uniform(Lattice const& lattice, Vec3<double> const& m) const {

@@ -115,7 +115,8 @@ TEST(MultirateModes, KeepTheirLinewidths) {
 }
 
 /// Returns the largest factor by which the angle of a spin grows over the second half of the steps,
-/// among spins with w dt from 0.05 to 12. By then, what depends on the start has decayed.
+/// among spins whose frequency times dt is 0.05 to 12. By then, what depends on the start has
+/// decayed.
 template <int Order>
 double growth(double damping, double dt_times_d, Elliptical const& shape, int steps) {
   constexpr std::int64_t count = 241;
