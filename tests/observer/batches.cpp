@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// integrate() takes several steps of few spins in one launch, with unchanged results.
+// On few spins, integrate() takes several steps in one launch; the results do not change.
 #include "../support/backends.hpp"
 #include "../support/mean_field.hpp"
 
@@ -39,7 +39,7 @@ class Batches : public ::testing::Test {
         0.1);
   }
 
-  // Compares a run by integrate with one by hand.
+  // Compares a run by integrate() with steps taken one by one.
   template <class Stepper, class Generator>
   void expect_same(Generator const& generator, bool batches) {
     Times const times{0.25, 0.01, 60};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The energy of each term, of three spins, against numbers computed by hand.
+// The energies of single terms on three spins, against numbers computed by hand.
 #include "../support/backends.hpp"
 #include "../support/coefficients.hpp"
 
@@ -16,8 +16,8 @@ class TermEnergy : public ::testing::Test {
   Spins const spins = spins_of<Spins>(lattice, {1, 0, 0, 0, 0.6, 0.8, 0, 0, -1});
   static constexpr double tolerance = 64 * epsilon<typename Backend::Real>;
 
-  /// Expects this energy of a term by itself, in a sum, in a generator, and from a sample.
-  /// `magnitude`: the sum over sites of absolute energies.
+  /// Expects `value` as the energy of a term: by itself, in a sum of terms, in a generator, and in
+  /// a sample. `magnitude`: the sum over sites of absolute energies.
   template <class Term>
   void expect_energy(char const* name, Term const& term, double value, double magnitude,
                      double t = 0) {
@@ -49,15 +49,16 @@ TYPED_TEST(TermEnergy, IsThatOfThePage) {
   this->expect_energy("TimeDependentZeeman",
                       TimeDependentZeeman([&](double t) { return (1 + t) * applied; }), 0.27, 3.33,
                       0.5);
-  // A / 2 |dm|^2 / 0.25 of two bonds, with |dm|^2 = 2 and 3.6
+  // Each of the two bonds has A |dm|^2 / (2 * 0.25), with |dm|^2 = 2 and 3.6.
   this->expect_energy("Exchange", Exchange(lattice, 0.8), 8.96, 8.96);
-  // Bonds of 2 * 0.4 * 1.2 / 1.6 = 0.6 and 2 * 1.2 * 0.3 / 1.5 = 0.48
+  // The bonds have harmonic means: 2 * 0.4 * 1.2 / 1.6 = 0.6 and 2 * 1.2 * 0.3 / 1.5 = 0.48.
   auto const constants = numbers_on<Fields>(lattice, [](std::int64_t site) {
     return site == 0 ? 0.4 : site == 1 ? 1.2 : 0.3;
   });
   this->expect_energy("SiteDependentExchange", SiteDependentExchange(constants),
                       2 * (0.6 * 2 + 0.48 * 3.6), 2 * (0.6 * 2 + 0.48 * 3.6));
-  // (D / 0.5) (m x m').y, since n x e = y: -0.8 and 0; each site has half of its bonds
+  // The bonds have (D / 0.5) (m x m').y, since n x e = y; the y components are -0.8 and 0. Half the
+  // energy of a bond belongs to each of its sites.
   this->expect_energy("InterfacialDmi", InterfacialDmi(lattice, 0.7, {0, 0, 1}), -1.12, 1.12);
   // -K / 2 mz^2
   this->expect_energy("UniaxialAnisotropy", UniaxialAnisotropy(2, {0, 0, 3}), -1.64, 1.64);

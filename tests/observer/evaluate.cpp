@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// H, A and the energy of each term, by public calls.
+// The public functions that evaluate H, A and the energy of each term.
 #include "../support/coefficients.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -41,7 +41,7 @@ TYPED_TEST(Evaluations, FieldAndGeneratorByHand) {
     expect_near(at(h, site), expected, this->bound);
     expect_near(at(a, site), expected + 0.3 * cross(m, expected), this->bound);
   }
-  // Also a single term, and the largest torque.
+  // The field may also be a single term. largest_rate is the largest torque.
   evaluate_field(this->exec, anisotropy, this->spins, 0, this->output);
   this->exec.fence();
   expect_near(at(numbers_of(this->output), 5), {0, 0, 0.7 * at(this->m, 5).z}, this->bound);
@@ -92,8 +92,8 @@ TYPED_TEST(Evaluations, EnergiesOfTermsInWrappers) {
   EXPECT_LT(expected[1].magnitude, 0.9 * energy(this->exec, field, this->spins).magnitude);
   for (std::size_t i = 0; i < 2; ++i)
     EXPECT_NEAR(found[i].value, expected[i].value, 16 * epsilon<double> * expected[i].magnitude);
-  // A generator has the terms of its field; a term and a rigid body count as one; an empty field
-  // has none.
+  // A generator has the terms of its field, a rigid body counts as one term, and an empty field has
+  // none.
   auto const same = term_energies(this->exec, orthogonal(LandauLifshitz(among, 0.1)), this->spins);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(same[i].value, found[i].value);
   auto const one = term_energies(this->exec, RigidBody::principal(1, 2, 3), this->spins);

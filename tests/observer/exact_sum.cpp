@@ -20,7 +20,8 @@ double rounded_sum_of(std::vector<double> const& numbers) {
   return sum.rounded();
 }
 
-// Whole numbers up to 2^60, whose sums fit 63 bits: their conversion rounds to nearest.
+// Integers of at most 2^59 in magnitude. Their sums fit 63 bits and are rounded only when they are
+// converted, to nearest.
 TEST(ExactSum, RoundsTheSumOfIntegers) {
   std::mt19937_64 engine(3);
   for (int trial = 0; trial < 5000; ++trial) {
@@ -60,7 +61,7 @@ TEST(ExactSum, LosesNothingBetweenLargeAndSmall) {
   double const largest = std::numeric_limits<double>::max();
   EXPECT_EQ(rounded_sum_of({largest, largest, -largest}), largest);
   EXPECT_EQ(rounded_sum_of({}), 0);
-  // Halfway to the next number: to the even one, but up if a little more follows.
+  // Halfway between two numbers, the sum rounds to the even one, but up if a little more is added.
   EXPECT_EQ(rounded_sum_of({1, 0x1p-53}), 1);
   EXPECT_EQ(rounded_sum_of({1, 0x1p-53, least}), 1 + 0x1p-52);
 }

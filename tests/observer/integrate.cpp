@@ -34,7 +34,8 @@ struct CountingGenerator {
 
 namespace {
 
-/// A stepper that only stores the times and lengths of its steps; not copyable.
+/// A stepper that leaves the spins as they are and stores the start and length of each step; not
+/// copyable.
 template <class Spins>
 struct Remembering {
   using spins_type = Spins;
@@ -74,7 +75,7 @@ TYPED_TEST_SUITE(Integrate, Backends, BackendName);
 
 using Numbers = std::vector<std::int64_t>;
 
-// 0.1 is not exact: repeated addition would show in the last digits.
+// 0.1 is not exact: times found by repeated addition would differ in the last digits.
 TYPED_TEST(Integrate, TimesAreProducts) {
   Times const times{-1.5, 0.1, 1000};
   Summary const summary =
@@ -122,7 +123,7 @@ TYPED_TEST(Integrate, ObserversAreCalledEachWhenDueAndInOrder) {
   EXPECT_EQ(who, (std::vector<int>{1, 2, 2, 1, 2, 2, 1, 2}));
 }
 
-// The others are still called at the step at which one stops the run.
+// When one observer stops the run at a step, the others are still called at that step.
 TYPED_TEST(Integrate, AnObserverEndsIt) {
   auto const stop_at = [](std::int64_t number) {
     return [number](auto const&, Step const& step, auto const&) {
@@ -161,7 +162,7 @@ TYPED_TEST(Integrate, ObserversAfterOneThatStopsAreTold) {
   for (auto const& step : this->seen) EXPECT_FALSE(step.stops);
 }
 
-// Like integrate, Every refers to observers that have names, and moves only temporaries into
+// Like integrate(), Every refers to observers that are variables, and moves only temporaries into
 // itself.
 TYPED_TEST(Integrate, EveryRefersToObserversWithNames) {
   using Spins = typename TypeParam::Spins;
@@ -254,8 +255,7 @@ template <class Real>
 class CountedEvaluations : public ::testing::Test {};
 TYPED_TEST_SUITE(CountedEvaluations, Precisions, PrecisionName);
 
-// On one site, each evaluation is one call, which the generator counts; stages have their own
-// times.
+// On one site, each evaluation is one call, which the generator counts. Stages differ in time.
 TYPED_TEST(CountedEvaluations, AreWhatTheGeneratorSees) {
   using Spins = SpinField<TypeParam, Kokkos::HostSpace>;
   expect_counted<LieEuler<Spins>, Spins>({0});

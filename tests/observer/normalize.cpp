@@ -29,7 +29,7 @@ TYPED_TEST(Normalizing, IsNewtonsStep) {
   }
 }
 
-// A length correct to an epsilon does not change, and NaN is not hidden.
+// Lengths of exactly 1 do not change, and NaN is not hidden.
 TYPED_TEST(Normalizing, AtRestAndNotFinite) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::chain(20);
@@ -69,7 +69,7 @@ TYPED_TEST(Normalizing, SpinsOfOnesOwnAreHeldToLengthOne) {
   auto const lattice = Lattice::square(19, 5);
   auto numbers = random_directions(lattice.sites(), 8);
   for (auto& number : numbers)
-    number = static_cast<float>(number);  // precision of a file of floats
+    number = static_cast<float>(number);  // as read from a file of floats
   EXPECT_NO_THROW(require_unit_spins(this->exec, spins_of<Spins>(lattice, numbers)));
   double const nan = std::numeric_limits<double>::quiet_NaN();
   for (double const factor : {0.0, 0.999, 1.001, 3.0, nan}) {

@@ -13,7 +13,7 @@ template <class Backend>
 using Scalars = OnBackend<Backend>;
 TYPED_TEST_SUITE(Scalars, Backends, BackendName);
 
-// Lengths from 0.5 to 1.5, all signs.
+// Returns spins with lengths from 0.5 to 1.5 and components of both signs.
 std::vector<double> uneven(Lattice const& lattice, unsigned seed) {
   auto numbers = random_directions(lattice.sites(), seed);
   for (std::size_t i = 0; i < numbers.size(); ++i)
@@ -77,8 +77,8 @@ TYPED_TEST(Scalars, AFieldAtRest) {
   EXPECT_EQ(magnetization(this->exec, spins).z, 1);
 }
 
-// One spin off the sphere, at each site in turn: the maximum is never lost in another lane, and
-// padding of a row never counts.
+// One spin off the sphere, at each site in turn: the maximum is found in any lane, and the padding
+// of a row does not count.
 TYPED_TEST(Scalars, TheLargestDefectIsFoundAtEverySite) {
   auto const lattice = Lattice::square(19, 2);
   typename TypeParam::Spins const spins("spins", lattice);

@@ -33,7 +33,7 @@ std::vector<double> by_angles(Lattice const& lattice, Angles const& angles) {
   return m;
 }
 
-/// About the centre, t(r) goes from pi to 0 at r = radius, and p = winding * azimuth + helicity.
+/// t falls linearly from pi at the centre to 0 at `radius`, and p = winding * azimuth + helicity.
 std::vector<double> texture(Lattice const& lattice, double radius, double winding,
                             double helicity) {
   auto const half = [&](std::size_t axis) {
@@ -110,7 +110,8 @@ TYPED_TEST(TopologicalCharge, UniformSpinsHaveNone) {
   }
 }
 
-// Spins at the border lie in the plane and turn once around the equator, half of the sphere's area.
+// The core covers a hemisphere: spins at the border lie in the plane and turn once around the
+// equator.
 TYPED_TEST(TopologicalCharge, AVortexHasHalf) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = film(33, 30, Boundary::open);
@@ -127,7 +128,7 @@ TYPED_TEST(TopologicalCharge, AVortexHasHalf) {
     }
 }
 
-// Rows a little shorter and longer than whole packs, and rows that threads share.
+// Rows a little shorter and longer than whole packs, and rows that are divided among threads.
 TYPED_TEST(TopologicalCharge, AgainstPlainLoops) {
   using Spins = typename TypeParam::Spins;
   std::vector<Lattice> lattices{film(1, 1, Boundary::periodic), film(7, 1, Boundary::periodic),
@@ -161,7 +162,7 @@ TYPED_TEST(TopologicalCharge, AgainstPlainLoops) {
   }
 }
 
-// tests/python/observables.py has the same spins and charges.
+// tests/python/observables.py expects the same charges of the same spins.
 TYPED_TEST(TopologicalCharge, TheNumbersOfThePackage) {
   using Spins = typename TypeParam::Spins;
   auto const charge = [&](Boundary along_x, Boundary along_y) {
@@ -187,7 +188,8 @@ TYPED_TEST(TopologicalCharge, SpinsOfAnyLength) {
   EXPECT_NEAR(topological_charge(this->exec, spins_of<Spins>(lattice, m)), -1, 1e-12);
 }
 
-// In the formula for their angle, the quotient is 0 / 0 except for round-off.
+// If some corners of a triangle are antiparallel, the formula for its angle divides round-off by
+// round-off.
 TYPED_TEST(TopologicalCharge, AntiparallelSpinsEncloseNothing) {
   using Spins = typename TypeParam::Spins;
   for (auto const boundary : {Boundary::open, Boundary::periodic}) {

@@ -12,7 +12,7 @@ SymmetricTensor tensor(std::vector<double> const& matrix) {
   return {matrix[0], matrix[4], matrix[8], matrix[1], matrix[2], matrix[5]};
 }
 
-// Returns the inverse of a symmetric matrix by cofactors, rounded once.
+// Returns the inverse of a symmetric matrix by cofactors, computed in long double.
 SymmetricTensor inverse(std::vector<double> const& m) {
   long double const a = m[0], b = m[1], c = m[2], d = m[4], e = m[5], f = m[8];
   long double const determinant = a * (d * f - e * e) - b * (b * f - c * e) + c * (b * e - c * d);
@@ -104,7 +104,8 @@ TYPED_TEST(RigidBodyOracles, GeneratorAndEnergy) {
   }
 }
 
-// A motion over ten units of time, far from equilibria: errors of a step grow linearly.
+// Motions of up to ten units of time, far from equilibria, where errors of steps add up only
+// linearly.
 TYPED_TEST(RigidBodyOracles, Trajectories) {
   using Real = typename TypeParam::Real;
   using Spins = typename TypeParam::Spins;

@@ -31,7 +31,7 @@ inline void expect_same(std::vector<double> const& a, std::vector<double> const&
 using OracleBackends = ::testing::Types<Backend<float, Kokkos::DefaultExecutionSpace>,
                                         Backend<double, Kokkos::DefaultExecutionSpace>>;
 
-/// A step from a state, or from a state and the previous one.
+/// The spins from which a step starts and, for methods that use them, those of the previous step.
 struct Start {
   Lattice lattice;
   std::vector<double> spins, before;
@@ -51,8 +51,8 @@ std::vector<double> step_once(Stepper& stepper, Generator const& generator, Star
   return numbers_of(spins);
 }
 
-/// Calls with(stepper, generator) for the method that the oracles call `method`; `constant` is its
-/// sigma.
+/// Calls with(stepper, generator) for the method that the oracles call `method`. `constant` is
+/// sigma in methods with a constant one.
 template <class Spins, class Generator, class With>
 auto with_method(std::string const& method, Generator const& generator, double constant,
                  Spins const& like, With const& with) {

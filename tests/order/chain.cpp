@@ -68,7 +68,8 @@ TEST(ChainsOfStages, TakeLongSteps) {
   // 0.71.
   expect_stable_per_stage<StereographicRungeKutta<Spins, tableau::Oscillatory64>>(
       {{0.01, 0.819}, {0.05, 0.818}, {0.3, 0.650}}, 0.001);
-  // Made for films: longer steps than RK4 at every damping below 0.15, and smaller errors.
+  // Made for films: longer steps per stage than RK4 at every damping below 0.15, and smaller
+  // errors.
   expect_stable_per_stage<ProjectedRungeKutta<Spins, tableau::Oscillatory74>>(
       {{0, 0.7886}, {0.02, 0.8088}, {0.1, 0.7939}, {0.3, 0.6147}}, 0.0005);
 }

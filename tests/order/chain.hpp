@@ -56,7 +56,7 @@ class ChainOrder : public ::testing::TestWithParam<double> {
   }
 };
 
-/// Expects largest stable steps of a mode of rate 1: {damping, dt / number of stages}.
+/// Expects the largest stable dt of a mode of rate 1, from pairs {damping, dt / number of stages}.
 template <class Stepper>
 void expect_stable_per_stage(std::vector<std::pair<double, double>> const& limits,
                              double tolerance) {

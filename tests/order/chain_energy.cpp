@@ -40,7 +40,7 @@ TEST(ChainEnergyOrder, LieEuler) {
   expect_energy<LieEuler<Spins, FiniteDifferenceBackward>>("backward", slab.natural(), fine, 2);
 }
 
-// On a single sphere both generators of Heun's method have order 3.
+// On a single sphere, Heun's method has order 3 with both generators.
 TEST(ChainEnergyOrder, OrderTwo) {
   expect_energy<LieHeun<Spins>>("Heun, default", slab.natural(), fine, 3);
   expect_energy<LieHeun<Spins>>("Heun, orthogonal", slab.orthogonal(), fine, 2);

@@ -25,7 +25,7 @@ std::vector<double> const tensors{0.855976, 1.162556, 1.649652, 0.043564,  0.627
 std::vector<double> const start{-0.8786749342491563, -0.4259259193583215, -0.21567909296222781,
                                 0.4551411380605035,  0.15485317811021196, 0.8768506358976748,
                                 0.20690686409015627, 0.6039173421637017,  0.769722932896187};
-// The motion at T = 2 in 40-digit arithmetic.
+// The spins at t = 2, from 40-digit arithmetic.
 std::vector<double> const end{
     -0.31080866215438402166, -0.9398431868768971723,   -0.14174893160401464635,
     0.24318270321290301806,  -0.84778463656548883781,  0.47129967415817921681,
@@ -46,7 +46,7 @@ double energy_of(std::vector<double> const& numbers, int body) {
          b[4] * m[0] * m[2] + b[5] * m[1] * m[2];
 }
 
-/// Distance to the exact end, and the largest energy error on the way, of each body.
+/// For each body, the distance to the exact end, and the largest energy error on the way.
 struct Errors {
   std::array<double, bodies> end{}, energy{};
 };
@@ -79,8 +79,9 @@ struct Orders {
 };
 
 constexpr double tolerance = 0.15, scattered = 0.4;
-/// Returns four numbers of steps, a factor sqrt(2) apart: fewer for higher orders, to stay above
-/// round-off; more for A than for A_o, which turns less in a step.
+/// Returns four numbers of steps, a factor sqrt(2) apart. Methods of higher order take fewer, to
+/// stay above round-off. From order 2 on, A_o takes half as many as A, since it turns less in a
+/// step.
 std::vector<int> ladder(int order, bool orthogonal) {
   int const first = order == 1 ? 512 : (order == 2 ? 256 : 64) / (orthogonal ? 2 : 1);
   std::vector<int> steps;

@@ -53,8 +53,8 @@ TEST(TimeDependentField, KeepsTheOrder) {
   expect_slope<ProjectedRk4<Spins>>("projected rk4", 4, ladder);
 }
 
-/// Returns the largest error along A_o of one step, divided by dt^2; with a correct sigma it
-/// vanishes for small dt.
+/// Returns the largest component along A_o of the error of one step, divided by dt^2. With a
+/// correct sigma it vanishes for small dt.
 template <class Isotropy>
 double local_error_along_generator(double dt) {
   constexpr double t = 0.4;

@@ -82,7 +82,7 @@ TEST_F(OvfRefusal, TextThatIsNotThreeNumbersANode) {
   expect_refused(replaced(text, "-8e-1", "-8e-1 1"), "more values than its 2 nodes");
 }
 
-// Among these is what C runtimes write for values that are not numbers.
+// Some of these are infinities and NaN as C runtimes write them.
 TEST_F(OvfRefusal, TextThatIsNoNumber) {
   for (std::string const wrong :
        {"1.#QNAN", "-1.#IND", "1.#INF", "-1.#INF00", "1.#SNAN", "1#0", "NA", "0x", "1,5", "--1"}) {

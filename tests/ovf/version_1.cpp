@@ -46,7 +46,7 @@ std::string old_file(std::string const& format, std::string const& values) {
 
 std::string old_text() { return old_file("Text", "1 0 0\n0 0.6 -8e-1"); }
 
-/// Most significant byte first.
+/// Returns the bytes of numbers, the most significant byte first.
 template <class Real>
 std::string big_endian(std::vector<Real> const& numbers) {
   auto result = bytes(numbers);
@@ -80,7 +80,7 @@ TEST_F(OvfTest, Version1IsBigEndian) {
   EXPECT_EQ(read_ovf(write(old_file("Binary 8", big_endian(eight)))).values, small_values());
 }
 
-// More values than the reader reads at a time.
+// The file has more values than the reader takes at a time.
 TEST_F(OvfTest, LongFilesOfVersion1AreRead) {
   std::vector<double> values{123456789012345.0};
   for (int i = 0; i < 3 * 70001; ++i) values.push_back(1.0 / (1 + i));

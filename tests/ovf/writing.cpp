@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns a field whose nodes, spacings and origins differ along every axis, and whose numbers
+/// Returns a field whose nodes, spacings and origins differ from axis to axis, and whose numbers
 /// need all digits.
 OvfField asymmetric_field() {
   OvfField field;
@@ -45,7 +45,7 @@ TEST_F(OvfTest, WhatIsWrittenIsReadBack) {
   }
 }
 
-// More values than the writer and the reader process at a time.
+// The file has more values than the writer and the reader take at a time.
 TEST_F(OvfTest, LongFilesAreReadBack) {
   OvfField field;
   field.mesh.nodes = {70001, 1, 1};

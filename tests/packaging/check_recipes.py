@@ -22,7 +22,7 @@ PACKAGES = {
     "CLI11": ("cli11", "cli11"),
     "PNG": ("libpng", "libpng"),
 }
-# Text that each of these files has to contain, with V for the version.
+# Text that each of these files has to contain; V stands for the version.
 STATEMENTS = {
     "pyproject.toml": '\nversion = "V"\n',
     "CITATION.cff": "\nversion: V\n",
@@ -33,7 +33,8 @@ SEARCHED = ("README.md", "docs/**/*.md", "examples/**/CMakeLists.txt", "tests/in
 
 
 def other_versions(root, version):
-    """Files that do not state `version`. Users ask CMake for its first two numbers."""
+    """Yields the files that do not state `version`, or that ask CMake for other than its first two
+    numbers."""
     minor = version.rpartition(".")[0]
     for name, statement in STATEMENTS.items():
         expected = statement.replace("V", version)

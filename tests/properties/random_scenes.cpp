@@ -91,14 +91,14 @@ class Check {
     return scene_.share / rate;
   }
 
-  // The chart loses digits where a stage comes close to -m0, which is possible from a share of 0.85
-  // on.
+  // The chart loses digits where a stage comes close to -m0, which is possible if `share` is 0.85
+  // or more.
   double share_of_norm() const { return scene_.method == Method::chart ? 0.7 : 1; }
 
-  // The stable dt is for nearly uniform states. From other states the energy may rise in rare cases
-  // at shorter steps: at orders 1 and 2 this was observed only above 0.9 of it. At order 4 the
-  // method's own energy error, of (dt |A|)^5, must stay below the loss by damping, of damping dt
-  // |A|. ab2 has no stable dt.
+  // The stable dt holds for nearly uniform states. From other states the energy may rise in rare
+  // cases at shorter steps; at orders 1 and 2 this was observed only above 0.9 of the stable dt. At
+  // order 4, a step's own error of the energy, (dt |A|)^5, must stay below the loss by damping,
+  // damping dt |A|. ab2 has no stable dt.
   bool energy_falls() const {
     if constexpr (is_midpoint) return true;
     if (scene_.method == Method::ab2) return false;
@@ -130,7 +130,7 @@ class Check {
     return spins;
   }
 
-  // Runs on the threaded space without observers, so that steps may be taken in batches.
+  // Repeats the run on `Again` without observers, so that steps may be taken in batches.
   void check_bits(Field const& start, Field const& end) {
     Field spins = copy_of(start);
     Stepper stepper(spins);
@@ -151,8 +151,8 @@ class Check {
       all_.not_reversed += away > 1;
   }
 
-  // Each step is solved to 8 epsilon; adjacent trajectories diverge at most at the rate of the
-  // field bound.
+  // Each step is solved to a few epsilons. Adjacent trajectories diverge at a rate of at most half
+  // of the field bound in all known scenes.
   double reversal_bound() const {
     double const rate = dt_ * scene_.slab.field_bound();
     return 4 * eps * scene_.steps * std::exp(0.5 * rate * scene_.steps);

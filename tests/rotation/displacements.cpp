@@ -39,7 +39,8 @@ TYPED_TEST(Displacements, KeepTheirDigits) {
     long double const s = inner(f, f);
     return m + (2 / (1 + s)) * (f - s * m);
   };
-  // If |m| is not exactly 1, the projection goes to a sphere of radius |m|.
+  // If |m| is not exactly 1, the projection divides by sqrt(1 + |m + f|^2 - |m|^2), so that f = 0
+  // changes nothing.
   auto const exact_projection = [](Long const& f, Long const& m) {
     Long const end = m + f;
     return (1 / std::sqrt(1 + inner(end, end) - inner(m, m))) * end;

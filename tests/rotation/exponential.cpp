@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Tests the exponential's own sine and cosine in every range and branch of detail/half_angle.hpp.
+// Tests the exponential's own sine and cosine in every range and branch of rotation/half_angle.hpp.
 #include "reference.hpp"
 
 namespace cayspin::test {
@@ -87,7 +87,7 @@ TYPED_TEST(ExponentialMap, ThroughMultiplesOfPi) {
                            seed + 3);
       seed += 3;
     }
-  // A dense sweep meets every range of the polynomials.
+  // A dense sweep covers every range of the polynomials.
   for (int i = 0; i < 4000; ++i)
     this->expect_rotated(narrow<Real>((i * 0.01L) * direction(i)), i + 1);
 }

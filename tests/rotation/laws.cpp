@@ -28,7 +28,7 @@ class Laws : public ::testing::Test {
     sweep(largest_size, [](auto const& f, auto const& x, auto const&) {
       auto const there = Rotation::rotate(f, x);
       EXPECT_NEAR(norm(widen(there)), norm(widen(x)), 6 * eps) << norm(widen(f));
-      // Each rotation adds up to 2 m, times a factor with an error of 3 eps.
+      // Each rotation adds a vector of at most 2 to m, with a relative error of 3 eps.
       EXPECT_LE(largest(widen(Rotation::rotate(opposite(f), there)) - widen(x)), 12 * eps)
           << norm(widen(f));
     });
@@ -71,8 +71,8 @@ Long derivative(Map const& map, Long const& f, Long const& g, Long const& x) {
   return (1 / (12 * s)) * (8 * (at(1) - at(-1)) - (at(2) - at(-2)));
 }
 
-// The differential is right-trivialised: d/ds R(f) x = (dR_f f') x R(f) x. The left-trivialised one
-// is that of -f, and must not agree with the differences.
+// The differential is right-trivialised: d/ds R(f) v = (dR_f f') x R(f) v for a fixed vector v. The
+// left-trivialised one is the right-trivialised one of -f; it must differ from the differences.
 TYPED_TEST(Laws, CayleyTangentIsTheDerivative) {
   using Real = TypeParam;
   this->sweep(30, [&](auto const& f, auto const& x, auto const& g) {
@@ -98,7 +98,7 @@ TYPED_TEST(Laws, InverseTangentOfTheExponentialIsTheDerivative) {
       Long const g = widen(Exponential::inverse_differential(where, y));
       return largest(derivative(exponential, widen(f), g, widen(x)) - rate);
     };
-    // Near 2 pi the coordinates stretch.
+    // Near |f| = 2 pi, the map from f to the rotation amplifies errors.
     EXPECT_LE(found(f), (16 * this->eps + 1e-13) / (1 - 0.1 * i / 6.3)) << i;
     if (i < 2) continue;
     EXPECT_GT(found({-f.x, -f.y, -f.z}), 1e-3L) << i;

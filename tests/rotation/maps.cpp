@@ -16,7 +16,8 @@ struct MapCase {
   bool has_exponential;
 };
 
-// Scales vectors for float, which holds 1e-45 .. 3e38, to components of 1e-40 .. 1e37.
+// For float, which holds 1e-45 .. 3e38, scales a vector so that its largest component is in 1e-40
+// .. 1e37.
 template <class Real>
 Long in_range(Long const& f) {
   long double const size = largest(f);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Each lane of a pack gets the result for a single number.
+// Each lane of a pack gets the result that a single number would get.
 #include "reference.hpp"
 
 namespace cayspin::test {

@@ -64,7 +64,7 @@ class Helmholtz : public ::testing::Test {
     numbers[i] = v.x, numbers[i + 1] = v.y, numbers[i + 2] = v.z;
   }
 
-  /// Spins that turn by a tenth of a radian over each axis.
+  /// Returns spins that turn by a tenth of a radian along each axis.
   static Numbers turning_spins(Lattice const& lattice) {
     Numbers spins(static_cast<std::size_t>(3 * lattice.sites()));
     for (std::int64_t site = 0; site < lattice.sites(); ++site) {
@@ -88,8 +88,8 @@ class Helmholtz : public ::testing::Test {
     return vectors;
   }
 
-  /// Applies 1 + b K in the planes normal to the spins m, where i in b stands for m x. This acts on
-  /// d = v x m, and the result is turned back.
+  /// Applies 1 + b K in the planes normal to the spins m; there, the imaginary unit of b stands for
+  /// m x. K acts on d = v x m, and m x turns the result back.
   static Numbers applied_about(Problem const& problem, Numbers const& spins, Number b,
                                Numbers const& v) {
     Numbers d(v.size());
@@ -176,7 +176,7 @@ TYPED_TEST(Helmholtz, LinesAreSolvedToRoundOff) {
   typename TypeParam::Exec const exec;
   for (Problem const& problem : lines()) {
     SCOPED_TRACE(problem.name);
-    // The entries of c + b K and of its inverse are at most 8e4 and 1.
+    // The norms of c + b K and of its inverse are at most about 8e4 and 1.
     double const tolerance = 1e5 * epsilon<Real>;
     EXPECT_LT(TestFixture::left_of(problem, 1, 1), tolerance);
     Kokkos::complex<Real> const b(Real(0.05), -1);
@@ -198,7 +198,7 @@ TYPED_TEST(Helmholtz, LinesAreSolvedToRoundOff) {
   }
 }
 
-// Devices, and hosts without packs, solve lines along x number by number.
+// On devices, and on hosts without packs, lines along x are solved number by number.
 TYPED_TEST(Helmholtz, LinesOfSingleNumbersFindTheRowsOfPaddedPlanes) {
   using Real = typename TypeParam::Real;
   using Field = SiteField<Real, 3, Kokkos::HostSpace>;

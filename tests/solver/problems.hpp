@@ -77,7 +77,8 @@ inline std::vector<Problem> alternating() {
           {"9 x 14 x 5 mixed", mixed, {60, -40, -55}}};
 }
 
-/// Returns (c + b K) u.
+/// Returns (c + b K) u, where K is minus the Laplacian with the couplings of the axes; for a
+/// negative coupling, neighbours are added instead of subtracted.
 inline Numbers applied(Problem const& problem, double c, Number b, Numbers const& u) {
   auto const& shape = problem.lattice.shape;
   Numbers result(u.size());
@@ -148,8 +149,8 @@ inline Numbers random_numbers(Problem const& problem, bool complex, unsigned see
   return numbers;
 }
 
-/// Returns the factor by which `solve` reduces the residual of `apply`, averaged over so many
-/// corrections.
+/// Returns the mean factor by which a correction with `solve` reduces the residual of `apply`.
+/// Takes at most `corrections` corrections, and none once round-off is near.
 template <class Real, class Solve, class Apply>
 double left_over(Numbers rest, int corrections, Solve const& solve, Apply const& apply) {
   double const first = length(rest);

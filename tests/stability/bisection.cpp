@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Bisects the true limit with the stiffest mode of chains, planes and blocks of spins along a
-// field, and compares it with the prediction, which is exact there.
+// Finds the true limit by bisection, for the stiffest mode of chains, planes and blocks of spins
+// along a field, and compares it with the prediction, which is exact in these cases.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -29,7 +29,8 @@ auto generator(Lattice const& lattice, double damping) {
                         damping);
 }
 
-/// Returns spins along z with an eigenvector of the largest eigenvalue normal to z.
+/// Returns spins along z that are tilted towards x by the stiffest mode, the eigenvector of
+/// exchange with the largest eigenvalue.
 Spins stiffest_mode(Lattice const& lattice) {
   auto const wave = [&](int axis, auto i) {
     auto const n = static_cast<double>(lattice.shape[axis]);

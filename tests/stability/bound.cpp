@@ -14,7 +14,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The largest eigenvalue of the exchange term's own matrix, built column by column.
+/// Returns the largest eigenvalue of the matrix of the Exchange term, which is built column by
+/// column.
 double largest_eigenvalue(Lattice const& lattice, double constant) {
   std::int64_t const n = lattice.sites();
   Eigen::MatrixXd matrix(n, n);
@@ -55,7 +56,7 @@ TEST(ExchangeBound, IsTheLargestEigenvalue) {
     }
 }
 
-/// Returns y of largest_stable_step = y / field_bound, computed with a field bound other than 1.
+/// Returns y of largest_stable_step = y / field_bound, computed with a field bound of 7.
 template <class Stepper>
 double scaled_limit(double damping, bool precession = true) {
   return 7 * largest_stable_step<Stepper>(7, damping, {.precession = precession});
@@ -133,7 +134,7 @@ TEST(StepLimit, ConstantSigma) {
 
 constexpr int modes = 400;
 
-/// Uncoupled spins, in fields of different strengths along z, up to `largest`.
+/// A term that does not couple spins: fields along z, different at each site, up to `largest`.
 struct FieldOfModes {
   double largest;
   template <class Stencil>
@@ -149,8 +150,8 @@ struct FieldOfModes {
   }
 };
 
-/// Returns the largest factor by which a step changes the amplitude of a mode; the modes are small
-/// tilts of spins off the field.
+/// Returns the largest factor by which a step changes the amplitude of a mode. Each spin is a mode:
+/// a small tilt off its field.
 template <class Stepper>
 double amplification(double largest, double damping, double sigma, double dt) {
   auto const generator = orthogonal(LandauLifshitz{EffectiveField{FieldOfModes{largest}}, damping});
@@ -194,13 +195,13 @@ TEST(StepLimit, ConstantSigmaOfHigherOrders) {
 }
 
 TEST(StepLimit, NoneAndZero) {
-  // With a sigma beyond (1 + lambda^2) s, spins are turned about themselves faster than they move:
-  // any step is stable.
+  // With a sigma above (1 + damping^2) times the field bound, spins are turned about themselves
+  // faster than they move, and any step is stable.
   using Stepper = LieEuler<Spins, isotropy::Constant>;
   EXPECT_EQ(largest_stable_step<Stepper>(7, 0.05, {.sigma = 7.1}), infinity);
   EXPECT_EQ(largest_stable_step<LieEuler<Spins>>(0, 0.05), infinity);
   EXPECT_EQ(largest_stable_step<LieEuler<Spins>>(7, 0, {.precession = false}), infinity);
-  // Euler and Heun amplify undamped precession at every step.
+  // Euler and Heun amplify undamped precession at any dt.
   EXPECT_EQ(largest_stable_step<LieEuler<Spins>>(7, 0), 0);
   EXPECT_EQ(largest_stable_step<ClassicalHeun<Spins>>(7, 0), 0);
   EXPECT_NEAR(7 * largest_stable_step<Rkmk4<Spins>>(7, 0), std::sqrt(8), 1e-9);

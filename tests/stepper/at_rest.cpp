@@ -18,7 +18,7 @@ class AtRest : public ::testing::Test {
  protected:
   using Field = SpinField<Real, Space::memory_space>;
 
-  /// Calls check for each method, with the sigma of each kind.
+  /// Calls check(name, stepper) for LieEuler with each kind of sigma, and for ImplicitLieEuler.
   template <class Check>
   static void for_each(Field const& like, Check const& check) {
     using namespace isotropy;
@@ -31,7 +31,7 @@ class AtRest : public ::testing::Test {
 };
 TYPED_TEST_SUITE(AtRest, Precisions, PrecisionName);
 
-// Every third spin is uncoupled and along the axis of the field.
+// The spins are not coupled, and every third one is along the axis of the field.
 TYPED_TEST(AtRest, StaysToTheBitBesideMovingSpins) {
   using Field = typename TestFixture::Field;
   auto const lattice = Lattice::chain(37);

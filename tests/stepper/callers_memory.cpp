@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// integrate() and minimize() return the spins in their original memory, with any method. Steppers
-// continue from there with the bits of separate steps.
+// With any method, integrate() and minimize() return the spins in their original memory. Steppers
+// that continue from there give the bits of separate steps.
 #include "../support/backends.hpp"
 #include "every_stepper.hpp"
 
@@ -28,7 +28,8 @@ class CallersMemory : public ::testing::Test {
 };
 TYPED_TEST_SUITE(CallersMemory, Precisions, PrecisionName);
 
-/// Expects spins in their original memory, where a handle from before still sees them.
+/// Expects spins in their original memory, and that a handle copied at the start still refers to
+/// them.
 template <class Field>
 class WhereTheyLie {
  public:

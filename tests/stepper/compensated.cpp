@@ -32,8 +32,7 @@ TYPED_TEST(Compensation, SumAndResidualAreTheTwoNumbers) {
       auto const both = detail::rounded_sum(a, b);
       for (auto const c : {&Vec3<Real>::x, &Vec3<Real>::y, &Vec3<Real>::z}) {
         EXPECT_EQ(both.sum.*c, a.*c + b.*c);
-        // This difference is exact: sum minus larger is a multiple of the last digit of the
-        // smaller.
+        // Both differences are exact: sum - larger is a multiple of the last digit of the smaller.
         bool const a_larger = std::abs(a.*c) > std::abs(b.*c);
         Real const larger = a_larger ? a.*c : b.*c, smaller = a_larger ? b.*c : a.*c;
         EXPECT_EQ(both.residual.*c, smaller - (both.sum.*c - larger));
@@ -43,8 +42,8 @@ TYPED_TEST(Compensation, SumAndResidualAreTheTwoNumbers) {
   EXPECT_GT(rounded, 500);
 }
 
-/// Returns the error of `steps` steps through one radian, for spins that turn about a constant
-/// field.
+/// Returns the error after spins have turned about a constant field by one radian, in `steps`
+/// steps.
 template <class Stepper>
 double error_of_precession(std::int64_t steps) {
   using Field = typename Stepper::spins_type;

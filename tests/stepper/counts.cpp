@@ -6,7 +6,7 @@
 namespace cayspin::test {
 namespace {
 
-/// H = m.z / 2 along z, computed by host code that counts its calls.
+/// H = (m.z / 2) z, computed by host code that counts its calls.
 struct CountingSolver {
   static constexpr int degree = 2;
   std::int64_t* calls;
@@ -18,7 +18,7 @@ struct CountingSolver {
   }
 };
 
-/// A term that counts its evaluations by kernels, one for each pack.
+/// A term that kernels evaluate. It counts the calls, one for each pack.
 struct CountingTerm {
   static constexpr int degree = 2;
   std::int64_t* calls;
@@ -41,7 +41,7 @@ class Counts : public ::testing::Test {
   using Field = SpinField<Real, Kokkos::HostSpace>;
   Lattice lattice = Lattice::chain(2);
 
-  /// `evaluations` returns the number of calls so far.
+  /// `evaluations` returns the number of evaluations that the field has counted so far.
   template <class Make, class Generator, class Calls>
   void expect_counted(std::string const& what, Make const& make, Generator const& generator,
                       Calls const& evaluations) {

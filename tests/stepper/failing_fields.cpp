@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A field that throws at any of the evaluations of a step leaves the spins unchanged.
+// A field that throws at any evaluation of a step leaves the spins unchanged.
 #include "../support/backends.hpp"
 #include "every_stepper.hpp"
 
@@ -8,7 +8,7 @@
 namespace cayspin::test {
 namespace {
 
-/// H = 9 m.z along z, computed by host code that throws after a number of calls.
+/// H = 9 m.z z, computed by host code that throws after a number of calls.
 struct FailingSolver {
   static constexpr int degree = 2;
   int* left;
@@ -42,7 +42,7 @@ TYPED_TEST(FailingFields, LeaveTheSpinsAsTheyWere) {
       left = calls;
       try {
         stepper.step(Host(), generator, spins, dt / 64, dt);
-        return;  // the step takes no more calls
+        return;  // the step ended before the call that fails
       } catch (std::runtime_error const&) {
         EXPECT_EQ(copy_to_host(spins), before) << name << ", fails at call " << calls;
       }

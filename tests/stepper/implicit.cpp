@@ -24,7 +24,7 @@ class ImplicitStep : public ::testing::Test {
                   .damping = 0.2};
   Field const start = random_spins<Field>(slab.lattice, 3);
 
-  // Bounds the residual: the tolerance of the solver, and the rounding of A times dt |A| < 6.
+  // Bound of the residual, from the solver's tolerance and the round-off of dt A, where dt |A| < 6.
   static constexpr double bound = 50 * epsilon<Real>;
 
   static ImplicitLieEuler<Field> euler(Field const& like, ImplicitOptions options = {}) {

@@ -90,7 +90,7 @@ TEST(RedBlackOrder, OfATermThatSaysNothingAboutItself) {
   expect_orders("blended term", LandauLifshitz(EffectiveField{Blended{{block, 1}}}, 0.1));
 }
 
-/// An antisymmetric coupling to neighbours. It has its own substitute for missing ones, and does
+/// An antisymmetric coupling to neighbours. It substitutes zero for missing neighbours, and does
 /// not declare that it depends only on neighbours.
 struct OpenBonds {
   static constexpr int degree = 2;
@@ -127,7 +127,8 @@ TEST(RedBlackOrder, OnALatticeWithVacancies) {
     EXPECT_EQ(length(spin(start, site) - spin(end, site)) == 0, site % 6 == 1) << site;
 }
 
-// tan(theta/2) shrinks by exp(-damping |h| t), and the azimuth turns by |h| t.
+// The exact motion about h: tan(theta/2) shrinks by exp(-damping |h| t), and the azimuth turns by
+// |h| t.
 struct Macrospin {
   Vector axis, across, third;
   long double strength, theta;
@@ -166,7 +167,7 @@ void expect_exact_macrospin() {
                           .precession = precession};
           auto const start =
               make_spins<Field>(slab.lattice, [&](auto, auto, auto) { return from; });
-          // The exact solution has field and dt as rounded to this precision.
+          // The exact solution uses the field and dt as rounded to this precision.
           Macrospin const exact({double(Real(h.x)), double(Real(h.y)), double(Real(h.z))},
                                 spin(start, 0));
           double const t = static_cast<double>(static_cast<Real>(dt));

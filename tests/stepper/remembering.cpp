@@ -51,7 +51,7 @@ TYPED_TEST(Forgetting, StartsAnewAfterReset) {
   EXPECT_EQ(copy_to_host(spins), fresh);
 }
 
-// A first step that is given the state before it equals the second step of a run.
+// Given the state before its start, a first step equals the second step of a run.
 TYPED_TEST(Remembering, StateBefore) {
   Spins const start = random_spins(chain.lattice, 5);
   Spins const after_one = run<TypeParam>(chain.natural(), start, 0.05, 1);
@@ -85,7 +85,7 @@ TYPED_TEST(Remembering, AFirstStepThatFailedIsTakenAgain) {
   EXPECT_EQ(copy_to_host(spins), copy_to_host(run<TypeParam>(generator(1), start, 0.05, 1)));
 }
 
-/// Takes pairs of steps, of one and two thirds of the length of a pair.
+/// Takes pairs of steps. The first step of a pair takes a third of its time, the second the rest.
 template <class Stepper>
 Spins unequal_steps(Slab const& of, int pairs, double end_time) {
   Spins spins = random_spins(of.lattice, 5);
@@ -115,7 +115,7 @@ TEST(UnequalSteps, KeepTheOrder) {
   });
 }
 
-// F = dt w + clamp(dt sigma) m, with sigma written out.
+// LieEuler rotates by dt w + clamp(dt sigma) m. Here sigma is written out.
 TEST(FiniteDifference, CapOfTheTurn) {
   constexpr double dt = 0.1;
   Space const exec;

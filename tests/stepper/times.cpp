@@ -62,7 +62,8 @@ TEST(Times, OfTheFieldsDerivative) {
     LieEuler stepper(spins, isotropy::Analytic{});
     stepper.step(Space{}, generator, spins, t, step);
     Vector const f = step * w - (step * dot(turn, cross(w, m)) / dot(w, w)) * m;
-    // H is differentiated numerically, with a relative error of about (w dt)^4 / 1e5.
+    // H is differentiated numerically, with a relative error of about (omega dt)^4 / 1e5, where
+    // omega is at most 3.
     EXPECT_LT(length(spin(spins, 0) - Cayley::rotate(f, m)), 1e-4 * std::pow(3 * step, 4) * step);
   }
 }

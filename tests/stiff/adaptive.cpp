@@ -93,7 +93,7 @@ TEST(AdaptiveStiff, LooksWithinStepsAreAsGood) {
     largest = std::max(largest, largest_distance(spins, exact));
   }
   EXPECT_LT(stepper.accepted_steps(), looks / 2);
-  expect_below("at any look", largest, 1e-3);  // with A constant in a step: 1.4e-3
+  expect_below("at any look", largest, 1e-3);  // if steps took A as constant: 1.4e-3
 }
 
 // At equilibrium steps lengthen: a run ten times as long takes at most four times the evaluations.

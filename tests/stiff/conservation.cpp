@@ -77,8 +77,8 @@ TYPED_TEST(Conservation, OfRandomScenes) {
     Vector const spin = sum();
     TypeParam stepper(spins);
     advance(stepper, generator, spins, scene.dt, steps);
-    // Each step leaves an error of a few epsilons in the rotation vector, which changes the energy
-    // by as much times the field.
+    // Each step leaves an error of a few epsilons in the rotation vectors. The energy of a site
+    // changes by that error times the field.
     double const rounding = 16 * epsilon * steps * TypeParam::stages;
     EXPECT_NEAR(energy(exec, generator, spins, 0).value, before,
                 rounding * sites * scene.slab.field_bound());

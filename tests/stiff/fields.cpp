@@ -26,8 +26,8 @@ auto numbers(double every_fifth, double others) {
   return numbers_on<Spins>(film(), [&](auto site) { return site % 5 == 0 ? every_fifth : others; });
 }
 
-/// Expects small errors with steps four times as long as those of an explicit reference run;
-/// halving them reduces the errors by 4 (StiffGauss2) and by 16 (StiffGauss4).
+/// Expects small errors with steps four times as long as those of an explicit reference run.
+/// Halving the steps reduces the errors by 4 (StiffGauss2) and by 16 (StiffGauss4).
 template <class Generator>
 void expect_converges(Generator const& generator, double rate = 200) {
   auto const start = wavy(film());

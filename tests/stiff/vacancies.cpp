@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Steps that divide by the length of a spin, which is zero on vacant sites, compared with steps on
-// a lattice of the remaining shape.
+// Steps on lattices with vacancies, in methods that divide by the length of a spin, which is zero
+// on vacant sites. They are compared with steps on a lattice of the occupied sites.
 #include "../support/backends.hpp"
 #include "../support/coefficients.hpp"
 #include "../support/figures.hpp"
@@ -39,7 +39,8 @@ struct Shape {
     return spins;
   }
 
-  /// Returns a field with every term that supports vacancies.
+  /// Returns a generator with vacancies, whose field has exchange, an anisotropy, a demag and an
+  /// applied field.
   template <class Real>
   auto generator(double exchange, double damping) const {
     return LandauLifshitz(
@@ -85,7 +86,8 @@ void expect_that_of_the_film_alone(char const* name, double tolerance) {
   using Field = typename Stepper::spins_type;
   using Real = typename Field::value_type;
   SCOPED_TRACE(name);
-  // The film is at the low ends of the box, so that its rows are cut into equal packs.
+  // The film starts at the first site of the box, so that packs cut its rows as they do without a
+  // box.
   Lattice const film{{13, 7, 3}}, box{{21, 11, 4}};
   auto const within = [](auto i, auto j, auto k) { return i < 13 && j < 7 && k < 3; };
   auto const shape = shape_of(box, within);

@@ -12,9 +12,9 @@ struct AntiferromagneticCone {
   double smaller;    ///< the sine of the angle of the sublattice that opens less
   double frequency;  ///< right-handed about the spins that open more
 
-  /// Returns the wave in which the other sublattice has the angle `opening`. `exchange` is the
-  /// field of one sublattice on the other at equilibrium, which the wave multiplies by gamma in (0,
-  /// 1]; `anisotropy` is on-site.
+  /// Returns the wave in which the sublattice that opens more has the angle `opening`. At
+  /// equilibrium each sublattice has the field `exchange` on the other. The wave multiplies the
+  /// part of this field that is normal to the axis by gamma in (0, 1]. `anisotropy` is on-site.
   static AntiferromagneticCone of(double exchange, double anisotropy, double gamma,
                                   double opening) {
     double const sin_a = std::sin(opening), cos_a = std::cos(opening), wave = exchange * gamma;

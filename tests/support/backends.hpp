@@ -26,7 +26,7 @@ struct BothPrecisions {
   using type = ::testing::Types<Backend<float, Spaces>..., Backend<double, Spaces>...>;
 };
 
-/// Both precisions on the default host space and on the default space of a device; with
+/// Both precisions on the default host space and on the space of a device, if there is one. With
 /// CAYSPIN_BUILD_ALL_TESTS on every compiled space; with an emulated device only on that one.
 #if defined(CAYSPIN_HOST_DEVICE)
 using Backends = typename BothPrecisions<void, HostDevice>::type;

@@ -10,7 +10,7 @@
 
 namespace cayspin::test {
 
-/// While an object exists, C++ writes 1234.5 as 1.234,5, and so does C if localedef can make a
+/// While an object exists, C++ writes 1234.5 as 1.234,5. C writes 1234,5 if localedef can make a
 /// locale.
 class DecimalComma {
  public:

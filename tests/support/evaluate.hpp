@@ -28,8 +28,8 @@ struct Evaluate {
   }
 };
 
-/// Returns H of a field term or A of a generator at every site, (sites, 3), in the field's
-/// precision.
+/// Returns H of a field term or A of a generator at every site, (sites, 3), computed in the
+/// precision of the spins.
 template <class Exec, class Source, class Spins>
 std::vector<double> evaluated(Exec const& exec, Source const& source, Spins const& spins,
                               double t = 0, bool streaming = false) {

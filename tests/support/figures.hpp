@@ -11,7 +11,7 @@
 
 namespace cayspin::test {
 
-/// A reference figure as printed, and half a unit of its last digit.
+/// A reference figure as printed, its value, and half a unit of its last digit.
 struct Printed {
   explicit Printed(std::string const& digits) : text(digits), value(std::atof(digits.c_str())) {
     auto const exponent = digits.find('e');
@@ -56,7 +56,8 @@ inline void expect_order(std::string const& what, double order, double expected,
   EXPECT_NEAR(order, expected, tolerance) << what;
 }
 
-/// Expects the order of error(steps, dt) in dt = end_time / steps, over a ladder of steps.
+/// Expects the error error(steps, dt) to be of order `expected` in dt = end_time / steps, where
+/// `ladder` lists the numbers of steps.
 template <class Ladder, class Error>
 void expect_convergence(std::string const& what, double end_time, Ladder const& ladder,
                         double expected, double tolerance, Error const& error) {

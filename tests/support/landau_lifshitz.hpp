@@ -89,7 +89,7 @@ Vector spin(Field const& field, std::int64_t site) {
   }
 }
 
-/// Returns the largest distance between two fields over the sites.
+/// Returns the largest distance between the vectors of two fields at the same site.
 template <class A, class B>
 double largest_distance(A const& a, B const& b) {
   auto const first = copy_to_host(a);

@@ -44,7 +44,7 @@ struct MethodChoice {
   }
 };
 
-/// Calls work for each combination with the methods on the group, and for each baseline.
+/// Calls work(choice) for each combination with a method on the group, and once for each baseline.
 template <class Work>
 void for_each_method_choice(Work const& work) {
   for (auto const* const method : io::methods())

@@ -12,8 +12,8 @@
 
 namespace cayspin::test {
 
-/// Returns the largest defect of the conditions of one order, up to 6, for weights w at fraction s
-/// of a step.
+/// Returns the largest defect in the conditions of order `of_order` (at most 6), for weights w at
+/// fraction s of a step.
 template <class Tableau, class Weight>
 double defect(int of_order, double s, Weight const& w) {
   constexpr int n = Tableau::stages;
@@ -75,7 +75,7 @@ double defect(int of_order, double s, Weight const& w) {
 }
 
 /// Expects weights to satisfy the conditions up to `order` (at most 6) within `exact`, and to miss
-/// those of the next order by more than `missed`.
+/// those of the next order, unless this is 7, by more than `missed`.
 template <class Tableau, class Weight>
 void expect_conditions(char const* name, int order, double exact, double missed, Weight const& w,
                        double s = 1) {

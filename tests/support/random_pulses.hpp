@@ -20,7 +20,7 @@ struct TimeShape {
 
   Kind kind;
   double height, middle, width;
-  int pulses = 1;  // in a train; each is `width` wide, at distances of five widths
+  int pulses = 1;  // in a train; each is `width` wide, and they are five widths apart
 
   static std::string number(double x) {
     char text[32];
@@ -78,8 +78,8 @@ struct TimeShape {
     return 0;
   }
 
-  /// Returns the corners in ascending order. Before the first and after the last the value hardly
-  /// changes.
+  /// Returns the times of corners in ascending order. Before the first and after the last, the
+  /// value hardly changes.
   std::vector<double> corners() const {
     std::vector<double> all;
     switch (kind) {
@@ -98,7 +98,8 @@ struct TimeShape {
     }
   }
   bool is_smooth() const { return kind == gaussian || kind == sinc || kind == step; }
-  /// Returns the pulse's width at half height.
+  /// Returns the pulse's width at half height; for a sinc a little more than that of its first side
+  /// lobe.
   double width_at_half_height() const {
     if (kind == gaussian) return 2 * std::sqrt(std::numbers::ln2) * width;
     if (kind == sinc) return 2.5 * width;
@@ -107,8 +108,8 @@ struct TimeShape {
   }
 };
 
-/// One damped spin in a field with changes at random times, each of which takes 1e-6 of the run or
-/// more.
+/// One damped spin in a field with pulses and steps at random times, whose widths are at least 1e-6
+/// of the run.
 class RandomPulses {
  public:
   using Triple = std::array<double, 3>;
@@ -178,7 +179,8 @@ class RandomPulses {
     });
   }
 
-  /// Returns the spin at the end, from classical Runge-Kutta steps that end at all corners.
+  /// Returns the spin at the end. Classical Runge-Kutta steps lead to it, some of which end at the
+  /// corners.
   Triple exact() const {
     auto m = start;
     auto const all = corners();
@@ -186,7 +188,7 @@ class RandomPulses {
       double const begin = all[i], length = all[i + 1] - begin;
       auto const steps = static_cast<std::int64_t>(std::ceil(length / longest_step(begin, length)));
       double const dt = length / static_cast<double>(steps);
-      // At a jump of H, uses the value on the side of this interval.
+      // At a jump of H, use the value on this interval's side.
       double const aside = 1e-4 * dt;
       for (std::int64_t n = 0; n < steps; ++n) {
         double const t = begin + static_cast<double>(n) * dt;
@@ -204,7 +206,8 @@ class RandomPulses {
   }
 
  private:
-  /// A sinc also has lobes before and after the main one, which have to be within the run, too.
+  /// The shortest pulses of a sinc are its side lobes; the one after the main lobe has to be within
+  /// the run.
   bool is_within(TimeShape const& shape) const {
     if (shape.kind == TimeShape::step) return false;
     if (shape.kind == TimeShape::sinc) return shape.middle + 5 * shape.width < end;

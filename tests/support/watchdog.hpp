@@ -11,7 +11,8 @@
 
 namespace cayspin::test {
 
-/// Fails the program after two minutes without progress, which is a hang even on a busy machine.
+/// Ends the program with status 1 after two minutes without progress, which is a hang even on a
+/// busy machine.
 class Watchdog {
  public:
   explicit Watchdog(std::string what) : what_(std::move(what)) {}

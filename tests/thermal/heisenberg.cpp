@@ -31,7 +31,8 @@ class Averages {
       sums_[block][i] += values[i] / static_cast<double>(per_block_);
   }
 
-  /// Returns a function of the means, and its standard error found by leaving out each block.
+  /// Returns a function of the means, and its standard error, found by leaving out each block in
+  /// turn.
   template <class Of>
   std::pair<double, double> estimate(Of const& of) const {
     std::array<double, 4> all{};
@@ -62,7 +63,8 @@ Lattice cube(std::int64_t extent) {
   return Lattice::cubic(extent, extent, extent, 1, Boundary::periodic);
 }
 
-/// Runs red-black steps with noise. Samples are taken every 1.6, after the first fifth of the run.
+/// Runs red-black steps with noise. Takes a sample every 1.6 units of time, after the first fifth
+/// of the run.
 template <class Real>
 Averages by_noise(std::int64_t extent, double temperature, double dt, std::int64_t looks,
                   std::uint64_t seed) {
@@ -142,7 +144,8 @@ Averages by_heat_bath(std::int64_t extent, double temperature, std::int64_t look
   return averages;
 }
 
-// Temperatures are below, near and above the critical one. The length of steps adds up to 5e-3.
+// Temperatures are below, near and above the critical one. The step length changes averages by up
+// to 5e-3.
 TEST(HeisenbergModel, HasTheAveragesOfAHeatBath) {
   for (double const temperature : {1.2, 1.44, 1.8}) {
     auto const noise = by_noise<double>(8, temperature, 0.05, 2000, 3);
@@ -192,7 +195,8 @@ TEST(HeisenbergModel, DISABLED_BinderCumulantsCrossAtTheCriticalTemperature) {
   EXPECT_NEAR(crossing, 1.443, 0.01 * 1.443);
 }
 
-// Spin waves of a finite cube reduce |m| by T / (2 N) times the sum of 1 / (3 - sum of cosines).
+// Spin waves of a finite cube reduce |m| by T / (2 N) times the sum of 1 / (3 - sum of cosines)
+// over the wave vectors other than 0.
 TEST(HeisenbergModel, HasTheSpinWavesOfLowTemperatures) {
   constexpr int extent = 8;
   double sum = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Thermal noise: diffusion on the sphere, Langevin's function, Boltzmann's law of a uniaxial spin,
-// and bits that do not depend on space, place or interruptions. Seeds are fixed; statistical limits
-// are five standard errors.
+// Thermal noise: diffusion on the sphere, Langevin's function, Boltzmann's law of single spins, and
+// bits that depend neither on the host space nor on interruptions. Seeds are fixed; statistical
+// limits are five standard errors.
 #include "../support/backends.hpp"
 #include "kept_of_direction.hpp"
 
@@ -23,7 +23,7 @@ class Thermal : public ::testing::Test {
   using Half = typename Noise::Half;
   typename Backend::Exec exec;
 
-  /// Runs independent spins in a field from +z to equilibrium, in `steps` steps.
+  /// Returns independent spins in equilibrium with a field, after `steps` steps from +z.
   template <class Field>
   Spins at_rest(Field const& field, double temperature, double dt, int steps) {
     Spins spins("spins", Lattice::square(256, 64));
@@ -61,7 +61,8 @@ TYPED_TEST(Thermal, DirectionsAreForgottenAtTheRateOfDiffusion) {
     }
     largest_defect = std::max(largest_defect, std::abs(square - 1));
   }
-  // <3 m_c m_0c> is the same for all components c. The variance is below 9 <(m_c m_0c)^2> <= 9/5.
+  // <3 m_c m_0c> is the same for all components c. The variance of 3 m_c m_0c is at most 9 <(m_c
+  // m_0c)^2> <= 9/5.
   double const kept = std::pow(kept_of_direction(u), 2);
   for (double const of_component : mean)
     EXPECT_NEAR(of_component, kept, 5 * std::sqrt(1.8 / sites));
@@ -80,7 +81,7 @@ TYPED_TEST(Thermal, SpinsInAFieldFollowLangevin) {
   EXPECT_NEAR(m.x, 0, 5 * std::sqrt((1 - square) / 2 / static_cast<double>(spins.sites())));
 }
 
-// E is linear in m_z^2. Finds <m_z^2> by Simpson's rule, with Boltzmann's weights.
+// E is linear in m_z^2. Simpson's rule with Boltzmann's weights gives the expected <m_z^2>.
 TYPED_TEST(Thermal, AUniaxialSpinFollowsBoltzmann) {
   using Spins = typename TypeParam::Spins;
   double const temperature = 0.4, constant = 1;
@@ -110,8 +111,8 @@ TYPED_TEST(Thermal, AUniaxialSpinFollowsBoltzmann) {
   EXPECT_NEAR(found / sites, expected, 5 * error + 5e-4);
 }
 
-// E = -(m_x^2 + 2 m_z^2) / 2 has a hard, a medium and an easy axis. Finds <m_x^2> and <m_z^2> by
-// the midpoint rule over the sphere.
+// E = -(m_x^2 + 2 m_z^2) / 2 has a hard, a medium and an easy axis. The midpoint rule over the
+// sphere gives the expected <m_x^2> and <m_z^2>.
 TYPED_TEST(Thermal, ABiaxialSpinFollowsBoltzmann) {
   double const temperature = 0.4;
   EffectiveField const field(UniaxialAnisotropy(1, {1, 0, 0}), UniaxialAnisotropy(2, {0, 0, 1}));
@@ -141,8 +142,8 @@ TYPED_TEST(Thermal, ABiaxialSpinFollowsBoltzmann) {
   }
 }
 
-// The round-off of a turn repeats in each step. Without a correction 1e5 turns add up to 400
-// epsilon.
+// The round-off of a turn repeats in each step. Without a correction, lengths would change by 400
+// epsilon in 1e5 turns.
 TYPED_TEST(Thermal, LengthsDoNotDrift) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::chain(40);
@@ -155,8 +156,7 @@ TYPED_TEST(Thermal, LengthsDoNotDrift) {
   EXPECT_LT(norm_defect(this->exec, spins), 8 * epsilon<typename TypeParam::Real>);
 }
 
-// Noise depends only on the number of the step, so a run in pieces has the bits of one in one
-// piece.
+// Noise depends only on the number of the step, so a run in pieces gives the bits of an uncut run.
 TYPED_TEST(Thermal, BitsDoNotDependOnWhereARunIsCut) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::cubic(21, 6, 5);
@@ -228,7 +228,7 @@ TYPED_TEST(Thermal, BitsDoNotDependOnWhereARunIsStopped) {
     for (bool const at_once : {false, true}) EXPECT_EQ(run(stop, at_once), whole) << stop;
 }
 
-// A copy has its own turns, for its own length of steps.
+// A copy keeps its own turns, which depend on the step length. It may take steps of another length.
 TYPED_TEST(Thermal, CopiesTakeStepsOfOtherLengths) {
   using Spins = typename TypeParam::Spins;
   using Noise = typename TestFixture::Noise;
@@ -246,7 +246,7 @@ TYPED_TEST(Thermal, CopiesTakeStepsOfOtherLengths) {
   EXPECT_NE(turned(copy, 0.2), expected);
   EXPECT_EQ(turned(noise, 0.1), expected);
   EXPECT_EQ(turned(copy, 0.1), expected);
-  // The same holds with a field of mobile sites, and after an assignment.
+  // This also holds for noise with a field of mobile sites, and after an assignment.
   ScalarField<typename TypeParam::Real, typename TypeParam::MemorySpace> const moves("moves",
                                                                                      lattice, 1);
   Noise const moving(like, 0.5, {.temperature = 0.4, .seed = 3}, moves);
@@ -258,7 +258,7 @@ TYPED_TEST(Thermal, CopiesTakeStepsOfOtherLengths) {
   EXPECT_EQ(turned(assigned, 0.1), expected);
 }
 
-// A site without a spin does not turn, and does not count in the bound on a step.
+// A site without a spin does not turn, and does not count in the bound on dt.
 TYPED_TEST(Thermal, ASiteWithoutASpinHasNoNoise) {
   using Spins = typename TypeParam::Spins;
   using Noise = typename TestFixture::Noise;
@@ -295,7 +295,7 @@ TEST(ThermalNoiseUses, AreRefusedInOneSentence) {
   EXPECT_THROW(noise.turn(exec, 1, Half::before, 1.1, spins), std::invalid_argument);
   EXPECT_THROW(noise.turn(exec, 1, Half::before, std::nan(""), spins), std::invalid_argument);
   EXPECT_THROW(noise.turn(exec, 1, Half::before, 0.1, others), std::invalid_argument);
-  // The bound is for the largest turn of the sites of a cell.
+  // The bound on dt is that of the site of a cell that turns most.
   ThermalNoise<Spins> const slow(spins, 0.5, {.temperature = 2, .cell_sites = {0.5}});
   EXPECT_THROW(slow.turn(exec, 1, Half::before, 2.1, spins), std::invalid_argument);
   EXPECT_NO_THROW(slow.turn(exec, 1, Half::before, 1.9, spins));

@@ -70,7 +70,8 @@ TYPED_TEST(ThermalTurns, HaveTheMomentsOfNormalNumbersUpToTheFifth) {
       }
 }
 
-// Diffusion multiplies the mean by exp(-u). An error of third order in u gives weak order 2.
+// Diffusion multiplies the mean by exp(-u). The error is of third order in u, so the weak order is
+// 2.
 TEST(ThermalTurn, IsDiffusionToTheThirdOrder) {
   double last = 0;
   for (double const u : {0.1, 0.05, 0.025, 0.0125}) {
@@ -152,7 +153,7 @@ TYPED_TEST(ThermalSites, TurnIndependently) {
     expect_independent(after, after, apart);
 }
 
-/// Expects sites one by one, as on devices, to have the turns that packs have.
+/// Expects sites computed one by one, as on devices, to turn as in packs.
 template <class Real, class Turns, class Numbers>
 void expect_turns_of_packs(Turns const& turns, Numbers const& numbers) {
   using Spins = SpinField<Real, Kokkos::HostSpace>;

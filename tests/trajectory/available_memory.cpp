@@ -57,7 +57,7 @@ TEST_F(AvailableMemory, OfAJob) {
   group_2("system.slice/job_7/step_0/", "max", "70000");
   group_2("system.slice/job_7/", "1000000", "70000");
   EXPECT_EQ(bytes(), 930000);
-  // File caches count as used, but are dropped when memory is needed.
+  // The kernel counts file caches as used memory, but drops them when memory is needed.
   write("sys/fs/cgroup/system.slice/job_7/memory.stat",
         "anon 10000\nfile 60000\ninactive_file 40000\nactive_file 15000\n");
   EXPECT_EQ(bytes(), 985000);
@@ -72,7 +72,8 @@ TEST_F(AvailableMemory, OfAJob) {
 }
 
 TEST_F(AvailableMemory, OfAContainer) {
-  // The groups of a container are in the folder itself, even if they are named as on the host.
+  // In a container, the files of its group are in /sys/fs/cgroup itself, even if /proc/self/cgroup
+  // states the path on the host.
   group_2("", "1000000", "100000");
   for (auto const* const name : {"0::/\n", "0::/docker/4f2a\n", "0::/../outside\n"}) {
     write("proc/self/cgroup", name);

@@ -197,7 +197,7 @@ TEST_F(CheckpointContents, AreReadFromAFileOfAnEarlierVersion) {
   EXPECT_EQ(reader.header().step, 12);
 }
 
-// A file of version 3 would be refused after its writer was killed.
+// HDF5 would refuse a file whose superblock has version 3 after its writer was killed.
 TEST_F(TrajectoryTest, HeadOfTheFileIsOfVersionTwo) {
   auto const path = folder_ / "a.h5";
   auto const file = write_frames(path, 1);
@@ -263,7 +263,7 @@ TEST_F(Guard, EndsAChildThatWaits) {
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);
 }
 
-// HDF5 works in the child, whatever other threads do with it at the moment of the fork.
+// HDF5 works in the child, whatever other threads do in HDF5 at the moment of the fork.
 TEST_F(Guard, WaitsForOtherThreadsThatUseHdf5) {
   std::atomic<bool> done = false;
   std::thread other([&] {

@@ -120,7 +120,7 @@ TEST_F(TrajectoryTest, ProtectedFileIsKept) {
   EXPECT_EQ(names_in(folder_), std::vector<std::string>{"a.h5"});
 }
 
-// The new file can be written but not read, which HDF5 needs.
+// The new file may be written but not read, and HDF5 has to read it.
 TEST_F(TrajectoryTest, FileThatHdf5CannotOpenIsRemoved) {
   ASSERT_EQ(::chmod(folder_.c_str(), 0777), 0);
   EXPECT_EXIT(std::_Exit(create_without_permission(folder_ / "a.h5", 0444, false)),

@@ -20,7 +20,7 @@ TrajectoryHeader crystal_header(std::array<std::int64_t, 3> const& shape = {4, 3
   return header;
 }
 
-// Returns spins that are zero on sites 0 of all cells, and on one other site.
+// Returns spins that are zero on site 0 of every cell, and on one other site.
 template <class Real>
 std::vector<Real> spins_of(TrajectoryHeader const& header, int frame) {
   auto spins = numbered_spins<Real>(header, frame);
@@ -43,7 +43,7 @@ void write_crystal(std::filesystem::path const& path, TrajectoryHeader const& he
   output.finish({});
 }
 
-// Returns the spins of one site of the cells from an array in the memory order of a run.
+// Returns the spins on one site of every cell, from an array in the memory order of a run.
 template <class Real>
 std::vector<double> numbers_of(std::vector<Real> const& spins, TrajectoryHeader const& header,
                                std::int64_t site) {
@@ -87,7 +87,7 @@ void expect_stored(std::filesystem::path const& path, TrajectoryHeader const& he
 
 TEST_F(TrajectoryTest, CrystalsLieSiteBySiteAndComeBackAsTheyWere) {
   auto const path = folder_ / "a.h5";
-  // Chunks that are planes of whole pages (here three) bypass HDF5; others do not.
+  // Chunks bypass HDF5 if their planes are whole pages (here three); other chunks do not.
   for (std::array<std::int64_t, 3> const shape :
        {std::array<std::int64_t, 3>{4, 3, 9}, {32, 16, 9}})
     for (int const compression : {0, 1})

@@ -98,8 +98,8 @@ TEST_F(TrajectoryTest, ChunksOfFramesLeaveLittleOfPagesEmpty) {
   EXPECT_EQ(frames_of_chunk(most_chunk_bytes, 10 * most_chunks), 1);
 }
 
-// There can be at most `most_chunks` chunks: with as many frames of three planes, a chunk has one
-// plane of each of three frames.
+// There can be at most `most_chunks` chunks. For that many frames of three planes, a chunk takes
+// one plane from each of three frames.
 TEST_F(TrajectoryTest, ManyPlannedFramesShareChunks) {
   auto header = small_header();
   header.shape = {32, 16, 3};  // three pages a plane

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Values of samples besides their scalars: of regions and terms, and the shift.
+// Values that samples have beside their scalars: those of regions and terms, and the shift.
 #include "hdf5/attribute.hpp"
 #include "hdf5/dataset.hpp"
 #include "hdf5/handle.hpp"
@@ -40,7 +40,7 @@ TEST_F(TrajectoryTest, MoreScalarsAreReadBack) {
   auto header = small_header();
   header.more = all;
   RunOutput output(path, header, {.table = true});
-  constexpr std::int64_t samples = 1300;  // more than one write has
+  constexpr std::int64_t samples = 1300;  // more than one write takes
   for (std::int64_t step = 0; step < samples; ++step)
     output.write_scalars(step, 0.5, numbered_scalars(1), numbers_at(step, all.count()));
   std::ranges::copy(numbered_spins<double>(header, 0), output.frame<double>());

@@ -72,8 +72,8 @@ TEST_F(TrajectoryTest, OutputIsTheSameWithAndWithoutChunks) {
   }
 }
 
-// Checksums of a frame of zeros, of one with all bits set, and of more words than are added between
-// folds.
+// Checksums of frames of zeros, with all bits set, and of other numbers. A frame has more words
+// than are added between folds.
 TEST_F(TrajectoryTest, ChecksumsAreThoseThatHdf5Expects) {
   auto header = small_header("single");
   header.shape = {100, 100, 100};
@@ -103,7 +103,7 @@ TEST_F(TrajectoryTest, OutputThatIsDroppedWritesWhatWasHandedOver) {
   EXPECT_EQ(std::ranges::count(read_bytes(folder_ / "a.txt"), '\n'), 22);
 }
 
-// Samples reach the file before the next frame.
+// Samples reach the files without waiting for the next frame.
 TEST_F(TrajectoryTest, OutputHandsOverManySamplesWithoutAFrame) {
   RunOutput output(folder_ / "a.h5", small_header(), {.table = true});
   for (int sample = 0; sample < 1024; ++sample)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Files with sync, and their journals. tests/damage/power_cuts.cpp cuts the power.
+// Files with sync, and their journals. tests/damage/power_cuts.cpp simulates power cuts.
 #include "trajectory_test.hpp"
 
 #include <sys/stat.h>
@@ -22,7 +22,7 @@ class Synced : public TrajectoryTest {
     return write_frames(path, frames, {.sync = true}, overwrite);
   }
 
-  // Returns a file as after a power cut: a sector that the last frame overwrites is missing.
+  // Returns a file as after a power cut, in which a sector that the last frame overwrites is zero.
   fs::path half_written(std::string const& name, int frames) const {
     auto const whole = folder_ / ("whole_" + name), path = folder_ / name;
     auto file = begin(whole, frames);

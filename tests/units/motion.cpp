@@ -92,7 +92,7 @@ TYPED_TEST(UnitsInMotion, AFilmPrecessesAtKittelsFrequency) {
   EXPECT_NEAR(std::remainder(phase - 4, 2 * pi), 0, TestFixture::in_double ? 1e-8 : 1e-3);
 }
 
-// Returns B = mu0 H in T, of a spin in a block with open ends.
+// Returns B = mu0 H in T on the spin of a site, in a block with open ends.
 Vector tesla_at(std::vector<Vector> const& m, Lattice const& lattice, std::int64_t site,
                 Vector const& applied) {
   auto const& n = lattice.shape;
@@ -157,8 +157,8 @@ TYPED_TEST(UnitsInMotion, EnergyInJoulesIsTheDirectSum) {
         auto const stiff = [&](Vector const& next, double d) {
           add(A * volume / (d * d) * dot(next - m, next - m));
         };
-        // The interaction is D (m_z d_e m_e - m_e d_e m_z), where m is the mean of both ends and
-        // d_e m their difference.
+        // A bond along e has the energy density D (m_z d_e m_e - m_e d_e m_z), where m is the mean
+        // of the spins at its ends and d_e m their difference over the cell's edge.
         if (i < 3) {
           auto const next = at(i + 1, j, k);
           stiff(next, cell[0]);

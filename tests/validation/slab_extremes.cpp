@@ -76,7 +76,7 @@ TEST(Slab, NormDriftOfClassicalRk4) {
     std::string const name = std::string("classical rk4, damping ") + row.name;
     double const coarse = drift(0.01);
     expect_figure(name + ", dt .01, max ||m| - 1|", coarse, row.drift);
-    // For damping near .05 and 10, the drift at this dt is not a single power of dt.
+    // At damping .05 and 10, the drift at this dt is not a single power of dt.
     if (row.damping == 1)
       expect_figure(name + ", ratio to half the dt", coarse / drift(0.005), "16", 0.05);
   }

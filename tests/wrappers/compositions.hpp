@@ -86,7 +86,7 @@ Setting<Real> random_setting(unsigned seed) {
   return on;
 }
 
-/// Calls visit(name, term) for every term.
+/// Calls visit(name, term) for every term of the library.
 template <class Real, class Visit>
 void for_each_term(Setting<Real> const& on, Visit const& visit) {
   using Field = typename Setting<Real>::Field;
@@ -132,8 +132,9 @@ template <class Term>
 inline constexpr bool sees_vacant_spins =
     detail::holds<PairCouplings, Term>() || detail::holds<detail::SeesAllSpins, Term>();
 
-/// Calls visit(name, wrapped, factors, is_alone) for each of the library's wrappers around a term,
-/// and for some wrappers around others. `is_alone`: the wrapped term behaves like the term.
+/// Calls visit(name, wrapped, factors, is_alone) for each wrapper of the library and for Named
+/// around a term, and for some wrappers around wrappers. `is_alone`: `wrapped` must answer like the
+/// term.
 template <class Real, class Term, class Visit>
 void for_each_wrapper(Setting<Real> const& on, std::string const& name, Term const& term,
                       std::vector<double> const& factors, Visit const& visit) {

@@ -153,7 +153,7 @@ Answers answers(Term const& term, Setting<Real> const& on) {
 
 class Members {
  public:
-  /// `precision` is an epsilon; the values compared are of the order of 10.
+  /// `precision` is the epsilon of Real; the values compared are of the order of 10.
   Members(std::string what, double precision) : what_(std::move(what)), bound_(300 * precision) {}
 
   void expect_same(Vectors const& found, Vectors const& expected, char const* member,
@@ -198,7 +198,7 @@ inline Vectors operator*(double factor, Vectors a) {
   return a;
 }
 
-/// Returns the derivative along h of f at 0, exact for polynomials of degree 4.
+/// Returns f'(0) from differences with the step h, exact for polynomials up to degree 4.
 template <class Function>
 auto derivative(Function const& f, double h) {
   return (1 / (12 * h)) * (8.0 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h)));
