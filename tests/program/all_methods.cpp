@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Every valid combination of method, generator, isotropy and rotation in a scene runs at its order,
-// on spins and on rigid bodies.
+// Every valid combination of method, generator, isotropy and rotation in a scene converges at its
+// order, on spins and on rigid bodies.
 #include "../support/method_choice.hpp"
 #include "program_test.hpp"
 
@@ -63,7 +63,7 @@ class AllMethods : public ProgramTest {
   }
 };
 
-// Has a field that the host computes.
+// Returns a scene with a field that the host computes.
 std::string spins_scene() {
   return R"toml([system]
 kind = "llg"

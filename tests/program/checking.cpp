@@ -15,8 +15,8 @@ class Checking : public ProgramTest {
   }
 };
 
-// For one spin in a field of 1 the stable dt equals y*(damping), the limit of the method's
-// stability polynomial. The table has it to the digits given.
+// For one spin in a field of 1, the stable dt is y*(damping), the limit of the method's stability
+// polynomial. The table has rounded values of y*.
 TEST_F(Checking, StableDtIsThatOfTheStabilityPolynomial) {
   struct Row {
     char const* damping;
@@ -42,7 +42,7 @@ TEST_F(Checking, StableDtIsThatOfTheStabilityPolynomial) {
   }
 }
 
-// The stiff chain, and lattices in 2D and 3D, with |H| = 5 and all other constants 1.
+// The stiff chain, and lattices in 2D and 3D, in an applied field of 5; all other constants are 1.
 TEST_F(Checking, StableDtOfLattices) {
   Arguments const stiff =
       set("system.damping=0.05", "initial.random.seed=1",
@@ -55,9 +55,9 @@ TEST_F(Checking, StableDtOfLattices) {
         .at("stable_dt")
         .get<double>();
   };
-  // The stable dt is never above the measured one. It is exact on the fine chain; on the coarse
-  // one, where the bound on the field is not sharp, it may be a third below, and on the others 3 %
-  // below.
+  // The stable dt is never above the measured one. On the fine chain they are equal. On the coarse
+  // one, where the bound on the field is not sharp, it may be up to 35 % below, and on the others
+  // up to 3 %.
   EXPECT_NEAR(stable_dt("[100]", "0.01"), 7.26586e-5, 4e-8);
   EXPECT_LT(stable_dt("[100]", "1.0"), 3.88384e-1);
   EXPECT_GT(stable_dt("[100]", "1.0"), 3.88384e-1 * 0.65);

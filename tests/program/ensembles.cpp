@@ -40,7 +40,8 @@ class Ensembles : public ProgramTest {
     return found;
   }
 
-  /// Expects that a separate run of the scene has the same bits as the replica in all datasets.
+  /// Expects that a separate run of the scene has the same bits as the replica, in all datasets of
+  /// frames and samples.
   void expect_run(std::int64_t replica, std::string const& scene, Arguments const& more) const {
     write("one.toml", scene);
     auto const outcome =
@@ -179,7 +180,7 @@ scalars_every = 5
   EXPECT_GT(compared, 5);  // `check` refuses the others
 }
 
-// The threads share the replicas: kernels, transforms and noise of each run on one thread.
+// The threads share the replicas: kernels, transforms and noise of one replica run on one thread.
 TEST_F(Ensembles, HaveTheSameBitsSideBySide) {
   auto const scene = chain_scene() + "[thermal]\ntemperature = 0.05\nseed = 7\n" +
                      vary("\"field.applied.2\" = { from = 0.1, to = 2 }\n", 9);

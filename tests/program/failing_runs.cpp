@@ -65,7 +65,7 @@ TEST_F(FailingRun, SpinsThatAreNotFiniteAreStatusThree) {
 }
 
 TEST_F(FailingRun, AppliedFieldThatIsNotFiniteOnTheWayIsStatusThree) {
-  // The field is infinite at only one time of the run, which the checks before it do not find.
+  // The field is infinite at only one time, which the checks before the run do not find.
   auto const outcome = run_chain(set("integrator.dt=0.125", "integrator.steps=7", "output.every=1",
                                      "field.applied=[0,0,'t==0.125 ? 1/(t-0.125) : 0.1']"));
   EXPECT_EQ(outcome.status, 3);

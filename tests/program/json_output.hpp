@@ -65,7 +65,7 @@ uniform = [1, 0.1, 0.2]
       numbers.push_back(value.get<double>());
   }
 
-  /// Expects that each name has the extents and values of the dataset with that name.
+  /// Expects each of these entries to have the extents and values of the dataset of that name.
   void expect_datasets(json const& object, std::string const& file,
                        std::vector<std::string> const& names,
                        std::string const& group = "/") const {
@@ -84,7 +84,7 @@ uniform = [1, 0.1, 0.2]
     }
   }
 
-  /// Expects that each name has the value of the attribute with that name.
+  /// Expects each of these entries to have the value of the attribute of that name.
   void expect_attributes(json const& object, std::string const& file,
                          std::vector<std::string> const& numbers,
                          std::vector<std::string> const& texts) const {

@@ -78,7 +78,8 @@ dt = 0.01
 steps = 1
 )toml";
 
-// w^2 + w (a2 b2 - a1 b1) = a1 a2 (b1 b2 - J^2), with a = gyromagnetic ratio over moment.
+// Frequencies w of the two sublattices: w^2 + w (a2 b2 - a1 b1) = a1 a2 (b1 b2 - J^2), where a is
+// the gyromagnetic ratio over the moment, and b = J + K +- moment H.
 TEST_F(Modes, OfAFerrimagnet) {
   auto const outcome = modes(ferrimagnet, {"--torque", "1e-11", "--hessian"});
   EXPECT_EQ(outcome.status, 0) << outcome.errors;

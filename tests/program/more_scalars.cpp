@@ -195,7 +195,7 @@ TEST_F(MoreInFiles, TheShiftIsInTheFileAndGoesOnAfterARestart) {
     EXPECT_EQ(std::vector(all.end() - static_cast<std::ptrdiff_t>(rest.size()), all.end()), rest)
         << name;
   }
-  // This holds also if the method begins again.
+  // The shift also goes on if the method begins again.
   auto const in_other_field = joined({"--restart", "first.h5"}, set("field.applied=[0,0,0.015]"));
   EXPECT_EQ(run_into("second.h5", wall, in_other_field).status, 0);
   EXPECT_EQ(of("second.h5", "shift").front(), of("first.h5", "shift").back());

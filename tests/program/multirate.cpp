@@ -66,7 +66,7 @@ TEST_F(MultirateFields, AreChecked) {
   auto const numbers = nlohmann::json::parse(output_of({"check", "scene.toml", "--json"}));
   EXPECT_EQ(numbers.at("order"), 3);
   EXPECT_EQ(numbers.at("evaluations_per_step"), 24);
-  // At small damping, order 3 would broaden resonance lines, and order 4 costs as much.
+  // At small damping, order 3 would broaden resonance lines, and order 4 costs no more.
   auto const at_small_damping = nlohmann::json::parse(
       output_of(joined({"check", "scene.toml", "--json"}, set("system.damping=0.008"))));
   EXPECT_EQ(at_small_damping.at("order"), 4);

@@ -150,7 +150,7 @@ TEST_F(PathCommand, GivesTheRateBesideAFrozenSpin) {
 }
 
 // In SI: a particle of one cell has a barrier of K V, and a prefactor of gamma sqrt(H_K (H_K +
-// H_hard)) / 2 pi.
+// H_hard)) / (2 pi).
 TEST_F(PathCommand, InSi) {
   std::string const text = R"toml(units = "SI"
 [material]

@@ -16,7 +16,7 @@ namespace cayspin::program::test {
 
 using Arguments = std::vector<std::string>;
 
-/// Returns both lists in order.
+/// Returns the elements of both lists in order.
 Arguments joined(Arguments first, Arguments const& more);
 
 /// Returns the texts, with "--set" before each.
@@ -61,13 +61,13 @@ struct Dataset {
   std::vector<double> values;
 };
 
-/// Limits and interrupts of a run; -1 is no limit.
+/// Limits and interrupts of a run; a limit of -1 is none.
 struct Treatment {
   long file_limit = -1;                       // largest file, in bytes
   long memory_limit = -1;                     // bytes of address space
   long seconds_limit = -1;                    // of processor time
-  double interrupt_after = 0;                 // seconds from interrupt_when to SIGINT
-  std::filesystem::path interrupt_when = {};  // when this file appears; empty: never
+  double interrupt_after = 0;                 // seconds to SIGINT once interrupt_when exists
+  std::filesystem::path interrupt_when = {};  // file to wait for; empty: no SIGINT
   std::filesystem::path program = CAYSPIN_PROGRAM;
 };
 
@@ -139,7 +139,8 @@ testing::AssertionResult contains(std::string const& text, std::string const& pa
 testing::AssertionResult contains_all(std::string const& text,
                                       std::vector<std::string> const& parts);
 
-/// A short run of a damped chain, with every kind of term.
+/// A short run of a damped chain with exchange, two anisotropies, an applied field and a slab's
+/// demag.
 std::string chain_scene();
 /// A single spin that turns and falls towards z.
 std::string macrospin_scene();

@@ -22,7 +22,8 @@ std::set<std::string> options_in(std::string const& text) {
   return found;
 }
 
-// Returns the synopsis of each command at the head of the page. It ends at the next `cayspin`.
+// Returns the synopsis of each command at the head of the page. A synopsis ends at the next
+// `cayspin`.
 std::map<std::string, std::string> synopses() {
   std::ifstream page(std::string(CAYSPIN_DOCS) + "/reference/command_line.md");
   std::map<std::string, std::string> all;

@@ -178,7 +178,7 @@ TEST_F(Restarting, NeedsTheCheckpointOfAMethodThatRemembers) {
   auto const checkpoint = in_folder("first.checkpoint.h5");
   std::filesystem::rename(checkpoint, in_folder("kept.h5"));
   expect_refused(ab2, "first.checkpoint.h5 is not there");
-  // A checkpoint of another scene.
+  // A checkpoint of another scene is refused.
   run_to("7", "other.h5", ab2);
   std::filesystem::rename(in_folder("other.checkpoint.h5"), checkpoint);
   expect_refused(ab2, "is of another scene");

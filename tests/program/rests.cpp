@@ -75,7 +75,7 @@ TEST_F(Rests, AreNotMaxima) {
     expect_minimum({scene(pair, near_pole(angle, seed + 1))});
     expect_minimum({scene(film, near_pole(angle, seed + 2))});
     expect_minimum({scene(film, near_pole(angle, seed + 3)), {"--precision", "single"}});
-    // Of two uncoupled spins, one leaves the maximum long after the other.
+    // One of two uncoupled spins leaves the maximum long after the other.
     char start[200];
     std::snprintf(start, sizeof start, "expression = [\"i == 0 ? %g : 1\", \"0\", \"-1\"]", angle);
     expect_minimum({scene(apart, start)});

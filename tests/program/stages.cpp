@@ -62,7 +62,7 @@ TEST_F(Stages, HaveTheBitsOfRunsByHand) {
     auto const second = by_hand(
         "first.h5", joined(same, set(turned, "integrator={method='heun',dt=0.01,steps=80}")));
     EXPECT_EQ(second, spins("out.h5", 6));
-    // relax starts from a file, which is normalised, so bits differ.
+    // relax normalises spins from a file, so bits differ.
     output_of(joined(joined({"relax", "chain.toml", "--quiet", "--output", "relaxed.h5", "--torque",
                              "1e-5", "--overwrite"},
                             same),

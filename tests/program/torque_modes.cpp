@@ -24,8 +24,9 @@ struct TorqueModes : Modes {
       "applied = [0, 0, 0.3]";
 };
 
-// With the polarization along the axis, a spin near the axis obeys
-//   dm/dt = -(H + b - damping a) m x z - (damping (H + b) + a) dm.
+// With the polarization along the axis, a small deviation d of a spin from the axis z obeys
+//   d' = -(H + b - damping a) d x z - (damping (H + b) + a) d.
+// H is the sum of the anisotropy and the applied field; a and b are damping_like and field_like.
 TEST_F(TorqueModes, OfAParticleWithAPolarizationAlongItsAxis) {
   double const damping = 0.1, b = 0.05, field = 1.3 + b;
   for (double const a : {0.4, 0.0, -0.9999 * damping * field, -1.0001 * damping * field, -0.5})
@@ -74,7 +75,8 @@ TEST_F(TorqueModes, AreWavesWithADopplerShiftInACurrent) {
   }
 }
 
-// Small deviations x, x' and x'' at equal intervals obey x'' = 2 e^(-d) cos(w) x' - e^(-2 d) x.
+// A mode decays by e^(-d) and turns by w between two frames. Its deviations x, x' and x'' in three
+// frames obey x'' = 2 e^(-d) cos(w) x' - e^(-2 d) x.
 TEST_F(TorqueModes, MoveAsInARun) {
   auto const text = scene(
       "shape = [3]\n[field]\nexchange = 2.0\nanisotropy = { constant = 1.0, axis = [0, 0, 1] }"

@@ -13,7 +13,7 @@
 namespace cayspin::program::test {
 namespace {
 
-/// Returns the arguments after the scene of the recommended command.
+/// Returns the arguments that follow the scene in the recommended command.
 Arguments advised_arguments(std::string const& advice) {
   std::istringstream lines(advice);
   Arguments arguments;
@@ -57,7 +57,7 @@ end = 4.0
   std::string advise(std::string const& error, Arguments const& more = {}) const {
     return output_of(joined({"advise", "scene.toml", "--error", error, "--threads", "1"}, more));
   }
-  // Reads out.h5.
+  // Expects a dataset of out.h5 to have `count` times, `apart` from each other, from 0 on.
   void expect_equal_times(char const* dataset, double apart, std::size_t count) const {
     auto const times = read_dataset("out.h5", dataset).values;
     ASSERT_EQ(times.size(), count) << dataset;

@@ -151,8 +151,8 @@ class Check {
       all_.not_reversed += away > 1;
   }
 
-  // Each step is solved to a few epsilons. Adjacent trajectories diverge at a rate of at most half
-  // of the field bound in all known scenes.
+  // Each step is solved to a few epsilons. The bound lets adjacent trajectories diverge at up to
+  // half of the field bound.
   double reversal_bound() const {
     double const rate = dt_ * scene_.slab.field_bound();
     return 4 * eps * scene_.steps * std::exp(0.5 * rate * scene_.steps);

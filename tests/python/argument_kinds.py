@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Truth values, numbers, words and sequences as arguments: NumPy's mean the same as Python's, and
-unsuitable ones are refused with one line."""
+"""Truth values, numbers, words and sequences as arguments: those of NumPy mean the same as those of
+Python, and unsuitable ones are refused with one line."""
 
 import decimal
 import fractions

@@ -16,7 +16,7 @@ CELLS = (41, 40, 39)
 
 def sphere(parts):
     """Returns triangles: an octahedron's faces, each cut into parts^2 and projected onto the unit
-    sphere. Seen from outside their corners are counter-clockwise."""
+    sphere. Seen from outside, their corners are counter-clockwise."""
     found = []
     for signs in itertools.product((1, -1), repeat=3):
         corners = np.diag(signs).astype(float)

@@ -22,7 +22,7 @@ TILTED = {"uniform": [1, 0.1, 0]}
 TO_SWITCH = [-24.6e-3, 4.3e-3, 0]
 
 
-# For tests that take some seconds each
+# For tests that take several seconds each
 long = unittest.skipUnless(os.environ.get("CAYSPIN_ALL_TESTS"), "long")
 
 

@@ -21,7 +21,7 @@ def text_of(rows):
 
 
 def spiral(lattice, shape, turns, normal):
-    """Returns spins of a crystal that turn about `normal` by 2 pi q.r, and q per cell."""
+    """Returns spins of a crystal that turn about `normal` by 2 pi q.r, and q in turns per cell."""
     q = np.array(turns) / shape
     side = np.cross(normal, [0.3, -0.7, 0.2])
     first = side / np.linalg.norm(side)

@@ -44,7 +44,7 @@ def random_spins(shape, seed):
 
 
 def stepped(of_scene, steps, precision="double"):
-    """Returns the spins after so many steps."""
+    """Returns the spins after `steps` steps."""
     sim = cayspin.Simulation(of_scene, precision)
     sim.step(steps)
     return sim.spins

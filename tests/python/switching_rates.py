@@ -30,7 +30,8 @@ def scene(shape, **tables):
 
 class SwitchingRates(PackageTest):
     def langer(self, barrier):
-        """Returns the rate of cayspin.path for a barrier of so many kT."""
+        """Returns the rate of cayspin.path at the temperature at which the barrier is `barrier`
+        kT."""
         up = np.array([[[[0, 0, 1.0]]]])
         path = cayspin.path(scene([1]), up, -up, torque=1e-9, rates=True)
         self.assertEqual(path.zero_modes, (0, 1, 0))

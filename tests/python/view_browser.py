@@ -18,7 +18,7 @@ from texture.colors import hue_colors, map_colors
 UP, LEFT, HOME = "\ue013", "\ue012", "\ue011"  # keys of WebDriver
 RENDERER = """const gl = document.createElement("canvas").getContext("webgl2");
 return gl.getParameter(gl.getExtension("WEBGL_debug_renderer_info").UNMASKED_RENDERER_WEBGL);"""
-# Frames per second that appear while the slider is dragged for so many milliseconds.
+# Frames per second that appear while the slider is dragged for a number of milliseconds.
 RATE = """const [milliseconds, done] = arguments, frame = document.getElementById("frame");
 let count = -1;
 const next = () => {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Writes a small trajectory for the scripts to draw: write_trajectory FILE.h5 SITES LENGTH
-// CELL_SITES. All spins have this length and turn about z, each with its own phase.
+// CELL_SITES. All spins have the length LENGTH and turn about z, each with its own phase.
 #include "io/trajectory.hpp"
 
 #include <cmath>

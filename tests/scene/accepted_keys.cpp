@@ -15,7 +15,7 @@ std::string page() {
   return text.str();
 }
 
-/// Returns the message for an unknown key in a table.
+/// Returns the message that refuses a scene with this assignment; empty if there is none.
 std::string said_of(std::string_view scene, std::string const& assignment) {
   try {
     parse_scene(std::string(scene), "scene.toml", {assignment});

@@ -246,7 +246,8 @@ TEST(Crystals, ExpressionsThatFailAreNamed) {
             "accepted");
 }
 
-// Returns values for `frames` frames of 48 sites that show which component was read.
+// Returns numbers for `frames` frames of 48 sites. They differ from place to place, so that a
+// number read from a wrong place is noticed.
 std::vector<double> numbered(std::size_t frames) {
   std::vector<double> numbers(frames * 144);
   for (std::size_t n = 0; n < numbers.size(); ++n) numbers[n] = 1 + static_cast<double>(n * n % 89);

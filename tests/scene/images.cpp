@@ -58,7 +58,7 @@ TEST(Images, WrongKeysAreRefusedInOneLine) {
 }
 
 #if defined(CAYSPIN_HAS_PNG)
-/// Writes pixels in a PNG format, with the top row first.
+/// Writes pixels of this format into a PNG file, with the top row first.
 void write_png(std::filesystem::path const& path, std::uint32_t width,
                std::vector<std::uint8_t> const& pixels, std::uint32_t format = PNG_FORMAT_GRAY) {
   png_image image{};

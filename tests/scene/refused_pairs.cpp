@@ -87,7 +87,8 @@ std::vector<std::pair<std::string, Overrides>> methods_and_keys() {
   return all;
 }
 
-/// Returns the table's entry for a scene with these terms and that integrator.
+/// Returns the table's entry for a scene with the terms of `scene` and the integrator of `other`;
+/// nullptr if it has none.
 RefusedPair const* expected_of(Scene scene, Scene const& other) {
   scene.integrator = other.integrator;
   for (auto const& pair : refused_pairs())

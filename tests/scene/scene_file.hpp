@@ -100,7 +100,8 @@ dt = 0.01
 steps = 10
 )toml";
 
-/// Returns `text` with its only occurrence of `from` replaced.
+/// Returns `text` with the first occurrence of `from` replaced. Throws std::runtime_error if there
+/// is none.
 inline std::string replaced(std::string_view text, std::string_view from, std::string_view to) {
   std::string result(text);
   auto const at = result.find(from);
@@ -108,7 +109,8 @@ inline std::string replaced(std::string_view text, std::string_view from, std::s
   return result.replace(at, from.size(), to);
 }
 
-/// Parses a text as a scene (scene_of), or reads it from a folder that may contain its other files.
+/// Parses a text as a scene (scene_of), or reads it from a folder that may contain the other files
+/// of the scene (read_text).
 inline Scene scene_of(std::string_view text, std::vector<std::string> const& overrides = {}) {
   return parse_scene(std::string(text), "scene.toml", overrides);
 }

@@ -101,7 +101,8 @@ inline std::vector<std::string> rows_of(std::string_view table) {
 
 /// Each row has columns separated by " | ":
 /// - keys to type, "key = VALUE; ..", which make the scene wrong;
-/// - the message after the file and line; a start with one of ".[:" continues the last key;
+/// - the message after the file and line; if it starts with ".", "[" or ":", it continues the last
+/// key;
 /// - text that the message contains;
 /// - any fourth column, for a message that does not say what is accepted; others must.
 /// The message must be one line and name the line of the key.

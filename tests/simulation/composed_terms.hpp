@@ -27,8 +27,8 @@ inline ScalarField<double, Memory> field_of_sites(Lattice const& lattice,
   return field;
 }
 
-/// H = moment (applied + source cos(3 t)), E = -m.H, with site-dependent moments and sources along
-/// x.
+/// H = moment (applied + source cos(3 t)), E = -m.H. Moments, and sources along x, depend on the
+/// site; the source along y is uniform.
 struct SiteDependentApplied {
   ScalarField<double, Memory> moments, along_x;
   Vec3<double> applied;
@@ -121,7 +121,8 @@ struct ScaledBySite {
   }
 };
 
-/// The anisotropy of a crystal with axes along z, or x and y, written as polynomials.
+/// The second constant of the cubic anisotropy, and the hexagonal anisotropy, for crystal axes
+/// along x, y and z, as polynomials.
 struct CrystalByPolynomials {
   double cubic2, hexagonal;
 

@@ -80,7 +80,7 @@ void expect_same(unsigned seed, std::map<std::string, int>& refused) {
         largest =
             std::max(largest, std::abs(numbers.gyromagnetic * found[i] - moves * expected[i]));
     }
-    EXPECT_LT(largest, 64 * epsilon(precision) * numbers.scale);  // H is multiplied by that ratio
+    EXPECT_LT(largest, 64 * epsilon(precision) * numbers.scale);  // `expected` includes that ratio
   }
   if (!scene->field.torque.zhang_li && !scene->field.torque.slonczewski) {
     SpinField<double, Memory> spins("spins", numbers.lattice);

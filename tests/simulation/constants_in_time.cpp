@@ -17,7 +17,7 @@ namespace {
 TEST(ConstantsInTime, TurnConesByTheirIntegral) {
   struct Cone {
     std::string shape, field;
-    double frequency;  // of the cone, over cos(0.7)
+    double frequency;  // of the cone, divided by cos(0.7)
     std::string q;
   };
   double const A = 2 - 2 * std::cos(2 * pi / 12), D = -2 * 0.3 * std::sin(2 * pi / 12);

@@ -18,8 +18,9 @@ Vector cross(Vector const& a, Vector const& b) {
 }
 double dot(Vector const& a, Vector const& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Returns dE/d(angle) as the spin at `site` of a 5 x 4 x 3 lattice turns about e, from the energy
-/// at 16 angles. This is exact for energies without harmonics above the seventh.
+/// Returns dE/d(angle) as the spin at `site` of a 5 x 4 x 3 lattice turns about e, from the
+/// energies at 15 angles, pi / 8 apart. This is exact for energies without harmonics above the
+/// seventh.
 double slope_about(SceneRun& run, std::vector<double> const& spins, std::size_t site,
                    Vector const& e) {
   Vector const m{spins[3 * site], spins[3 * site + 1], spins[3 * site + 2]};
@@ -84,7 +85,8 @@ TEST(CrystalTerms, AreTheDerivativeOfTheirEnergy) {
     }
 }
 
-// A helix that turns by q per site about its axis e has m.(m' x e) = -sin(q), for any phase.
+// A helix that turns right-handed by q per site about its axis e has m.(m' x e) = sin(q), for any
+// phase.
 TEST(CrystalTerms, D2dTurnsSpinsToTheLeftAlongXAndToTheRightAlongY) {
   constexpr double D = 0.3;
   auto const energy = [&](std::string const& shape, std::string const& normal,

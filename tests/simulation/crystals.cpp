@@ -17,7 +17,7 @@ namespace {
 struct Cone {
   char const* name;
   std::string scene, phase;
-  double frequency;  // of the cone, over cos(0.7)
+  double frequency;  // of the cone, divided by cos(0.7)
 };
 
 // Each scene is a lattice and its couplings.
@@ -74,7 +74,8 @@ TEST(CrystalScenes, ConesTurnAtTheFrequencyOfTheirMagnon) {
 }
 
 // In Neel's state of a simple cubic lattice, spins in narrow cones turn at omega = sqrt((h + K)^2 -
-// (h gamma)^2): those up to the right about their axis, those down to the left.
+// (h gamma)^2): spins that point up turn to the right about their axis, those that point down to
+// the left.
 TEST(CrystalScenes, ConesOfAnAntiferromagnetTurnAtTheFrequencyOfTheirMagnon) {
   constexpr double h = 6 * 0.6, K = 0.3, opening = 0.7, end = 2;
   double const gamma = (std::cos(2 * pi / 8) + std::cos(2 * pi / 6) + std::cos(2 * pi / 4)) / 3;

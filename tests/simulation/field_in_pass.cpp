@@ -13,8 +13,8 @@
 namespace cayspin::simulation::test {
 namespace {
 
-// Every term of plain scenes, also evaluated in a separate pass: moments of 1 cause it and change
-// nothing.
+// Every term of plain scenes, also evaluated in a separate pass. Moments of 1 cause the pass and
+// change nothing.
 TEST(FieldInPass, APassIsTheFieldThatKernelsEvaluate) {
   constexpr auto plain = R"toml(
 [system]

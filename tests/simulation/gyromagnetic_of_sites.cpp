@@ -154,7 +154,7 @@ TEST(GyromagneticOfSites, TakesPartInTheNoise) {
                 5 * means[kind].error());
 }
 
-// The mean at equilibrium depends neither on damping nor on the gyromagnetic ratio, also in
+// The mean at equilibrium depends neither on damping nor on the gyromagnetic ratio; nor does it in
 // Gilbert's form.
 TEST(GyromagneticOfSites, KeepsLangevinsMean) {
   auto const end = end_of(scene_of(R"toml(

@@ -20,7 +20,8 @@ dt = 0.01
 steps = 1
 )toml";
 
-// Compares H with differences of the energy, whose error is h^4: it has harmonics of any order.
+// Compares H with differences of the energy, whose error is of order angle^4: the energy has
+// harmonics of any order.
 void expect_gradient(io::Scene const& scene, std::vector<std::size_t> const& sites) {
   auto const run = SceneRun::open(scene, {});
   auto const spins = spins_of(*run);
@@ -168,8 +169,8 @@ steps = 1
       "times the exchange of half a cell");
 }
 
-// Two thick layers with an antiferromagnetic bond saturate in a field B where 2 A k tanh(k d) = 2
-// |J|, with k^2 = Ms B / (2 A).
+// Two layers of thickness d with an antiferromagnetic bond saturate in a field B where 2 A k tanh(k
+// d) = 2 |J|, with k^2 = Ms B / (2 A).
 TEST(Interlayers, OfThickLayersSaturateWhereTheContinuumDoes) {
   constexpr double A = 1.5e-11, Ms = 1e6, J = 1.5e-3, thickness = 2e-8;
   auto const excess = [](double B) {

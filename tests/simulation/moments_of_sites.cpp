@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Site-dependent moments, sources and temperatures, compared with closed forms. Statistical limits
-// are three standard errors of fixed seeds. Both precisions have the same noise, so at most one
-// seed in 46 puts any of the 8 values beyond its limit.
+// Site-dependent moments, sources and temperatures, compared with closed forms. Seeds are fixed,
+// and statistical limits are three standard errors. Both precisions have the same noise, so about
+// one seed in 46 would put any of the 8 values beyond its limit.
 #include "scenes_of_text.hpp"
 
 #if defined(CAYSPIN_HAS_FFTW)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A constant acts the same as a number and as an expression, in all that is computed from a scene.
-// Some tests are of results that depend on several terms.
+// A constant acts the same whether it is a number or an expression, in everything that is computed
+// from a scene. Other tests are of results that depend on several terms.
 #include "scenes_of_text.hpp"
 
 #include <random>
@@ -162,7 +162,7 @@ TEST_F(NumbersOrExpressions, RelaxedSpinsHaveTheTorqueThatWasAskedFor) {
   }
 }
 
-// Values that differ along the axis would stay where they are while the spins move.
+// Only spins move along the axis of `follow`. Values that differ along it would not move with them.
 TEST_F(NumbersOrExpressions, NoneMayDifferAlongAnAxisThatFollows) {
   for (std::string const table :
        {"lattice.gyromagnetic='1+x'", "lattice.moments='1+x'", "system.damping='0.1+x'",

@@ -123,7 +123,7 @@ TEST_F(Rates, FindARotationOfAllSpins) {
 // of one spin,
 //   damping (1 - z^2) sqrt(K / 2 pi kT) (K +- h).
 // In a chain, each exchange mode multiplies this by a ratio of its curvatures in the well and at
-// the top. At the top it has one along the ring of saddles and one across it.
+// the top. At the top, a mode has one curvature along the ring of saddles and one across it.
 TEST_F(Rates, InAFieldAlongTheEasyAxis) {
   double const k = 1.3, damping = 0.4, exchange = 8;
   for (double const h : {0.0, -0.2, 0.6, 1.1})

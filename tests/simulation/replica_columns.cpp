@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Which ensembles are stepped as columns of one lattice, and that their replicas move, are sampled
-// and fail like separate runs. tests/program/ensembles.cpp compares their bits in files.
+// Tests which ensembles are stepped as columns of one lattice, and that replicas in columns move,
+// are sampled and fail like separate runs. tests/program/ensembles.cpp compares their bits in
+// files.
 #include "scenes_of_text.hpp"
 #include "simulation/ensemble_run.hpp"
 #include "simulation/failure.hpp"

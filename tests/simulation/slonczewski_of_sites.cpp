@@ -19,7 +19,7 @@ Vector cross(Vector const& a, Vector const& b) {
 }
 double dot(Vector const& a, Vector const& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// dz/dt = a c(z) (1 - z^2), c = 2 L^2 / ((L^2 + 1) + (L^2 - 1) z).
+// z = m.p obeys dz/dt = a c(z) (1 - z^2), c = 2 L^2 / ((L^2 + 1) + (L^2 - 1) z).
 TEST(SlonczewskiOfSites, TurnsAFreeSpinByItsImplicitForm) {
   constexpr double a = 0.3, L = 1.7, t = 2, z0 = -0.6;
   auto const integral = [](double z) {
@@ -39,8 +39,8 @@ TEST(SlonczewskiOfSites, TurnsAFreeSpinByItsImplicitForm) {
   }
 }
 
-// Near m = z or -z a small tilt decays at the rate damping (K + b) + a c, with c = 1 or L^2. Beyond
-// the threshold, where this is 0, the tilt grows.
+// Near m = +-z a small tilt decays at the rate damping (K +- b) +- a c, with c = 1 near z and L^2
+// near -z. Beyond the threshold, where this rate is 0, the tilt grows.
 TEST(SlonczewskiOfSites, HasTheThresholdOfItsAngle) {
   constexpr double damping = 0.05, K = 0.8, b = 0.1, L = 1.5, tilt = 1e-3, t = 40 * 0.02;
   for (double const side : {1.0, -1.0})
@@ -195,7 +195,7 @@ polarization = ["x - 0.5", "y - 0.4", 1]
                                  5);
 }
 
-// The bound on the step uses the largest a, which is at m = -p.
+// The bound on the step uses the strongest torque: that of the strongest site, at m = -p.
 TEST(SlonczewskiOfSites, BoundTheStep) {
   auto const plan_of = [](std::string const& torque) {
     return make_plan(llg_scene("0.1", "heun", 1,
