@@ -43,7 +43,7 @@ TYPED_TEST_SUITE(TermEnergy, Backends, BackendName);
 TYPED_TEST(TermEnergy, IsThatOfThePage) {
   using Fields = typename TypeParam::Spins;
   auto const& lattice = this->lattice;
-  // -m.H: -0.3, -0.72 and 1.2
+  // The energies -m.H of the sites are -0.3, -0.72 and 1.2.
   Vec3<double> const applied{0.3, -0.4, 1.2};
   this->expect_energy("Zeeman", Zeeman{applied}, 0.18, 2.22);
   this->expect_energy("TimeDependentZeeman",
@@ -62,11 +62,11 @@ TYPED_TEST(TermEnergy, IsThatOfThePage) {
   this->expect_energy("InterfacialDmi", InterfacialDmi(lattice, 0.7, {0, 0, 1}), -1.12, 1.12);
   // -K / 2 mz^2
   this->expect_energy("UniaxialAnisotropy", UniaxialAnisotropy(2, {0, 0, 3}), -1.64, 1.64);
-  // -K / 2 mz^2: -1/2 (0.4 * 0 + 1.2 * 0.64 + 0.3 * 1)
+  // The sum of -K / 2 mz^2 over the sites: -1/2 (0.4 * 0 + 1.2 * 0.64 + 0.3 * 1)
   this->expect_energy("SiteDependentUniaxialAnisotropy",
                       SiteDependentUniaxialAnisotropy(constants, Vec3<double>{0, 0, 1}), -0.534,
                       0.534);
-  // 1/2 (m.n)^2 with n = (0, 0.6, 0.8): 0, 0.5 and 0.32
+  // The energies 1/2 (m.n)^2 of the sites, with n = (0, 0.6, 0.8), are 0, 0.5 and 0.32.
   this->expect_energy("SlabDemag", SlabDemag({0, 3, 4}), 0.82, 0.82);
   this->expect_energy("SlabDemag, half", SlabDemag({0, 3, 4}, 0.5), 0.41, 0.41);
 }

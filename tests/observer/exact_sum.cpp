@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A sum that is rounded once: against integers, in any order and in parts, and at the limits of the
-// range.
+// Tests a sum that is rounded only once: against sums of integers, in any order and in parts, and
+// at the limits of the range.
 #include <cayspin/detail/exact_sum.hpp>
 
 #include <gtest/gtest.h>

@@ -255,7 +255,8 @@ template <class Real>
 class CountedEvaluations : public ::testing::Test {};
 TYPED_TEST_SUITE(CountedEvaluations, Precisions, PrecisionName);
 
-// On one site, each evaluation is one call, which the generator counts. Stages differ in time.
+// On one site, each evaluation is one call, which the generator counts. The times are those of the
+// stages.
 TYPED_TEST(CountedEvaluations, AreWhatTheGeneratorSees) {
   using Spins = SpinField<TypeParam, Kokkos::HostSpace>;
   expect_counted<LieEuler<Spins>, Spins>({0});

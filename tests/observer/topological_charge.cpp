@@ -179,7 +179,7 @@ TYPED_TEST(TopologicalCharge, TheNumbersOfThePackage) {
   EXPECT_NEAR(charge(Boundary::open, Boundary::periodic), -0.8933656985875352, bound);
 }
 
-// Lengths do not matter, even if single precision rounds them.
+// Lengths do not matter, even where single precision rounds them.
 TYPED_TEST(TopologicalCharge, SpinsOfAnyLength) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = film(23, 17, Boundary::periodic);

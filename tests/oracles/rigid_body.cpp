@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Single steps and a trajectory of rigid bodies against 70-digit arithmetic.
+// Single steps and trajectories of rigid bodies against 70-digit arithmetic.
 #include "../support/evaluate.hpp"
 #include "steps.hpp"
 

@@ -56,7 +56,8 @@ class ChainOrder : public ::testing::TestWithParam<double> {
   }
 };
 
-/// Expects the largest stable dt of a mode of rate 1, from pairs {damping, dt / number of stages}.
+/// Expects the largest stable dt of a mode of rate 1 at each damping in `limits`, which has pairs
+/// {damping, dt / number of stages}.
 template <class Stepper>
 void expect_stable_per_stage(std::vector<std::pair<double, double>> const& limits,
                              double tolerance) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Orders of the trajectory and of the energy on three random triaxial rigid bodies, over T = 2 and
-// fixed step sizes.
+// Orders of the trajectory and of the energy on three random triaxial rigid bodies, over a time of
+// 2 and for fixed step sizes.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Invalid files: one line that says what is wrong.
+// Invalid files are refused with one line that says what is wrong.
 #include "ovf_test.hpp"
 
 #include <sys/stat.h>

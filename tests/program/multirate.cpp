@@ -99,7 +99,7 @@ TEST_F(MultirateFields, AreTraded) {
   }
 }
 
-// "auto" chooses the faster of evaluating the expensive field once per step and in each stage.
+// "auto" evaluates the expensive field once per step or in each stage, whichever is faster.
 TEST_F(MultirateFields, AreChosenForAnError) {
   run("exact.h5",
       set("field.slab_demag.multirate=false", "integrator={method='rkmk8',dt=0.01,steps=200}"));

@@ -133,7 +133,7 @@ TEST_F(Relax, SaysWhenItDoesNotConverge) {
   EXPECT_GT(info.cost.relaxed->torque, 1e-6);
 }
 
-// Along the hard axis of a film the torque vanishes, too, but the energy is not least.
+// Along the hard axis of a film the torque vanishes, too, but the energy has a saddle.
 TEST_F(Relax, KeepsASaddleOnDemand) {
   for (bool const keeps : {false, true}) {
     Arguments options{"--overwrite", "--set", "initial={ uniform = [0, 1, 0] }"};

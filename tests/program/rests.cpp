@@ -63,7 +63,7 @@ class Rests : public ProgramTest {
   static constexpr auto film =
       "[lattice]\nshape = [5, 4]\n[field]\nexchange = 0.5\nanisotropy = { constant = 0.5, axis = "
       "[0, 0, 1] }\napplied = [0, 0, 0.8]";
-  // One spin at the maximum, one moving down.
+  // Two spins that are not coupled: one starts at or near the maximum, the other moves down.
   static constexpr auto apart = "[lattice]\nshape = [2]\n[field]\napplied = [0, 0, 1]";
 };
 

@@ -45,7 +45,7 @@ TEST_F(TorqueModes, OfAParticleWithAPolarizationAlongItsAxis) {
     }
 }
 
-// In a ring with the spins along z, x + i y = e^(i k j) is a mode, with the eigenvalue
+// In a ring with the spins along z, x + i y = e^(i k j) at site j is a mode, with the eigenvalue
 //   (i - damping) W - i u sin k (1 + damping xi) + (damping - xi) u sin k, W = H + 2 A (1 - cos k).
 // H is the sum of the anisotropy and the applied field, and u the velocity.
 TEST_F(TorqueModes, AreWavesWithADopplerShiftInACurrent) {

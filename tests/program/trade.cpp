@@ -138,7 +138,7 @@ TEST_F(Trading, ItsTextHasEveryRungAndJudgesTheAdvice) {
   }
 }
 
-// Evaluations equal those of a separate run with that dt, and the error is comparable.
+// A rung has the evaluations of a separate run with its dt, and a comparable error.
 TEST_F(Trading, ARungIsARunOfTheScene) {
   auto const reference = exact();
   auto const all = trade({"--seconds", "2"});
@@ -208,7 +208,7 @@ struct Watched : Trading {
   }
 };
 
-// The spin turns by 40 radians in a quarter of the run. An implicit method halves steps that long,
+// The spin turns by 40 radians in a quarter of the run. An implicit method halves such long steps,
 // since they do not converge, so runs with 4 and with 8 steps end equally.
 TEST_F(Watched, OneSpinThatTurnsFast) {
   std::string const scene = R"toml([system]

@@ -159,7 +159,7 @@ TEST_F(ReadFiles, AreNotReplacedByTheOutputOfAnyCommand) {
                "--output", "out.h5"});
 }
 
-// Other files that a run writes: its table, and the .partial file as which it begins its output.
+// A run also writes its table, and it begins its output as a .partial file.
 TEST_F(ReadFiles, AreNotReplacedByFilesBesideTheOutput) {
   write("chain.txt", chain_scene());
   expect_kept("chain.txt", joined({"run", "chain.txt"}, set("output.table=true")));

@@ -81,8 +81,9 @@ class LowestStates(PackageTest):
             found.append(4 * math.pi * sim.energy() / (sim.spins**2).sum())
         return min(found)
 
-    # Lowest states by Luttinger and Tisza, Phys. Rev. 70, 954 (1946), per n mu^2 with n dipoles in
-    # a^3: antiparallel states in spheres, and parallel dipoles in long needles, which have -2 pi/3.
+    # Lowest energies per dipole by Luttinger and Tisza, Phys. Rev. 70, 954 (1946), in units of n
+    # mu^2 with n dipoles in a^3: of antiparallel states in spheres, and of parallel dipoles in long
+    # needles, which have -2 pi/3.
     def test_three_dimensions(self):
         cells = {"shape": [2, 2, 2], "boundary": "periodic"}
         sphere = {"demagnetizing_factors": [1 / 3] * 3}
@@ -102,7 +103,8 @@ class LowestStates(PackageTest):
         planes = (1 - 2 * (plane % 2))[..., None] * [1.0, -1.0, 0.0]
         self.assertAlmostEqual(energy_per_site(fcc, planes, sphere) / 4, -1.808, delta=1e-3)
 
-    # With all images a square lattice has -2.549, and a triangular one -11.034/4.
+    # With all images, the lowest state of a square lattice has -2.549, and that of a triangular one
+    # -11.034/4.
     def test_planes(self):
         square = {"shape": [2, 2], "boundary": "periodic"}
         self.assertAlmostEqual(self.lowest(square), -2.549, delta=6e-4)
@@ -161,8 +163,8 @@ class OtherPrograms(PackageTest):
                              images and {"periodic_images": [images, 0, 0]} or True)
             return 4 * math.pi * sim.energy()
 
-        # For each pair of cells, the nearest image along the first vector and four more on each
-        # side.
+        # Each pair of cells counts with the nearest image along the first vector, and with four
+        # more on each side.
         total, n = 0.0, 5
         for shift in range(-2 - 4 * n, 3 + 4 * n):
             for a, b in itertools.product(range(n), repeat=2):

@@ -63,7 +63,8 @@ class Mumax3Tests(PackageTest):
             sim = cayspin.Simulation(one_cell(
                 {"anisotropy": {"cubic": first, "axes": [[1, 0, 0], [0, 1, 0]],
                                 "constant2": second}}, {"uniform": m}, Ms=1e6))
-            # mumax3 is within 1e-2 of these values, but the closed form, 35254.001, is not.
+            # The script allows 1e-2. The closed form, 35254.001, differs from its first value by
+            # more.
             self.assertAlmostEqual(sim.energy() / 1e-27 / joules_per_volume, 1, delta=1e-6)
 
     # Cubic and both uniaxial terms: if one had a wrong factor, the energy would oscillate.
@@ -79,7 +80,8 @@ class Mumax3Tests(PackageTest):
             sim.run(until=i * 1e-11)
             self.assertAlmostEqual(sim.energy() / start, 1, delta=1e-5)
 
-    # A uniform body: damping takes energy in a nanosecond, and without damping it is conserved.
+    # A uniform body: with damping it loses energy within a nanosecond, and without damping the
+    # energy is conserved.
     def test_anisenergy2(self):
         def change(alpha):
             sim = cayspin.Simulation(scene(

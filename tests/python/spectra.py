@@ -186,8 +186,8 @@ class Thermal(PackageTest):
         expected = lines @ seen.T * (fine[1] - fine[0])
         inside = (self.found.frequency > 0) & (expected > 0.1 * expected.max(1, keepdims=True))
         ratio = self.across[inside] / expected[inside]
-        # Intensities have an exponential distribution, and correlations of 4/9 and 1/36 with the
-        # next bins of Hann's window.
+        # Intensities have an exponential distribution. With Hann's window, they have correlations
+        # of 4/9 and 1/36 with the next two bins.
         error = np.sqrt((1 + 2 * (4 / 9 + 1 / 36)) / (REPLICAS * inside.sum()))
         self.assertLess(4 * error, 0.07)
         self.assertLess(abs(ratio.mean() - 1), 4 * error)

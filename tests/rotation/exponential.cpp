@@ -19,7 +19,8 @@ class ExponentialMap : public ::testing::Test {
         << "|f| = " << size;
   }
 
-  /// Returns numbers around a threshold: exactly it, neighbours, and a little further.
+  /// Returns numbers around a threshold: the threshold itself, its neighbours, and numbers a little
+  /// further away.
   static std::vector<Real> around(Real value) {
     Real const up = std::nextafter(value, std::numeric_limits<Real>::max());
     Real const down = std::nextafter(value, Real(0));
@@ -113,7 +114,7 @@ TYPED_TEST(ExponentialMap, LargeCoordinatesKeepTheAxisAndTheSphere) {
   }
 }
 
-// From 0 through |f| = 1/2, where the closed form replaces the series, to 6.
+// |f| goes from 0 through 1/2, where the closed form replaces the series, to 6.
 TYPED_TEST(ExponentialMap, InverseTangentThroughItsSwitch) {
   using Real = TypeParam;
   unsigned seed = 0;

@@ -39,7 +39,7 @@ class Packs : public ::testing::Test {
     for (int round = 0; round < 40; ++round) {
       std::vector<Vec3<Real>> f, x;
       for (int i = 0; i < lanes; ++i) {
-        // A pack contains vectors of very different sizes; in every second round up to the limits.
+        // A pack contains vectors of very different sizes, in every second round up to the limits.
         int const number = i * 7 + round;
         int const power = round % 2 == 0 ? number % 24 - 18 : largest_power * (number % 7 - 3) / 3;
         long double const size = std::pow(10.0L, power);

@@ -71,7 +71,7 @@ inline Long exponential_inverse_tangent(Long const& f, Long const& y) {
   return y - 0.5L * c + exponential_coefficient(norm(f)) * outer(f, c);
 }
 
-/// Returns a direction for the number of a case, normalised in long double.
+/// Returns a random direction for this seed, normalised in long double.
 inline Long direction(unsigned seed) {
   auto const d = random_directions(1, seed);
   Long const a{d[0], d[1], d[2]};

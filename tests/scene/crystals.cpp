@@ -106,7 +106,7 @@ TEST(Crystals, WordsAreCells) {
   }
 }
 
-// Expects the textbooks' numbers of neighbours of each site at the first distances.
+// Expects each site to have as many neighbours at the first distances as textbooks say.
 TEST(Crystals, ShellsHoldTheNeighboursOfTextbooks) {
   struct Case {
     Crystal crystal;
@@ -246,8 +246,8 @@ TEST(Crystals, ExpressionsThatFailAreNamed) {
             "accepted");
 }
 
-// Returns numbers for `frames` frames of 48 sites. They differ from place to place, so that a
-// number read from a wrong place is noticed.
+// Returns numbers for `frames` frames of 48 sites, which vary so that a value read from a wrong
+// place shows.
 std::vector<double> numbered(std::size_t frames) {
   std::vector<double> numbers(frames * 144);
   for (std::size_t n = 0; n < numbers.size(); ++n) numbers[n] = 1 + static_cast<double>(n * n % 89);

@@ -136,7 +136,7 @@ TEST(FreeBoundary, IsAlsoThatOfVacancies) {
           EXPECT_NEAR(of_x[n], one * (!has(i - 1, j, k) + !has(i + 1, j, k)), 1e-15);
           EXPECT_NEAR(of_y[n], one * (!has(i, j - 1, k) + !has(i, j + 1, k)), 1e-15);
         }
-    // The values for a part of the lattice equal those for the whole there.
+    // In a part of the lattice, the values are those of the whole lattice.
     for (auto const& term : scene.field.anisotropies) {
       SiteBox const box{{1, 1, 1}, {2, 2, 1}};
       auto const all = numbers_of_sites(scene, term.factors, "", whole(scene));

@@ -134,7 +134,8 @@ std::string refusal_of_cell(Folder const& folder, std::string const& unit_cell,
   return message.substr(std::min(begin.size(), message.size()));
 }
 
-// The text contains the cell: a trajectory stores the text, and may be moved away from the file.
+// The scene's text contains the cell: a trajectory stores the text, and may be moved away from the
+// file of the cell.
 TEST(UnitCellFile, TextOfTheSceneHasTheCell) {
   Folder const folder;
   auto const scene = read_with(folder, text_of("honeycomb_with_dmi.ucf"));

@@ -101,8 +101,7 @@ inline std::vector<std::string> rows_of(std::string_view table) {
 
 /// Each row has columns separated by " | ":
 /// - keys to type, "key = VALUE; ..", which make the scene wrong;
-/// - the message after the file and line; if it starts with ".", "[" or ":", it continues the last
-/// key;
+/// - the message after file and line; if it starts with one of ".[:", it follows the last key;
 /// - text that the message contains;
 /// - any fourth column, for a message that does not say what is accepted; others must.
 /// The message must be one line and name the line of the key.

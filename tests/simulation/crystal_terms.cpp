@@ -199,7 +199,7 @@ TEST(CrystalTerms, SpinsTurnAtTheFrequencyOfTheirResonance) {
   constexpr double K = -0.3, K2 = 0.2;
   expect_period("{ cubic = -0.3, constant2 = 0.2, axes = [[1, 0, 0], [0, 1, 0]] }",
                 "[1, 1.0003, 1]", -4.0 / 3 * (K + K2 / 3));
-  // The spin is in an easy plane whose energy is P m_c^2 / 2, with P = of_plane.
+  // The spin is in an easy plane whose energy is P m_z^2 / 2, with P = of_plane.
   constexpr double of_plane = 0.8, of_six = 0.02;
   expect_period(
       "[{ constant = -0.8, axis = [0, 0, 1] }, { hexagonal = -0.02, axis = [0, 0, 1], in_plane = "

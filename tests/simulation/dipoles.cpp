@@ -100,7 +100,7 @@ TEST(Dipoles, OfScenesAreSumsOverPairs) {
     }
 }
 
-// At each site, the field of couplings is divided by the moment, the dipolar field is not.
+// At each site, the field of couplings is divided by the moment; the dipolar field is not.
 TEST(Dipoles, StandBesideCouplings) {
   std::string const lattice = "shape = [3, 4, 2]\ncrystal = 'bcc'\nmoments = [0.5, 2]\n",
                     couplings =

@@ -55,7 +55,7 @@ TEST(Pulses, AreLookedForWhereTheFieldDependsOnTime) {
   EXPECT_FALSE(plan.features->shortest);
 }
 
-// Errors are against a reference whose steps end at all corners of the field.
+// Errors are distances from a reference whose steps end at all corners of the field.
 TEST(Pulses, RandomOnesAreFollowedToTheTolerance) {
   static constexpr char const* methods[] = {"tsit5", "dp5", "bs3", "projected_dp5",
                                             "stiff2_adaptive"};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Methods that divide by the length of a spin, in scenes with vacant sites. These are compared with
-// a lattice of the remaining shape; or, if one site of the cell has no spin, with a cell without
-// that site.
+// Methods that divide by the length of a spin, in scenes with vacant sites. Runs are compared with
+// those on a lattice of the remaining shape or, if one site of the cell has no spin, with those of
+// a cell without that site.
 #include "random_run.hpp"
 #include "scenes_of_text.hpp"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Approximations to (c + b K)^-1, compared with K applied site by site in double.
+// Approximations to (c + b K)^-1, where K is minus the Laplacian with couplings, compared with K
+// applied site by site in double.
 #include "problems.hpp"
 
 #include <cayspin/solver/helmholtz.hpp>

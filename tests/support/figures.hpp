@@ -56,8 +56,8 @@ inline void expect_order(std::string const& what, double order, double expected,
   EXPECT_NEAR(order, expected, tolerance) << what;
 }
 
-/// Expects the error error(steps, dt) to be of order `expected` in dt = end_time / steps, where
-/// `ladder` lists the numbers of steps.
+/// Expects error(steps, dt) to be of order `expected` in dt = end_time / steps. `ladder` lists the
+/// numbers of steps.
 template <class Ladder, class Error>
 void expect_convergence(std::string const& what, double end_time, Ladder const& ladder,
                         double expected, double tolerance, Error const& error) {

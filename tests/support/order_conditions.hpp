@@ -75,7 +75,7 @@ double defect(int of_order, double s, Weight const& w) {
 }
 
 /// Expects weights to satisfy the conditions up to `order` (at most 6) within `exact`, and to miss
-/// those of the next order, unless this is 7, by more than `missed`.
+/// those of the next order, if that is at most 6, by more than `missed`.
 template <class Tableau, class Weight>
 void expect_conditions(char const* name, int order, double exact, double missed, Weight const& w,
                        double s = 1) {

@@ -179,8 +179,7 @@ class RandomPulses {
     });
   }
 
-  /// Returns the spin at the end. Classical Runge-Kutta steps lead to it, some of which end at the
-  /// corners.
+  /// Returns the spin at the end, from classical Runge-Kutta steps, none of which crosses a corner.
   Triple exact() const {
     auto m = start;
     auto const all = corners();

@@ -246,7 +246,8 @@ TYPED_TEST(Thermal, CopiesTakeStepsOfOtherLengths) {
   EXPECT_NE(turned(copy, 0.2), expected);
   EXPECT_EQ(turned(noise, 0.1), expected);
   EXPECT_EQ(turned(copy, 0.1), expected);
-  // This also holds for noise with a field of mobile sites, and after an assignment.
+  // Copies of noise with a field of mobile sites also keep their own turns, and so does noise that
+  // was assigned to.
   ScalarField<typename TypeParam::Real, typename TypeParam::MemorySpace> const moves("moves",
                                                                                      lattice, 1);
   Noise const moving(like, 0.5, {.temperature = 0.4, .seed = 3}, moves);

@@ -87,7 +87,8 @@ void expect_stored(std::filesystem::path const& path, TrajectoryHeader const& he
 
 TEST_F(TrajectoryTest, CrystalsLieSiteBySiteAndComeBackAsTheyWere) {
   auto const path = folder_ / "a.h5";
-  // Chunks bypass HDF5 if their planes are whole pages (here three); other chunks do not.
+  // Uncompressed chunks that hold planes of a single frame bypass HDF5, among them those of the
+  // larger shape in double precision, whose planes are three pages. Other chunks do not.
   for (std::array<std::int64_t, 3> const shape :
        {std::array<std::int64_t, 3>{4, 3, 9}, {32, 16, 9}})
     for (int const compression : {0, 1})

@@ -61,7 +61,7 @@ TEST_F(TrajectoryTest, OutputHoldsWhatWasHandedOver) {
   write_and_expect<float>(folder_ / "single.h5", "single");
 }
 
-// Frames that are one chunk bypass HDF5's filters; others use them.
+// Frames are written whole or in chunks of one plane. Both files have the same spins.
 TEST_F(TrajectoryTest, OutputIsTheSameWithAndWithoutChunks) {
   auto const whole = folder_ / "whole.h5", cut = folder_ / "cut.h5";
   for (auto const& [path, chunk] : {std::pair{whole, 0}, {cut, 1}}) {

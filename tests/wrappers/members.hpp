@@ -204,7 +204,8 @@ auto derivative(Function const& f, double h) {
   return (1 / (12 * h)) * (8.0 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h)));
 }
 
-/// `factors`: H is -dE/dm times the factor of the site; empty: times 1.
+/// Checks every member of a term. `factors`: H is -dE/dm times the factor of the site; if it is
+/// empty, the factors are 1.
 template <class Real, class Term>
 void expect_members(std::string const& name, Term const& term, Setting<Real> const& on,
                     std::vector<double> const& factors = {}) {
@@ -228,7 +229,8 @@ void expect_members(std::string const& name, Term const& term, Setting<Real> con
   is.expect_turns(here.turning, field, m, "turning_field");
   is.expect_turns(here.added_turning, with_added, m, "add_turning_field");
 
-  // Two parts make up the field, and the neighbour field does not depend on the spin itself.
+  // The neighbour field and the local field add up to the field, and the neighbour field does not
+  // depend on the site's own spin.
   if constexpr (detail::comes_in_parts<Prepared, Stencil>()) {
     is.expect_turns(here.neighbor - (-1.0 * here.local), field, m,
                     "neighbor_field and local_field");

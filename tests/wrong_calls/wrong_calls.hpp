@@ -22,8 +22,8 @@ Field moved_from(Lattice const& lattice) {
   return field;
 }
 
-/// Returns lattices that differ from this one: in shape, in shape with equally many sites, in
-/// boundaries, and in spacings.
+/// Returns lattices that differ from this one: in the number of sites, in the shape with equally
+/// many sites, in boundaries, and in spacings.
 inline std::vector<std::pair<std::string, Lattice>> lattices_of_others(Lattice const& own) {
   auto wider = own, turned = own, closed = own, coarser = own;
   wider.shape[0] += 1;
