@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Every valid combination of method, generator, isotropy and rotation in a scene converges at its
-// order, on spins and on rigid bodies.
+// Every valid combination of method, generator, isotropy and rotation converges at its order in
+// scenes of spins and of rigid bodies, if the method has equal steps.
 #include "../support/method_choice.hpp"
 #include "program_test.hpp"
 

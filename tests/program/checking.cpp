@@ -42,7 +42,7 @@ TEST_F(Checking, StableDtIsThatOfTheStabilityPolynomial) {
   }
 }
 
-// The stiff chain, and lattices in 2D and 3D, in an applied field of 5; all other constants are 1.
+// The stiff chain, and lattices in 2D and 3D, with an applied field of 5 and other terms of 1.
 TEST_F(Checking, StableDtOfLattices) {
   Arguments const stiff =
       set("system.damping=0.05", "initial.random.seed=1",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// integrator.energy_control holds the initial energy, with any method.
+// integrator.energy_control makes the drift of the energy at least thirty times smaller.
 #include "program_test.hpp"
 
 #include <cmath>

@@ -40,8 +40,8 @@ class Ensembles : public ProgramTest {
     return found;
   }
 
-  /// Expects that a separate run of the scene has the same bits as the replica, in the frames and the
-  /// samples.
+  /// Expects that a separate run of the scene has the same bits as the replica, in the datasets of
+  /// frames and of samples.
   void expect_run(std::int64_t replica, std::string const& scene, Arguments const& more) const {
     write("one.toml", scene);
     auto const outcome =

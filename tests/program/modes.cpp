@@ -13,8 +13,9 @@
 namespace cayspin::program::test {
 namespace {
 
-// Problem of Baker et al. 2017. Expects all eigenvalues of the dense matrix, computed in NumPy with
-// Newell's tensors. A matrix pencil applied to OOMMF's run in time finds four of them, to 4e-4 GHz.
+// Problem of Baker et al. 2017. Expects the seven lowest eigenvalues of the dense matrix, computed
+// in NumPy with Newell's tensors. A matrix pencil applied to OOMMF's run in time finds four of
+// them, to 4e-4 GHz.
 TEST_F(Modes, OfTheStandardProblemOfResonance) {
   auto const outcome = modes(R"toml(units = "SI"
 [material]

@@ -20,7 +20,7 @@ TEST(ThermalScene, TemperatureAndSeedArrive) {
   EXPECT_EQ(scene_of(llg_scene, {"thermal.temperature=0.5"}).thermal->temperature, 0.5);
 }
 
-// Temperature 0 means no noise, which can be combined with everything.
+// Temperature 0 means no noise, so keys that a temperature excludes are accepted.
 TEST(ThermalScene, TemperatureZeroGoesWithEverything) {
   for (auto const& other : std::vector<std::vector<std::string>>{
            {"system.damping=0.0"},
