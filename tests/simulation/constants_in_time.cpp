@@ -68,7 +68,8 @@ boundary = ["open", "periodic", "open"]
 regions = "i < 7 ? 0 : j % 2 + 1"
 )toml";
 
-/// Returns all terms, with the constants of anisotropy multiplied by `K`.
+/// Returns a table [field] with exchange, DMI, an applied field, a slab's demag, and anisotropies
+/// whose constants are multiplied by `K`.
 std::string field_of(std::string const& exchange, std::string const& dmi, double K) {
   return fmt::format(R"toml(
 [field]
@@ -91,7 +92,7 @@ std::string with_method(io::Method const& method) {
       method.word, method.adaptive ? "tolerance = 1e-5\n" : "");
 }
 
-// Constant factors act like multiplied constants, with every method.
+// Constant factors act like multiplied constants, with every method that accepts the terms.
 TEST(ConstantsInTime, AreTheConstantsTimesTheirFactors) {
   struct Terms {
     std::string exchange, exchange_half, dmi, dmi_more;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Random scenes with all terms, vacancies, frozen sites and crystals. Compares the derivative of
+// Random scenes with many terms, vacancies, frozen sites and crystals. Compares the derivative of
 // the energy, the torque and the lowest curvature with finite differences and a dense Hessian.
 #include "io/scene.hpp"
 #include "scenes_of_text.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The a-priori bound: the largest eigenvalue of the exchange, and the step limit of every method.
+// The a-priori bound: the largest eigenvalue of the exchange, and the step limits of methods.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 

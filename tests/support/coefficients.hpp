@@ -24,7 +24,7 @@ auto numbers_on(Lattice const& lattice, Value const& value) {
 }
 
 /// Returns random numbers between `least` and `most`, which depend only on the seed, not on the
-/// platform; every `zeros`-th is zero.
+/// platform. If `zeros` is not 0, every `zeros`-th is zero.
 template <class Spins>
 auto random_numbers_on(Lattice const& lattice, double least, double most, unsigned seed,
                        int zeros = 0) {

@@ -86,7 +86,7 @@ Setting<Real> random_setting(unsigned seed) {
   return on;
 }
 
-/// Calls visit(name, term) for every term of the library.
+/// Calls visit(name, term) for many terms of the library and for BiquadraticBonds.
 template <class Real, class Visit>
 void for_each_term(Setting<Real> const& on, Visit const& visit) {
   using Field = typename Setting<Real>::Field;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Every wrapper around every term, in double precision.
+// The library's wrappers around many of its terms, in double precision.
 #include "compositions.hpp"
 
 namespace cayspin::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Every wrapper around every term, in single precision.
+// The library's wrappers around many of its terms, in single precision.
 #include "compositions.hpp"
 
 namespace cayspin::test {
