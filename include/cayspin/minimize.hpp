@@ -68,7 +68,10 @@ class Minimizer {
     for (;;) {
       auto const end = descent_.descend(exec, field, spins, options);
       if (end && *end != MinimizeEnd::stagnated) return ended(*end);
-      if (options.keep_saddles) return ended(end.value_or(MinimizeEnd::converged));
+      if (options.keep_saddles) {
+        if (options.lowest_curvature) find_curvature(exec, field, spins, options);
+        return ended(end.value_or(MinimizeEnd::converged));
+      }
       if (auto const at_rest = leave_saddle(exec, field, spins, options))
         return ended(end ? *end : *at_rest);
       if (descent_.so_far.evaluations >= options.evaluations)
@@ -96,10 +99,7 @@ class Minimizer {
   template <class Exec, class Field>
   std::optional<MinimizeEnd> leave_saddle(Exec const& exec, Field const& field, Spins& spins,
                                           MinimizeOptions const& options) {
-    descent_.lbfgs.pairs().forget();
-    descent_.lbfgs.preconditioner().forget_curvature();
     auto const found = find_curvature(exec, field, spins, options);
-    descent_.so_far.curvature = found.value;
     if (!found.is_negative) return MinimizeEnd::converged;
     ++descent_.so_far.saddles;
     // Turns the spins along or against the vector by ever smaller angles, until the energy is
@@ -125,10 +125,12 @@ class Minimizer {
     return MinimizeEnd::stagnated;
   }
 
-  /// Finds the lowest curvature, and writes its vector into search.direction.
+  /// Finds the lowest curvature, stores it in so_far, and writes its vector into search.direction.
   template <class Exec, class Field>
   detail::LowestCurvature find_curvature(Exec const& exec, Field const& field, Spins const& spins,
                                          MinimizeOptions const& options) {
+    descent_.lbfgs.pairs().forget();
+    descent_.lbfgs.preconditioner().forget_curvature();
     auto const& pairs = descent_.lbfgs.pairs();
     detail::CurvatureArrays<Spins> const arrays{
         descent_.search.direction, pairs.step(0),  pairs.step(1), pairs.step(2),
@@ -148,6 +150,7 @@ class Minimizer {
          .stream = descent_.so_far.saddles},
         descent_.precondition(exec));
     descent_.so_far.evaluations += hessian.evaluations();
+    descent_.so_far.curvature = found.value;
     return found;
   }
 

@@ -220,16 +220,18 @@ class PathFinder {
     auto const& [image, fraction] = valley->place;
     auto& spins = saddle_.spins();
     point_between(exec_, string_.spins(image), string_.spins(image + 1), fraction, spins);
-    auto const found = minimize(exec_, field_, spins,
-                                {.torque = options_.torque,
-                                 .evaluations = options_.evaluations,
-                                 .time = options_.time,
-                                 .preconditioned = options_.preconditioned,
-                                 .observer = [this](Minimum const& now) {
-                                   return proceeds(now.evaluations, now.energy.value, now.torque)
-                                              ? Next::proceed
-                                              : Next::stop;
-                                 }});
+    auto const so_far = found_.evaluations;
+    auto const found =
+        minimize(exec_, field_, spins,
+                 {.torque = options_.torque,
+                  .evaluations = std::max<std::int64_t>(1, options_.evaluations - so_far),
+                  .time = options_.time,
+                  .preconditioned = options_.preconditioned,
+                  .observer = [this, so_far](Minimum const& now) {
+                    return proceeds(so_far + now.evaluations, now.energy.value, now.torque)
+                               ? Next::proceed
+                               : Next::stop;
+                  }});
     found_.evaluations += found.evaluations;
     stopped_ = found.end == MinimizeEnd::interrupted;
     if (found.end != MinimizeEnd::converged || is_known(spins)) return false;

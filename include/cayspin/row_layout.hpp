@@ -52,6 +52,7 @@ struct RowLayout {
     layout.nz = static_cast<std::int32_t>(lattice.shape[2] * lattice.replicas);
     for (std::size_t axis = 0; axis < 3; ++axis)
       layout.periodic[axis] = lattice.boundary[axis] == Boundary::periodic;
+    if (layout.nx == 1) layout.periodic[0] = false;  // no neighbours
     layout.own = {
         static_cast<std::int32_t>(lattice.ghosts[1].before),
         static_cast<std::int32_t>(layout.ny - lattice.ghosts[1].after),

@@ -286,17 +286,20 @@ class Notes {
       if (value != 0 && !(std::abs(value) >= least && std::abs(value) <= most))
         add(key, fmt::format("{:.6g} {}", value, meaning));
     };
+    // With factors of sites the constant is only their unit.
+    double const exchange =
+        scene_.field.exchange_factors.there() ? 0 : material.exchange.value_or(0);
     look("material.gamma", material.gamma, 1e9, 1e13,
          "rad/(s T) is far from an electron's 1.76e11; in m/(A s) that is 2.21e5");
     if (material.atomistic) {
       look("material.mu_s", material.moment, 1e-26, 1e-20,
            "J/T is far from a Bohr magneton, 9.274e-24 J/T");
-      look("material.J", material.exchange.value_or(0), 0, 1e-18,
+      look("material.J", exchange, 0, 1e-18,
            "J is far above the bonds of spins; 1 meV is 1.602e-22 J");
     } else {
       look("material.Ms", material.moment, 100, 1e7,
            "A/m is far from those of magnets; mu0 Ms = 1 T is 7.96e5 A/m");
-      look("material.A", material.exchange.value_or(0), 0, 1e-9,
+      look("material.A", exchange, 0, 1e-9,
            "J/m is far above those of magnets, about 1e-11 J/m");
     }
     for (double const edge : scene_.lattice.spacing)

@@ -53,6 +53,7 @@ bool ran_alike(io::Scene const& before, io::Scene const& scene, Plan const& plan
          before.integrator.energy_control == scene.integrator.energy_control &&
          before.integrator.substeps == scene.integrator.substeps &&
          before.lattice.follow.has_value() == scene.lattice.follow.has_value() &&
+         (before.integrator.until_torque || !scene.integrator.until_torque) &&
          has_slow_field(before) == has_slow_field(scene);
 }
 
@@ -69,7 +70,9 @@ std::string other_lattice_key(io::Scene const& before, io::Scene const& scene) {
 // Returns true for keys that may differ without a warning in a continued run: its start, end and
 // output. The lattice is checked separately.
 bool is_of_one_run(std::string const& key) {
-  return key.starts_with("output") || key.starts_with("initial") || key.starts_with("lattice.") ||
+  bool const is_checked = key.starts_with("lattice.") && !key.starts_with("lattice.regions") &&
+                          !key.starts_with("lattice.follow");
+  return is_checked || key.starts_with("output") || key.starts_with("initial") ||
          key.starts_with("stage") || key == "integrator.steps" || key == "integrator.end";
 }
 

@@ -76,11 +76,14 @@ TorqueMotion motion_of(Space const& exec, io::Scene scene, Lattice const& lattic
   if (auto& demag = scene.field.demag) demag->multirate = false;
   if (auto& slab = scene.field.slab_demag) slab->multirate = false;
   TorqueMotion motion;
-  motion.frozen = io::frozen(scene, {{0, 0, 0}, lattice.shape});
+  io::SiteBox const all{{0, 0, 0}, lattice.shape};
+  motion.frozen = io::frozen(scene, all);
   motion.epsilon = std::numeric_limits<Real>::epsilon();
   auto const [precession, damping] = turning_of_sites(scene);
+  auto const moments = io::all_moments(scene, all);
   for (std::size_t site = 0; site < precession.size(); ++site)
-    motion.turning.push_back(std::hypot(precession[site], damping[site]));
+    motion.turning.push_back(std::hypot(precession[site], damping[site]) *
+                             (moments.empty() ? 1 : moments[site]));
   motion.is_interrupted = [poll = options.poll] { return poll && poll() == Next::stop; };
   motion.rates = [exec, generator = SceneGenerator<Spins>(scene, lattice),
                   spins = Spins("modes::shifted", lattice),

@@ -170,7 +170,8 @@ TrajectoryInfo read_info_while_written(std::filesystem::path const& path) {
 
 std::optional<bool> is_being_written(std::filesystem::path const& path) {
   char const* const locking = std::getenv("HDF5_USE_FILE_LOCKING");
-  if (locking && std::string_view(locking) == "FALSE") return std::nullopt;
+  if (locking && (std::string_view(locking) == "FALSE" || std::string_view(locking) == "0"))
+    return std::nullopt;
   int const file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (file < 0) return std::nullopt;
   bool const got = ::flock(file, LOCK_SH | LOCK_NB) == 0;

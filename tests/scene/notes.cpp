@@ -108,6 +108,8 @@ TEST(Notes, NameMagnitudesOfOtherUnits) {
   };
   EXPECT_TRUE(notes_of("Ms = 8e5, A = 1.3e-11, alpha = 0.1").empty());
   EXPECT_TRUE(notes_of("mu_s = 2.2e-23, J = 1e-21, alpha = 0.1").empty());
+  EXPECT_TRUE(notes_of("Ms = '8e5 + i', A = '1e-11 + i * 1e-13', alpha = 0.1").empty());
+  EXPECT_TRUE(notes_of("mu_s = 2.2e-23, J = '1e-21 * (1 + i)', alpha = 0.1").empty());
   for (auto const& [material, key] :
        {std::pair{"Ms = 1.0, A = 1.3e-11, alpha = 0.1", "material.Ms"},
         std::pair{"Ms = 8e5, A = 13, alpha = 0.1", "material.A"},

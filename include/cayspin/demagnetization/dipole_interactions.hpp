@@ -69,7 +69,13 @@ class InteractionsOfDipoles {
     }
     require(periods.empty() || !has_number,
             "a number of images along one axis, and infinitely many along another");
-    if (!periods.empty()) images_.emplace(periods);
+    if (!periods.empty()) {
+      auto const [shortest, longest] = std::ranges::minmax(
+          periods, {}, [](Point const& period) { return detail::length(period); });
+      require(length(longest) <= largest_period_ratio * length(shortest),
+              "infinitely many images along axes whose lengths differ by more than 1e4 : 1");
+      images_.emplace(periods);
+    }
     auto const [x, y, z] = lattice.spacing;
     scale_ = options.strength * x * y * z;
     if (periods.size() == 3)

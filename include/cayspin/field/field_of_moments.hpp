@@ -96,6 +96,8 @@ class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Fie
 
   template <class Spins>
   void check_spins(Spins const& spins) const {
+    static_assert(std::is_same_v<typename Spins::memory_space, MemorySpace>,
+                  "FieldOfMoments was made for spins in another memory space.");
     require_lattice("cayspin::FieldOfMoments", moments_.lattice(), spins.lattice());
   }
   // For Forwarding.
@@ -128,6 +130,8 @@ class ZeemanOfMoments : public detail::PreparedOnce {
 
   template <class Spins>
   void check_spins(Spins const& spins) const {
+    static_assert(std::is_same_v<typename Spins::memory_space, MemorySpace>,
+                  "ZeemanOfMoments was made for spins in another memory space.");
     require_lattice("cayspin::ZeemanOfMoments", moments_.lattice(), spins.lattice());
   }
   template <class Exec, class Spins>

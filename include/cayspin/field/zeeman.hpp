@@ -47,7 +47,7 @@ class TimeDependentZeeman {
 
   template <class Exec, class Spins>
   Zeeman prepare(Exec const&, Spins const&, double t) const {
-    return Zeeman{applied_(t)};
+    return Zeeman{detail::finite(applied_(t), "cayspin::TimeDependentZeeman: the applied field")};
   }
   Applied const& applied() const { return applied_; }
 

@@ -139,6 +139,7 @@ class RigidBodyEnsemble {
   bool is_stationary(Exec const&, Spins const&) const {
     return true;
   }
+  bool conserves_energy() const { return true; }
 
  private:
   Tensors tensors_;

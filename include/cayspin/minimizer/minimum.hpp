@@ -48,8 +48,8 @@ struct Minimum {
   std::int64_t iterations = 0, evaluations = 0;  ///< evaluations of the field over all sites
   std::int64_t saddles = 0;                      ///< saddles left on the way
   /// For a converged state, an upper bound of the least eigenvalue of the energy's Hessian on the
-  /// tangent planes of mobile spins; with lowest_curvature, the eigenvalue. With keep_saddles it is
-  /// not computed, and infinity.
+  /// tangent planes of mobile spins; with lowest_curvature, the eigenvalue. With keep_saddles and
+  /// without lowest_curvature it is not computed, and infinity.
   double curvature = std::numeric_limits<double>::infinity();
 };
 

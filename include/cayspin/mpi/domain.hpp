@@ -37,7 +37,6 @@ class Domain final : public Part {
       : whole_(agreed(comm, lattice, depth, division)),
         division_(division),
         depth_(in_whole_cells(depth, lattice)) {
-    lattice.validate();
     cayspin::detail::require_one_replica("cayspin::mpi::Domain", lattice);
     require_division(lattice, depth, division, size_of(comm));
     MPI_Comm_dup(comm, &comm_);
@@ -95,7 +94,7 @@ class Domain final : public Part {
   /// throws std::invalid_argument.
   static Lattice const& agreed(MPI_Comm comm, Lattice const& lattice, Depth const& depth,
                                Division const& division = {}) {
-    constexpr std::size_t count = 14;
+    constexpr std::size_t count = 15;
     // Numbers, then their complements: the maximum of a complement is the complement of the
     // minimum.
     std::array<std::int64_t, 2 * count> given{};
@@ -104,6 +103,7 @@ class Domain final : public Part {
     given[2] = division.z;
     given[12] = depth.y;
     given[13] = depth.z;
+    given[14] = lattice.replicas;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       given[3 + axis] = lattice.shape[axis];
       given[6 + axis] = std::bit_cast<std::int64_t>(lattice.spacing[axis]);
@@ -117,6 +117,7 @@ class Domain final : public Part {
       if (largest[i] != ~largest[count + i])
         throw std::invalid_argument(
             "cayspin::mpi::Domain: the ranks were given different lattices, depths or divisions");
+    lattice.validate();
     return lattice;
   }
 

@@ -68,6 +68,8 @@ def main():
     except ModuleNotFoundError as error:
         message = (f"cayspin: there is no Python package {error.name}; accepted: a Python "
                    "with numpy, h5py and tornado")
+    except ImportError as error:
+        message = f"cayspin: {error}"
     except ValueError as error:
         message = error
     except OSError as error:
