@@ -4,9 +4,9 @@
 #                  [ON_HOST_DEVICE])
 # One GoogleTest program test_<name>, linked to cayspin and started by tests/main.cpp, which runs it
 # inside Kokkos. THREADS registers one entry per count where a threaded host backend is compiled in;
-# otherwise there is one entry with two threads. BATCH: compiles so many files as one, and their
-# common headers once. FAST: compiles the program to run fast. ON_HOST_DEVICE: adds a second
-# program, test_<name>_on_host_device.
+# otherwise there is one entry with two threads. BATCH: compiles that many files as one, so that
+# headers they share are compiled once. FAST: compiles the program to run fast. ON_HOST_DEVICE: adds
+# a second program, test_<name>_on_host_device.
 function(cayspin_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "FAST;ON_HOST_DEVICE" "BATCH;TIMEOUT"
                         "SOURCES;LIBRARIES;LABELS;THREADS")

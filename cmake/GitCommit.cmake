@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # Target cayspin_git_commit: <cayspin_git_commit.hpp> defines CAYSPIN_GIT_COMMIT, the full commit
 # followed by "-dirty" when tracked files differ from it, or "unknown" outside a repository.
-# The commit is looked up at every build, and the header written only if it has changed. The look-up
-# is this file, run as a script (cmake -P).
+# The commit is looked up at every build, but the header is written only if the commit has changed.
+# The look-up runs this file as a script (cmake -P).
 if(CMAKE_SCRIPT_MODE_FILE)
   cmake_policy(VERSION 3.25)
   set(commit "")

@@ -34,7 +34,7 @@ install(FILES ${PROJECT_BINARY_DIR}/cayspinConfig.cmake
               cmake/cayspinFftw.cmake DESTINATION ${package_dir})
 
 include(${CMAKE_CURRENT_LIST_DIR}/PkgConfig.cmake)
-# Flags that a target needs to link with cayspin.
+# Flags that a program needs to be compiled and linked with cayspin.
 set(definitions $<TARGET_PROPERTY:cayspin,INTERFACE_COMPILE_DEFINITIONS>)
 set(folders "-I\${prefix}/include/kokkos") # of a Kokkos that is installed with cayspin
 if(Kokkos_DIR)

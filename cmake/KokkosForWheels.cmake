@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # Builds Kokkos from source within the build of a wheel, if none is installed, or if the wheel is
-# for another processor than this one.
+# not for this processor only.
 if(NOT CAYSPIN_KOKKOS_SOURCE)
   message(STATUS "fetch Kokkos' source")
   execute_process(COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/bootstrap.sh kokkos-source
@@ -13,8 +13,8 @@ if(NOT CAYSPIN_KOKKOS_SOURCE)
 endif()
 set(Kokkos_ENABLE_OPENMP ON)
 set(Kokkos_ENABLE_SERIAL ON)
-# Kokkos passes -march=haswell or -march=skylake-avx512. They go beyond the level, but only with
-# instructions that compilers do not use by themselves.
+# Kokkos passes -march=haswell or -march=skylake-avx512. These options go beyond the levels
+# x86-64-v3 and x86-64-v4, but only by instructions that compilers do not use by themselves.
 set(architecture_of_native NATIVE)
 set(architecture_of_x86-64-v3 HSW)
 set(architecture_of_x86-64-v4 SKX)

@@ -2,8 +2,8 @@
 # Makes files for pkg-config, for build systems other than CMake. Kokkos has no such file, so ours
 # include the flags of the Kokkos that cayspin was built with.
 
-# Lists the libraries that a target links with, and recursively those that they link with, in the
-# linker's order.
+# Adds to the list `flags` the libraries that a target links with, and the libraries that these link
+# with, in the order for the linker.
 function(cayspin_link_flags target flags)
   # A Kokkos that is built within this project finds these packages only for itself.
   if(NOT TARGET ${target} AND target MATCHES "^(OpenMP|Threads|CUDA)::")

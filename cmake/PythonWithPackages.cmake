@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # cayspin_find_python(<variable> <modules> <doc>): finds an interpreter that imports the modules,
-# such as "h5py, matplotlib". The first one on PATH may lack them. It may also find them in
+# such as "h5py, matplotlib". The first one on PATH may lack them. The modules may also be in
 # .deps/site, which has the theme of the documentation's site.
 function(imports_modules result candidate)
   execute_process(

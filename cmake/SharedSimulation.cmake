@@ -3,7 +3,7 @@
 # interface and the Python module link. Otherwise each of them contains a copy.
 # CAYSPIN_KOKKOS_IN_SHARED_LIBRARIES: Kokkos can be linked into shared libraries.
 
-# A Kokkos built with cayspin is position-independent if cayspin requests it.
+# A Kokkos that is built together with cayspin is position-independent if cayspin requests that.
 set(CAYSPIN_KOKKOS_IN_SHARED_LIBRARIES ON)
 if(Kokkos_FOUND)
   set(probe ${PROJECT_BINARY_DIR}/probe/shared_with_kokkos.cpp)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # shellcheck shell=bash disable=SC2034,SC2154
 # Sourced by bootstrap.sh. Lists Debian packages by what needs them. install_packages installs them.
-# The functions provide_... fetch tools that tests run, from the Python package index.
+# The functions provide_... fetch tools, most of them for tests, from the Python package index.
 
 core=(g++ cmake ninja-build git ca-certificates python3 python3-pip) # the header library, Kokkos
 io=(libhdf5-dev libfmt-dev libmuparser-dev libtomlplusplus-dev libeigen3-dev libpng-dev) # scenes and files
@@ -24,7 +24,7 @@ is_installed() {
   [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
 }
 
-# Drops the packages of left_out_where_unknown that apt does not have from `missing`.
+# Drops from `missing` the packages of left_out_where_unknown that apt does not have.
 select_known_packages() {
   local package known=()
   for package in "${missing[@]}"; do

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # The target cayspin::fftw, if FFTW 3 is found in both precisions (Debian: libfftw3-dev). FFTW is
 # under the GPL: programs that link it must be distributed under the GPL, or with a licence bought
-# from its authors. For CUDA it also has cuFFT.
+# from its authors. With CUDA, the target also links cuFFT.
 find_path(CAYSPIN_FFTW_INCLUDE_DIR fftw3.h)
 find_library(CAYSPIN_FFTW_DOUBLE fftw3)
 find_library(CAYSPIN_FFTW_SINGLE fftw3f)

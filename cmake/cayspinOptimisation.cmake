@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Included where cayspin is added to, or found by, another project: warns of a build without -O.
+# Included when another project adds or finds cayspin: warns if the build has no -O.
 get_directory_property(cayspin_seen_options COMPILE_OPTIONS)
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES
    AND NOT "${CMAKE_CXX_FLAGS} ${cayspin_seen_options}" MATCHES "[-/]O")

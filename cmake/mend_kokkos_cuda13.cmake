@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # cmake -DKOKKOS_SOURCE=DIR -P mend_kokkos_cuda13.cmake
 # Kokkos 4.7.0 does not build with CUDA 13, which changed two signatures and dropped sm_70, the
-# default of nvcc_wrapper. Its Views have members without an address, which nvcc 12.9 and 13 lay out
-# differently for host and device, so that kernels find nothing in a View. Patches a source tree in
-# place; leaves a patched tree and a newer Kokkos unchanged.
+# default of nvcc_wrapper. Its Views have members marked [[no_unique_address]], which nvcc 12.9 and
+# 13 lay out differently for host and device, so that kernels cannot use a View. Patches a source
+# tree in place; leaves a patched tree and a newer Kokkos unchanged.
 cmake_policy(VERSION 3.25)
 
-# replace_once(<file> <old> <new>) stops unless the file holds either old or new, exactly once.
+# replace_once(<file> <old> <new>) replaces old by new. Leaves a file that holds new; stops unless
+# any other holds old exactly once.
 function(replace_once file old new)
   file(READ "${file}" text)
   string(FIND "${text}" "${new}" mended)

@@ -18,8 +18,8 @@ class SceneError(CayspinError):
     """A scene that is refused: its file and line, the key, what is wrong and what is accepted."""
 
 class NumbersFailed(CayspinError):
-    """A run whose spins are not finite, have left the sphere or gained energy without a source, and
-    a search that has no result."""
+    """A run whose spins are not finite, have left the sphere or have gained energy without a
+    source; or a search without a result."""
 
 class Scene:
     @staticmethod

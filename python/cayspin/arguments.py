@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Checks of arguments: each returns the value, or raises an error of one line.
+"""Checks of arguments: each returns the value, or raises a CayspinError of one line.
 
-NumPy's scalars, and arrays without axes, count as the value that they hold."""
+A NumPy scalar, or an array without axes, counts as the value that it holds."""
 
 from __future__ import annotations
 
@@ -28,8 +28,7 @@ def shown(thing: Any) -> str:
 
 
 def without_line(message: str) -> str:
-    """A warning without the place that it starts with: the line of a text made from tables, or
-    --set."""
+    """A warning without the place at its start: the line of a text made from tables, or --set."""
     return re.sub(r"^(replica \d+: )?(Scene:\d+: |--set )", r"\1", message)
 
 
@@ -67,12 +66,12 @@ def flag(truth: Any, name: str) -> bool:
 
 
 def is_false(thing: Any) -> bool:
-    """Whether a value is False, of Python or NumPy. The number 0 and empty values are not."""
+    """Whether a value is the False of Python or NumPy. The number 0 and empty values are not."""
     return _one(thing) is False
 
 
 def wants_stop(answer: Any) -> bool:
-    """Whether what an observer returned is True, of Python or NumPy."""
+    """Whether an observer returned the True of Python or NumPy."""
     if isinstance(answer, np.ndarray) and answer.dtype == bool and answer.ndim:
         raise CayspinError(f"observe: the function returned {answer.size} truths; accepted: one, "
                            "as from all() or any()")
@@ -93,7 +92,7 @@ def word(text: Any, name: str) -> str:
 
 
 def entries(things: Any, name: str, accepted: str) -> list:
-    """The entries of a list, a tuple or another sequence; text is not a sequence."""
+    """The entries of a list, a tuple or another iterable. Text, dicts and sets are refused."""
     if not isinstance(things, (str, bytes, bytearray, dict, set, frozenset)):
         try:
             return list(things)

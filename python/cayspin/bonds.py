@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Reads files of bonds for other programs, and writes bonds as a scene has them."""
+"""Reads the files of other programs, and converts bonds to the form of a scene."""
 
 from __future__ import annotations
 
@@ -57,7 +57,8 @@ class File:
 
 
 def _energy(value, unit, name):
-    """A number or a vector: with the name of its unit, or divided by `unit` if that is given."""
+    """An energy, or a vector of energies, for a scene: with the name of the unit, or divided by
+    `unit` if that is given."""
     value = np.asarray(value, float)
     return {name: value.tolist()} if unit is None else (value / unit).tolist()
 

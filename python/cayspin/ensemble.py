@@ -89,8 +89,8 @@ class Ensemble:
                          frames: slice = slice(None), **options: Any) -> StructureFactor:
         """S(k, w) at all wave vectors of the lattice, from the `frames` of a slice, averaged over
         `replicas`; see cayspin.structure_factor(), which also has the other options. If no key is
-        varied, `replicas` may be omitted, which means all. By default the boundaries, the cell and
-        the positions of its sites are those of the scene.
+        varied, `replicas` may be omitted: all replicas are then used. By default the boundaries,
+        the cell and the positions of its sites are those of the scene.
 
         Raises CayspinError as that function does, for replicas that do not exist, and for frames
         that are not equally spaced in time.

@@ -17,7 +17,8 @@ from cayspin.texture.replica import Replica
 
 @contextlib.contextmanager
 def reading(file: Any, path: Any) -> Iterator[None]:
-    """Turns errors of h5py, and of the text of a scene, into a CayspinError of one line."""
+    """Turns errors of h5py, and of the text of a scene, into a CayspinError of one line. Raises it
+    also for a closed file."""
     if not file:
         raise CayspinError(f"{path}: the file is closed; accepted: an open one")
     try:
@@ -29,8 +30,8 @@ def reading(file: Any, path: Any) -> Iterator[None]:
 
 
 def found_in(file: Any, names: Iterable[str]) -> dict[str, Any]:
-    """Arrays and groups by their names; None for what is not there. Raises KeyError for what is
-    damaged, unlike file.get()."""
+    """Arrays and groups by their names; None for those that are not there. Unlike file.get(),
+    raises KeyError for a damaged one."""
     return {name: file[name] if name in file else None for name in names}
 
 
@@ -63,7 +64,8 @@ class Frames:
 
 def at_equal_steps(file: Any, path: Any, count: int, frames: Any,
                    name: str) -> tuple[range, float]:
-    """The frames that a slice chooses from a file of `count`, and the time from one to the next."""
+    """The frames that a slice chooses from a file of `count` frames, and the time from one to the
+    next."""
     if not isinstance(frames, slice):
         raise CayspinError(f"{name}: frames {arguments.shown(frames)}; accepted: a slice")
     try:
@@ -86,8 +88,8 @@ def at_equal_steps(file: Any, path: Any, count: int, frames: Any,
 
 
 def tables(path: Any, text: str, key: str, otherwise: str) -> dict:
-    """The tables of a scene. If they cannot be read, the error names the `key` that is needed, and
-    what is accepted `otherwise`."""
+    """The tables of a scene. If Python cannot read TOML, the error names the `key` that is needed,
+    and what is accepted `otherwise`."""
     try:
         return toml.loads(text)
     except ValueError as error:
@@ -98,7 +100,7 @@ def tables(path: Any, text: str, key: str, otherwise: str) -> dict:
 
 
 def along_axes(path: Any, text: str, key: str, default: Any, argument: str) -> list:
-    """The scene's lattice.KEY for x, y and z: one for all axes, or one for each."""
+    """The three values of the scene's lattice.KEY, for x, y and z."""
     read = tables(path, text, f"lattice.{key}", f"the argument {argument}")
     lattice = read.get("lattice")
     given = lattice.get(key, default) if isinstance(lattice, dict) else default

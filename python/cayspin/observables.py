@@ -17,7 +17,7 @@ def topological_charge(spins: Any, boundary: Sequence[str] = ("open", "open")) -
     """The topological charge Q of each plane (x, y) of `spins` (..., ny, nx, 3), as an array (...).
 
     Q = sum m.(d_x m x d_y m) / (4 pi): the solid angles of the triangles of neighbouring spins, two
-    of each plaquette, over 4 pi (Berg and Luescher 1981). A skyrmion whose core points down, among
+    for each plaquette, over 4 pi (Berg and Luescher 1981). A skyrmion whose core points down, among
     spins up, has Q = -1. Lengths do not matter. `boundary`: "open" or "periodic" along x and y; the
     charge of a plane that is periodic along both is a whole number, to round-off.
 
@@ -69,8 +69,8 @@ class Dispersion:
 
 
 def _on_segment(begin, end, shape):
-    """The wave vectors of a lattice of `shape` cells between two corners: their positions along the
-    way, rising from 0 to 1, and their numbers (k, 3)."""
+    """The wave vectors of a lattice of `shape` cells between two corners of a path: their positions
+    along it, rising from 0 to 1, and (k, 3) in multiples of the lattice's smallest ones."""
     step = (end - begin) * shape
     axis = np.abs(step).argmax()
     first, last = sorted((begin[axis] * shape[axis], end[axis] * shape[axis]))
@@ -178,13 +178,13 @@ def dispersion(spins: Any, dt: float, path: Any, *, labels: Sequence[str] | None
 
     `spins`: frames (frame, nz, ny, nx, 3) at times `dt` apart, or (frame, site, nz, ny, nx, 3) with
     several sites in a cell. They are read frame by frame, also from a dataset of h5py.
-    `path`: the corners, each (h, k, l) in fractions of the reciprocal vectors of the cell, which
-    may lie beyond the first zone. S is given at the lattice's own wave vectors on it, multiples of
-    (1 / nx, 1 / ny, 1 / nz), without interpolation between them. `labels` names the corners.
+    `path`: the corners, each (h, k, l) in fractions of the reciprocal vectors of the cell. They may
+    lie beyond the first zone. S is given at the lattice's own wave vectors on the path, multiples
+    of (1 / nx, 1 / ny, 1 / nz), without interpolation between them. `labels`: names of the corners.
     `cell`: the three vectors of the cell, along x, y and z of the array (default: unit cubes).
     `positions`: of the sites of a cell, (site, 3), in fractions of its vectors.
-    `periodic`: for each axis; if it is not periodic, a Hann window is applied to the spins along
-    it.
+    `periodic`: whether each axis is periodic; along one that is not, a Hann window is applied to
+    the spins.
 
     `component` "transverse": S = |sum of (m_1 - i m_2) exp(-i (k.r - w t))|^2, with m_1 and m_2
     normal to the mean direction of all spins, or to `about`, and right-handed with it. Right-handed
@@ -193,9 +193,9 @@ def dispersion(spins: Any, dt: float, path: Any, *, labels: Sequence[str] | None
     and "z" are real: they show both.
 
     The time window is Hann's. The sum of S over w is |sum of (..) exp(-i k.r)|^2 divided by the
-    number of sites, averaged over the frames with that window. Frequencies are angular,
-    2 pi / (frames dt) apart, up to pi / dt. Faster motion is aliased: it appears shifted by a
-    multiple of 2 pi / dt.
+    number of sites, averaged over the frames with the squared window as weight. Frequencies are
+    angular, 2 pi / (frames dt) apart, up to pi / dt. Faster motion is aliased: its frequency
+    appears shifted by a multiple of 2 pi / dt.
 
     Raises CayspinError for arrays and words that do not fit, fewer than four frames, and a path
     without wave vectors of the lattice.
@@ -251,7 +251,7 @@ class Average(NamedTuple):
 
     mean: Any  #: in the unit of the values
     error: Any  #: its standard error; NaN where the values are too few to tell
-    block: Any  #: values in a block that hardly depends on the next one; 0 where the error is NaN
+    block: Any  #: length of blocks that hardly depend on each other; 0 where the error is NaN
 
 
 def _block_error(values):
@@ -274,10 +274,10 @@ def average(values: Any, skip: int = 0) -> Average:
 
     Successive values are correlated, so the error is that of means of blocks
     (Flyvbjerg and Petersen 1989). The length of blocks is doubled from 1 until it is B with
-    B^3 > 2 n (error_B / error_1)^4 (Lee et al. 2011). There the errors due to the correlation of
-    blocks and due to their small number are balanced. B is about (2 n (2 tau)^2)^(1/3) for a
-    correlation time of tau values. The values have to be in equilibrium, at equal steps in time. If
-    they span too few correlation times, the error is NaN.
+    B^3 > 2 n (error_B / error_1)^4 (Lee et al. 2011). At this length, the error due to the
+    correlation of blocks and that due to their small number are balanced. B is about
+    (2 n (2 tau)^2)^(1/3) for a correlation time of tau values. The values have to be in
+    equilibrium, at equal steps in time. If they span too few correlation times, the error is NaN.
 
     Raises CayspinError when no values are left, or they are not real numbers.
     """

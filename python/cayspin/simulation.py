@@ -109,7 +109,7 @@ class Simulation:
             self._advance(end, self._scene._scene.guard_period, True, until)
             return
         file = arguments.file_name(output, "run: output")
-        # An observer may move the end of the run, so _advance() looks after it.
+        # An observer may move the end of the run, so _advance() decides when it is reached.
         try:
             recorder = _cayspin.Recorder(self._run, _LAST_STEP, file, overwrite)
         except _cayspin.CayspinError as error:
@@ -262,7 +262,8 @@ class Simulation:
     def averages(self, every: int, window: int | None = None) -> Averages:
         """Starts running means of magnetizations and energies, with their errors. Samples are taken
         after each step whose number is a multiple of `every`, from now on. With `window` the means
-        are over that many latest samples, otherwise over all since the result's last restart().
+        are over the latest `window` samples, otherwise over all samples since the last restart() of
+        the result.
 
         Raises CayspinError for an `every` or a `window` below 1.
         """
@@ -298,8 +299,8 @@ class Simulation:
         self._run.set_spins(sites.by_plane(values, self._scene._scene.cell_sites))
 
     def plot(self, axes: Any = None, **options: Any) -> Any:
-        """Draws the spins now into matplotlib `axes` (default: new ones), which it returns. Options
-        are those of texture.draw(): plane="z=0", quantity="charge", colors="safe",
+        """Draws the present spins into matplotlib `axes` (default: new ones), which it returns.
+        Options are those of texture.draw(): plane="z=0", quantity="charge", colors="safe",
         before=other_spins.
 
         Raises CayspinError for a plane or an option that does not exist.

@@ -29,7 +29,7 @@ class StructureFactor:
 
 
 class _Waves:
-    """The wave vectors of a lattice, and the amplitudes at them of vectors on its sites."""
+    """The wave vectors of a lattice, and the Fourier amplitudes of vectors on its sites."""
 
     def __init__(self, name, shape, components, cell, positions, periodic, zones):
         *of_cell, nz, ny, nx = shape
@@ -140,8 +140,8 @@ def structure_factor(spins: Any, dt: float, *, components: str | Sequence[str] =
     m(k, t), and so the elastic line at w = 0. The sum rule then lacks the squares of the means.
     `cell`: the three vectors of the cell, along x, y and z of the array (default: unit cubes).
     `positions`: of the sites of a cell, (site, 3), in fractions of its vectors.
-    `periodic`: for each axis; if it is not periodic, a Hann window is applied to the spins along
-    it.
+    `periodic`: whether each axis is periodic; along one that is not, a Hann window is applied to
+    the spins.
     `zones`: the number of Brillouin zones along each reciprocal vector. The waves of several sites
     in a cell interfere differently in each zone, and the sum rule holds for the mean over enough of
     them: positions times zones have to be whole numbers, as with (2, 2, 2) for bcc.
@@ -256,15 +256,16 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
     `frequency`: the frequencies of S, (w,), angular and rising, as those of structure_factor().
 
     Each mode has the mean energy k T, which for a deviation Re(c v exp(i w_n t)) is
-    |c|^2 w_n Q / 4 with Q = sum of mu / g i m.(v* x v). With v(k) = sum v exp(-i k.r) / sqrt(N), it
-    contributes
+    |c|^2 w_n Q / 4, with Q = sum of (mu / g) i m.(v* x v). With
+    v(k) = sum of v exp(-i k.r) / sqrt(N), the mode contributes
 
         S_ab(k, w) = k T / (w_n Q) (u_a(k) u_b(k)* L(w - w_n) + v_a(k) v_b(k)* L(w + w_n))
 
-    where u = v* in space, and L is a Lorentzian of area 1 whose half width at half maximum is the
-    decay of the mode plus `width`. `integrated` has the areas of all lines. They are exact in
-    linear theory without damping and for circular precession, otherwise only for small damping.
-    The elastic line of the state itself and longitudinal fluctuations are not included.
+    where u(k) is computed from v* in place of v, and L is a Lorentzian of area 1 whose half width
+    at half maximum is the decay of the mode plus `width`. `integrated` has the areas of all lines.
+    They are exact in linear theory without damping and for circular precession, otherwise only for
+    small damping. The elastic line of the state itself and longitudinal fluctuations are not
+    included.
 
     `moments`: mu / g of each site, from lattice.moments and lattice.gyromagnetic, an array that
     broadcasts to the spins without their last axis. Without it, mu / g is 1, or the number of the

@@ -15,7 +15,7 @@ _WHOLE = ("i", "j", "da", "db", "dc")
 
 
 def _spirit_table(file):
-    """The header's words in lower case, and the rows below it."""
+    """The header and the rows below it, each a line number with its words."""
     for n, (line, words) in enumerate(file.rows):
         if words[0] == "n_interaction_pairs":
             count = file.whole(line, words[1] if len(words) > 1 else "", "n_interaction_pairs")

@@ -30,7 +30,7 @@ LONGEST = 7 * 24 * 3600  # seconds: trials of large scenes take hours
 
 
 def _input_files(command: str, scene: Scene) -> list[str]:
-    """Overrides that name the scene's input files from any folder."""
+    """Overrides that give the scene's input files with absolute paths."""
     folder = pathlib.Path(scene._scene.path).parent.absolute()
 
     def found(thing, key):
@@ -55,8 +55,8 @@ def _input_files(command: str, scene: Scene) -> list[str]:
 
 def _as_of_a_call(command: str, message: str, file: str, written: bool,
                   changed: list[str]) -> str:
-    """A message of the program in terms of the call: without options of the command line, and
-    without the file that was written for it."""
+    """A message of the program, rewritten for the caller of the function: without options of the
+    command line, and without the file that was written for the call."""
     if written:
         message = re.sub(rf"^{re.escape(file)}:(\d+: )?", "", message).strip()
     for one in changed:

@@ -219,8 +219,8 @@ def read_uppasd(jfile: str | os.PathLike, *, posfile: str | os.PathLike | None =
     lattice.moments in Bohr magnetons.
 
     Raises CayspinError, with file and line, for an invalid file, for alloys, for a bond with only
-    one end or whose ends differ by more than 1e-4 of the largest number, and for a vector that
-    leads to no atom within 0.05. Directions in `momfile` are not read.
+    one end or whose ends differ by more than 1e-4 of the largest number, and for a vector that ends
+    farther than 0.05 alat from any atom. Directions in `momfile` are not read.
     """
     posfiletype = arguments.word(posfiletype, "read_uppasd: posfiletype")
     if posfiletype not in ("C", "D"):

@@ -6,7 +6,7 @@ import statistics
 
 
 class Results:
-    """Cases of the JSON files of a folder, by file: small, medium, .. and one_thread."""
+    """The cases in the JSON files of a folder, such as small, medium and one_thread."""
 
     def __init__(self, folder):
         self.context = {}
@@ -36,7 +36,7 @@ class Results:
         return [file for file, name in self.values if name == case and file != "one_thread"]
 
     def median(self, case, counter, file=None):
-        """None where the case was not measured."""
+        """The median of a counter; None if the case was not measured."""
         file = file or next(iter(self.files(case)), None)
         found = self.values.get((file, case), {}).get(counter)
         return statistics.median(found) if found else None

@@ -65,7 +65,7 @@ def _draw_axis(axis, name, direction):
 
 
 def draw_path(axis, path, color, linewidth=1.4, fade=True):
-    """A path (n, 3), pale where it begins and where the sphere hides it."""
+    """Draws a path (n, 3), paler towards its beginning and where the sphere hides it."""
     if len(path) < 2:
         return
     page, hidden = project(path)

@@ -33,7 +33,8 @@ def texture_of(file, image, before, texture):
 
 
 def _smooth(distance, energy):
-    """A monotone cubic through the images, flat at its extrema, so that it has no others."""
+    """A piecewise cubic through the images. It is flat at the images that are extrema, and has no
+    other extrema."""
     step = np.diff(distance)
     rise = np.diff(energy) / step
     slope = np.zeros(len(energy))

@@ -12,7 +12,7 @@ from texture import checksum
 
 @dataclass
 class Series:
-    """The observables over time: /scalars, or the ones of the frames."""
+    """The observables over time: of the samples in /scalars, or of the frames."""
 
     time: np.ndarray
     energy: np.ndarray

@@ -11,7 +11,7 @@ ERRORS = (1e-2, 1e-4, 1e-6, 1e-8)
 
 
 def require_keys(trade):
-    """Raises KeyError or TypeError where something is missing that is drawn."""
+    """Raises KeyError or TypeError if something that is drawn is missing."""
     for name in ("scene", "horizon", "end"):
         trade[name]
     for method in trade["methods"]:

@@ -17,7 +17,7 @@ namespace {
 
 using simulation::UsageError;
 
-// Wraps a Python object so that any thread may release it.
+// Wraps a Python object so that any thread may release it, with or without the GIL.
 std::shared_ptr<nb::object> kept(nb::object object) {
   return {new nb::object(std::move(object)), [](nb::object* held) {
             if (!nb::is_alive()) return;

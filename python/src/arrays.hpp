@@ -25,10 +25,10 @@ using NumbersOut = nb::ndarray<nb::numpy, nb::ro>;
 /// shape or type.
 io::HostVectors vectors_of(NumbersIn const& array);
 
-/// Returns a read-only array on lent memory, and keeps that memory alive.
+/// Returns a read-only array that uses lent memory and keeps it alive.
 NumbersOut array_of(simulation::LentVectors const& lent);
 
-/// Returns an array of these numbers.
+/// Returns an array of this shape that owns the numbers.
 SiteNumbersOut array_of(std::vector<double> numbers, std::array<std::int64_t, 3> const& shape);
 
 /// Makes a program's own field from callables or None. uniform(t) returns three numbers;

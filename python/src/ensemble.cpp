@@ -30,8 +30,8 @@ namespace {
 using namespace simulation;
 using namespace nb::literals;
 
-// Tells all threads of an interruption once one of them has seen it: Python handles signals only in
-// its main thread, and replicas run in other threads, too.
+// Tells all threads of an interruption once one thread has seen it. Python handles signals only in
+// its main thread, but replicas run in other threads, too.
 class Interruption {
  public:
   std::function<bool()> question() {

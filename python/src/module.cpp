@@ -248,7 +248,8 @@ void define_scene(nb::module_& module) {
                    [](io::Scene const& scene) { return Guard::period_of(io::sites(scene)); });
 }
 
-// Releases the GIL while waiting for another run or for HDF5, whose owner may need it.
+// Calls work() and turns std::runtime_error into UsageError. Releases the GIL, because work() may
+// wait for another run or for HDF5 while the thread that uses them needs the GIL.
 template <class Work>
 auto as_error(Work const& work) {
   try {

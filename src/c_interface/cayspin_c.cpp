@@ -230,7 +230,8 @@ cayspin_status cayspin_steps(cayspin_simulation const* simulation, int64_t* step
 cayspin_status cayspin_borrow_spins(cayspin_simulation* simulation, cayspin_array* spins) {
   return in_turn(simulation, [&](SceneRun& run) {
     required(spins, "spins");
-    // On a device this is a copy, which must stay valid when it is requested again.
+    // On a device, run.spins() makes a host copy. The copy lent before must stay valid when the
+    // spins are borrowed again.
     if (!simulation->borrowed) simulation->borrowed.emplace(run.spins());
     *spins = array_of(simulation->borrowed->vectors);
   });

@@ -54,7 +54,7 @@ std::int64_t left_in(Group const& group, fs::path const& folder) {
   return std::max<std::int64_t>(0, *limit - std::max<std::int64_t>(0, used));
 }
 
-// Returns the memory left in a group and in the groups that contain it, whichever is least. In a
+// Returns the least memory that is left in a group or in one of the groups that contain it. In a
 // container only the root folder exists; it describes the container's group.
 std::int64_t left_around(Group const& group, fs::path const& root, fs::path const& name) {
   auto least = unlimited;
@@ -64,7 +64,8 @@ std::int64_t left_around(Group const& group, fs::path const& root, fs::path cons
   }
 }
 
-// Lines have the form number:controllers:name. Version 2 has no controllers and one line 0::name.
+// Lines have the form number:controllers:name. For version 2 there is one line without controllers,
+// 0::name.
 std::int64_t left_in_groups(fs::path const& root) {
   auto least = unlimited;
   std::ifstream file(root / "proc/self/cgroup");

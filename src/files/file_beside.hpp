@@ -10,7 +10,7 @@ namespace cayspin::inline v0_2::io {
 /// std::runtime_error("PATH: cannot write the file: REASON").
 class FileBeside {
  public:
-  /// An existing file is an error unless `overwrite`.
+  /// An existing file is an error unless `overwrite`, and always if it is not a regular file.
   FileBeside(std::filesystem::path path, bool overwrite);
   /// Removes the written file unless committed.
   ~FileBeside();
@@ -19,7 +19,7 @@ class FileBeside {
 
   std::ostream& stream() { return stream_; }
 
-  /// Gives the complete file its name, or throws and leaves the old file.
+  /// Gives the complete file its name. If it throws, an old file of that name is unchanged.
   void commit();
 
  private:
@@ -30,7 +30,8 @@ class FileBeside {
   bool committed_ = false;
 };
 
-/// Throws if a file exists that may not be replaced.
+/// Throws if `path` is a file that may not be replaced: any without `overwrite`, and one that is
+/// not regular.
 void require_free(std::filesystem::path const& path, bool overwrite);
 
 }  // namespace cayspin::inline v0_2::io

@@ -23,8 +23,8 @@ struct FileMark {
   std::uint64_t offset, value;
 };
 
-/// PATH.journal holds the new content of sectors of the file PATH, from which they can be restored
-/// until they have reached the disk.
+/// The file PATH.journal holds new content for sectors of the file PATH. Until that content is on
+/// the disk in PATH itself, it can be restored from the journal.
 class Journal {
  public:
   /// Creates the file, or empties the one left by an earlier run, and locks it. Throws
@@ -35,8 +35,8 @@ class Journal {
   Journal(Journal const&) = delete;
   Journal& operator=(Journal const&) = delete;
 
-  /// Replaces the stored sectors by these, and waits for the disk. Returns 0, or the system's error
-  /// number.
+  /// Replaces the stored sectors by `sectors`, and waits until they are on the disk. Returns 0, or
+  /// the system's error number.
   int write(std::span<Sector const> sectors) const;
 
   void remove() const;

@@ -13,8 +13,8 @@ namespace cayspin::inline v0_2::io {
 /// Returns the type of variable-length UTF-8 strings.
 DatatypeHandle text_type();
 
-/// Writes an attribute with names, as strings of fixed length: HDF5's checksums do not cover
-/// strings of variable length.
+/// Writes an attribute that is a list of names. They are strings of fixed length, because HDF5's
+/// checksums do not cover strings of variable length.
 void write_names(hid_t object, char const* name, std::vector<std::string> const& names,
                  std::filesystem::path const& path);
 std::vector<std::string> read_names(hid_t object, char const* name,
@@ -37,8 +37,8 @@ class RootAttributes {
   std::string read_text(char const* name) const;
   std::int64_t read_integer(char const* name) const;
   double read_real(char const* name) const;
-  /// Throws PATH: ACTION: REASON unless the attribute `name`, a version of the file layout, is
-  /// `accepted`.
+  /// Throws std::runtime_error("PATH: ACTION: REASON") unless the attribute `name`, which is a
+  /// version of the file layout, has the value `accepted`.
   void require_version(char const* name, std::int64_t accepted, char const* action) const;
 
  private:

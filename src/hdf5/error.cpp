@@ -13,8 +13,8 @@ herr_t keep_description(unsigned, H5E_error2_t const* error, void* data) {
   return 0;
 }
 
-// Extracts the system's message from that of a file driver: "..., error message = 'No space left on
-// device', ...".
+// Extracts the system's message from the message of a file driver: "..., error message = 'No space
+// left on device', ...".
 std::string system_words(std::string const& description) {
   std::string const opening = "error message = '";
   auto const begin = description.find(opening);
@@ -25,8 +25,8 @@ std::string system_words(std::string const& description) {
 
 }  // namespace
 
-// At exit, HDF5 closes open files, and crashes on a file whose disk has failed. This library leaves
-// no file open, so it turns this off, which it can do only before HDF5 starts.
+// At exit, HDF5 would close open files, and crash on a file whose disk has failed. This library
+// leaves no file open, so it turns this clean-up off. That is possible only before HDF5 starts.
 QuietErrors::QuietErrors() {
   [[maybe_unused]] static auto const told = H5dont_atexit();
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);

@@ -15,7 +15,8 @@ void try_before(std::filesystem::path const& path, std::function<void()> const& 
 /// Runs `reading` in a trial; if no trial is set, runs it here.
 void try_reading(std::filesystem::path const& path, std::function<void()> const& reading);
 
-/// Rethrows the exception being handled. If memory ran out, throws one line about the file instead.
+/// Rethrows the exception being handled. If memory ran out, throws a std::runtime_error about the
+/// file instead.
 [[noreturn]] void rethrow_reading(std::filesystem::path const& path);
 
 /// Runs `reading` in a trial, then here, and returns its result. `reading` must open the file

@@ -30,7 +30,7 @@ namespace {
 
 FileHandle open_with(PropertyHandle const& access, std::filesystem::path const& path) {
   std::string const action = "cannot open the file";
-  // HDF5 would open a pipe and wait for its other end.
+  // HDF5 would open a pipe and then wait for a process at its other end.
   std::error_code ignored;
   auto const status = std::filesystem::status(path, ignored);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))

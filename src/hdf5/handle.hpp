@@ -9,7 +9,7 @@
 namespace cayspin::inline v0_2::io {
 
 /// While in scope, no other thread of the library uses HDF5. Scopes may be nested. A child process
-/// forked in scope owns the lock, too, which it would not with std::recursive_mutex.
+/// that is forked in scope owns the lock, too. With std::recursive_mutex it would not.
 class TurnOfHdf5 {
  public:
   TurnOfHdf5();
@@ -60,7 +60,7 @@ enum class Locking { on, off };
 /// Opens an existing file for reading. Completes it first if a power cut or a kill has left a
 /// journal.
 FileHandle open_file(std::filesystem::path const& path, Locking locking = Locking::on);
-/// Opens a small file that nobody writes, and reads all of it into memory.
+/// Reads all of a small file into memory and opens it there. No process may be writing it.
 FileHandle open_file_in_memory(std::filesystem::path const& path);
 
 // Creates a group of the file `path`.

@@ -6,9 +6,9 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Runs `reading`, of a file that may be damaged, where a crash does no harm, for example in
-/// another process. Throws std::runtime_error with one line if the file must not be read. No other
-/// thread of the library uses HDF5 while it runs.
+/// Runs `reading`, which reads a file that may be damaged, where a crash does no harm, for example
+/// in another process. Throws std::runtime_error with one line if the file must not be read. No
+/// other thread of the library uses HDF5 while it runs.
 using ReadingTrial = void (*)(std::filesystem::path const& path,
                               std::function<void()> const& reading);
 

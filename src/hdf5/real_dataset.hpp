@@ -23,7 +23,8 @@ class RealDataset {
   /// Returns the machine epsilon of the stored type.
   double epsilon() const { return epsilon_; }
 
-  /// Reads all of it, or the block of `extents` from `begin` on; the last index is the fastest.
+  /// Reads all of the dataset, or the block of these extents that starts at `begin`; the last index
+  /// is the fastest.
   std::vector<double> read() const;
   std::vector<double> read(Extents const& begin, Extents const& extents) const;
 

@@ -17,7 +17,7 @@
 namespace cayspin::inline v0_2::io {
 namespace {
 
-// HDF5 requires its own struct as the first member.
+// The first member must be HDF5's own struct.
 struct OpenFile {
   H5FD_t shared;
   SyncedFile* file;
@@ -102,7 +102,7 @@ herr_t unlock(H5FD_t* file) { return change_lock(file, LOCK_UN); }
 H5FD_class_t const driver = {
 #ifdef H5FD_CLASS_VERSION
     .version = H5FD_CLASS_VERSION,
-    .value = static_cast<H5FD_class_value_t>(511),  // the last of those for user drivers
+    .value = static_cast<H5FD_class_value_t>(511),  // the last of unregistered drivers
 #endif
     .name = "cayspin_synced",
     .maxaddr = std::numeric_limits<off_t>::max(),

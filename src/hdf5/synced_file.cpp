@@ -96,7 +96,7 @@ int SyncedFile::commit() {
   return 0;
 }
 
-// Also puts on disk the sectors that the last commit overwrote, after which their journal may be
+// Also puts on disk the sectors that the last commit overwrote. After that, their journal may be
 // reused.
 int SyncedFile::put_appended_on_disk() const {
   struct stat status {};

@@ -13,11 +13,11 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// A file written by HDF5 which a power cut leaves in the state of its last commit().
+/// A file that HDF5 writes, and that a power cut leaves in the state of the last commit().
 ///
-/// HDF5 overwrites its own blocks. New content of committed bytes stays in memory until commit(),
-/// which writes it to a journal before the file. Appended data go to the file at once, because no
-/// committed data refer to them.
+/// HDF5 overwrites blocks that it wrote before. New content for committed bytes stays in memory
+/// until commit(), which writes it to a journal first and then to the file. Appended data go to the
+/// file at once, because no committed data refer to them.
 class SyncedFile {
  public:
   SyncedFile();
@@ -28,16 +28,18 @@ class SyncedFile {
   /// Makes HDF5 open and close a file through this object, which must outlive it.
   void use_in(hid_t file_access);
 
-  /// Returns a random number of 8 bytes to be stored in the file, which identifies it.
+  /// Returns a random number of 8 bytes that identifies the file. It must be stored in the file
+  /// before begin().
   std::uint64_t mark() const { return mark_; }
 
-  /// Commits for the first time a file that is to be named `path`, with a journal next to it.
-  /// Throws std::runtime_error.
+  /// Commits the file for the first time, and creates its journal. `path`: the name that the file
+  /// will get, next to which the journal lies. Throws std::runtime_error.
   void begin(std::filesystem::path const& path);
 
-  // These functions return 0, or the system's error number. After an error nothing is committed.
+  // These functions return 0, or the system's error number. After an error, nothing more is
+  // committed.
 
-  /// Makes all written data survive a power cut. Flush the file before.
+  /// Makes all data written so far survive a power cut. Call H5Fflush before.
   int commit();
 
   // For HDF5's driver.
@@ -47,7 +49,7 @@ class SyncedFile {
   /// Commits, truncates the file to its end and removes the journal.
   int close();
   int* descriptor() { return &file_; }
-  std::uint64_t end = 0;          ///< end of what HDF5 has allocated
+  std::uint64_t end = 0;          ///< end of the space that HDF5 has allocated
   std::uint64_t written_end = 0;  ///< end of the data in the file
 
  private:

@@ -31,10 +31,10 @@ struct Anisotropy {
   }
 };
 
-/// Anisotropy of a crystal, from the components of m along two orthogonal axes and their cross
-/// product. Cubic, with components a, b, c:
+/// Anisotropy of a crystal. Its energy depends on the components of m along two orthogonal axes and
+/// their cross product, in this order. Cubic, with the components a, b, c:
 ///   E = constant (a^2 b^2 + b^2 c^2 + c^2 a^2) + constant2 a^2 b^2 c^2.
-/// Hexagonal, with components c, a, b: E = constant Re (a + i b)^6.
+/// Hexagonal, with the components c, a, b: E = constant Re (a + i b)^6.
 struct CrystalAnisotropy {
   bool hexagonal = false;
   double constant = 0;

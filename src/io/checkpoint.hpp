@@ -14,7 +14,9 @@
 #include <vector>
 
 /// The file from which a run is continued (HDF5; docs/reference/file_format.md has the layout).
-/// Failures throw std::runtime_error with one line: the file, the action that failed, and why.
+/// Failures to read or write throw std::runtime_error with one line: the file, the action that
+/// failed, and why. Wrong arguments throw std::invalid_argument, calls in a wrong order
+/// std::logic_error.
 namespace cayspin::inline v0_2::io {
 
 /// The run that a checkpoint belongs to, and its progress.
@@ -26,8 +28,8 @@ struct CheckpointHeader {
   std::int64_t cell_sites = 1;
   std::int64_t step = 0;
   double time = 0;        ///< in the scene's units
-  bool si = false;        ///< true if those are SI
-  StageBegin stage = {};  ///< current stage of the run
+  bool si = false;        ///< true if the scene is in SI
+  StageBegin stage = {};  ///< start of the current stage
 };
 
 /// "run.checkpoint.h5" for "run.h5"
@@ -45,10 +47,11 @@ class CheckpointWriter final : public Checkpoint {
   bool restores() const override { return false; }
   void number(std::string const& name, double& value) override;
   void field(std::string const& name, std::vector<double>& numbers) override;
-  /// Stores a field in several calls, some planes along z at a time: `components` numbers per site.
+  /// Stores a field of `components` numbers per site in several calls, some planes along z at a
+  /// time.
   void planes(std::string const& name, std::int64_t components, std::vector<double> const& numbers);
 
-  /// Waits until the file is on the disk, then renames it.
+  /// Waits until the file is on the disk, then renames it. The field "spins" must have been stored.
   void commit();
 
  private:
@@ -56,8 +59,8 @@ class CheckpointWriter final : public Checkpoint {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Reader of a checkpoint. Verifies each field by its own checksum, and everything else by a
-/// checksum of the file, which files of earlier versions lack.
+/// Reader of a checkpoint. Verifies each field by a checksum of its own, and everything else by the
+/// checksum of the file. Files of earlier versions do not have the latter.
 class CheckpointReader final : public Checkpoint {
  public:
   explicit CheckpointReader(std::filesystem::path path);
@@ -71,7 +74,7 @@ class CheckpointReader final : public Checkpoint {
   bool restores() const override { return true; }
   void number(std::string const& name, double& value) override;
   void field(std::string const& name, std::vector<double>& numbers) override;
-  /// Returns the numbers of the sites in a box. Needs memory for these, and for a few planes.
+  /// Returns the numbers of the sites in a box. Needs memory for these numbers and for some planes.
   std::vector<double> field(std::string const& name, SiteBox const& box) const;
 
  private:

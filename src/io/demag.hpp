@@ -31,12 +31,12 @@ struct SlabDemagnetization {
 /// The demagnetising field of the cells, H = -strength sum N m, or the field of point dipoles.
 struct Demagnetization {
   double strength = 1;
-  std::array<int, 3> periodic_images{};  ///< per axis, on each side of the nearest one
+  std::array<int, 3> periodic_images{};  ///< along each axis, on each side of the nearest image
   std::optional<Crystal> dipoles;        ///< positions of the dipoles; empty: cells
   Triple demagnetizing_factors = {};     ///< for dipoles with three periodic axes
   std::string key = "demag";             ///< the key in [field]: demag or dipoles
   std::optional<bool> multirate;         ///< default: true if the method supports it
-  std::filesystem::path cache;           ///< file for tensors, which take long to compute; or empty
+  std::filesystem::path cache;           ///< file that keeps slowly computed tensors; or empty
 
   static constexpr auto keys() {
     return std::to_array<Key<Demagnetization>>({{"strength", &Demagnetization::strength},

@@ -25,8 +25,8 @@ struct Ensemble {
   bool there() const { return replicas > 0; }
 };
 
-/// A lattice whose columns, the sites with equal x, are replicas that do not interact
-/// (simulation/replica_columns.hpp). Scenes read from files never have it.
+/// For a lattice whose columns (the sites with equal x) are replicas that do not interact
+/// (simulation/replica_columns.hpp). Scenes read from files never have this member.
 struct Columns {
   std::vector<double> temperatures;  ///< factors on the scene's temperature; empty: all 1
 };
@@ -37,7 +37,8 @@ Scene replica_of(Scene const& scene, std::int64_t replica);
 /// Like replica_of, for a scene of `cayspin relax`.
 Scene replica_to_relax(Scene const& scene, std::int64_t replica);
 
-/// Throws SceneError for an ensemble. `who`: what accepts no ensemble, for the message.
+/// Throws SceneError for an ensemble. `who`: the command or function that accepts no ensemble, for
+/// the message.
 void require_no_ensemble(Scene const& scene, std::string_view who);
 
 }  // namespace cayspin::inline v0_2::io

@@ -26,15 +26,15 @@ struct RelaxedReplica {
 /// Errors are those of TrajectoryFile.
 class EnsembleFile {
  public:
-  /// `header`: that of one replica. From the options, uses only `overwrite`, `positions`, and in
-  /// `storage` the compression and the number of frames.
+  /// `header`: that of one replica. The only options used are `overwrite`, `positions`,
+  /// `storage.compression` and `storage.frames`.
   EnsembleFile(std::filesystem::path path, TrajectoryHeader const& header, Ensemble const& ensemble,
                RunOutputOptions const& options);
   ~EnsembleFile();
   EnsembleFile(EnsembleFile&&) noexcept;
 
-  /// Appends the spins of all replicas, packed as (replica, nz, ny, nx, 3) in the precision of the
-  /// header, and the scalars of each, and flushes.
+  /// Appends a frame: the spins of all replicas, packed as (replica, nz, ny, nx, 3) in the
+  /// precision of the header, and the scalars of each replica. Then flushes.
   void write_frame(std::int64_t step, double time, std::vector<Scalars> const& scalars,
                    std::vector<std::byte> const& spins);
   /// Appends a sample to /scalars; it reaches the file with the next frame.
@@ -42,9 +42,9 @@ class EnsembleFile {
 
   void write_relaxed(std::vector<RelaxedReplica> const& replicas);
 
-  /// Ends a run that went as planned: `complete` = 1.
+  /// Ends the file of a run that went as planned: sets `complete` = 1.
   void finish(RunCost const& cost);
-  /// Ends a run that was interrupted or failed: like finish(), but `complete` stays 0.
+  /// Ends the file of a run that was interrupted or failed: like finish(), but `complete` stays 0.
   void close(RunCost const& cost);
 
   std::int64_t frames() const;
@@ -60,7 +60,7 @@ struct EnsembleInfo {
   Ensemble ensemble;
   RunCost cost;
   bool complete = false;
-  std::int64_t frames = 0, samples = 0;  ///< complete ones
+  std::int64_t frames = 0, samples = 0;  ///< numbers of whole frames and samples
   std::int64_t step = 0;                 ///< of the last frame
   double time = 0;                       ///< of the last frame
   std::vector<Scalars> last;             ///< of each replica, in the last frame
@@ -71,7 +71,7 @@ bool is_ensemble(std::filesystem::path const& path);
 /// Throws std::runtime_error with one line.
 EnsembleInfo read_ensemble_info(std::filesystem::path const& path);
 /// Reads the spins of all replicas in the last frame, one replica after the other, each packed as
-/// (nz, ny, nx, 3) in the order of TrajectoryHeader::shape. Bits are kept. Throws
+/// (nz, ny, nx, 3) in the order of TrajectoryHeader::shape. Numbers are not rounded. Throws
 /// std::runtime_error with one line.
 std::vector<double> read_ensemble_spins(std::filesystem::path const& path,
                                         EnsembleInfo const& info);

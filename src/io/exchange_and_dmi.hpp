@@ -37,7 +37,7 @@ struct Exchange {
   double& strength() { return constant; }
 
   static constexpr std::string_view key = "exchange";
-  /// The value of a term with only one key is typed without a table: exchange = 1.
+  /// If a term has only one key, its value is typed without a table: exchange = 1.
   static constexpr auto keys() {
     return std::to_array<Key<Exchange>>({{"constant", &Exchange::constant, {}, true}});
   }
@@ -78,8 +78,8 @@ struct InterfacialDmi {
   }
   static constexpr std::string_view formula = "E = {} (m_n div m - m.grad m_n), n = {}";
 
-  /// Returns an upper bound: along each axis e, each of two neighbours contributes at most |D| |n x
-  /// e| / spacing.
+  /// Returns an upper bound of |H|: along each axis e, each of the two neighbours contributes at
+  /// most |D| |n x e| / spacing.
   template <class Lattice>
   double field_bound(Lattice const& lattice) const {
     return 2 * energy_magnitude(lattice);
@@ -109,8 +109,8 @@ struct BulkDmi {
   }
   static constexpr std::string_view formula = "E = {} m.curl m";
 
-  /// Returns an upper bound: along each axis, each of two neighbours contributes at most |D| /
-  /// spacing.
+  /// Returns an upper bound of |H|: along each axis, each of the two neighbours contributes at most
+  /// |D| / spacing.
   template <class Lattice>
   double field_bound(Lattice const& lattice) const {
     return 2 * energy_magnitude(lattice);

@@ -12,12 +12,13 @@ struct ExchangeBetween {
   double factor = 1;
 };
 
-/// E = -J m.m' - B (m.m')^2 across each face between two regions, with J and B per area. m is the
-/// spin at the face; between the face and the centre of its cell, exchange turns the spins.
+/// E = -J m.m' - B (m.m')^2 across each face between two regions, with J and B per area. m and m'
+/// are the spins on the two sides of the face: exchange turns the spins between the centre of a
+/// cell and its face (Field::exchange_at_faces).
 struct Interlayer {
   std::array<std::int64_t, 2> regions = {};
   double bilinear = 0, biquadratic = 0;  ///< J, B
-  std::int64_t range = 0;                ///< number of cells without a spin in between
+  std::int64_t range = 0;                ///< number of cells between the regions, without a spin
 };
 
 }  // namespace cayspin::inline v0_2::io

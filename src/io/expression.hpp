@@ -9,8 +9,8 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// A function that an expression may call. `value` takes two arguments, and the values of the
-/// expression's variables. It may throw std::runtime_error with one line.
+/// A function that an expression may call. `value` takes the two arguments of the call, and the
+/// values of the expression's variables. It may throw std::runtime_error with one line.
 struct ExpressionFunction {
   std::string name;
   std::function<double(double, double, double const*)> value;

@@ -52,7 +52,7 @@ struct Field {
   SiteNumbers exchange_factors, dmi_factors;  ///< multiply constants, which then are 1
   std::vector<ExchangeBetween> exchange_between;
   std::vector<Interlayer> interlayers;
-  SiteNumbers exchange_at_faces;  ///< A for interlayers; empty: they couple centres
+  SiteNumbers exchange_at_faces;  ///< A up to faces; empty: interlayers couple centres
   std::vector<Anisotropy> anisotropies;
   std::vector<CrystalAnisotropy> crystal_anisotropies;
   InTime in_time;
@@ -62,10 +62,10 @@ struct Field {
   Torque torque;
   std::optional<std::array<AppliedComponent, 3>> applied;
   std::vector<Source> sources;          ///< added to applied
-  std::vector<Triple> applied_in_turn;  ///< for `cayspin relax`: one equilibrium for each
+  std::vector<Triple> applied_in_turn;  ///< for `cayspin relax`: an equilibrium in each field
   std::optional<SlabDemagnetization> slab_demag;
   std::optional<Demagnetization> demag;
-  /// Multiplies applied, sources, slab_demag and demag, whose numbers do not include it.
+  /// Multiplies applied, sources, slab_demag and demag. Their numbers do not include this factor.
   double mu0 = 1;
   OwnField own;  ///< empty unless a program sets it
 
@@ -86,8 +86,8 @@ Field without_numbers_of_sites(Field field);
 /// Returns true if a current acts on the spins: their energy may then rise.
 bool has_torque(Field const& field);
 
-/// Returns true with a term that is computed for all sites at once: demag or dipoles, a slab's
-/// field on the host, or a program's own nonlocal field.
+/// Returns true if a term is computed for all sites at once: demag or dipoles, a slab's field on
+/// the host, or a program's own nonlocal field.
 bool is_nonlocal(Field const& field);
 
 /// Calls work(term) for the std::optional of each lattice term.

@@ -31,7 +31,7 @@ struct FileStart {
 };
 /// Spins that a program passes with the text of a scene; each is normalised.
 struct GivenStart {
-  GivenNumbers spins;  ///< sites x 3, x fastest
+  GivenNumbers spins;  ///< sites x 3, in the order of initial_spins
 };
 
 /// The table [initial].

@@ -12,7 +12,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// The table [integrator]: method, coordinates and steps.
+/// The table [integrator]: the method, its choices and its steps.
 struct Integrator {
   Method const* method = nullptr;
   Generator generator = Generator::standard;
@@ -20,7 +20,7 @@ struct Integrator {
   double sigma = 0;  ///< isotropy constant, added to A along m
   double isotropy_cap = std::numeric_limits<double>::infinity();  ///< bound on |dt sigma|
   Rotation rotation = Rotation::cayley;
-  double dt = 0;                    ///< for adaptive methods: interval between observations
+  double dt = 0;                    ///< the step; if adaptive, the time between observations
   std::int64_t steps = 0;           ///< computed from `end` when the scene gives that
   std::int64_t substeps = 1;        ///< steps of the method in each step, for an expensive field
   std::optional<double> tolerance;  ///< only for adaptive methods
@@ -29,7 +29,7 @@ struct Integrator {
   double min_dt = 0, max_dt = std::numeric_limits<double>::infinity();
   bool compensated = false;      ///< adds the rounding error of the spins to the next step
   bool energy_guard = true;      ///< stops a run whose energy rises although it should only fall
-  bool energy_control = false;   ///< holds the energy of a run without damping
+  bool energy_control = false;   ///< keeps the energy constant in a run without damping
   bool refuse_unstable = false;  ///< an unstable dt is an error, not a warning
   std::optional<double> until_torque;
 

@@ -13,13 +13,13 @@ namespace cayspin::inline v0_2::io {
 /// reduced units.
 struct Material {
   bool atomistic = false;  ///< mu_s, J and K instead of Ms, A and Ku
-  /// Ms, A/m, or mu_s, J/T, of the first site; if site-dependent, the unit of reduced moments.
+  /// Ms in A/m, or mu_s in J/T, of the first site; if site-dependent, the unit of reduced moments.
   double moment = 0;
-  std::vector<double> moments;        ///< J/T, one for each site of the cell; empty: all equal
-  std::optional<double> exchange;     ///< A, J/m, or J of a bond, J
-  std::optional<double> anisotropy;   ///< Ku, J/m^3, or K of a site, J
-  std::optional<double> anisotropy2;  ///< Ku2, J/m^3, or K2 of a site, J
-  std::optional<double> dmi;          ///< D of an interface, J/m^2, or of its bonds, J
+  std::vector<double> moments;        ///< in J/T, one for each site of the cell; empty: all equal
+  std::optional<double> exchange;     ///< A in J/m, or J of a bond in J
+  std::optional<double> anisotropy;   ///< Ku in J/m^3, or K of a site in J
+  std::optional<double> anisotropy2;  ///< Ku2 in J/m^3, or K2 of a site in J
+  std::optional<double> dmi;          ///< D of an interface in J/m^2, or of its bonds in J
   std::optional<double> bulk_dmi;     ///< D of the bulk
   std::optional<double> d2d_dmi;      ///< D of a crystal of symmetry D2d
   SiteNumbers moment_factors, exchange_factors, anisotropy_factors, anisotropy2_factors,
@@ -28,7 +28,7 @@ struct Material {
   Triple axis = {}, normal = {};                  ///< unit vectors
   double alpha = 0;
   bool gilbert = true;  ///< true: Gilbert's equation; false: Landau and Lifshitz's
-  double gamma = 0;     ///< rad/(s T); if site-dependent, the unit of reduced ratios
+  double gamma = 0;     ///< in rad/(s T); if site-dependent, the unit of reduced ratios
 };
 
 }  // namespace cayspin::inline v0_2::io

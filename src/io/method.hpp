@@ -18,7 +18,7 @@ struct Method {
   int order = 0;                      ///< order of the trajectories
   std::optional<int> evaluations{};   ///< per step; empty if it iterates or chooses its steps
   bool adaptive = false;              ///< chooses its steps by integrator.tolerance
-  bool automatic = false;             ///< stands for another method, chosen by integrator.error
+  bool automatic = false;             ///< stands for the method that is chosen by integrator.error
   bool keeps_length = true;           ///< |m| = 1 to round-off
   bool compensated = false;           ///< accepts integrator.compensated
   bool stiff = false;                 ///< exchange does not limit its steps
@@ -30,9 +30,10 @@ struct Method {
   SetOf<Isotropy> isotropies{};       ///< without Isotropy::energy
   SetOf<Trial> trials{};
 
-  /// Returns true for a method outside the Lie group, without generator, isotropy and rotation.
+  /// Returns true for a baseline: a method that does not rotate spins, and so has no generator,
+  /// isotropy or rotation.
   constexpr bool is_baseline() const { return rotations.empty() && !automatic; }
-  /// Returns true for a method with constant steps of integrator.dt.
+  /// Returns true for a method that takes constant steps of integrator.dt.
   constexpr bool has_equal_steps() const { return !adaptive && !automatic; }
   constexpr bool takes(Rotation rotation) const { return rotations.contains(rotation); }
   constexpr bool takes(Generator generator) const { return generators.contains(generator); }

@@ -10,8 +10,8 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// How often a run writes FILE.checkpoint.h5, from which it can continue with the same bits: every
-/// so many steps, or seconds; never if both are 0.
+/// The interval at which a run writes FILE.checkpoint.h5, in seconds or in steps; never if both are
+/// 0. The run can continue from that file with the same bits.
 struct CheckpointPeriod {
   double seconds = 600;
   std::int64_t steps = 0;
@@ -22,7 +22,7 @@ struct CheckpointPeriod {
 /// The table [output].
 struct Output {
   std::optional<std::filesystem::path> file;  ///< as typed: relative to the working directory
-  std::int64_t every = 1;                     ///< steps between frames, >= 1; default: steps
+  std::int64_t every = 1;                     ///< steps between frames, >= 1; default: all steps
   std::int64_t scalars_every = 1;  ///< steps between scalar samples, >= 1; default: every
   int compression = 0;             ///< compression level of /spins: 0 (none) to 9
   std::int64_t chunk = 0;          ///< planes along z in a chunk of /spins; 0: all

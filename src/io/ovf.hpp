@@ -52,9 +52,9 @@ OvfMesh read_ovf_mesh(std::filesystem::path const& path, std::int64_t components
 /// components, 3 or 1.
 OvfField read_ovf(std::filesystem::path const& path, std::int64_t components = 3);
 
-/// Writes three components as a file of one segment, first as PATH.partial. An existing file is an
-/// error unless `overwrite`. Throws std::invalid_argument unless there are three values per node
-/// and the mesh is finite.
+/// Writes three components per node as a file of one segment. The file is called PATH.partial until
+/// it is complete. An existing file is an error unless `overwrite`. Throws std::invalid_argument
+/// unless there are three values per node and the mesh is finite.
 void write_ovf(std::filesystem::path const& path, OvfField const& field, OvfFormat format,
                bool overwrite);
 

@@ -7,7 +7,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Three numbers of every site in host memory: component c of site (i, j, k) is k strides[0] + j
+/// Vectors of all sites in host memory: component c of site (i, j, k) is k strides[0] + j
 /// strides[1] + i strides[2] + c strides[3] numbers after `data`.
 struct HostVectors {
   void* data = nullptr;
@@ -21,8 +21,8 @@ struct HostVectors {
 struct OwnField {
   /// Returns the uniform field at t. It replaces field.applied and, like it, is multiplied by mu0.
   std::function<std::array<double, 3>(double t)> uniform;
-  /// Writes H of all sites to `field`. H must be linear in the spins and symmetric, like that of an
-  /// FFT demag: E = -sum m.H / 2. Reduced units.
+  /// Writes H of all sites, in reduced units, to `field`. H must be linear in the spins and
+  /// symmetric, like a demagnetising field: E = -sum mu m.H / 2, with the moments mu.
   std::function<void(HostVectors const& spins, HostVectors const& field, double t)> nonlocal;
 };
 

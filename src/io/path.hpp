@@ -12,20 +12,20 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// A saddle on a path, in the units of the scene; curvatures are energies per square of radians.
+/// A saddle on a path, in the units of the scene; curvatures are energies per radian squared.
 struct SaddleOfPath {
   double energy = 0, curvature = 0, next_curvature = 0;
   std::int64_t image = 0;
 };
 
-/// Rates of harmonic transition state theory, and of Langer's theory, which includes damping:
-/// prefactor T^((z0 - zs) / 2) exp(-barrier / kT), where z0 and zs are the numbers of zero modes of
-/// the state that is left and of the saddle.
+/// Prefactors of rates in harmonic transition state theory, and in Langer's theory, which includes
+/// damping. A rate is prefactor T^((z0 - zs) / 2) exp(-barrier / kT). The state that is left has z0
+/// zero modes, and the saddle zs.
 struct RatesOfPath {
-  double prefactor_forward = 0, prefactor_backward = 0;  ///< reduced, or 1/s and T in K
+  double prefactor_forward = 0, prefactor_backward = 0;  ///< reduced, or in 1/s with T in K
   double langer_forward = 0, langer_backward = 0;        ///< prefactors of Langer's theory
   std::array<std::int64_t, 3> zero_modes{};              ///< of the start, the saddle and the end
-  std::array<double, 3> volumes{};                       ///< of the zero modes
+  std::array<double, 3> volumes{};                       ///< of their zero modes, in the same order
 };
 
 /// A minimum energy path, in the units of the scene.
@@ -38,7 +38,7 @@ struct Path {
   std::vector<SaddleOfPath> saddles;     ///< highest first
   std::optional<RatesOfPath> rates;
   double torque = 0;  ///< largest max |m x H| of the saddles
-  double across = 0;  ///< largest |H| of a spin perpendicular to the path
+  double across = 0;  ///< largest part of H across the path, over all spins
   std::int64_t evaluations = 0;
   bool converged = false;
   double wall_seconds = 0;
@@ -58,7 +58,7 @@ bool is_path(std::filesystem::path const& path);
 /// Reads the file of a path except its spins. Errors are those of trajectory.hpp.
 Path read_path(std::filesystem::path const& path);
 
-/// Throws the error of write_path if it could not write this file.
+/// Throws the error that write_path would throw if the file cannot be written.
 void require_writable(std::filesystem::path const& path, bool overwrite);
 
 }  // namespace cayspin::inline v0_2::io

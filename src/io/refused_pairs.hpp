@@ -9,7 +9,7 @@ namespace cayspin::inline v0_2::io {
 struct Scene;
 
 /// Terms and sites of a scene that cannot be combined with a key of its [integrator], though each
-/// is valid by itself. Options that a method never accepts, such as a rotation, are listed in its
+/// is valid by itself. Options that a method never accepts, such as a rotation, are in the method's
 /// Method instead.
 struct RefusedPair {
   std::string_view terms, with;  ///< both for the message
@@ -19,7 +19,7 @@ struct RefusedPair {
   bool (*has_other)(Scene const&);
 };
 
-/// Returns all of them, in the order in which a scene is checked.
+/// Returns all refused pairs, in the order in which a scene is checked.
 std::span<RefusedPair const> refused_pairs();
 
 }  // namespace cayspin::inline v0_2::io

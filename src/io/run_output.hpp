@@ -15,7 +15,7 @@ namespace cayspin::inline v0_2::io {
 struct RunOutputOptions {
   bool overwrite = false;
   TrajectoryStorage storage = {};
-  std::int64_t most_planes = 0;               ///< of a frame in memory, as in frame_pieces()
+  std::int64_t most_planes = 0;               ///< planes of a frame in memory, as in frame_pieces()
   bool xdmf = false;                          ///< FILE.xdmf, which describes FILE.h5 to viewers
   bool table = false;                         ///< FILE.txt, a line for each sample
   std::array<double, 3> spacing = {1, 1, 1};  ///< of the lattice, for the XDMF file
@@ -24,11 +24,13 @@ struct RunOutputOptions {
 };
 
 /// Writer of a run's files in a separate thread, which buffers up to two frames or pieces of
-/// frames. An error there is thrown by the next call, in the form of TrajectoryFile's. Call it from
-/// one thread, which must not use HDF5 until finish(), close() or the destructor.
+/// frames. If writing fails, the next call throws the error, with a message like those of
+/// TrajectoryFile. All calls must come from one thread, which must not use HDF5 until finish(),
+/// close() or the destructor.
 class RunOutput {
  public:
   /// Creates the files. Without `overwrite`, an existing file is an error, and no file is changed.
+  /// Throws std::invalid_argument for a wrong header or wrong options.
   RunOutput(std::filesystem::path path, TrajectoryHeader const& header,
             RunOutputOptions const& options);
 
@@ -39,8 +41,8 @@ class RunOutput {
   RunOutput& operator=(RunOutput&&) noexcept;
 
   /// Returns memory for the next frame or its next piece, packed as (planes, ny, nx, 3) in the
-  /// precision of the header; the other precision throws std::logic_error. Waits while two are
-  /// being written.
+  /// precision of the header; the other precision throws std::logic_error. Waits while both buffers
+  /// are full.
   template <class Real>
   Real* frame();
 
@@ -51,12 +53,12 @@ class RunOutput {
   void write_frame(std::int64_t step, double time, Scalars const& scalars,
                    FrameNumbers const& numbers = {});
 
-  /// Queues a sample, which reaches the files with the next frame, or within about a second of
-  /// calls.
+  /// Queues a sample. It reaches the files with the next frame or, if more samples follow, within
+  /// about a second.
   void write_scalars(std::int64_t step, double time, Scalars const& scalars,
                      std::vector<double> const& more = {});
 
-  /// Like TrajectoryFile's functions, after writing everything else.
+  /// Write everything that is queued, then act like TrajectoryFile's functions of these names.
   void finish(RunCost const& cost);
   void close(RunCost const& cost);
 

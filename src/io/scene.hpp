@@ -45,10 +45,11 @@ class SceneError : public std::runtime_error {
 struct Stage;
 
 /// A scene: a member for each table, and where each key was typed. Numbers are in reduced units,
-/// even if the scene is typed in SI; the three members for units = "SI" are exceptions.
+/// even if the scene is typed in SI, unless a comment says otherwise.
 struct Scene {
   Units units;
-  /// For units = "SI", as typed: t in s, velocities in m/s, strengths in T.
+  /// The next three are set only for units = "SI". Their numbers are as typed: t in s, velocities
+  /// in m/s, strengths in T.
   std::optional<Material> material;
   std::optional<std::array<AppliedComponent, 3>> applied_in_tesla;
   Torque torque_in_si;
@@ -63,7 +64,7 @@ struct Scene {
   std::optional<Columns> columns;
   std::string text;            ///< the TOML text; re-serialised when an override changed it
   std::filesystem::path path;  ///< the scene file, or the name of a text without one
-  std::vector<std::filesystem::path> files;  ///< files to be read that its own tables name
+  std::vector<std::filesystem::path> files;  ///< input files that its own tables name
   Given given;
   std::map<std::string, std::string, std::less<>>
       places;                 ///< key -> "FILE:LINE" or "--set key=value"
@@ -103,8 +104,8 @@ Scene read_scene(std::filesystem::path const& path, std::vector<std::string> con
 Scene parse_scene(std::string text, std::filesystem::path const& name,
                   std::vector<std::string> const& overrides = {}, Given given = {});
 
-/// Returns a scene with more overrides, and its text with them. Later errors give the places of
-/// keys in `scene`, where its author finds them, not the overrides. Throws SceneError.
+/// Returns a scene with more overrides, and its text with them. Later errors name the places of
+/// keys in `scene`, not the overrides, which its author has not typed. Throws SceneError.
 Scene with_overrides(Scene const& scene, std::vector<std::string> const& overrides);
 
 /// Returns a table of a scene's text as the override "NAME={...}" for another scene.
@@ -121,13 +122,13 @@ SceneError scene_error(Scene const& scene, std::string_view key, std::string_vie
 /// Returns the number of spins, or of rigid bodies.
 std::int64_t sites(Scene const& scene);
 
-/// Opens every file that the scene reads and checks the types and shapes of datasets, not their
-/// values. Also refuses a lattice without a spin. Throws SceneError.
+/// Opens every file that the scene reads, and checks the types and shapes of datasets, but not
+/// their values. Also refuses a lattice in which no site has a spin. Throws SceneError.
 void check_files(Scene const& scene);
 
 /// Returns the initial spins on the host, sites x 3, normalised in double: component c of site (i,
-/// j, k) is at ((k*ny + j)*nx + i)*3 + c. Throws SceneError naming the site of a zero or non-finite
-/// spin.
+/// j, k) is at ((k*ny + j)*nx + i)*3 + c. A site without a spin has the zero vector. Throws
+/// SceneError naming the site if its spin is zero or not finite.
 std::vector<double> initial_spins(Scene const& scene);
 
 /// Returns the initial spins of only these sites, in the same order. An OVF file is read
@@ -188,8 +189,8 @@ std::vector<std::array<std::int64_t, 2>> regions_of_bonds(Scene const& scene, Si
                                                           std::size_t axis);
 
 /// For each site of a box, returns its region and the region of the site `reach` further along an
-/// axis, or back if `reach` is negative. Returns -1 twice if one of the two has no spin, if a site
-/// between them has one, past an open end, and if |reach| is not below the lattice's extent.
+/// axis, or back if `reach` is negative. Returns (-1, -1) if one of the two sites has no spin, if a
+/// site between them has one, past an open end, and if |reach| is not below the lattice's extent.
 std::vector<std::array<std::int64_t, 2>> regions_across(Scene const& scene, SiteBox const& box,
                                                         std::size_t axis, std::int64_t reach);
 
@@ -211,11 +212,12 @@ bool needs_pass(Scene const& scene);
 /// than unit spins.
 bool has_moments_of_sites(Scene const& scene);
 
-/// Returns true if a site has no spin, by lattice.occupied or a moment of 0.
+/// Returns true if sites may have no spin: with lattice.occupied, with a moment of 0, and with
+/// site-dependent moments that are not given by regions.
 bool has_vacancies(Scene const& scene);
 
-/// Returns true if H is linear in the spins, apart from the applied field. False for a file of
-/// couplings, of which some may be biquadratic.
+/// Returns true if H is linear in the spins, apart from the applied field. Returns false for a file
+/// of couplings, because some of them may be biquadratic.
 bool has_linear_field(Scene const& scene);
 
 /// Returns numbers[site], a number of a site of the cell; 1 if `numbers` is empty.
@@ -230,9 +232,11 @@ std::vector<double> noise_of_cell_sites(Scene const& scene);
 /// Returns true if the damping, temperature, moment or gyromagnetic ratio is site-dependent.
 bool has_noise_of_sites(Scene const& scene);
 /// Returns for each site the gyromagnetic ratio over the moment, times damping and temperature if
-/// these are site-dependent; 0 where a spin does not move. Throws SceneError for a negative number.
+/// these are site-dependent; 0 where no spin moves. In Gilbert's form, site-dependent damping also
+/// divides it by 1 + damping^2. Throws SceneError for a negative number.
 std::vector<double> noise_of_sites(Scene const& scene, SiteBox const& box);
-/// Returns the largest of noise_of_sites, or of noise_of_cell_sites if nothing is site-dependent.
+/// Returns the largest number of noise_of_sites, or of noise_of_cell_sites unless
+/// has_noise_of_sites.
 double largest_noise(Scene const& scene);
 /// Refuses a dt for which the noise of half a step would turn spins too far. `heat`: the largest
 /// product of damping, temperature, and gyromagnetic ratio over moment. Throws SceneError.

@@ -25,9 +25,9 @@ inline SiteBox in_planes(SiteBox const& box, std::int64_t first, std::int64_t pl
   return part;
 }
 
-/// Appends to `chosen` the numbers of a box's sites, taken from `of_planes`: `of_site` numbers for
-/// each site of consecutive planes, from whose first one the box's z counts. `shape`: (nx, ny, nz)
-/// of the lattice.
+/// Appends to `chosen` the numbers of a box's sites. They are taken from `of_planes`, which holds
+/// `of_site` numbers for each site of consecutive planes; z of the box counts from the first of
+/// these. `shape`: (nx, ny, nz) of the lattice.
 template <class Number>
 void append_numbers_in(SiteBox const& box, std::array<std::int64_t, 3> const& shape,
                        std::int64_t of_site, std::vector<Number> const& of_planes,
@@ -41,8 +41,8 @@ void append_numbers_in(SiteBox const& box, std::array<std::int64_t, 3> const& sh
     }
 }
 
-/// Returns the numbers of a box's sites, taken from `of_all`: `of_site` numbers for each site of
-/// the lattice.
+/// Returns the numbers of a box's sites. They are taken from `of_all`, which holds `of_site`
+/// numbers for each site of the lattice.
 template <class Number>
 std::vector<Number> numbers_in(SiteBox const& box, std::array<std::int64_t, 3> const& shape,
                                std::int64_t of_site, std::vector<Number> const& of_all) {
@@ -53,8 +53,8 @@ std::vector<Number> numbers_in(SiteBox const& box, std::array<std::int64_t, 3> c
   return chosen;
 }
 
-/// Reads numbers of all sites, `of_site` per site, some planes at a time, and keeps those of a box:
-/// read(first plane, number of planes) returns a vector.
+/// Reads `of_site` numbers for each site of the lattice, some planes at a time, and returns those
+/// of a box. read(first, planes) returns the numbers of `planes` planes from plane `first` on.
 template <class Read>
 std::vector<double> read_by_planes(SiteBox const& box, std::array<std::int64_t, 3> const& shape,
                                    std::int64_t of_site, std::int64_t at_once, Read const& read) {

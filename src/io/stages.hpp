@@ -10,11 +10,11 @@
 /// A run in stages: [[stage]].
 namespace cayspin::inline v0_2::io {
 
-/// Returns all stages of a run: the scene's own tables, and the stages after them. Each starts
-/// where it would start if no stage before it ended early.
+/// Returns all stages of a run: the scene's own tables, and the stages after them. The start of
+/// each is set as if no stage before it ended early.
 std::vector<Stage> stages_of(Scene const& scene);
 
-/// Returns the start of the stage after one that has ended after `step`.
+/// Returns the start of the stage `next`, which follows `stage` after step `step`.
 StageBegin begin_after(Scene const& stage, std::int64_t step, Scene const& next);
 
 /// Sets the start of each stage after `first` to the end of the stage before it.
@@ -26,12 +26,13 @@ std::int64_t end_of(Stage const& stage);
 /// "stage 1 (switch)"
 std::string stage_text(Stage const& stage);
 
-/// Throws SceneError for a scene in stages. `who`: what accepts no stages, for the message.
+/// Throws SceneError for a scene in stages. `who`: the command or function that accepts no stages,
+/// for the message.
 void require_no_stages(Scene const& scene, std::string_view who);
 
-/// Returns a scene with keys changed as a stage would, to continue from a state of this scene. The
-/// overrides are written as for `--set`; `given`: the numbers for keys with { given = true }.
-/// Throws SceneError, also for keys that no stage may change.
+/// Returns a scene with keys changed as a stage changes them, to continue from a state of this
+/// scene. The overrides are written as for `--set`; `given`: the numbers for keys with { given =
+/// true }. Throws SceneError, also for keys that no stage may change.
 Scene changed_on_the_way(Scene const& scene, std::vector<std::string> const& overrides,
                          Given const& given = {});
 

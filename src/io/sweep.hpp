@@ -12,7 +12,8 @@
 #include <vector>
 
 /// The file of a sweep: one scene run with every combination of the values of some keys
-/// (docs/reference/file_format.md has the layout). Errors are those of trajectory.hpp.
+/// (docs/reference/file_format.md has the layout). Errors are those of trajectory.hpp, unless a
+/// comment says otherwise.
 namespace cayspin::inline v0_2::io {
 
 /// A key of a scene and its values.
@@ -33,8 +34,8 @@ struct SweepHeader {
   std::string precision, space;
   std::string cayspin_version, git_commit;  ///< may differ within a sweep
 
-  /// Returns the number of runs of the full grid; those that differ in the last key are
-  /// consecutive.
+  /// Returns the number of runs of the full grid. From run to run, the value of the last key
+  /// changes fastest.
   std::int64_t runs() const;
   /// Returns the index of each key's value in a run.
   std::vector<std::size_t> indices(std::int64_t run) const;
@@ -46,14 +47,14 @@ struct SweepHeader {
 struct SweptRun {
   static constexpr std::int64_t not_run = -1;
 
-  std::int64_t status = not_run;  ///< its exit status
-  std::string message;            ///< its message on standard error
+  std::int64_t status = not_run;  ///< exit status of the run
+  std::string message;            ///< what the run wrote on standard error
   std::int64_t step = 0;          ///< last step in its file
   double time = std::numeric_limits<double>::quiet_NaN();
   Scalars scalars{time, time, {time, time, time}};  ///< of the last frame
   RunCost cost;
   bool has_file = false;  ///< true if its file has a frame
-  bool is_new = false;    ///< written in this sweep just now: its file needs no trial
+  bool is_new = false;    ///< just run: its file needs no trial before it is copied
 };
 
 /// Contents of a sweep's file.
@@ -65,7 +66,8 @@ struct SweepInfo {
   bool one_file = false;  ///< the runs are in the file itself
 };
 
-/// Returns the folder of the runs' own files, until these are copied into the file of the sweep.
+/// Returns the folder of the runs' own files. With one file for all runs, it exists only until
+/// these files are copied.
 std::filesystem::path sweep_folder(std::filesystem::path const& file);
 /// Returns the name of a run: its group in the file of the sweep, and its own file without
 /// extension.
@@ -73,16 +75,17 @@ std::string swept_run_name(std::int64_t run);
 /// Returns a run's own file.
 std::filesystem::path swept_run_file(std::filesystem::path const& file, std::int64_t run);
 
-/// Writes PATH.partial and renames it, so that a complete file exists at every moment. With
-/// `one_file` the runs' own files are copied into it, otherwise it links to them. Before copying,
-/// each file that is not new is read once; the error names a damaged one. `go_on` is called before
-/// each group of files; if it returns false, the old file stays and the result is false.
+/// Writes PATH.partial and renames it, so that PATH is never incomplete. With `one_file` the runs'
+/// own files are copied into PATH, otherwise PATH links to them. Before copying, each file that is
+/// not new is read once; if one is damaged, the error names it. Throws std::invalid_argument for
+/// keys without values and for a wrong number of runs. `go_on` is called before each group of
+/// files; if it returns false, the old file stays and the result is false.
 bool write_sweep(std::filesystem::path const& path, SweepInfo const& sweep,
                  std::function<bool()> const& go_on = {});
 
 /// Returns true for an HDF5 file with a sweep.
 bool is_sweep(std::filesystem::path const& path);
-/// Reads all but the runs' trajectories. Throws std::runtime_error with one line.
+/// Reads everything except the runs' trajectories. Throws std::runtime_error with one line.
 SweepInfo read_sweep(std::filesystem::path const& path);
 
 }  // namespace cayspin::inline v0_2::io

@@ -9,7 +9,8 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// The table [thermal]. A site has kB T = temperature * in_time(t) * of_sites, in units of energy.
+/// The table [thermal]. A site has kB T = temperature * in_time(t) * of_sites, in the unit of
+/// energy.
 struct Thermal {
   double temperature = 0;          ///< >= 0
   AppliedComponent in_time = 1.0;  ///< an expression in t, or 1

@@ -27,7 +27,7 @@ struct Slonczewski {
   AppliedComponent damping_like = 0.0, field_like = 0.0;   ///< a, b
   Triple polarization = {};                                ///< unit vector p
   double lambda = 1;                                       ///< L
-  SiteNumbers damping_like_of_sites, field_like_of_sites;  ///< multiply a and b if set
+  SiteNumbers damping_like_of_sites, field_like_of_sites;  ///< multiply a and b, if set
   SiteVectors polarizations;  ///< instead of one vector; normalised when used
 
   /// Returns true if a, b and p are uniform, and a does not depend on the angle.

@@ -22,11 +22,11 @@
 /// other code left open.
 namespace cayspin::inline v0_2::io {
 
-/// Optional numbers of each sample besides its Scalars, in this order.
+/// Optional numbers of each sample, which follow its Scalars in this order.
 struct MoreScalars {
-  std::int64_t regions = 0;             ///< their magnetizations, and then their energies
-  std::vector<std::string> terms = {};  ///< names of the terms, whose energies follow
-  bool shift = false;                   ///< cells by which the lattice has followed; also in frames
+  std::int64_t regions = 0;             ///< magnetizations of all regions, then their energies
+  std::vector<std::string> terms = {};  ///< names of the terms; then come their energies
+  bool shift = false;                   ///< cells by which the lattice has moved; also in frames
   bool stage = false;                   ///< only in frames
 
   std::size_t count() const {
@@ -54,25 +54,26 @@ struct TrajectoryHeader {
   std::array<std::int64_t, 3> shape{1, 1, 1};
   std::int64_t cell_sites = 1;           ///< sites of a cell
   Units units;                           ///< of the times and energies in the file
-  bool relaxes = false;                  ///< it ends with RunCost::relaxed
-  MoreScalars more = {};                 ///< of samples; without the stage
-  std::optional<StageBegin> stage = {};  ///< of a run in stages: that of the first frame
+  bool relaxes = false;                  ///< a search for an equilibrium: sets RunCost::relaxed
+  MoreScalars more = {};                 ///< numbers of samples, which have no `stage`
+  std::optional<StageBegin> stage = {};  ///< for a run in stages: the stage of the first frame
 };
 
 /// Storage layout of /spins.
 struct TrajectoryStorage {
   int compression = 0;      ///< level of deflate with shuffle, 0 (none) to 9
   std::int64_t chunk = 0;   ///< planes along z in a chunk; 0: the frame, or as many as 256 MiB hold
-  std::int64_t frames = 0;  ///< planned; a kill loses none of these, nor of the first 8180 chunks
+  /// Number of planned frames. A kill loses none of them, and none in the first 8180 chunks.
+  std::int64_t frames = 0;
   bool sync = false;        ///< a power cut loses at most the frame being written
 };
 
-/// Division of a frame into pieces along z for writing, all of `planes` planes except the last,
-/// which may have fewer.
+/// Division of a frame into pieces along z for writing. Each piece has `planes` planes, but the
+/// last may have fewer.
 struct FramePieces {
   std::int64_t planes = 0;
   std::size_t bytes = 0;   ///< memory for a piece
-  std::size_t copied = 0;  ///< bytes that HDF5 needs for copies
+  std::size_t copied = 0;  ///< bytes that HDF5 needs for its copies
 };
 
 /// Returns pieces of whole chunks with at most `most_planes` planes (0: all), but at least one
@@ -86,7 +87,7 @@ FramePieces frame_pieces(std::array<std::int64_t, 3> const& shape, std::size_t n
 struct Scalars {
   double energy = 0;                      ///< summed over the sites: reduced, or in J
   double norm_defect = 0;                 ///< max | |m| - 1 | over the sites
-  std::array<double, 3> magnetization{};  ///< mean of m over the sites
+  std::array<double, 3> magnetization{};  ///< mean of m, weighted by the moments of the sites
 };
 
 /// The observables after a step.
@@ -123,14 +124,15 @@ struct RunCost {
 /// after a power cut.
 class TrajectoryFile {
  public:
-  /// Creates the file with everything but frames. An existing file is an error unless `overwrite`;
-  /// it is then replaced only once the new one exists (as PATH.partial) with its header. A failed
-  /// creation changes no existing file and leaves no new one. `positions` of the sites: three
-  /// numbers each in the order of the file, or empty.
+  /// Creates the file with everything but frames. Without `overwrite`, an existing file is an
+  /// error; with it, the file is replaced once the new one (PATH.partial) has its header. A failed
+  /// creation changes no existing file and leaves no new one. `positions`: three numbers for each
+  /// site in the order of the file, or empty. Throws std::invalid_argument for a wrong header,
+  /// storage or number of positions.
   TrajectoryFile(std::filesystem::path path, TrajectoryHeader const& header, bool overwrite,
                  TrajectoryStorage const& storage = {}, std::vector<double> const& positions = {});
 
-  /// Closes the file; without finish() before, it stays marked as not complete.
+  /// Closes the file. Unless finish() was called, it stays marked as not complete.
   ~TrajectoryFile();
   TrajectoryFile(TrajectoryFile&&) noexcept;
   TrajectoryFile& operator=(TrajectoryFile&&) noexcept;
@@ -141,22 +143,23 @@ class TrajectoryFile {
   void write_frame(std::int64_t step, double time, Scalars const& scalars, double const* spins);
 
   /// Appends a frame in pieces along z, in the precision of the header: call write_planes() with as
-  /// many planes at a time as frame_pieces() says and then with the rest, and then end_frame().
-  /// `spins` has the size of a piece and is overwritten. Other numbers of planes throw
-  /// std::logic_error.
+  /// many planes at a time as frame_pieces() says, then with the remaining planes, then
+  /// end_frame(). `spins` must have room for a piece and may be overwritten. Other numbers of
+  /// planes throw std::logic_error.
   void write_planes(std::int64_t planes, std::byte* spins);
   void end_frame(std::int64_t step, double time, Scalars const& scalars,
                  FrameNumbers const& numbers = {});
 
-  /// Appends one sample to /scalars; samples reach the file with the next frame, or within about a
-  /// second of calls. A wrong count of `more` throws std::logic_error.
+  /// Appends one sample to /scalars. It reaches the file with the next frame or, if more samples
+  /// follow, within about a second. A wrong count of `more` throws std::logic_error.
   void write_scalars(std::int64_t step, double time, Scalars const& scalars,
                      std::vector<double> const& more = {});
 
-  /// Ends a run that went as planned: sets `complete` = 1 after everything else is in the file.
+  /// Ends the file of a run that went as planned: sets `complete` = 1 after everything else is in
+  /// the file.
   void finish(RunCost const& cost);
 
-  /// Ends a run that was interrupted or failed: like finish(), but `complete` stays 0.
+  /// Ends the file of a run that was interrupted or failed: like finish(), but `complete` stays 0.
   void close(RunCost const& cost);
 
   std::int64_t frames() const;  ///< frames written so far
@@ -167,7 +170,7 @@ class TrajectoryFile {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Contents of a trajectory file, without its spins.
+/// Contents of a trajectory file, except its spins.
 struct TrajectoryInfo {
   std::filesystem::path path;
   int format = 0;
@@ -178,27 +181,27 @@ struct TrajectoryInfo {
   std::vector<std::int64_t> frame_steps;
   std::vector<double> frame_times;
   std::vector<Scalars> frame_scalars;
-  /// For crystals with several sites per cell, cell_sites entries for each frame: the mean of m
-  /// over the occupied sites s; zero if none is occupied.
+  /// For crystals with several sites per cell, cell_sites entries for each frame. Entry s is the
+  /// mean of m over the sites s of all cells that have a spin; zero if none has.
   std::vector<std::array<double, 3>> frame_sublattices;
   std::vector<std::int64_t> frame_shifts;  ///< of lattices that follow
   std::vector<std::int64_t> frame_stages;  ///< of a run in stages
   std::int64_t samples = 0;                ///< length of /scalars
-  /// The last of /scalars, if the run is not complete or the samples have more than Scalars.
+  /// The last sample of /scalars, if the run is not complete or the samples have more than Scalars.
   std::optional<Sample> last_sample = {};
   std::vector<double> more_of_last_sample = {};  ///< as listed in header.more
 };
 
-/// Completes a file written with TrajectoryStorage::sync after a kill or a power cut. Call it
-/// before reading the file with another program; the functions below do it themselves. Leaves any
+/// After a kill or a power cut, completes a file that was written with TrajectoryStorage::sync.
+/// Call it before another program reads the file; the functions below do it themselves. Leaves any
 /// other file unchanged.
 void complete_file(std::filesystem::path const& path);
 
-/// Returns what another file of cayspin is, as in "the file of a sweep"; empty for a trajectory
+/// Returns what kind of file of cayspin it is, as in "the file of a sweep"; empty for a trajectory
 /// file and for files of other programs.
 std::string kind_of_other_file(std::filesystem::path const& path);
 
-/// Reads all but the spins of a trajectory file.
+/// Reads everything except the spins of a trajectory file.
 TrajectoryInfo read_info(std::filesystem::path const& path);
 
 /// Reads a file that another process is writing. Takes no lock and writes nothing, so the writer
@@ -206,8 +209,8 @@ TrajectoryInfo read_info(std::filesystem::path const& path);
 /// state; a later call may succeed.
 TrajectoryInfo read_info_while_written(std::filesystem::path const& path);
 
-/// Returns true if a process has the file open for writing; nothing if that is unknown, because
-/// files are not locked.
+/// Returns true if a process has the file open for writing; nothing if that cannot be found out,
+/// because files are not locked or this one cannot be opened.
 std::optional<bool> is_being_written(std::filesystem::path const& path);
 
 /// For `cell_sites`: accepts any number of sites per cell in the file that fits the lattice.
@@ -215,12 +218,13 @@ inline constexpr std::int64_t any_cell_sites = 0;
 
 /// Reads dataset /spins of any HDF5 file for a lattice (nx, ny, nz): (nz, ny, nx, 3), or the last
 /// of (frame, nz, ny, nx, 3), or the last whole frame of a trajectory file. For a crystal also the
-/// last of (frame, cell_sites, nz / cell_sites, ny, nx, 3). Float or double, bits are kept; the
-/// result is packed as (nz, ny, nx, 3), in the order of TrajectoryHeader::shape.
+/// last of (frame, cell_sites, nz / cell_sites, ny, nx, 3). The stored type is float or double, and
+/// numbers are not rounded. The result is packed as (nz, ny, nx, 3), in the order of
+/// TrajectoryHeader::shape.
 std::vector<double> read_spins(std::filesystem::path const& path,
                                std::array<std::int64_t, 3> const& shape);
 
-/// Reads the spins of the sites of a box. It needs memory for them, and for a chunk or some planes.
+/// Reads the spins of the sites in a box. Needs memory for them, and for a chunk or some planes.
 std::vector<double> read_spins(std::filesystem::path const& path,
                                std::array<std::int64_t, 3> const& shape, SiteBox const& box,
                                std::int64_t cell_sites = any_cell_sites);

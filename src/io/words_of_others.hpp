@@ -6,17 +6,18 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Returns the key of a scene, or the command, for another program's `word`, as the end of a
-/// message: `, here it is material.Ms`. Empty if no other program has this word.
+/// Translates another program's `word` into the key of a scene or a command, as the end of a
+/// message: `, here it is material.Ms`. Empty if the word is not known.
 std::string hint_for_word_of_others(std::string_view word);
 
-/// Returns the same for a word that is typed as a value: `, here it is dp5`.
+/// Translates a word that is typed as a value: `, here it is dp5`.
 std::string hint_for_value_of_others(std::string_view value);
 
-/// Returns the key of this name in another table: `, did you mean "integrator.dt"?`.
+/// Names the key of this name in another table: `, did you mean "integrator.dt"?`. Empty if there
+/// is none.
 std::string hint_for_other_table(std::string_view key);
 
-/// Returns the same for a key that differs only in case, '_' and '-': MinDt.
+/// Names the key of any table that differs only in case, '_' and '-': for MinDt, integrator.min_dt.
 std::string hint_for_other_case(std::string_view key);
 
 /// Returns a word in lower case, without '_' and '-'.

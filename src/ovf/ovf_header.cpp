@@ -23,7 +23,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(blanks) + 1 - begin);
 }
 
-/// Records of a header by label, with messages that name the label.
+/// The records of a header by label. Errors name the label.
 class Records {
  public:
   explicit Records(std::filesystem::path const& path) : path_(path) {}

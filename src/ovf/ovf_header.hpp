@@ -25,13 +25,13 @@ struct OvfHeader {
   double multiplier = 1;  ///< multiplies the values of OVF 1.0
 };
 
-/// A line of a header without its '#': "label: value". The label is in lower case without blanks;
-/// the value ends at a comment.
+/// A header line "# label: value". The label is in lower case without blanks; the value ends at a
+/// comment.
 struct OvfLine {
   std::string label, value;
 };
 
-/// Returns an empty line for a comment and for a line without a label.
+/// Splits a header line. Returns empty strings for a comment and for a line without a label.
 OvfLine split_line(std::string_view line);
 
 /// Returns the text in lower case without blanks.

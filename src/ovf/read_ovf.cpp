@@ -74,7 +74,7 @@ class OvfValues {
   }
 
  private:
-  /// Checks the file's size before memory for nodes is allocated.
+  /// Checks that the file is large enough before memory for its nodes is allocated.
   void require_room() {
     auto const left = bytes_left(stream_);
     auto const components = static_cast<std::uint64_t>(header_.components);
@@ -144,7 +144,8 @@ class OvfValues {
     return std::string_view(" \t\r\v\f").find(c) != std::string::npos;
   }
 
-  /// A comment starts with ##, or with # after a blank: 1.#QNAN is not a comment.
+  /// A comment starts with ##, or with # at the start of the line or after a blank: 1.#QNAN is not
+  /// a comment.
   static std::string_view without_comment(std::string_view line) {
     for (auto at = line.find('#'); at != line.npos; at = line.find('#', at + 1))
       if (at == 0 || is_blank(line[at - 1]) || line.substr(at).starts_with("##"))

@@ -12,7 +12,7 @@
 namespace cayspin::inline v0_2::io {
 namespace {
 
-// Compares two numbers, allowing for round-off of a conversion from SI.
+// Compares two numbers, allowing for the round-off of a conversion from SI.
 bool same(double a, double b) {
   return a == b || std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b));
 }
@@ -26,7 +26,7 @@ bool same_spacing(Scene const& before, Scene const& now, std::size_t axis) {
               now.lattice.spacing[axis] * now.units.length);
 }
 
-// Compares numbers of the cell's sites; if none are typed, all are 1.
+// Compares the numbers of a cell's sites. If a vector is empty, all its numbers are 1.
 bool same_of_cell(std::vector<double> before, std::vector<double> now, std::size_t sites) {
   if (before.empty()) before.assign(sites, 1);
   if (now.empty()) now.assign(sites, 1);

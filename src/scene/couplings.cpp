@@ -56,8 +56,8 @@ std::array<double, 9> read_tensor(Item const& item, Scene& scene) {
   return tensor;
 }
 
-// Refuses a coupling that leaves the lattice from every cell. (Single bonds past an open end are
-// left out.)
+// Refuses a coupling whose bonds leave the lattice from every cell. (A bond that leaves it from
+// only some cells is left out there.)
 void refuse_beyond(Item const& item, Lattice const& lattice, std::array<int, 3> const& offset) {
   auto cells = lattice.shape;
   cells[2] /= static_cast<std::int64_t>(lattice.basis.size());
@@ -144,7 +144,7 @@ bool are_close(Coupling const& a, Coupling const& b) {
   return difference <= 1e-6 * largest;
 }
 
-// Keeps each bond once. All are written from both ends, with equal values.
+// Returns each bond once. Refuses bonds that are not written from both ends with equal values.
 std::vector<Coupling> one_direction(std::vector<Item> const& items,
                                     std::vector<Coupling> const& couplings) {
   constexpr std::string_view accepted = "each bond from both ends, with J, and with -D there";
@@ -173,7 +173,7 @@ std::vector<Coupling> read_pairs(Item const& item, Scene& scene, bool both_direc
   return bonds;
 }
 
-// Adds the bonds of `more` to `bonds`; values of a bond that is in both are summed.
+// Adds the bonds of `more` to `bonds`. If a bond is in both, its values are summed.
 void add_bonds(std::vector<Coupling> const& more, std::vector<Coupling>& bonds) {
   std::map<BondKey, std::size_t> seen;
   for (std::size_t i = 0; i < bonds.size(); ++i) seen.emplace(key_of(bonds[i]), i);

@@ -17,7 +17,7 @@ constexpr Word<Crystal (*)()> crystals[] = {
     {"hcp", Crystal::hcp},       {"honeycomb", Crystal::honeycomb},
     {"kagome", Crystal::kagome}, {"pyrochlore", Crystal::pyrochlore}};
 
-// Returns the cell of a unit-cell file if the scene has none.
+// Returns the cell of the scene's unit-cell file; nothing if the scene names no such file.
 std::optional<Crystal> crystal_of_couplings(Table const& root) {
   auto const field = root.find("field");
   if (!field || !field->node->is_table()) return std::nullopt;

@@ -14,7 +14,7 @@
 namespace cayspin::inline v0_2::io::detail {
 
 /// A dataset with `of_site` numbers per site. Its extents are (nz, ny, nx), or (site, nz, ny, nx)
-/// for a crystal, followed by `of_site` if that is above 1.
+/// for several sites per cell, followed by `of_site` if that is above 1.
 class DatasetOfSites {
  public:
   DatasetOfSites(std::filesystem::path const& path, std::string name, Lattice const& lattice,

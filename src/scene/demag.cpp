@@ -15,8 +15,8 @@
 namespace cayspin::inline v0_2::io::detail {
 namespace {
 
-// Sets the default: infinitely many images along each periodic axis with several cells. Along three
-// such axes, only dipoles have this sum.
+// Sets the default: infinitely many images along each periodic axis with several cells. With three
+// such axes, only the sum over dipoles is defined.
 void set_usual_images(Item const& item, Lattice const& lattice, Demagnetization& demag) {
   auto& images = demag.periodic_images;
   auto const basis = static_cast<std::int64_t>(lattice.basis.size());
@@ -44,7 +44,7 @@ void set_usual_images(Item const& item, Lattice const& lattice, Demagnetization&
         "up to 1e4 : 1, or " + otherwise);
 }
 
-// The default, 0, means a surface far away without poles.
+// The default, 0, means that the surface far away has no poles.
 void read_demagnetizing_factors(Table const& table, Demagnetization& demag) {
   auto const item = table.find("demagnetizing_factors");
   if (!item) return;

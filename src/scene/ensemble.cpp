@@ -19,10 +19,10 @@ constexpr std::int64_t most_replicas = 1'000'000;
 constexpr std::string_view accepted_values =
     "as many numbers as replicas, or { from = number, to = number }";
 
-// Starts of keys that may differ between replicas.
+// Prefixes of the keys that may differ between replicas.
 constexpr std::array varied_tables{"field.", "torque.", "material.", "thermal.temperature",
                                    "system.damping"};
-// Exceptions: moments, on which units and lattice depend, and the form of damping.
+// Exceptions: the moments, because units and the lattice depend on them, and the form of damping.
 constexpr std::array fixed_keys{"material.Ms", "material.mu_s", "material.damping_form"};
 
 bool may_vary(std::string_view key) {
@@ -61,8 +61,8 @@ std::vector<std::string> overrides_of(Scene const& scene, std::int64_t replica) 
   return overrides;
 }
 
-// `parse`: parse_scene or parse_scene_to_relax. An error in a value is reported for the key
-// ensemble.vary.
+// Returns the scene of a replica. `parse`: parse_scene or parse_scene_to_relax. An error in a
+// varied value is reported for the key ensemble.vary.
 template <class Parse>
 Scene parsed_replica(Scene const& scene, std::int64_t replica, Parse const& parse) {
   auto const& text = scene.ensemble.text_of_replicas;
@@ -80,8 +80,8 @@ Scene parsed_replica(Scene const& scene, std::int64_t replica, Parse const& pars
   }
 }
 
-// Refuses keys that do not go with an ensemble, most of them because its file has no place for
-// their results.
+// Refuses keys that do not go with an ensemble, most of them because the file of an ensemble has no
+// place for their results.
 void refuse_options(Scene const& scene) {
   constexpr std::string_view what = "does not go with an ensemble", accepted = "no such key";
   if (!scene.stages.empty()) refuse(scene, "stage", what, accepted);

@@ -24,7 +24,7 @@ Term read_term(Item const& item, Scene& scene) {
   return term;
 }
 
-// Reads the number of a term with only one key, or the table of any other term.
+// Reads a number if the term has only one key, otherwise a table.
 template <class Term>
 Term read_lattice_term(Item const& item, Scene& scene) {
   if constexpr (Term::keys().size() == 1) {
@@ -36,8 +36,8 @@ Term read_lattice_term(Item const& item, Scene& scene) {
   }
 }
 
-// Reads the DMI of an interface, of the bulk of a chiral crystal, or of D2d symmetry. The value of
-// free_boundary is read after all tables.
+// Reads the DMI of an interface, of the bulk of a chiral crystal, or of D2d symmetry. free_boundary
+// is read later, after all tables.
 void read_dmi(Item const& item, Scene& scene, Field& field) {
   constexpr std::string_view accepted =
       "{ interfacial = D, normal = [x, y, z] }, { bulk = D } or { d2d = D }, and free_boundary";
@@ -185,7 +185,7 @@ SlabDemagnetization read_slab_demag(Item const& item, Scene& scene) {
   return slab;
 }
 
-// With a material, these constants are given in SI there.
+// For units = "SI", [material] has these constants instead.
 void refuse_reduced_keys(Table const& table) {
   constexpr std::pair<std::string_view, std::string_view> replaced[] = {
       {"exchange", "material.A, or material.J of atomistic spins"},

@@ -18,7 +18,7 @@ constexpr std::string_view of_free_sides = "free sides along ";
 
 std::string text_of(std::size_t axis) { return fmt::format("{}{}", of_free_sides, "xyz"[axis]); }
 
-/// Returns the vector of the bonds along an axis, divided by D.
+/// Returns the DMI vector of the bonds along an axis, divided by D, up to its sign.
 Triple bond_vector(Field const& field, std::size_t axis) {
   Triple along{};
   along[axis] = 1;
@@ -28,7 +28,7 @@ Triple bond_vector(Field const& field, std::size_t axis) {
 
 double square(Triple const& v) { return cayspin::detail::scalar_product(v, v); }
 
-/// Returns site-dependent numbers, or one constant for all.
+/// Returns site-dependent numbers if there are any, otherwise `constant` for each site.
 std::vector<double> constants(Scene const& scene, SiteNumbers const& numbers, double constant,
                               std::string_view key, SiteBox const& box) {
   if (numbers.there()) return numbers_of_sites(scene, numbers, key, box);

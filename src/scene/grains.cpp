@@ -15,7 +15,7 @@ namespace {
 
 double square(double x) { return x * x; }
 
-/// Search for the seed nearest to a point, with the nearest one so far. Each tile has one seed.
+/// Search for the seed nearest to a point. Each tile has one seed.
 struct Search {
   std::array<std::int64_t, 3> tiles;
   std::array<Triple, 3> edges;    // of a tile
@@ -23,7 +23,7 @@ struct Search {
   std::array<bool, 3> periodic;
   std::array<double, 3> point;  // in units of tiles
   std::uint64_t seed;
-  double nearest = std::numeric_limits<double>::infinity();  // squared distance
+  double nearest = std::numeric_limits<double>::infinity();  // squared, of the seeds seen so far
   std::int64_t grain = 0;
 
   /// Searches a row of tiles (axis 0), a plane (1) or all of them (2), from the point outwards, as

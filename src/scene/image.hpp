@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <vector>
 
-// Images as site-dependent numbers. Every failure throws std::runtime_error with one line that
-// starts with the file.
+// Images as site-dependent numbers. Failures to read an image throw std::runtime_error with one
+// line that starts with the file.
 namespace cayspin::inline v0_2::io::detail {
 
 /// Grey values from 0 (black) to 255 (white), row by row from the top.
@@ -17,8 +17,8 @@ struct Image {
   std::int64_t width = 0, height = 0;
   std::vector<unsigned char> grey;
 
-  /// Returns the pixel at the centre of a cell, for a lattice that the image covers with its top
-  /// row at the largest y.
+  /// Returns the pixel at the centre of a cell. The image covers the lattice, with its top row at
+  /// the largest y.
   unsigned char at_cell(std::array<std::int64_t, 3> const& shape, std::int64_t i,
                         std::int64_t j) const {
     auto const column = (2 * i + 1) * width / (2 * shape[0]);
@@ -27,7 +27,7 @@ struct Image {
   }
 };
 
-/// Reads the header of a PNG file.
+/// Reads only the header of a PNG file.
 void check_image(std::filesystem::path const& path);
 
 /// Reads a PNG file. Colours are converted to grey, on a white background.
@@ -36,8 +36,8 @@ Image read_image(std::filesystem::path const& path);
 /// Reads { image = "NAME.png", levels = [..] }, where only lattice.occupied may omit `levels`.
 void read_image_keys(Table const& table, SiteNumbers& numbers);
 
-/// For each site of a box, returns how many of the levels its grey value reaches. Without levels,
-/// returns 1 where the image is dark (below 128), and 0 elsewhere.
+/// For each site of a box, returns how many of the levels the grey value at the site reaches.
+/// Without levels, returns 1 where the image is dark (below 128), and 0 elsewhere.
 std::vector<double> numbers_of_image(SiteNumbers const& numbers, Lattice const& lattice,
                                      SiteBox const& box);
 

@@ -90,7 +90,7 @@ struct Start {
     std::copy_n(m.data(), 3, spins.begin() + static_cast<std::ptrdiff_t>(3 * site));
   }
 
-  // Errors name the site and its spin.
+  // Stores m / |m|. Errors name the site and m.
   void set_normalised(std::size_t site, Triple const& m, std::string_view key) const {
     if (is_vacant(site)) return;
     if (auto const unit = detail::normalise(m)) {
@@ -165,7 +165,8 @@ struct Start {
     set_all(numbers_in(box, scene.lattice.shape, 3, *start.spins), "initial.given");
   }
 
-  // Zero vectors in the file mean sites without a spin; refuses them on sites that have one.
+  // Zero vectors in the file mean sites without a spin. Refuses them on sites that lattice.occupied
+  // fills.
   void require_shape(std::vector<double> const& values, std::string const& name) const {
     if (occupied.empty()) return;
     std::int64_t there = 0, zeros = 0;

@@ -16,7 +16,7 @@ struct SineCosine {
   double sine, cosine;
 };
 
-// Returns sine and cosine of the angle 2 atan(q): exact if q is 0, 1 or infinite.
+// Returns sine and cosine of the angle 2 atan(q). They are exact if q is 0, 1 or infinite.
 SineCosine of_twice_atan(double q) {
   bool const is_obtuse = q > 1;
   double const tangent = is_obtuse ? 1 / q : q;
@@ -35,7 +35,7 @@ struct SpinOfState {
   std::array<std::int64_t, 3> const& site;
 
   // Returns the vector to the site from a point given in fractions of the lattice. With
-  // `across_ends` it is the shortest one across periodic ends along x and y.
+  // `across_ends`, it takes the shorter way along x and y, also across periodic ends.
   Triple way_from(Triple const& point, bool across_ends = false) const {
     auto const values = site_values(lattice, site);
     auto const sites = static_cast<std::int64_t>(lattice.basis.size());
@@ -51,7 +51,7 @@ struct SpinOfState {
     return way;
   }
 
-  // Position relative to an axis along z through a point of the plane.
+  // Position of a site relative to an axis along z.
   struct FromAxis {
     double x, y, r;
 
@@ -99,8 +99,8 @@ struct SpinOfState {
     double const turns = scalar_product(way_from({0, 0, 0}), helix.direction) / helix.period;
     double const angle = 2 * std::numbers::pi * turns + helix.phase;
     auto const& n = helix.normal;
-    // At angle 0, spins are along the projection of z on the plane normal to n; along x if n is
-    // along z.
+    // At angle 0, a spin is along the projection of z onto the plane normal to n, or along x if n
+    // is along z.
     bool const is_along_z = n[0] * n[0] + n[1] * n[1] < 1e-12;
     auto const side = vector_product(n, is_along_z ? Triple{1, 0, 0} : Triple{0, 0, 1});
     auto const begin = vector_product(side, n);

@@ -79,7 +79,8 @@ void read_coordinates(Table const& table, Integrator& integrator) {
   }
 }
 
-// Reads the step control of an adaptive method; other methods refuse it.
+// Reads the tolerance of an adaptive method. Other methods refuse it, and min_dt and max_dt; but
+// "auto" accepts max_dt.
 void read_tolerance(Table const& table, Integrator& integrator) {
   if (!integrator.method->adaptive) {
     bool const takes_max_dt = integrator.method->automatic;  // for the method that it chooses
@@ -110,8 +111,8 @@ void read_error(Table const& table, Integrator& integrator) {
     error.fail(fmt::format("{} is out of reach", *integrator.error), accepted);
 }
 
-// Default number of observations of a run with adaptive steps. With a power of two, the run ends
-// exactly at `end`.
+// Default number of observations of a run with adaptive steps. Because it is a power of two, the
+// run ends exactly at `end`.
 constexpr double usual_looks = 128;
 
 double read_dt(Table const& table, Integrator const& integrator) {
@@ -123,8 +124,9 @@ double read_dt(Table const& table, Integrator const& integrator) {
 
 }  // namespace
 
-// The number of steps must be whole to within 1e-9. Beyond 2e6 steps the rounding of both decimal
-// numbers and of their quotient exceeds that; so the tolerance is then 2 eps times the quotient.
+// The number of steps must be whole to within 1e-9. Beyond 2e6 steps, the rounding errors of the
+// two decimal numbers and of their quotient exceed that, so the tolerance is 2 eps times the
+// quotient there.
 std::int64_t whole_steps(Item const& item, double dt) {
   auto const time = number(item, not_negative);
   double const quotient = time / dt;

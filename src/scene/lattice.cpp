@@ -13,7 +13,7 @@ namespace {
 constexpr std::int64_t most_extent = std::numeric_limits<std::int32_t>::max() / 4;
 
 // Reads one entry per axis of the shape, or one value for every axis. read(item, accepted) returns
-// a value.
+// one value.
 template <class Value, class Read>
 void read_per_axis(Item const& item, std::size_t axes, std::array<Value, 3>& values, Read read,
                    std::string_view one) {

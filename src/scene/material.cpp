@@ -42,8 +42,8 @@ bool is_atomistic(Table const& table) {
 }
 
 // Reads moments if they are site-dependent, and chooses the moment that counts as 1: the largest
-// moment of a region. Other site-dependent moments are not evaluated here; for them it is 1 T over
-// mu0, or a Bohr magneton.
+// moment of a region. Other site-dependent moments are not evaluated here; for them, 1 T / mu0 or a
+// Bohr magneton counts as 1.
 bool read_moments_of_sites(Item const& item, Scene& scene, Material& material) {
   if (!are_numbers_of_sites(item)) return false;
   auto& numbers = material.moment_factors;
@@ -80,8 +80,8 @@ void read_moments(Item const& item, Scene& scene, Material& material) {
   material.moment = material.moments.front();
 }
 
-// Reads a vector that belongs to the key `other`, which is `present` or not: the scene must have
-// both or neither.
+// Reads the vector `name`, which belongs to the key `other`: the scene must have both or neither.
+// `present`: whether it has `other`.
 Triple direction_with(Table const& table, std::string_view name, std::string_view other,
                       bool present) {
   if (present) return direction(table.required(name, "three numbers"));
@@ -108,7 +108,7 @@ void read_damping(Table const& table, Material& material) {
   material.gilbert = word_among<bool>(forms, *form);
 }
 
-// If gamma is site-dependent, the value of the free electron counts as 1.
+// Reads gamma. If it is site-dependent, the value of the free electron counts as 1.
 void read_gamma(Item const& item, Scene& scene, Material& material) {
   if (!read_site_numbers(item, scene, material.gamma_factors)) {
     material.gamma = positive_number(item);

@@ -49,7 +49,7 @@ class Notes {
   bool is_periodic(std::size_t axis) const {
     return scene_.lattice.boundary[axis] == BoundaryKind::periodic;
   }
-  /// Returns true if some axis with neighbours satisfies `wanted`.
+  /// Returns true if wanted(axis) is true for an axis along which cells have neighbours.
   bool any_axis(auto const& wanted) const {
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (has_neighbours(axis) && wanted(axis)) return true;
@@ -100,7 +100,8 @@ class Notes {
     }
   }
 
-  /// Returns true if spins of these regions have `range` cells without a spin between them.
+  /// Returns true if somewhere there are `range` cells without a spin between spins of these two
+  /// regions.
   bool meet(std::array<std::int64_t, 2> const& regions, std::int64_t range) const {
     return any_axis([&](std::size_t axis) {
       auto const pairs = regions_across(scene_, {{0, 0, 0}, scene_.lattice.shape}, axis, range + 1);
@@ -259,8 +260,8 @@ class Notes {
     return start != nullptr && scene_.lattice.occupied.file == start->path;
   }
 
-  // Notes if the cells in an OVF file have another size than the lattice's. Spins are assigned by
-  // index, whatever the size.
+  // Adds a note if the cells of an OVF file have another size than those of the lattice. Spins are
+  // assigned by index, whatever the size.
   void of_mesh() {
     auto const* const start = std::get_if<FileStart>(&scene_.initial);
     if (start == nullptr || !scene_.units.si || !is_ovf(start->path)) return;
@@ -278,7 +279,7 @@ class Notes {
                                       fmt::join(mesh.step, " x "), fmt::join(edges, " x ")));
   }
 
-  /// Notes values that look as if typed in other units.
+  /// Adds notes for values that look as if typed in other units.
   void of_magnitudes() {
     auto const& material = *scene_.material;
     auto const look = [&](std::string_view key, double value, double least, double most,

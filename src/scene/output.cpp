@@ -22,7 +22,7 @@ CheckpointPeriod checkpoint_period(Item const& item) {
   return {0, steps};
 }
 
-// Reads the number of steps between frames or samples.
+// Reads the interval between frames or samples, and returns it in steps.
 std::int64_t period(Item const& item, Table const& root, Integrator const& integrator) {
   constexpr std::string_view accepted =
       "a whole number of steps >= 1, or { time = TIME }, a multiple of dt";

@@ -73,7 +73,7 @@ bool is_bare_word(std::string_view value) {
   return value[0] != '-' && std::ranges::any_of(value, is_letter) && !is_toml(value);
 }
 
-// Parses one value, with the override as its source, which messages name. Words may lack quotes,
+// Parses one value. Its source, which messages name, is the override. Words may lack quotes,
 // because a shell removes them.
 toml::table parse_value(std::string const& place, std::string_view value) {
   toml::table parsed;

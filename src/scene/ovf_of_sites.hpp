@@ -9,8 +9,9 @@
 
 namespace cayspin::inline v0_2::io::detail {
 
-/// Throws std::runtime_error unless an OVF file has as many nodes along each axis as the lattice,
-/// which must have one site per cell, and this number of components, 1 or 3. Reads only the header.
+/// Throws std::runtime_error unless an OVF file has this number of components, 1 or 3, and as many
+/// nodes along each axis as the lattice. Also throws for a lattice with several sites per cell.
+/// Reads only the header.
 void check_ovf_of_sites(std::filesystem::path const& path, Lattice const& lattice,
                         std::int64_t components);
 

@@ -50,11 +50,12 @@ toml::table parse(std::string const& text, std::filesystem::path const& path) {
   }
 }
 
-// The purpose for which tables are read. any: run or relax, whichever the scene is for. start: the
-// scene's own tables if stages follow and [integrator] is missing. rest: a stage that relaxes.
+// The purpose for which tables are read. any: run or relax, whichever the scene is for. start: for
+// the scene's own tables, if stages follow and [integrator] is missing. rest: for a stage that
+// relaxes.
 enum class Purpose { run, relax, any, start, rest };
 
-// Reads [integrator]. Unless the scene is to be run, it may be missing.
+// Reads [integrator], which may be missing for purposes other than running.
 Integrator read_integrator_for(Purpose purpose, detail::Table const& root, SystemKind kind) {
   bool const is_for_bodies = purpose == Purpose::any && kind != SystemKind::llg;
   if (purpose == Purpose::run || is_for_bodies || root.contains("integrator"))
@@ -75,8 +76,8 @@ void check_purpose(Purpose purpose, Scene const& scene) {
   }
   if (scene.system.kind != SystemKind::llg)
     detail::refuse(scene, "system.kind", "rigid bodies have no equilibrium", "\"llg\"");
-  // `cayspin modes` accepts torques; relax and path, which read scenes for the same purpose, refuse
-  // them later.
+  // `cayspin modes` accepts torques. relax and path, which read scenes for the same purpose, refuse
+  // torques later.
   if (has_torque(scene.field) && purpose != Purpose::relax)
     detail::refuse(scene, "torque",
                    "moves spins for ever, and an equilibrium needs an energy that falls",
@@ -86,7 +87,8 @@ void check_purpose(Purpose purpose, Scene const& scene) {
                    "numbers");
 }
 
-// Writes the cell of a unit-cell file into the text, so that later readers need not have the file.
+// Writes the cell of a unit-cell file into the text, so that readers of the text know the lattice
+// without that file. Returns true if it did.
 bool write_cell(toml::table& document, Scene const& scene) {
   auto const& [lattice, places] = std::tie(scene.lattice, scene.places);
   if (scene.field.couplings_file.empty() || places.contains("lattice.crystal") ||

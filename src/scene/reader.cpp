@@ -56,7 +56,8 @@ std::string hint_for_case(std::string_view word, std::span<std::string_view cons
   return found == known.end() ? std::string() : fmt::format(", did you mean \"{}\"?", *found);
 }
 
-// A word that exists, in this table, in another or in another program, wins over a near spelling.
+// Words that exist come before similar spellings: first words of this table, then of other tables
+// and of other programs.
 std::string hint_for_key(std::string_view key, std::span<std::string_view const> known) {
   if (key.size() > longest_word) return {};
   if (auto hint = hint_for_case(key, known); !hint.empty()) return hint;

@@ -26,12 +26,12 @@ std::string one_line(std::string text);
 /// without them.
 std::string as_toml_value(std::string_view value);
 
-/// Throws `place: key: what; accepted: accepted`, without empty parts.
+/// Throws SceneError("PLACE: KEY: WHAT; accepted: ACCEPTED"), without the parts that are empty.
 [[noreturn]] void fail(std::string_view place, std::string_view key, std::string_view what,
                        std::string_view accepted = {});
 
-/// Returns `, did you mean "..."?` if a known word differs only in case, '_' and '-', or by at most
-/// two edits, otherwise "".
+/// Returns `, did you mean "..."?` if a known word differs only in case, '_' and '-', or by one or
+/// two edits that are less than half of the word; otherwise "".
 std::string did_you_mean(std::string_view word, std::span<std::string_view const> known);
 
 /// A value of the scene with its full key and the place where it was typed.
@@ -50,12 +50,13 @@ struct Item {
 /// Returns "FILE:LINE", or "--set key=value"; `otherwise` for a node that was never typed.
 std::string place_of(toml::source_region const& source, std::string_view otherwise);
 
-/// A table whose keys are read by name. Stores their places in the scene for later messages.
+/// A table whose keys are read by name. The scene keeps the places of these keys for later
+/// messages.
 class Table {
  public:
   Table(Item item, Scene& scene);
 
-  /// Refuses any other key.
+  /// Refuses keys that are not in `known`.
   void accept_only(std::vector<std::string_view> const& known) const;
 
   std::optional<Item> find(std::string_view name) const;
@@ -71,7 +72,7 @@ class Table {
   Scene* scene_;
 };
 
-/// Returns an integer or a floating-point number, which may be infinite or NaN.
+/// Returns the value of an integer or a floating-point number, which may be infinite or NaN.
 double value_of(toml::node const& number);
 double number(Item const& item, Limits const& limits = {});
 inline double positive_number(Item const& item) { return number(item, positive); }
@@ -83,14 +84,14 @@ std::string accepted_site_numbers(Lattice const& lattice);
 /// Returns true for an expression, a file, an image, numbers of regions, or given numbers; false
 /// for a number with its unit.
 bool are_numbers_of_sites(Item const& item);
-/// Returns false for an item that is neither an expression nor a table.
+/// Reads site-dependent numbers. Returns false for an item that is neither a string nor a table.
 bool read_site_numbers(Item const& item, Scene& scene, SiteNumbers& numbers);
 /// Reads site-dependent numbers and returns 1; or reads a number and returns that.
 double number_of_sites(Item const& item, Scene& scene, SiteNumbers& numbers);
 /// Describes, for messages, what read_site_vectors accepts: a vector for each site.
 std::string accepted_site_vectors(Lattice const& lattice);
 SiteVectors read_site_vectors(Item const& item, Scene& scene);
-/// Reads one direction and returns it; or reads site-dependent vectors into `axes` and returns the
+/// Reads one direction and returns it; or reads site-dependent vectors into `axes`, and returns the
 /// zero vector.
 Triple axis_of_sites(Item const& item, Scene& scene, SiteVectors& axes);
 /// Reads a number, or an expression in t.
@@ -122,7 +123,8 @@ inline std::optional<Triple> normalise(Triple const& v) {
 /// Reads three numbers and normalises them; refuses the zero vector.
 Triple direction(Item const& item);
 
-/// Returns a file name relative to the scene file's folder, and adds it to the scene's files.
+/// Reads a file name, which is relative to the scene file's folder. Returns its path and adds it to
+/// Scene::files.
 std::filesystem::path input_file(Table const& table, std::string_view name,
                                  std::string_view accepted = "the name of an HDF5 file");
 
@@ -144,7 +146,8 @@ std::string all_words() {
                                std::vector<std::string_view> const& known,
                                std::string_view accepted);
 
-/// Reads one of these words. `accepted`: for messages, which list all words if it is empty.
+/// Reads one of these words and returns its value. `accepted`: for messages; if it is empty, they
+/// list all words.
 template <class Value>
 Value word_among(std::span<Word<Value> const> words, Item const& item,
                  std::string_view accepted = {}) {
@@ -157,7 +160,7 @@ Value word_among(std::span<Word<Value> const> words, Item const& item,
   }
   unknown_word(item, name, known, all);
 }
-/// Reads a word of the tables in words.hpp.
+/// Reads one of the words<Value>().
 template <class Value>
 Value word(Item const& item, std::string_view accepted = {}) {
   return word_among(words<Value>(), item, accepted);

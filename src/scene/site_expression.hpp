@@ -12,8 +12,8 @@
 
 namespace cayspin::inline v0_2::io::detail {
 
-/// Returns the variables of site expressions: the position, the cell's indices and, for a crystal,
-/// the index in the cell.
+/// Returns the variables of site expressions: the position, the cell's indices and, for several
+/// sites per cell, the index in the cell.
 std::vector<std::string> site_variables(Lattice const& lattice);
 
 /// Returns the values of these variables at a site (i, j, plane) of the lattice: plane k * sites +
@@ -35,8 +35,8 @@ inline std::array<double, 7> site_values(Lattice const& lattice,
   return values;
 }
 
-/// Compiles an expression in these variables, which may use the functions grain(size, seed) and
-/// random(n, seed). `length`: the unit of lattice.spacing, in the unit of `size`. Throws like
+/// Compiles an expression in these variables. It may call the functions grain(size, seed) and
+/// random(n, seed). `length`: converts lattice.spacing to the unit of `size`. Throws like
 /// Expression.
 Expression site_expression(std::string text, Lattice const& lattice, double length = 1);
 inline Expression site_expression(std::string text, Scene const& scene) {

@@ -35,7 +35,7 @@ std::vector<double> values_of_file(std::filesystem::path const& path, Lattice co
   return read_guarded(path, [&] { return open_values(path, lattice).in(box); });
 }
 
-// Returns true if a file of spins tells which sites are occupied.
+// Returns true for lattice.occupied, if its file has spins, which are zero on sites without a spin.
 bool is_file_of_spins(SiteNumbers const& numbers, std::string_view key) {
   return key == "lattice.occupied" && detail::holds_spins(numbers.file);
 }
@@ -76,7 +76,7 @@ std::vector<double> numbers_of_regions(Scene const& scene, std::vector<double> c
   return values;
 }
 
-// Returns the numbers before they are multiplied by their unit.
+// Returns the numbers as typed, before they are multiplied by their unit.
 std::vector<double> typed_numbers(Scene const& scene, SiteNumbers const& numbers,
                                   std::string_view key, SiteBox const& box) {
   if (numbers.given) {

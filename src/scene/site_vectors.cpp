@@ -51,9 +51,9 @@ void for_each_site(SiteBox const& box, Visit const& visit) {
       for (at[0] = 0; at[0] < box.extent[0]; ++at[0]) visit(at);
 }
 
-/// Numbers of the sites of a box, and of the sites up to `reach` past its end along an axis, or
-/// before its start if `reach` is negative. read(box) returns the numbers of a box; sites past an
-/// open end have `none`.
+/// Numbers of the sites of a box, and of the sites that are up to `reach` past the end of the box
+/// along an axis, or before its start if `reach` is negative. read(box) returns the numbers of a
+/// box; sites past an open end have `none`.
 template <class Number>
 class NumbersAlong {
  public:

@@ -18,7 +18,8 @@ std::size_t count_stages(toml::table const& document, std::string const& path);
 /// stage may change.
 toml::table apply_stages(toml::table& document, std::size_t count, std::string const& path);
 
-/// Merges the changes of a stage into a document. `prefix`: goes before its keys in messages.
+/// Merges the changes of a stage into a document, and removes them from the stage. `prefix`: put
+/// before the stage's keys in messages. Throws SceneError for keys that no stage may change.
 void apply_stage(toml::table& document, toml::table& stage, std::string const& prefix,
                  std::string const& path);
 

@@ -52,7 +52,8 @@ void put(toml::table& table, std::string_view key, toml::node&& value) {
   std::move(value).visit([&](auto&& typed) { table.insert_or_assign(key, std::move(typed)); });
 }
 
-// A value replaces the previous one; dotted keys are merged into the existing table.
+// Sets the keys of `from` in `to`. A value or an inline table replaces the previous one; a table
+// made by dotted keys is merged into it.
 void merge(toml::table& to, toml::table&& from) {
   for (auto&& [key, value] : from) {
     auto* const before = to.get_as<toml::table>(key.str());
@@ -64,7 +65,7 @@ void merge(toml::table& to, toml::table&& from) {
   }
 }
 
-// A different method replaces all keys of the previous one, and `end` and `steps` replace each
+// If the stage has a key `method`, no previous key is kept; and `end` and `steps` replace each
 // other.
 void merge_integrator(toml::table& to, toml::table&& from) {
   if (from.contains("method")) to.clear();

@@ -14,7 +14,7 @@
 namespace cayspin::inline v0_2::io {
 namespace {
 
-/// Counts the sites of a file that have a zero vector.
+/// Returns the number of sites that have a zero vector in the file.
 std::int64_t count_zeros(FileStart const& start, Lattice const& lattice) {
   auto const& [nx, ny, nz] = lattice.shape;
   constexpr std::int64_t sites_at_once = 4'000'000;
@@ -38,7 +38,7 @@ Scene with_shape_of_start(Scene scene) {
   auto const zeros =
       detail::for_key(scene, "initial.file", [&] { return count_zeros(*start, scene.lattice); });
   if (zeros == 0 || zeros == sites(scene)) return scene;
-  // The text must say so, too, because trajectory files store the text.
+  // The text must have the key, too, because trajectory files store the text.
   auto document = toml::parse(scene.text, scene.path.string());
   auto const typed = document["initial"]["file"].value_or(std::string());
   document["lattice"].as_table()->insert("occupied", toml::table{{"file", typed}});

@@ -75,7 +75,7 @@ SweptKey read_swept_key(std::string const& assignment) {
   std::ranges::copy_if(assignment.substr(0, equals), std::back_inserter(swept.key),
                        [](char c) { return c != ' '; });
 
-  // Parsed as a TOML array, in which the parser tells where each value starts.
+  // The values are parsed as a TOML array, because the parser then tells where each value starts.
   auto const line =
       "value = [" + with_quoted_words(std::string_view(assignment).substr(equals + 1));
   toml::table parsed;

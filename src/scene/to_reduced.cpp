@@ -13,7 +13,7 @@
 namespace cayspin::inline v0_2::io::detail {
 namespace {
 
-// Returns a formula with t in units of `time`, and its value in units of `field`.
+// Returns the formula for t in units of `time`, with its value in units of `field`.
 std::string scaled_expression(std::string const& text, double time, double field) {
   static std::regex const variable(R"(\bt\b)");
   return fmt::format("({})/{}", std::regex_replace(text, variable, fmt::format("({}*t)", time)),
@@ -34,8 +34,8 @@ double largest_coupling(std::vector<Coupling> const& couplings) {
   return largest;
 }
 
-// Returns the unit of energy: the first constant that is uniform and not 0, or 1 T times the moment
-// if there is none.
+// Returns the unit of energy: the magnitude of the first constant that is uniform and not 0, or 1 T
+// times the moment if there is none.
 double energy_unit(Material const& material, Field const& field) {
   auto const one = [](std::optional<double> const& value, SiteNumbers const& numbers) {
     return numbers.there() ? 0 : std::abs(value.value_or(0));
@@ -49,7 +49,8 @@ double energy_unit(Material const& material, Field const& field) {
   return material.moment;
 }
 
-// Converts a constant. Site-dependent numbers stay in SI, and get the factor that converts them.
+// Converts a constant. Site-dependent numbers stay in SI, and their unit becomes the factor that
+// converts them.
 double constant(double typed, SiteNumbers& numbers, auto const& in_reduced) {
   if (!numbers.there()) return in_reduced(typed);
   numbers.unit = in_reduced(1);
@@ -102,7 +103,8 @@ void convert_couplings(Field& field, units::ReducedUnits const& units) {
   field.couplings_scale = units.energy(field.couplings_scale);
 }
 
-// Stores moments relative to the first; none if all are equal.
+// Stores site-dependent moments with their unit, and the moments of a cell's sites relative to the
+// first; none of these if all are equal.
 void convert_moments(Scene& scene) {
   scene.lattice.moments_of_sites = scene.material->moment_factors;
   scene.lattice.moments_of_sites.unit = 1 / scene.material->moment;

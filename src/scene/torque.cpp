@@ -19,8 +19,8 @@ AppliedComponent times(AppliedComponent const& component, double factor) {
   return fmt::format("({})*({})", factor, std::get<std::string>(component));
 }
 
-// Reads a number, an expression in t, site-dependent numbers, or a product of numbers and an
-// expression. Site-dependent numbers go to `of_sites`.
+// Reads a number, an expression in t, site-dependent numbers, or the product { profile, time } of
+// numbers and an expression. Site-dependent numbers go to `of_sites`.
 AppliedComponent strength(Item const& item, Scene& scene, SiteNumbers& of_sites) {
   of_sites.key = item.key;
   auto const* const table = item.node->as_table();
@@ -38,7 +38,7 @@ AppliedComponent strength(Item const& item, Scene& scene, SiteNumbers& of_sites)
   return 1.0;
 }
 
-// Multiplies a component, or the site-dependent numbers on it, by `factor`.
+// Multiplies a component by `factor`; if it has site-dependent numbers, multiplies these instead.
 void scale(AppliedComponent& component, SiteNumbers& of_sites, double factor) {
   if (of_sites.there())
     of_sites.unit *= factor;
@@ -46,8 +46,8 @@ void scale(AppliedComponent& component, SiteNumbers& of_sites, double factor) {
     component = times(component, factor);
 }
 
-// Returns current_density in A/m^2 if it is typed in place of the key `torque`. It needs a material
-// with Ms. The keys in `with` belong to it.
+// Returns the key current_density, in A/m^2, if it is typed in place of the key `torque`. It needs
+// a material with one Ms and one gamma. The keys in `with` are refused without it.
 std::optional<Item> find_current(Table const& table, std::string_view torque,
                                  std::vector<std::string_view> const& with) {
   auto const current = table.find("current_density");

@@ -45,8 +45,8 @@ class Lines {
     }
     return std::nullopt;
   }
-  /// Throws at the end of the file, and for a line of fewer than `least` words. `what`: the missing
-  /// part, for the message.
+  /// Returns the next line. Throws at the end of the file, and for a line of fewer than `least`
+  /// words. `what`: the expected part, for the message.
   Words required(std::size_t least, std::string_view what) {
     auto words = next();
     if (!words) fail(fmt::format("ends before {}", what));
@@ -121,7 +121,7 @@ void require_sites(Lines const& lines, Crystal const& file, Crystal const& scene
   }
 }
 
-/// Returns the count of numbers in an interaction of this kind.
+/// Returns how many numbers an interaction of this kind has.
 std::size_t numbers_of(Lines const& lines, std::string_view word) {
   constexpr std::string_view normalised = "normalised-";
   auto const kind = word.starts_with(normalised) ? word.substr(normalised.size()) : word;
@@ -174,7 +174,8 @@ Tensors read_interactions(Lines& lines, Words const& head, std::int64_t atoms) {
   return tensors;
 }
 
-/// Keeps each bond once, with the mean of both directions, which may differ by rounding.
+/// Returns each bond once, with the mean of its numbers from both ends, which may differ by
+/// rounding.
 Tensors one_way(Lines const& lines, Tensors const& tensors) {
   double largest = 0;
   for (auto const& [key, tensor] : tensors)

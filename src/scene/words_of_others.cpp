@@ -201,7 +201,7 @@ std::string lower_case(std::string_view word) {
   return lower;
 }
 
-// Returns the counterpart in scenes of another program's word, or "".
+// Returns what another program's word is called in a scene, or "".
 std::string_view meaning_of(auto const& words, std::string_view lower) {
   auto const found = std::ranges::find(words, lower, &ForeignWord::of_others);
   return found == words.end() ? std::string_view() : found->here;

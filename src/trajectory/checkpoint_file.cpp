@@ -26,12 +26,12 @@ constexpr std::int64_t checkpoint_version = 1;
 constexpr std::uint64_t checkpoint_overhead_bytes = 64 * 1024;
 constexpr hsize_t most_components = 3;
 
-// Never 0, so that a block of zeros is not a valid field with its checksum.
+// Never 0: otherwise zeros in place of a field and its checksum would be valid.
 std::int64_t checksum(Fletcher32 const& sum) { return std::int64_t{1} + sum.value(); }
 
 }  // namespace
 
-/// Contents of a checkpoint besides the numbers of its fields.
+/// Contents of a checkpoint, with only the checksums of its fields.
 struct CheckpointContents {
   CheckpointHeader header;
   std::map<std::string, double> numbers;

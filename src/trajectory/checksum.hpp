@@ -8,11 +8,11 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Returns a 32-bit checksum of step, time, scalars and further numbers of a sample; never 0.
+/// Returns a 32-bit checksum of a sample and of the further numbers `more`; never 0.
 std::uint32_t row_checksum(Sample const& sample, std::span<double const> more = {});
 
-/// Returns a 32-bit checksum of a frame: of its spins, of which `fletcher32` is the sum, and of its
-/// sample; never 0.
+/// Returns a 32-bit checksum of a frame's sample and spins; never 0. `fletcher32`: the sum of the
+/// spins.
 std::uint32_t spins_checksum(Sample const& sample, std::uint32_t fletcher32);
 
 /// Returns a checksum of the texts of a header.

@@ -21,7 +21,7 @@ struct Column {
   static Extents begin(hsize_t row) { return is_triple ? Extents{row, 0} : Extents{row}; }
 };
 
-/// Type of what `Member` returns for a Row, without reference.
+/// The type that `Member` returns for a Row, without a reference.
 template <class Row, class Member>
 using MemberValue = std::decay_t<std::invoke_result_t<Member, Row&>>;
 

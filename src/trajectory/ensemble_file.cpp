@@ -77,7 +77,8 @@ void write_attributes(hid_t file, TrajectoryHeader const& header, std::int64_t r
   attributes.create(ensemble_format, ensemble_format_version);
   attributes.create("replicas", replicas);
   attributes.create("scene", header.scene_text);
-  // Not `cayspin_version`: readers take a file with frames and this attribute for a trajectory.
+  // The name is not `cayspin_version`, because readers take a file with frames and such an
+  // attribute for a trajectory.
   attributes.create("written_by", "cayspin " + header.cayspin_version);
   attributes.create("git_commit", header.git_commit);
   attributes.create("kokkos_version", header.kokkos_version);

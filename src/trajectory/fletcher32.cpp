@@ -6,7 +6,7 @@
 namespace cayspin::inline v0_2::io {
 namespace {
 
-// Reduces a sum modulo 65535, except that a multiple of 65535 becomes 65535, not 0.
+// Reduces a sum modulo 65535, except that a multiple of 65535 other than 0 becomes 65535.
 std::uint64_t folded(std::uint64_t sum) {
   while (sum > 0xffff) sum = (sum & 0xffff) + (sum >> 16);
   return sum;

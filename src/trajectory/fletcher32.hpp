@@ -7,7 +7,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// The checksum of HDF5's filter fletcher32, of bytes added in pieces of even length.
+/// Computes the checksum of HDF5's filter fletcher32. Bytes are added in pieces of even length.
 class Fletcher32 {
  public:
   void add(std::span<std::byte const> bytes);

@@ -14,8 +14,8 @@ namespace cayspin::inline v0_2::io {
 inline constexpr int format_version = 1;
 inline constexpr char const* single_precision = "single";
 inline constexpr char const* double_precision = "double";
-/// Largest chunk, because HDF5 takes a whole chunk into memory to read or write a part of it. HDF5
-/// itself allows 4 GiB.
+/// Largest chunk. HDF5 itself allows 4 GiB, but may take a whole chunk into memory to read or write
+/// a part of it.
 inline constexpr std::uint64_t most_chunk_bytes = 256 << 20;
 inline constexpr std::uint64_t file_page_bytes = 4096;
 inline constexpr int most_pending = 512;  // samples written at once
@@ -35,10 +35,10 @@ inline constexpr UnitAttribute unit_attributes[] = {{"time_unit", &Units::time},
 /// block has 512 elements of 8 bytes and a header, and a kill can leave it half written.
 inline constexpr std::int64_t most_chunks = 8180;
 
-/// Returns the number of frames in a chunk. `bytes`: of one frame in it. `chunks`: how many there
-/// would be with one frame each; above `most_chunks`, chunks hold more frames, up to
-/// `most_chunk_bytes`. Large chunks start on pages of the file, of which at most a sixteenth stays
-/// empty.
+/// Returns the number of frames in a chunk. `bytes`: size of one frame's part of the chunk.
+/// `chunks`: how many chunks there would be with one frame each; above `most_chunks`, chunks hold
+/// more frames, up to about `most_chunk_bytes`. Chunks start on pages of the file, and at most a
+/// sixteenth of their pages stays empty.
 inline std::int64_t frames_of_chunk(std::uint64_t bytes, std::int64_t chunks) {
   auto const empty_bytes = [&](std::uint64_t frames) {
     return (file_page_bytes - frames * bytes % file_page_bytes) % file_page_bytes;
@@ -50,9 +50,9 @@ inline std::int64_t frames_of_chunk(std::uint64_t bytes, std::int64_t chunks) {
   return static_cast<std::int64_t>(frames);
 }
 
-/// Returns the extents (1, z, y, x, 3) of the part of a frame in a chunk of /spins, for a lattice
-/// (nx, ny, nz): all of it or at most `planes` along z. If that exceeds `limit` bytes, the frame is
-/// cut into equal slabs along z, then y, then x.
+/// Returns the extents (1, z, y, x, 3) of the part of a frame that a chunk of /spins holds, for a
+/// lattice (nx, ny, nz). If a frame exceeds `limit` bytes, it is cut into nearly equal parts along
+/// z; if a plane or a row does, along y or x, too. `planes`: the most along z; 0 for no bound.
 inline std::array<hsize_t, 5> frame_chunk(std::array<std::int64_t, 3> const& shape,
                                           std::uint64_t bytes_per_component,
                                           std::int64_t planes = 0,

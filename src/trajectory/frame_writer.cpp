@@ -45,14 +45,15 @@ class SublatticeMean {
   std::int64_t count_ = 0;
 };
 
-// Returns the shape of the block that holds one site of every cell in the file.
+// Returns the shape of a block of the file, which holds one site of every cell.
 Shape block_of(Shape shape, std::int64_t cell_sites) {
   shape[2] /= cell_sites;
   return shape;
 }
 
-// Returns the extents of a chunk of such blocks. Without HDF5's filters, a chunk may hold several
-// frames: each is written into its own part and leaves the bytes of the others.
+// Returns the extents of a chunk, which holds parts of such blocks. Without HDF5's filters, a chunk
+// may hold several frames, because a frame is then written without changing the bytes of the
+// others.
 std::array<hsize_t, 5> chunk_of(Shape const& block, std::int64_t cell_sites,
                                 std::size_t number_bytes, TrajectoryStorage const& storage) {
   auto chunk = frame_chunk(block, number_bytes, storage.chunk);
@@ -67,14 +68,15 @@ std::array<hsize_t, 5> chunk_of(Shape const& block, std::int64_t cell_sites,
   return chunk;
 }
 
-// Returns (frame, z, y, x, 3); for several sites per cell, with `sites` as second extent.
+// Returns the extents (frame, z, y, x, 3); for several sites per cell, inserts `sites` as the
+// second one.
 Extents with_site(std::array<hsize_t, 5> const& extents, std::int64_t cell_sites, hsize_t sites) {
   Extents all(extents.begin(), extents.end());
   if (cell_sites > 1) all.insert(all.begin() + 1, sites);
   return all;
 }
 
-// Spins that never reached the disk read as NaN, not as zeros.
+// Creates /spins. Spins that never reached the disk are read as NaN, not as zeros.
 DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header,
                            TrajectoryStorage const& storage, std::array<hsize_t, 5> const& chunk,
                            std::filesystem::path const& path) {
@@ -98,8 +100,8 @@ DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header,
                                 with_site(chunk, sites, 1), std::move(properties), path, inner);
 }
 
-// Returns true if memory has the bytes of a chunk as the file stores them: whole planes of one
-// frame, uncompressed.
+// Returns true if memory holds the bytes of a chunk as the file stores them: if chunks are whole
+// planes of one frame, uncompressed.
 bool written_raw(Shape const& shape, std::array<hsize_t, 5> const& chunk,
                  TrajectoryStorage const& storage) {
   return std::endian::native == std::endian::little && storage.compression == 0 && chunk[0] == 1 &&
@@ -231,7 +233,7 @@ void FrameWriter::write_part(std::int64_t site, std::int64_t first, std::int64_t
       spins, path_);
 }
 
-// Writes a chunk directly, because HDF5 would copy it. `chunk` has memory for all planes of a
+// Writes a chunk directly, because HDF5 would copy it. `chunk` must have room for all planes of a
 // chunk; those after the first `planes` are set to 0.
 void FrameWriter::write_chunk(std::int64_t site, std::int64_t first, std::int64_t planes,
                               std::byte* chunk) {

@@ -26,13 +26,13 @@ class FrameWriter {
   /// whole chunk.
   std::uint64_t frame_bytes() const;
 
-  /// Starts frame number `frame`, or starts it again.
+  /// Starts frame number `frame`; a frame that was started before begins anew.
   void begin(std::int64_t frame);
   /// Adds the next planes: those of whole chunks, or all that are left. Other numbers throw
   /// std::logic_error.
   void add(std::int64_t planes, void const* spins);
-  /// Adds planes without a copy if possible. `spins` must have memory for a whole piece, of which
-  /// the rest is overwritten.
+  /// Adds planes without a copy if possible. `spins` must have room for a whole piece; the part
+  /// after the planes is overwritten.
   void add_in_room(std::int64_t planes, std::byte* spins);
 
   std::int64_t planes() const { return planes_; }  ///< added to the frame so far

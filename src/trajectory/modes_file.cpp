@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 
 constexpr int modes_format_version = 1;
 
-/// Sorts the planes of a crystal, which hold the sites of a cell in turn, site by site.
+/// Sorts the planes of a crystal by site. Consecutive planes of `values` hold the sites of a cell
+/// in turn.
 std::vector<double> by_sites_of_cell(std::span<double const> values, std::size_t planes,
                                      std::size_t cell_sites) {
   std::size_t const plane = values.size() / planes;

@@ -8,14 +8,14 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// An HDF5 file being written as PATH.partial until commit(), so that PATH is complete at every
-/// moment. An existing file stays unchanged until then; with `shared` it may have readers. With
-/// `synced`, HDF5 writes through that object, and PATH is complete also after a power cut.
+/// An HDF5 file that is called PATH.partial until commit(), so that PATH is never incomplete. An
+/// existing file PATH stays unchanged until then; with `shared` other programs may have it open.
+/// With `synced`, HDF5 writes through that object, and PATH is complete even after a power cut.
 class NewFile {
  public:
   NewFile(std::filesystem::path path, bool overwrite, bool shared = false,
           SyncedFile* synced = nullptr);
-  /// Removes what the constructor created unless committed.
+  /// Removes the created file unless it was committed.
   ~NewFile();
   NewFile(NewFile const&) = delete;
   NewFile& operator=(NewFile const&) = delete;

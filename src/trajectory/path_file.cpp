@@ -36,7 +36,8 @@ void write_attributes(hid_t file, Path const& found, std::filesystem::path const
   attributes.create("scene", header.scene_text);
   attributes.create("from", found.from);
   attributes.create("to", found.to);
-  // Not `cayspin_version`: readers take a file with frames and this attribute for a trajectory.
+  // The name is not `cayspin_version`, because readers take a file with frames and such an
+  // attribute for a trajectory.
   attributes.create("written_by", "cayspin " + header.cayspin_version);
   attributes.create("git_commit", header.git_commit);
   attributes.create("space", header.space);

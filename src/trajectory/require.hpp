@@ -18,8 +18,8 @@ inline void require_precision(std::string const& precision) {
     throw std::invalid_argument("precision is '" + precision + "'; accepted are single and double");
 }
 
-/// Throws std::invalid_argument unless all extents are at least 1 and the bytes of a frame and its
-/// other data fit into 63 bits.
+/// Throws std::invalid_argument unless all extents are at least 1, and 64 bytes per site fit into
+/// 63 bits.
 inline void require_shape(std::array<std::int64_t, 3> const& shape) {
   std::int64_t room = std::numeric_limits<std::int64_t>::max() / 64;
   for (auto const extent : shape) {
@@ -29,7 +29,7 @@ inline void require_shape(std::array<std::int64_t, 3> const& shape) {
   if (room == 0) throw std::invalid_argument("the lattice has more sites than a file can hold");
 }
 
-/// Returns a writer's implementation. Throws std::logic_error if it was moved to another writer.
+/// Returns the implementation of a writer. Throws std::logic_error if the writer was moved from.
 template <class Implementation>
 Implementation& not_moved(std::unique_ptr<Implementation> const& writer) {
   if (!writer) throw std::logic_error("the writer of a file was moved away; use the other one");

@@ -73,7 +73,7 @@ class RunOutput::Implementation {
     pieces_ = frame_pieces(header.shape, single_ ? sizeof(float) : sizeof(double), options.storage,
                            options.most_planes, header.cell_sites);
     for (auto& buffer : buffers_) {
-      // Zeroed, so that all memory is allocated before a run.
+      // Filled with zeros, so that the memory is really allocated before the run.
       buffer = std::make_unique<std::byte[]>(pieces_.bytes);
       free_.push_back(buffer.get());
     }
@@ -83,7 +83,7 @@ class RunOutput::Implementation {
   ~Implementation() {
     try {
       if (!ended_) end({}, false);
-    } catch (std::exception const&) {  // from the writer thread; no further call could throw it
+    } catch (std::exception const&) {  // of the writer thread; no later call can report it
     }
   }
 

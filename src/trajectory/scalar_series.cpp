@@ -22,7 +22,7 @@ constexpr char const *sublattices_name = "sublattice_magnetization",
                      *region_energies_name = "region_energy", *term_energies_name = "term_energy",
                      *shift_name = "shift", *stage_name = "stage", *terms_name = "terms";
 
-constexpr hsize_t most_more = 1 << 24;  // numbers per sample in a dataset
+constexpr hsize_t most_more = 1 << 24;  // most numbers per sample in a dataset
 
 Extents extents_of(hsize_t count, Extents const& of_sample) {
   Extents extents{count};
@@ -34,7 +34,7 @@ Extents begin_of(hsize_t first, Extents const& of_sample) {
   return extents_of(first, Extents(of_sample.size(), 0));
 }
 
-// Calls use(name, member) for each dataset with one number, or three, per sample, in the order of
+// Calls use(name, member) for each dataset with one or three numbers per sample, in the order of
 // the file.
 template <class Use>
 void for_each_column(Use const& use) {

@@ -31,14 +31,14 @@ class ScalarSeries {
 
   /// Returns the number of complete samples, which is the length of the shortest dataset.
   std::int64_t size(std::filesystem::path const& path) const;
-  /// Returns how many of these samples are readable. The last ones, up to `most_torn`, may not be
-  /// if a process was killed while it added them.
+  /// Returns the number of samples that can be read. A process that was killed while it added
+  /// samples may have left up to `most_torn` damaged ones at the end.
   std::int64_t readable(std::int64_t most_torn, std::filesystem::path const& path) const;
-  /// Returns samples `begin` to `end` - 1. Throws if one is not as it was written.
+  /// Returns samples `begin` to `end` - 1. Throws std::runtime_error if one is damaged.
   std::vector<Sample> read(std::int64_t begin, std::int64_t end,
                            std::filesystem::path const& path) const;
 
-  /// Returns the further numbers of each sample, sample after sample.
+  /// Returns the further numbers of samples `begin` to `end` - 1, sample after sample.
   std::vector<double> read_more(std::int64_t begin, std::int64_t end,
                                 std::filesystem::path const& path) const;
   /// Returns the count of further numbers per sample.
@@ -60,7 +60,7 @@ class ScalarSeries {
     DatasetHandle dataset;
   };
 
-  std::vector<DatasetHandle> columns_;  // with one number, or three, per sample
+  std::vector<DatasetHandle> columns_;  // with one or three numbers per sample
   std::vector<MoreColumn> more_;
   DatasetHandle checksum_;
   hsize_t size_ = 0;

@@ -16,8 +16,8 @@
 namespace cayspin::inline v0_2::io {
 namespace {
 
-// Returns the observables of the frames; nothing unless it is a trajectory file. No other file with
-// frames has `cayspin_version`.
+// Returns the observables of the frames; nothing for other files than trajectories. No other file
+// with frames has the attribute `cayspin_version`.
 std::optional<ScalarSeries> open_series(hid_t file, std::int64_t cell_sites,
                                         std::filesystem::path const& path) {
   QuietErrors const quiet;
@@ -37,14 +37,14 @@ hsize_t whole_frames(RealDataset const& spins, std::optional<ScalarSeries> const
   return std::min(stored, static_cast<hsize_t>(series->readable(complete ? 0 : 1, path)));
 }
 
-// Converts back to the stored type: floats were read as double.
+// Adds the spins in their stored type, because floats were read as double.
 void add(Fletcher32& sum, std::vector<double> const& spins, bool single) {
   auto const add_bytes = [&](auto const& stored) { sum.add(std::as_bytes(std::span(stored))); };
   single ? add_bytes(std::vector<float>(spins.begin(), spins.end())) : add_bytes(spins);
 }
 
-// Returns the part of a box with one site of the cells, counted in planes of such sites: plane k of
-// it is plane k * sites + site of the lattice.
+// Returns the part of a box that has site number `site` of the cells. Its planes count only such
+// sites: plane k is plane k * sites + site of the lattice.
 SiteBox of_site(SiteBox box, std::int64_t site, std::int64_t sites) {
   auto const planes_before = [&](std::int64_t plane) { return (plane + sites - 1 - site) / sites; };
   auto const end = planes_before(box.begin[2] + box.extent[2]);

@@ -17,18 +17,18 @@ namespace cayspin::inline v0_2::io {
 /// Dataset /spins of any HDF5 file, open for reading.
 class StoredSpins {
  public:
-  /// Throws unless it fits a lattice (nx, ny, nz) with so many sites per cell and, if it has
-  /// frames, holds a whole one.
+  /// Throws unless the dataset fits a lattice (nx, ny, nz) with `cell_sites` sites per cell and, if
+  /// it has frames, at least one of them is whole.
   StoredSpins(std::filesystem::path const& path, std::array<std::int64_t, 3> const& shape,
               std::int64_t cell_sites = any_cell_sites);
 
-  /// Returns the state or the last whole frame, packed as (nz, ny, nx, 3), or a box of it. Throws
-  /// if a trajectory's frame is not as it was written. Data stored site by site is returned in the
-  /// order of TrajectoryHeader::shape.
+  /// Returns the last whole frame, or the state of a file without frames, packed as (nz, ny, nx,
+  /// 3); or a box of it. Throws if a frame of a trajectory is damaged. Spins that are stored site
+  /// by site are returned in the order of TrajectoryHeader::shape.
   std::vector<double> last() const;
   std::vector<double> last(SiteBox const& box) const;
 
-  /// Returns whole frame number `frame`. Throws also if there is none.
+  /// Returns frame number `frame`. Throws also if there is no such whole frame.
   std::vector<double> frame(std::int64_t frame) const;
 
  private:

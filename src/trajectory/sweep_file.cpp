@@ -108,8 +108,8 @@ void copy_run(fs::path const& file, hid_t group, std::string const& name) {
 }
 
 // Reads every frame and tries the copy, because the runs' own files are removed afterwards, and
-// HDF5 may crash on a damaged one. (If it crashes on a new one, all files are still there, and the
-// next sweep tries them.)
+// HDF5 may crash on a damaged file. (New files are not tried. If HDF5 crashes on one of them, all
+// files are still there, and the next sweep tries them.)
 void try_copies(std::vector<fs::path> const& files) {
   auto const trial = files.front().string() + ".trial";
   auto const read_and_copy = [&] {
@@ -142,8 +142,8 @@ void require_whole(std::vector<fs::path> const& files) {
   }
 }
 
-// Calls take(runs) for the runs with files, several at a time where their files are small; stops
-// early if it returns false.
+// Calls take(runs) for the runs with files, several at a time where their files are small. Stops if
+// `take` returns false, and returns false.
 template <class Take>
 bool for_each_group(fs::path const& path, std::vector<SweptRun> const& runs, Take const& take) {
   constexpr std::size_t most_files = 64;

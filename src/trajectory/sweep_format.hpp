@@ -10,8 +10,8 @@ namespace cayspin::inline v0_2::io {
 inline constexpr char const* sweep_format = "sweep_format";
 inline constexpr int sweep_format_version = 1;
 
-/// Calls use(name, member) for each dataset with one number, or three, per run, in the order of the
-/// file. `member(run)` returns the values of a SweptRun.
+/// Calls use(name, member) for each dataset with one or three numbers per run, in the order of the
+/// file. member(run) returns the dataset's numbers for a SweptRun.
 template <class Use>
 void for_each_result(Use const& use) {
   use("status", [](auto& run) -> auto& { return run.status; });

@@ -45,7 +45,7 @@ std::vector<std::string> read_texts(hid_t file, char const* name, Extents const&
   return values;
 }
 
-/// Reads one number, or three, per run.
+/// Reads a dataset with one or three numbers per run.
 template <class Value>
 std::vector<Value> read_column(hid_t group, char const* name, std::size_t runs,
                                fs::path const& path) {
@@ -55,7 +55,7 @@ std::vector<Value> read_column(hid_t group, char const* name, std::size_t runs,
   return values;
 }
 
-// Returns the values of each key, in order.
+// Returns the keys with their values, both in the order of the file.
 std::vector<SweptKey> read_keys(hid_t file, fs::path const& path) {
   auto const extents = dataset_extents(open_dataset(file, "values", path).get(), path);
   if (extents.size() != 2) throw_failure(path, "cannot read dataset values", "its rank is not 2");

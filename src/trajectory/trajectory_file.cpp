@@ -239,7 +239,7 @@ class TrajectoryFile::Implementation {
   MoreScalars more_;
   bool has_stages_;
   std::uint64_t overhead_;
-  std::unique_ptr<SyncedFile> synced_;  // HDF5 writes through it
+  std::unique_ptr<SyncedFile> synced_;  // if set, HDF5 writes through it
   FileHandle file_;
   FrameWriter spins_;
   std::int64_t planes_ = 0;  // of a frame

@@ -6,7 +6,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Reads the units of a file. Files without the attribute `units` have reduced units.
+/// Reads the units of a file. Files without the attribute `units` are in reduced units.
 inline Units read_units(RootAttributes const& attributes) {
   Units units;
   units.si = attributes.has("units") && attributes.read_text("units") == si_units;

@@ -18,15 +18,15 @@ struct XdmfGrid {
 };
 
 /// Describes /spins of a trajectory file to viewers such as ParaView: an XDMF time series of a
-/// vector field on a regular grid, or at the points of /positions. It is replaced as a whole, so
-/// that it is valid at every moment.
+/// vector field on a regular grid, or at the points of /positions. The XDMF file is replaced as a
+/// whole, so that it is valid at every moment.
 class XdmfFile {
  public:
   /// Creates the file, without frames. An existing file is an error unless `overwrite`.
   XdmfFile(std::filesystem::path path, std::filesystem::path const& trajectory,
            XdmfGrid const& grid, bool single, bool overwrite);
 
-  /// Adds the next frame. Beyond a thousand frames, the file is written about once a second.
+  /// Adds the next frame. Beyond a thousand frames, the file is written at most once a second.
   void add_frame(double time);
 
   /// Writes the frames that add_frame has postponed.

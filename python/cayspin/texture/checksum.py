@@ -4,7 +4,7 @@
 import numpy as np
 
 MASK = (1 << 64) - 1
-WEIGHTS = np.arange(1 << 18, 0, -1.0)  # so many that sums are exact in doubles
+WEIGHTS = np.arange(1 << 18, 0, -1.0)  # few enough for sums to be exact in doubles
 
 
 def fletcher32(data):

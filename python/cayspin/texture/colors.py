@@ -34,8 +34,8 @@ def hue_colors(spins: np.ndarray) -> np.ndarray:
 
 
 def map_colors(values: np.ndarray, name: str, lowest: float, highest: float) -> Any:
-    """Colours of values by one of MAPS between two limits, white for NaN; and the scale that maps
-    them."""
+    """Colours of values by one of MAPS between two limits, white for NaN; and the ScalarMappable
+    that draws the scale."""
     import matplotlib
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
@@ -59,7 +59,8 @@ def wheel_colors(pixels: int) -> np.ndarray:
 
 
 def _beside(axes, width, height, below=0.0):
-    """Axes of so many inches to the right of others."""
+    """New axes to the right of others: `width` and `height` in inches or, as text, in percent of
+    these, `below` inches below their top."""
     from matplotlib.transforms import ScaledTranslation
     from mpl_toolkits.axes_grid1.inset_locator import inset_axes
 

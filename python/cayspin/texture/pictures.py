@@ -100,7 +100,8 @@ def _middles(count, step):
 
 
 def _draw_arrows(axes, x, y, spins, rgb, longest):
-    """Arrows along the part of spins (n, 3) in the plane, on a background of these colours."""
+    """Draws arrows along the in-plane parts of spins (n, 3), on a background of the colours
+    `rgb`."""
     spins = spins / np.maximum(np.linalg.norm(spins, axis=-1, keepdims=True), 1e-300)
     seen = np.hypot(spins[:, 0], spins[:, 1]) > 0.2
     dark = rgb @ (0.299, 0.587, 0.114) < 0.25
@@ -238,8 +239,8 @@ def _picture(texture, plane, quantity, colors, before, limit):
 
 def largest(texture: Texture, *, plane: str | None = None, quantity: str = "spins",
             before: np.ndarray | None = None) -> float:
-    """Returns the limit that draw() would choose. The largest one of several pictures gives them a
-    common scale."""
+    """Returns the limit that draw() would choose. The largest limit of several pictures gives them
+    a common scale."""
     return _picture(texture, plane, quantity, "hue", before, None)[0].largest()
 
 
@@ -253,10 +254,11 @@ def draw(texture: Texture, axes: Any = None, *, plane: str | None = None,
     axis of fewest cells). A plane that is one site wide is drawn as a chain: components along it,
     and a strip of colours.
     `colors` "hue": the angle in the plane, lighter along its normal and darker against it; "safe":
-    the component along the normal, from blue to red. Both with arrows, about 24 across.
+    the component along the normal, from blue to red. Both have arrows, at most about 24 across.
     `quantity` "charge": the topological charge of each cell of a film, seen against the normal.
-    `before`: other spins of the same shape; |difference| is drawn. `limit`: the end of the scale of
-    these two. `key`: whether the wheel or the scale is drawn to the right of the axes
+    `before`: other spins of the same shape; |difference| is drawn. `limit`: the end of the colour
+    scale for "charge" and for a difference. `key`: whether the wheel or the scale is drawn to the
+    right of the axes
     (default: where the figure is new).
 
     Raises ValueError for other words, planes and shapes.

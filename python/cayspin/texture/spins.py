@@ -51,7 +51,7 @@ class Plane:
 
     def sites(self, positions: np.ndarray | None) -> tuple[np.ndarray, float]:
         """Positions (n, 3) of the sites of a crystal along right, up and the normal, and about how
-        far sites are apart."""
+        far apart the sites are."""
         if positions is None:
             raise ValueError("the sites of the crystal have no positions; accepted: a file of a "
                              "scene")

@@ -93,7 +93,8 @@ class Reader:
         return "ended early" if file.attrs["wall_seconds"] > 0 or quiet else "under way"
 
     def news(self, frames: int, samples: int) -> dict:
-        """Returns what a page with so many frames and samples lacks; everything for 0 frames."""
+        """Returns what a page that has `frames` frames and `samples` samples lacks. For 0 frames,
+        that includes the description of the file."""
         def read(file):
             news = {"state": self._look(file), "file": self._identity, "frames": self.frames}
             last = min(self.samples, samples + MOST_ROWS)
@@ -133,8 +134,8 @@ class Reader:
         return self._read(read).astype("<f4").tobytes()
 
     def path_of(self, place: int, plane: str, first: int) -> bytes:
-        """The spins of one site from frame `first` on, 3 floats each. `place`: its number in
-        frame()."""
+        """The spins of one site in up to 500 frames from `first` on, 3 floats each. `place`: the
+        site's number in frame()."""
         def read(file):
             shape = file["spins"].shape[1:-1]
             numbers = np.arange(np.prod(shape)).reshape(*shape, 1)

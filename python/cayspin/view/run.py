@@ -26,15 +26,16 @@ LONGEST_END = 60  # seconds that a step under way may take after a stop
 
 
 class Run:
-    """Starts `cayspin run SCENE` and waits for its file. Raises ValueError when it refuses."""
+    """Starts `cayspin run SCENE` and waits for the file of the run. Raises ValueError if the run is
+    refused."""
 
     def __init__(self, program: str, scene: pathlib.Path):
         self.output, self._paused = _output_of(scene), False
         was_there = self.output is None or self.output.exists()
         self._messages = tempfile.TemporaryFile()
         try:
-            # In a session of its own, an interrupt from the terminal reaches it only through
-            # stop().
+            # The program has a session of its own, so that an interrupt from the terminal reaches
+            # it only through stop().
             self._process = subprocess.Popen(
                 [program, "run", scene, "--quiet"], stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL, stderr=self._messages, start_new_session=True)
@@ -57,7 +58,7 @@ class Run:
         return "paused" if self._paused else "running"
 
     def message(self) -> str:
-        """The last line that it wrote on standard error."""
+        """The last line that the run wrote on standard error."""
         self._messages.seek(0)
         return self._messages.read().decode(errors="replace").strip().rpartition("\n")[2]
 
@@ -68,11 +69,12 @@ class Run:
         self._send(signal.SIGCONT, paused=False)
 
     def stop(self) -> None:
-        """Ends it after the step under way; its file keeps what was written."""
+        """Ends the run after the step under way; its file keeps what was written."""
         self._send(signal.SIGINT, signal.SIGCONT, paused=False)
 
     def close(self) -> None:
-        """Stops it and waits for its end, or kills it after a minute: its file keeps the frames."""
+        """Stops the run and waits for its end, or kills it after a minute. Its file keeps the
+        frames."""
         if self._process.poll() is None:
             self.stop()
             try:
@@ -84,5 +86,5 @@ class Run:
 
     def _send(self, *signals, paused):
         for number in signals:
-            self._process.send_signal(number)  # does nothing once it has ended
+            self._process.send_signal(number)  # does nothing once the run has ended
         self._paused = paused
