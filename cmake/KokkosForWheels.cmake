@@ -22,4 +22,4 @@ if(architecture_of_${CAYSPIN_PROCESSOR})
   set(Kokkos_ARCH_${architecture_of_${CAYSPIN_PROCESSOR}} ON)
 endif()
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
-set(CAYSPIN_KOKKOS_AS_UNITY ON) # takes a quarter of the processor time
+set(CAYSPIN_KOKKOS_AS_UNITY ON) # Kokkos then takes a quarter of the processor time

@@ -11,7 +11,7 @@ function(cayspin_link_flags target flags)
     find_package(${package} QUIET)
   endif()
   if(NOT TARGET ${target})
-    if(target MATCHES "^cayspin_") # configured later: only headers
+    if(target MATCHES "^cayspin_") # defined later, with only headers
       return()
     endif()
     if(target MATCHES "^[A-Za-z0-9_.+]+$")

@@ -35,7 +35,8 @@ kokkos_source=${CAYSPIN_KOKKOS_SOURCE:-$deps/kokkos-source}
 say() { printf 'cayspin: %s\n' "$*"; }
 fail() { printf 'cayspin: %s\n' "$*" >&2; exit 1; }
 
-# logged NAME COMMAND...: the command's output goes to build/logs/NAME.log, shown when it fails.
+# logged NAME COMMAND...: the output of the command goes to build/logs/NAME.log. Its end is shown if
+# the command fails.
 logged() {
   local log=$logs/$1.log
   shift

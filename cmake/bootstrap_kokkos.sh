@@ -16,7 +16,7 @@ kokkos_options=(
   -DKokkos_ENABLE_SERIAL=ON -DKokkos_ENABLE_OPENMP=ON -DKokkos_ENABLE_TESTS=OFF
   -DKokkos_ENABLE_DEPRECATED_CODE_4=OFF # as in Kokkos 5
   -DCMAKE_POSITION_INDEPENDENT_CODE=ON # the Python module is a shared library
-  -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12 # a quarter of the processor time
+  -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12 # takes a quarter of the processor time
 )
 
 provide_kokkos() {

@@ -13,7 +13,8 @@ trap 'rm -rf "$work"' EXIT
 "$python" -m venv "$work/venv"
 "$work/venv/bin/python" -m pip install --quiet "$wheel[plots]"
 cd "$work"
-# With these settings, the loader takes the libraries for a lesser processor.
+# try LEVEL SETTINGS: with the settings, the loader takes the libraries of this level, even if the
+# processor has a higher one.
 try() {
   GLIBC_TUNABLES=$2 "$work/venv/bin/python" "$here/try_wheel.py" "$1"
 }

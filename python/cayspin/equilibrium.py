@@ -33,6 +33,6 @@ class Modes:
     frequency: np.ndarray  #: (mode,), angular in reduced units; in Hz in SI
     decay: np.ndarray  #: (mode,), in 1/s in SI; negative where the motion grows
     residual: np.ndarray  #: (mode,), relative errors of the shapes
-    shape: np.ndarray  #: complex dm, (mode, nz, ny, nx, 3) or (mode, site, ..), at most 1 long
+    shape: np.ndarray  #: complex dm, (mode, nz, ny, nx, 3) or (mode, site, ..); max |dm| is 1
     converged: bool  #: whether all residuals are below `tolerance`
     evaluations: int  #: of the field of all sites

@@ -14,8 +14,8 @@ from cayspin.scene import Scene
 
 @dataclasses.dataclass(frozen=True)
 class MinimumEnergyPath:
-    """Result of path(). Energies are in the scene's unit, J in SI. If there is no saddle, its values
-    are None. `prefactor_*` and `langer_*` are those of
+    """Result of path(). Energies are in the scene's unit, J in SI. Without a saddle, the values
+    of the saddle are None. `prefactor_*` and `langer_*` are those of
     rate = prefactor T^((n - n_s) / 2) exp(-barrier / kT), with n and n_s the numbers of zero modes
     of the state that is left and of the saddle."""
 

@@ -21,7 +21,7 @@ using namespace cayspin::simulation;
 namespace io = cayspin::io;
 
 struct cayspin_simulation {
-  std::mutex turn;  // serialises calls from several threads
+  std::mutex turn;  // serialises calls, except cayspin_time and cayspin_steps
   std::unique_ptr<SceneRun> run;
   std::optional<LentVectors> borrowed, borrowed_field;
 };

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr auto unlimited = std::numeric_limits<std::int64_t>::max();
 
-/// Files of a control group.
+/// The folder of a version of control groups, and names of files in a group.
 struct Group {
   char const* folder;
   char const* limit;

@@ -83,8 +83,8 @@ struct Record {
   std::vector<Sector> sectors;
 };
 
-// Returns nothing if the journal is incomplete: the file is changed only after the whole journal is
-// on the disk, so it does not need this one.
+// Returns nothing if the journal is incomplete. The file does not need such a journal, because it
+// is changed only after the whole journal is on the disk.
 std::optional<Record> read_record(int file) {
   struct stat status {};
   Head head{};

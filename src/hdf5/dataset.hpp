@@ -43,7 +43,7 @@ Extents dataset_extents(hid_t dataset, std::filesystem::path const& path);
 void write_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents const& extents,
                  void const* values, std::filesystem::path const& path);
 
-/// Grows a dataset along its first extent to begin[0] + extents[0] and writes that block.
+/// Grows a dataset along its first extent to begin[0] + extents[0], and writes the block.
 void append_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents const& extents,
                   void const* values, std::filesystem::path const& path);
 

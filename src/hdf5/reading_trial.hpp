@@ -16,7 +16,8 @@ using ReadingTrial = void (*)(std::filesystem::path const& path,
 /// start processes. Call it before other threads read files.
 void set_trial(ReadingTrial trial);
 
-/// Scope without trials, for files that this program has just written. No other thread may read.
+/// While in scope, files are read without a trial. For files that this program has just written. No
+/// other thread may read.
 class WithoutTrial {
  public:
   WithoutTrial();

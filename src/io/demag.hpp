@@ -35,7 +35,7 @@ struct Demagnetization {
   std::optional<Crystal> dipoles;        ///< positions of the dipoles; empty: cells
   Triple demagnetizing_factors = {};     ///< for dipoles with three periodic axes
   std::string key = "demag";             ///< the key in [field]: demag or dipoles
-  std::optional<bool> multirate;         ///< default: true if the method supports it
+  std::optional<bool> multirate;         ///< default: true if method and scene allow it
   std::filesystem::path cache;           ///< file that keeps slowly computed tensors; or empty
 
   static constexpr auto keys() {

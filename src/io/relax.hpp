@@ -15,7 +15,7 @@ Scene read_scene_to_relax(std::filesystem::path const& path,
 Scene parse_scene_to_relax(std::string text, std::filesystem::path const& name,
                            std::vector<std::string> const& overrides = {}, Given given = {});
 
-/// Reads a scene that only `cayspin relax` accepts like read_scene_to_relax, any other one like
+/// Reads a scene for which is_to_relax() is true like read_scene_to_relax, any other one like
 /// read_scene.
 Scene read_scene_to_run_or_relax(std::filesystem::path const& path,
                                  std::vector<std::string> const& overrides = {}, Given given = {});
@@ -27,11 +27,12 @@ Scene parse_scene_to_run_or_relax(std::string text, std::filesystem::path const&
 /// Returns true if the scene has a table [integrator]. If not, Scene::integrator has no meaning.
 bool has_integrator(Scene const& scene);
 
-/// Returns true if only `cayspin relax` accepts the scene: it has no [integrator], or a list of
-/// fields.
+/// Returns true for a scene that cannot be run, but only searched for equilibria: it has no
+/// [[stage]], and no [integrator] or a list of fields.
 bool is_to_relax(Scene const& scene);
 
-/// Returns the [field] of each equilibrium that the scene asks for: one, or those of its list.
+/// Returns [field] for each equilibrium that the scene asks for: once, or with each of the listed
+/// applied fields.
 std::vector<Field> fields_in_turn(Scene const& scene);
 
 }  // namespace cayspin::inline v0_2::io

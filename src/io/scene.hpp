@@ -95,7 +95,8 @@ struct Stage {
 
 /// Reads and validates a scene. Each override is "key.path=VALUE" with a TOML value, applied in
 /// order. Opens no file that the scene names, except a unit-cell file that defines the cell;
-/// check_files, initial_spins, couplings and inertia open the others. Throws SceneError.
+/// functions such as check_files, initial_spins, couplings and inertia open the others. Throws
+/// SceneError.
 Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides = {},
                  Given given = {});
 
@@ -135,8 +136,8 @@ std::vector<double> initial_spins(Scene const& scene);
 /// completely.
 std::vector<double> initial_spins(Scene const& scene, SiteBox const& box);
 
-/// Returns the bonds of a scene, each once: the typed ones, or those of its unit-cell file. Throws
-/// SceneError.
+/// Returns the bonds of a scene, each once: those typed or made from shells, or those of its
+/// unit-cell file. Throws SceneError.
 std::vector<Coupling> couplings(Scene const& scene);
 
 /// Return 1 for the sites that hold a spin, and for the sites whose spin does not move, in the
@@ -208,8 +209,8 @@ std::int64_t reach_of_interlayers(Scene const& scene);
 bool needs_pass(Scene const& scene);
 
 /// Returns true if moments are stored for each site of the lattice rather than of a cell: if
-/// lattice.moments is site-dependent, and with point dipoles, whose field depends on moments rather
-/// than unit spins.
+/// lattice.moments is site-dependent; also if the sites of the cell have moments and there are
+/// point dipoles, whose field depends on moments rather than unit spins.
 bool has_moments_of_sites(Scene const& scene);
 
 /// Returns true if sites may have no spin: with lattice.occupied, with a moment of 0, and with

@@ -18,8 +18,8 @@
 ///
 /// Every failure of the file system or of HDF5 throws std::runtime_error with one line: the file,
 /// the action that failed, and why. HDF5 itself prints nothing. Not thread-safe. If this is a
-/// program's first use of HDF5, HDF5's clean-up at exit is turned off: it does not close files that
-/// other code left open.
+/// program's first use of HDF5, HDF5's clean-up at exit is turned off, so that HDF5 does not close
+/// files that other code has left open.
 namespace cayspin::inline v0_2::io {
 
 /// Optional numbers of each sample, which follow its Scalars in this order.
@@ -49,8 +49,8 @@ struct TrajectoryHeader {
   std::string space;                 ///< name of the execution space
   std::string precision = "double";  ///< of the run and of /spins: "single" or "double"
   int threads = 1;
-  /// nx, ny, nz. For a crystal nz is cells times cell_sites: plane k * cell_sites + s has the sites
-  /// s of the cells k.
+  /// nx, ny, nz. For a crystal nz is cell_sites times the number of cells along z: plane k *
+  /// cell_sites + s has site s of the cells in plane k.
   std::array<std::int64_t, 3> shape{1, 1, 1};
   std::int64_t cell_sites = 1;           ///< sites of a cell
   Units units;                           ///< of the times and energies in the file
@@ -107,7 +107,7 @@ void for_each_scalar(Visit const& visit) {
 
 /// Result of `cayspin relax`.
 struct Relaxed {
-  double torque = 0;       ///< the largest max |m x H| of its frames: reduced, or mu0 H in T
+  double torque = 0;       ///< largest max |m x H| of the frames: reduced, or mu0 H in T
   bool converged = false;  ///< true if each frame is a minimum, within the bound on the torque
 };
 
@@ -184,8 +184,8 @@ struct TrajectoryInfo {
   /// For crystals with several sites per cell, cell_sites entries for each frame. Entry s is the
   /// mean of m over the sites s of all cells that have a spin; zero if none has.
   std::vector<std::array<double, 3>> frame_sublattices;
-  std::vector<std::int64_t> frame_shifts;  ///< of lattices that follow
-  std::vector<std::int64_t> frame_stages;  ///< of a run in stages
+  std::vector<std::int64_t> frame_shifts;  ///< for lattices that follow
+  std::vector<std::int64_t> frame_stages;  ///< for a run in stages
   std::int64_t samples = 0;                ///< length of /scalars
   /// The last sample of /scalars, if the run is not complete or the samples have more than Scalars.
   std::optional<Sample> last_sample = {};

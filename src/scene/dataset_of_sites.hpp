@@ -31,7 +31,8 @@ class DatasetOfSites {
     dataset_.refuse_extents(accepted);
   }
 
-  /// Reads a box in the order of the lattice: plane k * sites + s has the sites s of the cells k.
+  /// Reads a box in the order of the lattice: plane k * sites + s has site s of the cells in plane
+  /// k.
   std::vector<double> in(SiteBox const& box) const {
     auto const at_once = sites_ == 1 ? box.extent[2] : 1;
     std::vector<double> numbers;

@@ -206,8 +206,8 @@ void convert(Scene& scene, auto const& units) {
            "a time in s");
 }
 
-// Returns the number of sites in a cube with the spacing as its edge, to whose volume a slab's
-// dipolar field refers.
+// Returns the number of sites in a cube with the spacing as its edge. A slab's dipolar field refers
+// to the volume of that cube.
 double sites_in_cube(Lattice const& lattice) {
   return static_cast<double>(lattice.basis.size()) / crystal(lattice).volume();
 }

@@ -91,7 +91,8 @@ ZhangLi read_zhang_li(Item const& item, Scene& scene) {
   return read;
 }
 
-// epsilon' multiplies hbar j / (e Ms thickness), and the efficiency half of it.
+// field_like is epsilon' times hbar j / (e Ms thickness). damping_like is the efficiency times half
+// of that quotient.
 void read_current(Item const& current, Table const& table, Slonczewski& read) {
   auto& scene = table.scene();
   auto const efficiency = number(table.required("efficiency", "a number"));

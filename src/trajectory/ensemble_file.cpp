@@ -69,7 +69,7 @@ class ReplicaSeries {
 
 namespace {
 
-constexpr std::uint64_t overhead = 1 << 20;  // bytes for index nodes and new chunks of a frame
+constexpr std::uint64_t overhead = 1 << 20;  // bytes for index nodes and new chunks of scalars
 
 void write_attributes(hid_t file, TrajectoryHeader const& header, std::int64_t replicas,
                       std::filesystem::path const& path) {

@@ -22,7 +22,7 @@ class NewFile {
 
   hid_t get() const { return file_.get(); }
 
-  /// Gives the flushed file its name and returns it.
+  /// Gives the flushed file its name, and returns the open file.
   FileHandle commit();
 
  private:
