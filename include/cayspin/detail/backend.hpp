@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
-// Names for the differences between compilers, processors and devices. Other headers test these
-// names, and execution.hpp deals with the host spaces.
+// Macros that describe the compiler, the processor, and whether code is compiled for a host or a
+// device. Other headers test them. execution.hpp has the differences between host spaces.
 
 // Defined in compiler passes that generate device code.
 #if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__) || defined(__SYCL_DEVICE_ONLY__)
@@ -38,7 +38,7 @@
 #define CAYSPIN_DETAIL_AVX2_OF_INTEGERS
 #endif
 
-// x86 instructions other than those of packs.
+// x86-64 instructions that no pack type provides, for example _mm_sfence and _mm_pause.
 #if defined(__x86_64__) && !defined(CAYSPIN_DETAIL_DEVICE_PASS)
 #define CAYSPIN_DETAIL_X86
 #endif
@@ -48,12 +48,12 @@
 #define CAYSPIN_DETAIL_GNU
 #endif
 
-// a * b + c is a single instruction.
+// Defined where a * b + c is a single instruction.
 #if defined(__FMA__) || defined(__ARM_FEATURE_FMA) || defined(CAYSPIN_DETAIL_DEVICE_PASS)
 #define CAYSPIN_DETAIL_FMA
 #endif
 
-// The maximum of two packs returns the second operand where either is NaN.
+// Defined where the maximum of two packs is the second operand in lanes where either is NaN.
 #if defined(__AVX2__)
 #define CAYSPIN_DETAIL_MAXIMUM_IS_SECOND
 #endif
@@ -64,16 +64,16 @@
 #define CAYSPIN_DETAIL_NOINLINE
 #endif
 
-// A member without an address of its own. nvcc 13.0 lays out a class with such a member differently
-// in device and host code, so that device code reads the wrong place. With CUDA the attribute is
-// therefore left out.
+// Marks a member that needs no address of its own. nvcc 13.0 lays out a class with such a member
+// differently in device and host code, so that device code reads the wrong place. With CUDA the
+// attribute is therefore left out.
 #if defined(KOKKOS_ENABLE_CUDA)
 #define CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS
 #else
 #define CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS [[no_unique_address]]
 #endif
 
-// Precedes a loop over the cells of a row whose iterations are independent.
+// Precedes a loop whose iterations are independent.
 #if defined(CAYSPIN_DETAIL_DEVICE_PASS)
 #define CAYSPIN_DETAIL_INDEPENDENT
 #elif defined(__clang__)
@@ -95,10 +95,10 @@ namespace cayspin::inline v0_2::detail {
 
 inline constexpr std::int64_t cache_line_bytes = 64, page_bytes = 4096;
 
-/// Number of device threads that share a tile of rows: on most devices, the size of a Kokkos block.
+/// Number of device threads that share a tile of rows: on most devices, one thread block of Kokkos.
 inline constexpr std::uint32_t threads_of_tile = 128;
 
-// Returns 1 / number to at least 18 bits. Defined only where a division is slow.
+// Returns 1 / number to at least 18 bits. Defined only in CUDA device code, where division is slow.
 #if defined(__CUDA_ARCH__)
 #define CAYSPIN_DETAIL_ROUGH_INVERSE
 __device__ __forceinline__ double rough_inverse(double number) {

@@ -22,7 +22,8 @@ struct ExchangeNumbers {
 /// Guard that returns the spins to their original memory. Steps may swap this memory with memory of
 /// `worker`, for example a stepper. The destructor, which also runs after an exception, then swaps
 /// the numbers back, so that copies of the field and arrays obtained from it see the spins. This
-/// takes one pass over the sites, and waits. If nothing was swapped, it does nothing.
+/// takes one pass over the sites, and waits. The destructor does nothing if the spins are in their
+/// original memory.
 ///
 /// `worker.visit_exchanged(visit)` calls visit(field) for each field that may be swapped.
 template <class Exec, class Worker, class Spins>

@@ -29,7 +29,8 @@ struct ComponentPointers {
       : component{array.data, array.data + array.stride, array.data + 2 * array.stride} {}
 };
 
-/// The RowLayout of device kernels. Index is an integer that can count the numbers of a component.
+/// The RowLayout of device kernels. Index is an integer type that can count the numbers of one
+/// component.
 template <class Index>
 struct DeviceLayout {
   std::int32_t last[3];  // last index along each axis, in a replica

@@ -35,8 +35,8 @@ class QuickDivision {
 
 class DeviceTiles {
  public:
-  /// Tiles for the first `nx` places of these rows. On lattices that fill a large device many
-  /// times, threads walk farther: through up to eight planes.
+  /// Divides the first `nx` places of each of these rows into tiles. A thread works on one plane,
+  /// or on up to eight if the lattice fills a large device many times.
   DeviceTiles(std::int32_t nx, RowRange const& rows)
       : nx_(nx),
         y_begin_(rows.y_begin),
@@ -85,7 +85,7 @@ class DeviceTiles {
   }
 
   std::int32_t nx_, y_begin_, y_end_, z_begin_, z_end_;
-  std::int32_t walk_;    // most sites per thread
+  std::int32_t walk_;    // largest number of sites per thread
   std::int32_t x_bits_;  // a tile is 2^x_bits_ sites wide
   std::uint32_t per_row_, per_plane_, planes_;
   QuickDivision by_row_, by_plane_;

@@ -11,7 +11,7 @@
 // Loads of spins at a distance along x, y and z, up to the extents of the lattice.
 namespace cayspin::inline v0_2::detail {
 
-/// A field whose spins are read from sites at a distance. Past an open end it is the zero vector.
+/// A field whose spins are read at a distance from a site. Past an open end the spins are zero.
 template <class Real>
 struct DistantSites {
   SiteArray<Real, 3> array;
@@ -43,8 +43,8 @@ struct DistantSites {
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t plane_of_replica(std::int32_t z) const {
     return has_replicas ? z % extent[2] : z;
   }
-  /// Returns the first site of row (y + dy, z + dz), where dy and dz are at most the extents; null
-  /// past an open end.
+  /// Returns a pointer to the first site of row (y + dy, z + dz), or null past an open end. |dy|
+  /// and |dz| must be at most the extents along y and z.
   KOKKOS_FORCEINLINE_FUNCTION Real const* row(std::int32_t y, std::int32_t z, std::int32_t dy,
                                               std::int32_t dz) const {
     std::int32_t const in_replica = plane_of_replica(z), first = z - in_replica;
@@ -55,7 +55,7 @@ struct DistantSites {
   }
 
   /// Loads sites x, x + 1, ... of a row. Past its ends the row repeats, or is zero if they are
-  /// open; x may be up to an extent outside.
+  /// open; x may lie outside the row by up to its length.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> along(Real const* row, std::int32_t x) const {
     constexpr std::int32_t lanes = lanes_of<Value>;
@@ -82,7 +82,7 @@ struct DistantSites {
   }
 
   /// Loads a pack that crosses an end of the row: lanes past the end come from the other end, or
-  /// are zero at an open end. Memory past the row is read, but its contents are ignored.
+  /// are zero at an open end. Memory outside the row is read, but its contents are ignored.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> across_end(Real const* row, std::int32_t x) const {
     using Scalar = scalar_t<Value>;
@@ -99,7 +99,8 @@ struct DistantSites {
   KOKKOS_FORCEINLINE_FUNCTION Value lane_by_lane(Real const* row, std::int32_t x) const {
     using Scalar = scalar_t<Value>;
     auto const at = [&](std::int32_t lane) {
-      // A lane so far past the end belongs to no site, so it may have any number.
+      // A lane that is two rows or more from the start belongs to no site, so its value is
+      // arbitrary.
       std::int32_t i = x + lane;
       i = wrapped(i < 2 * extent[0] ? i : extent[0] - 1, 0);
       return i < 0 ? Scalar(0) : static_cast<Scalar>(row[i]);

@@ -17,7 +17,7 @@ namespace cayspin::inline v0_2::detail {
 /// their words.
 class ExactSum {
  public:
-  /// The words are the digits, followed by how many summands are NaN, infinity and minus infinity.
+  /// The words are the digits, then the numbers of summands that are NaN, infinity and -infinity.
   static constexpr int digits = 68, words = digits + 3;
 
   CAYSPIN_DETAIL_NOINLINE void add(double number) {
@@ -84,8 +84,8 @@ class ExactSum {
 
   std::uint64_t digit(int i) const { return i < 0 ? 0 : static_cast<std::uint64_t>(word_[i]); }
 
-  // Rounds a sum >= 0 after carry(). Converts its leading 64 bits, the lowest of which is also set
-  // if any lower bit of the sum is set.
+  // Rounds a sum >= 0 after carry(). Converts the leading 64 bits of the sum; the lowest of these
+  // is also set if any bit below them is set.
   double rounded_magnitude() const {
     int top = digits - 1;
     while (top > 0 && word_[top] == 0) --top;

@@ -37,7 +37,7 @@ inline constexpr bool is_synchronous =
 #endif
     false;
 
-/// Returns true if a kernel over so many sites runs on the calling thread.
+/// Returns true if a kernel over this many sites runs on the calling thread.
 template <class Exec>
 bool runs_on_calling_thread(std::int64_t sites) {
   return is_synchronous<Exec> && sites <= calling_thread_sites;

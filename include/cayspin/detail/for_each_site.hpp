@@ -33,13 +33,13 @@ KOKKOS_FORCEINLINE_FUNCTION void for_each_pack(Row const& row, std::int32_t begi
   for (std::int32_t pack = begin; pack < end; ++pack) functor(Site<Value>(row, pack * lanes));
 }
 
-/// Rows y_begin .. y_end - 1 of plane z, packs pack_begin .. pack_end - 1 of each.
+/// Packs pack_begin .. pack_end - 1 of each of the rows y_begin .. y_end - 1 of plane z.
 struct RowBlock {
   std::int32_t z, y_begin, y_end, pack_begin, pack_end;
 };
 
-/// The blocks that host tasks work on: several short rows of a plane, or part of a long row. There
-/// are enough for many threads, and each is large enough to hide its launch cost.
+/// The blocks that host tasks work on: one or more rows of a plane, or part of a long row. Each is
+/// large enough to hide its launch cost; on large lattices there are enough for many threads.
 class RowBlocks {
  public:
   RowBlocks(RowLayout const& layout, std::int32_t packs, RowRange const& rows)
@@ -135,8 +135,8 @@ struct OnDeviceSite {
   }
 };
 
-/// Calls functor(site) for all sites of these rows, in parallel. functor is a plain struct with a
-/// call operator templated on the Site.
+/// Calls functor(site) for all sites of `rows`, in parallel. `functor` is a plain struct whose call
+/// operator is a template over the type of the site.
 template <class Real, class Exec, class Functor>
 void for_each_site(Exec const& exec, std::string const& label, RowLayout const& layout,
                    Functor const& functor, RowRange const& rows) {

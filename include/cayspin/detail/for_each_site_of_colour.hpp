@@ -12,10 +12,10 @@
 // Loops over the sites of one colour of a checkerboard: those where x + y + z has one parity. The
 // functor changes them in place and reads their neighbours, which all have the other colour.
 //
-// From neighbour rows, a pack on the host also loads the sites between those it needs, and no other
-// task may write these at the same time. Therefore rows with even y + z run first, then rows with
-// odd y + z: no task then writes to the neighbour rows of another. In its own row a pack loads no
-// sites that other packs write.
+// From neighbour rows, a pack on the host also loads the sites between those that it needs. No
+// other task may write to them at the same time. Therefore rows with even y + z run first, then
+// rows with odd y + z: no task then writes to the neighbour rows of another. In its own row a pack
+// loads no sites that other packs write.
 namespace cayspin::inline v0_2::detail {
 
 /// Rows with one parity of y + z, or all rows.
@@ -74,8 +74,8 @@ struct ColourRowLoop {
   using Edge = PackOfColour<Value, true>;
   static constexpr std::int32_t pack_sites = 2 * lanes_of<Value>;
 
-  /// Packs that the inner loop leaves over. They wait for a partner if the functor takes pairs. All
-  /// are served by one instance of the kernel, because kernels are large and slow to compile.
+  /// Packs that the inner loop does not handle. They wait for a partner if the functor takes pairs.
+  /// All are served by one instance of the kernel, because kernels are large and slow to compile.
   struct Waiting {
     struct Place {
       Row row;
@@ -119,9 +119,9 @@ struct OnDeviceSiteOfColour {
   }
 };
 
-/// Calls functor(site) for the sites of this part, without ghosts, whose x + y + z has the parity
-/// functor.colour, counted in the whole lattice. On hosts it calls functor(site, site) if the
-/// functor takes pairs.
+/// Calls functor(site) for the sites of one colour, without ghosts: x + y + z has the parity
+/// functor.colour, where y and z are those in the whole lattice, or in a replica. On hosts it calls
+/// functor(site, site) if the functor takes pairs.
 template <class Real, class Exec, class Functor>
 void for_each_site_of_colour(Exec const& exec, std::string const& label, RowLayout const& layout,
                              Functor const& functor) {

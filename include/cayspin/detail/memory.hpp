@@ -34,8 +34,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value load(Real const* from) {
   }
 }
 
-// Reductions of float fields use packs of double: half a register of floats, converted by one
-// instruction.
+// Reductions of float fields load half a register of floats into a pack of doubles, by one
+// instruction that converts.
 #if defined(CAYSPIN_DETAIL_AVX512)
 template <>
 KOKKOS_FORCEINLINE_FUNCTION Pack<double> load<Pack<double>, float>(float const* from) {
@@ -62,7 +62,7 @@ KOKKOS_FORCEINLINE_FUNCTION void store(Value const& value, scalar_t<Value>* to) 
 }
 
 /// Returns its argument, but hides from the compiler how it was computed. The compiler then
-/// computes addresses where they are used, rather than keep more of them than there are registers.
+/// computes addresses where they are used, and does not keep more of them than there are registers.
 template <class Word>
 KOKKOS_FORCEINLINE_FUNCTION Word opaque(Word word) {
 #if defined(CAYSPIN_DETAIL_GNU) && defined(CAYSPIN_DETAIL_X86)
@@ -129,7 +129,8 @@ inline std::size_t last_level_cache_bytes() {
 #endif
 }
 
-/// Returns the size of the level-2 cache, which each core has for itself.
+/// Returns the bytes of the level-2 cache, of which each core has its own; 1 MiB if the system does
+/// not report them.
 inline std::size_t core_cache_bytes() {
   static constexpr std::size_t usual = std::size_t(1) << 20;
 #if defined(__linux__) && defined(_SC_LEVEL2_CACHE_SIZE)
@@ -143,8 +144,8 @@ inline std::size_t core_cache_bytes() {
 #endif
 }
 
-/// Returns true if a method with a working set of so many bytes should bypass the caches when it
-/// stores.
+/// Returns true if a method with a working set of this many bytes should bypass the caches when it
+/// stores. On devices it never should.
 template <class Exec>
 bool exceeds_caches(std::size_t bytes) {
   if constexpr (std::is_same_v<typename Exec::memory_space, Kokkos::HostSpace>)

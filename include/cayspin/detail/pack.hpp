@@ -63,8 +63,8 @@ using scalar_t = typename ValueTraits<Value>::scalar;
 template <class Value>
 inline constexpr int lanes_of = ValueTraits<Value>::lanes;
 
-/// True if a value is that of a single site, as on devices. Code may then branch to evaluate only
-/// one of several formulas, which is cheaper.
+/// True if a Value belongs to a single site, as on devices. Code can then branch, and evaluates
+/// only the formula that this site needs.
 template <class Value>
 inline constexpr bool one_at_a_time = lanes_of<Value> == 1;
 
@@ -82,8 +82,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value multiply_add(Value const& a, Value const& b, V
   }
 }
 
-/// Returns a * b - c, rounded only once where the hardware can do so. (Kokkos' packs negate by
-/// subtracting from zero, which the compiler cannot fold into the product.)
+/// Returns a * b - c, rounded only once where the hardware can do so. Intrinsics do this,
+/// because Kokkos' packs negate c by subtracting it from zero, a separate instruction.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value multiply_subtract(Value const& a, Value const& b,
                                                     Value const& c) {
@@ -120,8 +120,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value select(typename ValueTraits<Value>::mask const
   }
 }
 
-/// (For packs of 512 bits, Kokkos' own root uses an intrinsic in which g++ 12 reports an
-/// uninitialised variable.)
+/// Returns the square root. For packs of 512 bits it does not use Kokkos' root, because g++ 12
+/// reports an uninitialised variable in the intrinsic of that root.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value square_root(Value const& a) {
 #if defined(CAYSPIN_DETAIL_AVX512)
@@ -153,7 +153,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value maximum(Value const& a, Value const& b) {
   return select<Value>(a < b, b, a);
 }
 
-/// Returns 2^k for a whole number k within the exponents of normal numbers.
+/// Returns 2^k for a whole number k. 2^k must be a normal number.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value power_of_two(Value const& k) {
   if constexpr (std::is_floating_point_v<Value>) {

@@ -40,14 +40,14 @@ struct PhiloxKeys {
 
 /// Philox4x32-10 of J. Salmon, M. Moraes, R. Dror and D. Shaw, "Parallel random numbers: as easy as
 /// 1, 2, 3" (2011): four random words for each counter of four words, under a key of two words.
-/// There are several counters side by side. Each 32-bit word is the lower half of a 64-bit number,
-/// whose upper half is ignored.
+/// `Lanes` counters are side by side. Each 32-bit word is the lower half of a 64-bit number, whose
+/// upper half is ignored.
 template <int Lanes>
 struct Philox {
   using Words = typename LanesOf<std::uint64_t, Lanes>::type;
   Words word[4];
 
-  /// Sets counters (number + lane, draw).
+  /// Sets the counter of each lane to (number + lane, draw).
   KOKKOS_FORCEINLINE_FUNCTION Philox(std::uint64_t number, std::uint64_t draw) {
     Words numbers{};
     if constexpr (Lanes == 1) {
@@ -62,7 +62,7 @@ struct Philox {
     word[3] = (numbers ^ numbers) + (draw >> 32U);
   }
 
-  /// Sets the counter (number, draw) in every lane, for lanes that have different keys.
+  /// Returns counters that are (number, draw) in every lane, for lanes that have different keys.
   KOKKOS_FORCEINLINE_FUNCTION static Philox with_equal_counters(std::uint64_t number,
                                                                 std::uint64_t draw) {
     Philox equal(number, draw);
@@ -72,7 +72,7 @@ struct Philox {
     return equal;
   }
 
-  /// `key`: two numbers for all lanes, or two Words with a key for each lane.
+  /// Performs one round. `key`: two numbers for all lanes, or two Words with a key for each lane.
   template <class Key>
   KOKKOS_FORCEINLINE_FUNCTION void round(Key const (&key)[2]) {
     Words const a = product(word[0], 0xD2511F53), b = product(word[2], 0xCD9E8D57);
@@ -83,9 +83,9 @@ struct Philox {
   }
 
  private:
-  // Intrinsics, because g++ does not find the single instruction that does each of these.
+  // These use intrinsics, because g++ does not find the single instructions that they stand for.
 
-  /// Multiplies the lower halves.
+  /// Multiplies the lower half of each number of a by b.
   KOKKOS_FORCEINLINE_FUNCTION static Words product(Words const& a, std::uint64_t b) {
 #if defined(CAYSPIN_DETAIL_AVX512_OF_INTEGERS)
     if constexpr (Lanes == 8)

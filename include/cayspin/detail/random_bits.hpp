@@ -12,15 +12,16 @@ namespace cayspin::inline v0_2::detail {
 
 class RandomBitsOfColumns;
 
-/// 16 random bits for each place (a number), by Philox: eight counters serve 64 places. A place
-/// gets the same bits whether it is drawn alone or with others in a register. Devices draw for one
-/// place at a time.
+/// 16 random bits for each place, by Philox: eight counters serve 64 places. Places are numbered. A
+/// place gets the same bits whether it is drawn alone or with others in a register. Devices draw
+/// for one place at a time.
 template <bool OnHost>
 class RandomBits {
   friend class RandomBitsOfColumns;
 
  public:
-  /// The most places side by side in a register. They must start at a multiple of their count.
+  /// The most places in one register. The first place in a register must be a multiple of the
+  /// number of places in it.
   static constexpr std::uint64_t most_lanes = 16;
 
   RandomBits() = default;
@@ -42,7 +43,8 @@ class RandomBits {
 
  private:
   // Place p of 64 uses half p / 32 of word p / 16 % 2 * 2 + p % 2 of counter p % 16 / 2. With two
-  // words packed into each 64-bit number, the words are then in memory in the order of the places.
+  // words packed into each 64-bit number, the numbers in memory are then in the order of the
+  // places.
   static constexpr int lanes = host_lanes<double>, counters = 8;
   static constexpr std::uint64_t places = 64, drawn_at_once = 2 * places;
 
@@ -58,7 +60,8 @@ class RandomBits {
   KOKKOS_FORCEINLINE_FUNCTION static typename Philox<Lanes>::Words bits_of(
       std::uint64_t place, Philox<Lanes> const& random) {
     using Words = typename Philox<Lanes>::Words;
-    // Indices are constant, because an array that a device keeps on its stack is slow.
+    // All indices are constants. For others a device would keep the array on its stack, which is
+    // slow.
     auto const& word = random.word;
     Words const even = place % 32 < 16 ? word[0] : word[2];
     Words const odd = place % 32 < 16 ? word[1] : word[3];
@@ -99,7 +102,8 @@ class RandomBits {
     return __builtin_convertvector(found, Numbers);
   }
 
-  // The bits drawn last, kept because the next register of a row mostly needs some of them.
+  // The bits drawn last. They are kept because the next register of a row usually needs some of
+  // them.
   struct Last {
     std::uint64_t block = ~std::uint64_t{0};
     alignas(64) std::uint32_t drawn[std::size_t{drawn_at_once}] = {};
@@ -111,8 +115,8 @@ class RandomBits {
   mutable std::conditional_t<OnHost, Last, Nothing> last_;
 };
 
-/// Random bits for lattices that are stored side by side, one lattice per column: for the same
-/// place, column c gets the bits of a RandomBits with seed + c.
+/// Random bits for lattices that are stored side by side, one lattice per column: at each place,
+/// column c gets the bits that a RandomBits with seed + c has there.
 class RandomBitsOfColumns {
  public:
   RandomBitsOfColumns() = default;
@@ -150,7 +154,7 @@ class RandomBitsOfColumns {
   std::uint64_t seed_ = 0, draw_ = 0;
 };
 
-/// Random bits for replicas: replica r gets the bits of a RandomBits with seed + r.
+/// Random bits for replicas: replica r gets the bits of a RandomBits with the seed seed + r.
 template <bool OnHost>
 class RandomBitsOfReplica {
  public:

@@ -16,14 +16,14 @@
 #include <string>
 
 // Sums and maxima over sites, in double. On host spaces each row, or piece of a long row, is summed
-// in a fixed order: first the packs at its ends, then those between them, and at last the lanes of
+// in a fixed order: first the packs at its ends, then those between them, and finally the lanes of
 // the sum in a fixed tree. The sums of rows are added without round-off. So the bits do not depend
 // on the host space, the number of threads or the division of a lattice into parts. Devices sum
 // with twice the digits, in their own order.
 namespace cayspin::inline v0_2::detail {
 
-// `sums`: this many of the `Count` values, from the first on, are summed. Of each of the others the
-// maximum is found.
+// `sums`: how many of the `Count` values are summed, from the first on. The others are reduced to
+// their maxima over the sites.
 struct Sum {
   template <int Count>
   static constexpr int sums = Count;
@@ -63,7 +63,7 @@ KOKKOS_FORCEINLINE_FUNCTION double combine_lanes(Value const& value) {
   }
 }
 
-/// Functor that accumulates over sites the Count values that functor(site, values) writes.
+/// Functor that accumulates, over sites, the Count values that functor(site, values) writes.
 template <class Combine, int Count, class Functor, class Value>
 struct Collect {
   Functor const& functor;
@@ -203,8 +203,8 @@ struct ReduceBlock {
   }
 };
 
-/// Functor for Kokkos' reduction on devices. The order of the sum is the device's, and the same in
-/// each call.
+/// Functor for Kokkos' reduction on devices. The device determines the order of the sum, which is
+/// the same in each call.
 template <class Combine, int Count, class Functor>
 struct ReduceOnDevice {
   static constexpr int sums = Combine::template sums<Count>, maxima = Count - sums;
@@ -234,12 +234,13 @@ struct ReduceOnDevice {
   }
 };
 
-/// The most blocks of a reduction on hosts; exceeds the number of threads of any host.
+/// The most blocks of a reduction on hosts; few hosts have more threads.
 inline constexpr std::int64_t most_blocks = 1024;
 
-/// Returns the sums and maxima, over all sites of all parts of the lattice, of what functor(site,
-/// values) writes to values[0 .. Count); waits. On host spaces it allocates nothing, and may run in
-/// several instances of the space at once. Throws std::invalid_argument when there are no sites.
+/// Returns the sums and maxima of the numbers that functor(site, values) writes to values[0] ..
+/// values[Count - 1], over all sites of all parts of the lattice; first the sums. Waits. On host
+/// spaces it allocates nothing, and may run in several instances of the space at once. Throws
+/// std::invalid_argument when there are no sites.
 template <class Combine, int Count, class Exec, class Functor>
 std::array<double, std::size_t{Count}> reduce_sites(Exec const& exec, std::string const& label,
                                                     RowLayout const& layout,

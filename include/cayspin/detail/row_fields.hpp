@@ -8,8 +8,9 @@
 #include <cstdint>
 
 // H of a term with many neighbours is faster to compute for all sites of a row together than site
-// by site. Before the host loop of a stage works on a piece of a row, it lets such terms do so for
-// that piece. The object that such a term's prepare_for_rows returns, or a sum of such objects, has
+// by site. Before the host loop of a stage works on a piece of a row, it therefore lets such terms
+// compute H of that piece. The object that such a term's prepare_for_rows returns, or a sum of such
+// objects, has
 //   static constexpr int row_fields                       how many fields it keeps
 //   void begin_row(row, begin, end, RowFields<Real>)      computes H of sites begin .. end - 1
 // where `row` has the spins of the stage and their neighbours. A term may have
@@ -34,7 +35,7 @@ inline constexpr std::int32_t sites_per_piece = 256;
 template <class Real>
 struct RowFields {
   static constexpr std::ptrdiff_t stride =
-      sites_per_piece + 8;  // not 256, which would put the components into equal cache sets
+      sites_per_piece + 8;  // a stride of 256 would put components into the same cache sets
   Real* data = nullptr;
 
   template <class Value>
@@ -49,7 +50,7 @@ struct RowFields {
     detail::store(v.z, data + 2 * stride + i);
   }
 
-  /// Returns the fields after the first `fields`.
+  /// Returns the memory behind the first `fields` fields.
   RowFields after(int fields) const { return {data + fields * 3 * stride}; }
 };
 

@@ -53,7 +53,7 @@ struct Axis {
     std::int32_t const rest = i % extent;
     return rest < 0 ? rest + extent : rest;
   }
-  /// Returns true if nothing before i has a neighbour from i on.
+  /// Returns true at an open end: no index below i then has a neighbour at i or above.
   KOKKOS_FORCEINLINE_FUNCTION bool is_cut(std::int32_t i) const {
     return !wraps && (i <= 0 || i >= extent);
   }
@@ -62,7 +62,7 @@ struct Axis {
 /// Indices of planes along z, which end or repeat within each replica.
 struct PlaneAxis : Axis {
   std::int32_t replica = 1;     // planes per replica
-  bool wraps_replicas = false;  // true if there are several, each periodic
+  bool wraps_replicas = false;  // true if there are several replicas, each periodic
 
   PlaneAxis() = default;
   KOKKOS_FUNCTION explicit PlaneAxis(RowLayout const& layout)

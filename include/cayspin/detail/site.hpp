@@ -158,7 +158,8 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
           select<Value>(this->template is_end<1>(), past_end<1>(row, strides, center), beside[1]);
   }
 
-  /// Loads the neighbours past the end of a row: those at the other end, or the spins themselves.
+  /// Loads the neighbours past the end of a row: those at the other end, or at an open end the
+  /// spins themselves.
   template <int Direction, class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> past_end(Real const* row,
                                                    std::ptrdiff_t const (&strides)[2],

@@ -44,8 +44,8 @@ struct Row {
   }
 };
 
-/// The sites of one iteration, as many as Value has lanes: x, x + Spacing, ... in one row. AtEdge:
-/// they may include the first or the last site of the row.
+/// The sites of one iteration, as many as Value has lanes: x, x + Spacing, ... in one row. If
+/// AtEdge is true, they may include the first or the last site of the row.
 template <class Value, bool AtEdge, int Spacing>
 class SitesOfRow {
  public:
@@ -64,7 +64,7 @@ class SitesOfRow {
   KOKKOS_FORCEINLINE_FUNCTION bool has_neighbor() const {
     return row_.template has_neighbor<Axis, Direction>();
   }
-  /// Returns true if all these sites have neighbours on both sides.
+  /// Returns true if all these sites have neighbours on both sides along `Axis`.
   template <int Axis>
   KOKKOS_FORCEINLINE_FUNCTION bool is_between() const {
     if constexpr (Axis > 0)
@@ -97,7 +97,8 @@ class SitesOfRow {
   KOKKOS_FORCEINLINE_FUNCTION auto is_end() const {
     return lane_numbers<Value>() == Value(static_cast<scalar_type>(to_end<Direction>() / Spacing));
   }
-  /// Returns the neighbour past the end of a row: the site at the other end, or `center`.
+  /// Returns the neighbour past the end of a row: the site at the other end, or `center` at an open
+  /// end.
   template <int Direction, class Real>
   KOKKOS_FORCEINLINE_FUNCTION Value beyond(Real const* row, Value const& center) const {
     return row_.periodic_x ? Value(scalar_type(row[Direction == 0 ? row_.nx - 1 : 0])) : center;

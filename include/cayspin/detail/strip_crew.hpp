@@ -14,8 +14,8 @@
 // Threads that work on adjacent strips, step by step. A strip waits only for its two neighbours.
 namespace cayspin::inline v0_2::detail {
 
-/// Progress of a strip: twice the steps done, plus one while a thread works on the next. Each has
-/// its own cache line.
+/// Progress of a strip: twice the number of steps done, plus one while a thread works on the next
+/// step. Each has its own cache line.
 struct alignas(cache_line_bytes) StripProgress {
   std::atomic<std::int64_t> state = 0;
 };
@@ -23,8 +23,8 @@ struct alignas(cache_line_bytes) StripProgress {
 /// Crew of threads that do `steps` steps of each strip. Step n of a strip may start when its
 /// neighbours have done n - apart steps. The first strip and the last are neighbours, too. Any
 /// number of threads may work, in any order: a thread that waits for long takes over steps of other
-/// strips. `progress` has one entry more than there are strips. All entries must be 0 before, and
-/// are 0 afterwards.
+/// strips. `progress` has one entry more than there are strips. All entries must be 0 before the
+/// work, and are 0 after it.
 struct StripCrew {
   StripProgress* progress;
   std::int32_t strips;
@@ -50,8 +50,8 @@ struct StripCrew {
   }
 
  private:
-  /// Pauses before a thread helps others, some microseconds in all: helping moves a strip into
-  /// another core's cache.
+  /// Number of pauses before a thread helps others; they take a few microseconds in all. Helping
+  /// moves a strip into another core's cache.
   static constexpr int patience = 256;
 
   std::int64_t done(std::int32_t strip) const {

@@ -10,8 +10,8 @@
 #include <cstdint>
 
 // Divides the lattice of a sweep among threads, and each part into blocks of rows whose buffers fit
-// the cache. Seams keep the last rows of a block for the next one, which reads them. In a lattice
-// of one plane that is not cut into strips, stages follow each other by rows instead
+// into the cache. Seams keep the last rows of a block for the next one, which reads them. In a
+// lattice of one plane that is not cut into strips, stages follow each other by rows instead
 // (row_sweep.hpp).
 namespace cayspin::inline v0_2::detail {
 
@@ -32,10 +32,10 @@ struct SweepRange {
 };
 
 /// A buffer: a ring of `planes` planes of rows, and a seam of `seam_rows` rows for each plane of
-/// the part. If stages follow by rows: a ring of `planes` rows.
+/// the part. If stages follow each other by rows: a ring of `planes` rows.
 struct SweepBuffer {
   std::int32_t producer = 0, planes = 0, seam_rows = 0;
-  std::ptrdiff_t ring = 0, seam = 0;  // offsets in the memory of a strip, in the seams of a part
+  std::ptrdiff_t ring = 0, seam = 0;  // offsets in the strip, and in the part's seams
 };
 
 /// The division of a lattice into independent parts, along z and y. A part may be cut into strips
@@ -49,13 +49,13 @@ struct SweepPlan {
   std::int32_t parts_y = 1, parts_z = 1, strips = 1;
   std::int32_t lag = 1;  // planes between a stage and the one before it
   bool by_rows = false;
-  // A strip that has enough rows has at least so many in each block, and less than twice as many.
-  // If stages follow by rows: rows per tick.
+  // Rows of a strip in one block: at least this many, and fewer than twice as many. A strip with
+  // fewer rows has one block. If stages follow each other by rows: rows per tick.
   std::int32_t block = 1;
   std::int32_t ring_rows = 0, seam_planes = 0;
   // Strides of a buffer: from component to component, from row to row.
   std::ptrdiff_t pitch = 0, row = 0;
-  std::ptrdiff_t strip_size = 0, seams_size = 0;  // numbers in a strip's memory, in a part's seams
+  std::ptrdiff_t strip_size = 0, seams_size = 0;  // numbers in a strip, and in a part's seams
   SweepBuffer buffer[3 * most_stages];
 
   std::int64_t parts() const { return std::int64_t(parts_y) * parts_z; }
@@ -78,11 +78,12 @@ struct SweepPlan {
   std::int32_t seam_shift(SweepBuffer const& of_stage) const {
     return of_stage.planes + 2 * (lag - 1);
   }
-  /// Returns the number of blocks of each strip of a part with so many rows.
+  /// Returns the number of blocks in each strip of a part that has this many rows.
   std::int32_t blocks(std::int32_t rows) const { return std::max(1, rows / strips / block); }
 
-  /// Makes a plan for so many threads. Blocks have as many rows as possible while their buffers
-  /// take at most `cache` bytes, but at least 2 * stages rows.
+  /// Makes a plan for this many threads. Unless stages follow each other by rows, `block` is the
+  /// largest number of rows for which the buffers and the spins in use fit into `cache` bytes, but
+  /// at least 2 * stages.
   template <class Real, class Buffers>
   static SweepPlan of(RowLayout const& layout, int threads, std::size_t cache) {
     static_assert(Buffers::stages <= most_stages);
@@ -130,14 +131,14 @@ struct SweepPlan {
     return {bound(part), bound(part + 1), stages, axis};
   }
 
-  // Finds the fastest division among at most `threads` threads. Strips are not considered if there
-  // can be a part for each thread and parts repeat little work. Of divisions that take equal times,
-  // that with the most parts along z is chosen, because such parts are far apart in memory.
+  // Finds the fastest division among at most `threads` threads. Strips are not considered if each
+  // thread can have its own part and the parts repeat little work. Of divisions that take equal
+  // times, that with the most parts along z is chosen, because such parts are far apart in memory.
   void cut(int threads, std::int32_t block_of_parts, std::int32_t block_of_strips) {
     std::int32_t const ny = layout.own.ny(), nz = layout.own.nz();
-    // Returns the cost of the largest of so many parts, in planes or rows. At each shared end, the
-    // stages repeat (stages - 1) / 2 of them on average; half as much again is added, since these
-    // also move memory.
+    // Returns the cost of the largest of `parts` parts, in planes or rows. At each shared end, a
+    // stage repeats (stages - 1) / 2 of them on average. These also move memory, so each counts as
+    // one and a half.
     auto const largest = [&](std::int32_t extent, std::int32_t parts) {
       return (extent + parts - 1) / parts + 0.75 * std::min(parts - 1, 2) * (stages - 1);
     };
@@ -169,7 +170,7 @@ struct SweepPlan {
     }
   }
 
-  // `to_spare`: rows that fit in the cache besides those in use when stages follow by rows.
+  // `to_spare`: how many rows fit into the cache in addition to those that are always in use.
   template <class Buffers>
   void allot_rows(std::int32_t to_spare, std::ptrdiff_t line) {
     by_rows = true;
@@ -257,8 +258,8 @@ struct SweepPart {
     return z.low(0) + static_cast<std::int32_t>(step % steps_per_block);
   }
 
-  /// Returns the first row of a stage, which works on rows low .. high - 1. At the ends of blocks
-  /// it is one row behind the stage before it.
+  /// Returns the first row of a stage, which works on rows low .. high - 1. At the ends of blocks a
+  /// stage is one row behind the stage before it.
   std::int32_t low(int stage) const {
     if (!begins_block()) return bounds_[1];
     return block_ == 0 ? y.low(stage) : bounds_[1] - stage;

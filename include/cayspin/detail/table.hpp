@@ -8,7 +8,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Returns the elements copied to a memory space; waits.
+/// Returns a View in a memory space with copies of the elements; waits.
 template <class MemorySpace, class Element>
 Kokkos::View<Element*, MemorySpace> table_of(std::string const& label,
                                              std::vector<Element> const& elements) {

@@ -7,7 +7,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// True if one or two instructions look up a register of such Numbers in a table of sixteen.
+/// True if one or two instructions look up a register of Numbers in a table of sixteen entries.
 template <class Numbers>
 #if defined(CAYSPIN_DETAIL_AVX512_OF_INTEGERS)
 inline constexpr bool has_table_of_sixteen = sizeof(Numbers) == 64;

@@ -175,8 +175,8 @@ struct ToRow {
   }
 };
 
-/// Functor that prefetches the numbers of a row at offset `ahead`. Of a stencil it prefetches the
-/// row in the next plane, because the others have been read before.
+/// Functor that prefetches the numbers of a row at offset `ahead`. For a stencil it prefetches from
+/// the row in the next plane, because the other rows have been read before.
 template <class Real>
 struct Prefetch {
   std::ptrdiff_t ahead;

@@ -3,8 +3,8 @@
 
 #include <cayspin/stage/update_compensated.hpp>
 
-// Which arrays the stages of an explicit Runge-Kutta step read and write. This follows from the
-// tableau and the update, at compile time.
+// Determines at compile time, from the tableau and the update, which arrays the stages of an
+// explicit Runge-Kutta step read and write.
 namespace cayspin::inline v0_2::detail {
 
 /// Returns true for a chain: every stage uses only the increment of the stage before it, as in the
@@ -22,15 +22,15 @@ constexpr bool is_chain() {
 template <class Tableau>
 inline constexpr bool is_first_same_as_last = requires { Tableau::first_same_as_last; };
 
-/// Returns true if the error estimate at the end of such a step needs the increment of stage
-/// `source`.
+/// Returns true if a tableau has an error estimate that needs the increment of stage `source`.
 template <class Tableau>
 constexpr bool estimates_with(int source) {
   if constexpr (is_first_same_as_last<Tableau>) return Tableau::error[source] != 0;
   return false;
 }
 
-/// Weights of the second rotation, if the tableau has one. Row `stages` is the end of the step.
+/// Returns a weight of the second rotation; 0 if the tableau has none. Row Tableau::stages is that
+/// of the end of the step.
 template <class Tableau>
 constexpr double second_weight(int row, int column) {
   if constexpr (requires { Tableau::second_a; })
@@ -44,7 +44,8 @@ constexpr bool has_second_rotation(int row) {
   return false;
 }
 
-/// True for chains whose increments are functions of the previous increment. They store two arrays:
+/// True for chains of three or more stages whose increments depend on the previous increment. They
+/// store two arrays:
 /// the last increment, and the weighted sum, which every second stage updates. No other choice
 /// moves less memory.
 template <class Tableau, class Update>
@@ -90,7 +91,7 @@ constexpr bool reads_sum(int stage) {
          (stage % 2 == 1 || stage + 1 == Tableau::stages);
 }
 
-/// Returns the number of fields for the spins of stages.
+/// Returns the number of fields that hold the spins of stages.
 template <class Tableau, class Update>
 constexpr int level_fields() {
   if (recovers_increments<Tableau, Update>()) return Tableau::stages - 1;

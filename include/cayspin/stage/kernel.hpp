@@ -53,9 +53,9 @@ struct SecondWeights {
   KOKKOS_FUNCTION static constexpr double at(int j) { return second_weight<Tableau>(Row, j); }
 };
 
-/// Weights that express sum b[j] increment[j] of a chain by the coordinates of spins: increment j
-/// is the coordinates of stage j + 1 divided by a[j + 1][j]. The last increment itself has weight
-/// `last`.
+/// Weights with which the sum of b[j] increment[j] of a chain becomes a sum of the coordinates of
+/// spins: increment j is the coordinates of the spin of stage j + 1, divided by a[j + 1][j]. No
+/// stage follows the last increment; it enters the sum itself, with the weight `last`.
 template <class Tableau>
 struct ChartWeights {
   static constexpr double last = Tableau::b[Tableau::stages - 1];
@@ -149,7 +149,8 @@ struct RungeKuttaStage {
       return (m);  // by reference: g++ would copy a value through memory
   }
 
-  // Returns A; or, if the update needs no more, only the part that turns the spin.
+  // Returns A + sigma m, or A if the isotropy acts only at the end of the step. If the update needs
+  // only A x m, returns A plus any multiple of m.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION auto stage_generator(Stencil const& stencil) const {
     using Vector = typename Stencil::vector_type;
@@ -220,8 +221,8 @@ struct RungeKuttaStage {
     }
   }
 
-  // Returns the spins of the next stage. In the last stage it returns those at the end of the step,
-  // with each increment recovered from the spins of the stage after it.
+  // Returns the spin of the next stage. In the last stage it returns the spin at the end of the
+  // step, with each earlier increment recovered from the spin of the stage after it.
   template <class Site, class Arrays, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> on_chart(Site const& site, Arrays const& rows,
                                                    Vec3<Value> const& a, Vec3<Value> const& m,
@@ -241,7 +242,7 @@ struct RungeKuttaStage {
     }
   }
 
-  // Returns the stored sum plus this stage's increment. An odd stage also adds the increment of the
+  // Returns the stored sum plus this stage's weighted increment. An odd stage also adds that of the
   // stage before it, which stored no sum.
   template <class Site, class Arrays, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> sum_up_to_here(Site const& site, Arrays const& rows,

@@ -85,7 +85,7 @@ class StageMemory {
     for (std::size_t i = 0; i < carried_.size(); ++i) visit(Update::carried[i], carried_[i]);
   }
 
-  /// Calls action(field..) with those fields.
+  /// Calls action(field..) with the fields left by the previous step.
   template <class Action>
   void with_carried(Action const& action) const {
     std::apply(action, carried_);

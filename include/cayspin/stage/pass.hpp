@@ -25,7 +25,7 @@ struct StagePlanes {
 
   StageArrays<Planes<Real>, Flow::stages> arrays;
   Axis y;
-  bool from_memory = false;  // true if they are not expected in the core's cache
+  bool from_memory = false;  // true if the core's cache cannot be expected to hold them
 
   KOKKOS_FORCEINLINE_FUNCTION RowArrays rows(std::int32_t at) const {
     RowArrays rows;
@@ -156,8 +156,8 @@ struct StageOnSite {
   }
 };
 
-/// Prepares the generator for a stage. isotropy::Energy needs energies, which terms that are
-/// computed along rows do not have.
+/// Prepares the generator for a stage: on hosts for evaluation along rows, except with
+/// isotropy::Energy, which needs the rigid body itself.
 template <class Isotropy, class Generator, class Exec, class Spins>
 auto prepare_stage(Generator const& generator, Exec const& exec, Spins const& spins, double t) {
   if constexpr (is_host_execution<Exec> && !std::is_same_v<Isotropy, isotropy::Energy>)

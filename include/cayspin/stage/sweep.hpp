@@ -16,8 +16,9 @@
 #include <string>
 #include <tuple>
 
-// All stages of a Runge-Kutta step in one pass through the lattice. Each stage is a plane or two
-// behind the previous one, so that the data it reads are still in the cache.
+// All stages of a Runge-Kutta step in one pass through the lattice. Each stage is one or two planes
+// behind the previous one (in a single plane: one row), so that the data it reads are still in the
+// cache.
 namespace cayspin::inline v0_2 {
 
 /// Order in which the stages of a step traverse the lattice. Both orders give equal bits.
@@ -87,8 +88,8 @@ struct StageBuffers {
     return last;
   }
   /// Returns how many planes of a buffer are in use at a time when each stage is `lag` planes
-  /// behind the previous one. For spins these are at least lag + 2, as the next stage reads
-  /// neighbours.
+  /// behind the previous one; 0 if no stage reads the buffer. For spins it is at least lag + 2,
+  /// because the next stage reads neighbours.
   static constexpr int planes(int buffer, int lag) {
     int const behind = lag * (last_reader(buffer) - producer(buffer));
     if (behind == 0) return 0;
@@ -129,8 +130,9 @@ struct SweepChoice {
     return possible && !wraps_in_replicas &&
            (!layout.periodic[1] || layout.ny == 1 || layout.ny >= stages);
   }
-  /// Returns true if a sweep is possible and the default: the fields do not all fit in the caches
-  /// of the cores, and the buffers take no more memory than the fields of passes.
+  /// Returns true if a sweep is possible and is the default: there are several rows, the fields do
+  /// not all fit into the caches of the cores, and the buffers take no more memory than the fields
+  /// that passes would need.
   static bool sweeps_by_itself(RowLayout const& layout, int threads) {
     std::size_t const field = layout.allocation(3) * sizeof(Real);
     return can_sweep(layout) && layout.rows() > 1 &&

@@ -45,8 +45,8 @@ struct Lie {
   }
 };
 
-/// As Lie, but without the inverse differential: the increments are the generators. This preserves
-/// the order of methods up to order 2. Lewis and Nigam 2002, Sec. 4.3.
+/// Like Lie, but without the inverse differential: the increments are dt A. This preserves the
+/// order of methods up to order 2. Lewis and Nigam 2002, Sec. 4.3.
 template <class Rotation>
 struct LieUncorrected : Lie<Rotation> {
   static constexpr bool increment_needs_argument = false;
@@ -63,7 +63,7 @@ struct LieUncorrected : Lie<Rotation> {
 struct Classical {
   static constexpr bool increment_needs_argument = false;
   static constexpr bool needs_turning_alone =
-      true;  // only the part of A normal to m: increments are made of A x m
+      true;  // only the part of A normal to m, because increments are dt A x m
 
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> increment(Vec3<Value> const&,
@@ -103,9 +103,9 @@ struct Projected : Classical {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Displacement<Value> displacement(Vec3<Value> const& f,
                                                                       Vec3<Value> const& m0) {
-    Value const longer = dot(f, f) + Value(2) * dot(f, m0);  // |m0 + f|^2 - 1
+    Value const longer = dot(f, f) + Value(2) * dot(f, m0);  // |m0 + f|^2 - |m0|^2
     Value const length = detail::square_root<Value>(Value(1) + longer);
-    Value const along = longer / (Value(1) + length);  // |m0 + f| - 1
+    Value const along = longer / (Value(1) + length);  // |m0 + f| - 1 for a unit m0
     return {Value(1) / length, multiply_add(Value(Value(0) - along), m0, f)};
   }
 

@@ -14,15 +14,15 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Work memory of an adaptive step, and the state between steps. Passes need one more field; a
-/// sweep needs buffers.
+/// Work memory of an adaptive step, and the state between steps. Passes also need the field
+/// `level`, and a sweep needs buffers.
 template <class Spins, class Tableau>
 struct AdaptiveMemory {
   using Real = typename Spins::value_type;
   static constexpr int stages = Tableau::stages;
   static constexpr int fields_of_passes = stages + 4, fields_of_sweep = stages + 3;
 
-  Spins begin, end, level, first, last;  // first, last: generators at begin and end
+  Spins begin, end, level, first, last;  // first, last: A at begin and end
   std::array<Spins, std::size_t{stages - 1}> increments;
   ScalarField<Real, typename Spins::memory_space> square;  // squared error of each spin
 

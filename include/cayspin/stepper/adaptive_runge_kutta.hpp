@@ -32,10 +32,11 @@ using AdaptiveStages = StagedStepper<Spins, tableau::FirstSameAsLast<Embedded>, 
 }  // namespace detail
 
 /// An embedded Runge-Kutta method that chooses its own steps. The error of a step is the largest
-/// angle of any spin between the two solutions. It is kept below a fraction of the tolerance,
-/// because the tolerance bounds the error of a run. `step(.., t, dt)` leaves the spins at t + dt,
-/// interpolated by the tableau's polynomial in the coordinates of the group. The internal steps do
-/// not depend on dt. It remembers its state: `spins` and t must be those at the end of the previous
+/// angle between the method's spin and that of the embedded solution. It is kept below a fraction
+/// of the tolerance, because the tolerance bounds the error of a run. `step(.., t, dt)` computes
+/// the spins at t + dt: the tableau's polynomial interpolates the coordinates in which the update
+/// moves spins. The internal steps do not depend on dt, except that the first one is dt if no spin
+/// turns. The method remembers its state: `spins` and t must be those at the end of the previous
 /// step. Otherwise call `reset`.
 template <class Spins, class Embedded, class Update, class Isotropy = isotropy::Zero>
 class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update, Isotropy>,
@@ -102,7 +103,7 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
                                 detail::FirstGeneratorStage<Isotropy, decltype(prepared), Real>{
                                     std::move(prepared), isotropy_, start.array(),
                                     memory_.last.output(false), memory_.square.output(false)});
-    // On ghosts it may be wrong, because terms may store their field for own rows only.
+    // On ghosts the generator may be wrong, because a term may store its field for own rows only.
     detail::update_ghosts(exec, this->lattice_, memory_.last);
     ++evaluations_done_;
     begin_run(t, std::sqrt(largest_square(exec)), asked);
@@ -142,8 +143,8 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     return error(exec);
   }
 
-  /// Returns true if a step of dt ends after the wanted time, so that the wanted spins are
-  /// interpolated from its increments.
+  /// Returns true if a step of dt ends after the wanted time, by more than round-off. The wanted
+  /// spins are then interpolated from the increments of this step.
   static bool ends_beyond(double wanted, double end, double dt) { return end - wanted > 1e-9 * dt; }
 
   template <class Exec>
@@ -254,8 +255,9 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
   std::int64_t evaluations_done_ = 0;
 };
 
-/// Adaptive Runge-Kutta-Munthe-Kaas: the embedded tableau in the Lie algebra, where the last
-/// stage's generator is the next step's first increment, since D_0 = I.
+/// Adaptive Runge-Kutta-Munthe-Kaas: the embedded tableau in the Lie algebra. A at the end of a
+/// step gives the first increment of the next step, because the inverse differential at 0 is the
+/// identity.
 template <class Spins, class Embedded = tableau::Tsitouras5, class Isotropy = isotropy::Zero,
           class Rotation = Cayley>
 class AdaptiveRkmk : public AdaptiveRungeKutta<Spins, Embedded, update::Lie<Rotation>, Isotropy> {

@@ -12,8 +12,8 @@
 // Kernels of an adaptive Runge-Kutta step other than its stages. Tableau is a FirstSameAsLast.
 namespace cayspin::inline v0_2::detail {
 
-/// Functor that computes the generator at the start of a run, and the square of the spin's rate |A
-/// x m|.
+/// Functor that computes the generator at the start of a run, and |A x m|^2, the squared rate of
+/// the spin.
 template <class Isotropy, class Generator, class Real>
 struct FirstGeneratorStage {
   Generator generator;
@@ -89,7 +89,7 @@ struct EndStage {
   EndOutputs<Tableau, Real> to;
   Real dt;
 
-  /// `rows`: StageArrays.
+  /// `rows`: StageArrays or DeviceArrays.
   template <class Site, class Arrays>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Arrays const& rows) const {
     using Value = typename Site::value_type;
@@ -105,7 +105,8 @@ struct EndStage {
     f[stages - 1] = Update::increment(total, Vec3<Value>(Value(dt) * xi), m, m0);
     Vec3<Value> const error = weighted_sum<ErrorWeights<Tableau>, stages>(f);
     Vec3<Value> const difference = m - Update::finish(Vec3<Value>(total - error), m0);
-    // Large coordinates may differ although their rotations hardly do: the larger error counts.
+    // Large coordinates may differ although their rotations hardly do. The larger of both errors
+    // then counts.
     Vec3<Value> const unbounded = cross(error, m0);
     Value const apart = dot(difference, difference), of_error = dot(unbounded, unbounded);
     site.store(xi, to.last);

@@ -16,14 +16,15 @@ namespace cayspin::inline v0_2 {
 /// StiffGauss2 with adaptive steps, which become long as spins approach equilibrium. The error of a
 /// step is the largest angle of any spin: dt^3 / 12 times the third derivative of the spin, which
 /// is the error for a spin that precesses. It is found from a divided difference of the changes of
-/// the spins over three steps. This is multiplied by (1 + b K)^-1, as corrections are, so that
-/// residual short spin waves do not count. If the generator is not stationary, the rate at the end
-/// of the step replaces the earliest of the three changes. Corrections use K + c in place of K,
-/// where c is the mean of A.m.
+/// the spins over three steps. The difference is multiplied by (1 + b K)^-1 (see StiffGauss), so
+/// that residual short spin waves do not count. If the generator is not stationary, the rate at the
+/// end of the step replaces the earliest of the three changes. Corrections use K + c in place of K,
+/// where c is the mean of A.m over the sites, but at least 0, and 0 without precession.
 ///
 /// `step(.., t, dt)` leaves the spins at t + dt; within an internal step A is interpolated
-/// linearly. The internal steps do not depend on dt. It remembers its state: `spins` and t must be
-/// those at the end of the previous step. Otherwise call `reset`.
+/// linearly. The internal steps do not depend on dt, except that the first one is dt if no spin
+/// turns. The method remembers its state: `spins` and t must be those at the end of the previous
+/// step. Otherwise call `reset`.
 template <class Spins>
 class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps {
   using Base = StiffGauss<Spins, 2>;
@@ -91,8 +92,8 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
   static constexpr double share_of_corrections = 0.05;  // their error / tolerance of a step
   static constexpr double most_growth = 2;    // above it, earlier steps do not predict the next
   static constexpr double fast_enough = 0.4;  // desired convergence factor of corrections
-  // Below this error / tolerance of a step, the next one starts from A of the last, without
-  // extrapolation.
+  // If the error / tolerance of a step is below this, the next step starts from A of the last one,
+  // without extrapolation.
   static constexpr double hardly_changes = 0.1;
 
   template <class Exec, class Generator>
@@ -195,7 +196,7 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
   std::string local_label_ = this->label("::local_field"),
               difference_label_ = this->label("::difference"),
               error_label_ = this->label("::error"), dense_label_ = this->label("::dense_output");
-  Spins now_, before_;   // at the end of the last step, and at the start of the one before
+  Spins now_, before_;   // those at the end of the last step, and at the start of the one before
   double local_dt_ = 0;  // dt when local_ was measured
 };
 

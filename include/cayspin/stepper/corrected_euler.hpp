@@ -8,7 +8,8 @@
 // Geometric Euler with a sigma that raises the order of its energy error by one.
 namespace cayspin::inline v0_2 {
 
-/// With sigma from a forward difference; energy error of order 2, two evaluations.
+/// Geometric Euler with sigma from a forward difference: the energy error is of order 2, and a step
+/// takes two evaluations.
 template <class Spins, class Rotation>
 class LieEuler<Spins, isotropy::FiniteDifference, Rotation>
     : public TwoPoint<Spins, detail::ForwardDifferenceMethod, isotropy::Zero, Rotation> {
@@ -17,7 +18,8 @@ class LieEuler<Spins, isotropy::FiniteDifference, Rotation>
       : LieEuler::TwoPoint("LieEuler", like, {isotropy.cap}) {}
 };
 
-/// With sigma from a backward difference; energy error of order 2, one evaluation.
+/// Geometric Euler with sigma from a backward difference: the energy error is of order 2, and a
+/// step takes one evaluation, the first step two.
 template <class Spins, class Rotation>
 class LieEuler<Spins, isotropy::FiniteDifferenceBackward, Rotation>
     : public TwoPoint<Spins, detail::BackwardDifferenceMethod, isotropy::Zero, Rotation> {

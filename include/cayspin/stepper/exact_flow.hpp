@@ -8,7 +8,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// exp(-x) and 1 - exp(-x), each to a few ulp, for 0 <= x < 700 (double), 80 (float).
+/// exp(-x) and 1 - exp(-x), each to a few ulp, for 0 <= x < 700 in double and 80 in float.
 template <class Value>
 struct Decay {
   Value rest, loss;
@@ -40,8 +40,9 @@ KOKKOS_FORCEINLINE_FUNCTION Decay<Value> decay(Value const& x) {
 
 /// The exact motion of one spin in a fixed field h over a time dt:
 /// q' = (h + damping q x h) x q, or without precession q' = (damping q x h) x q.
-/// With e = h/|h| and c = q.e: q turns by |h| dt about e, and c' = (c + th)/(1 + c th),
-/// th = tanh(damping |h| dt). On the sphere for any finite dt, damping and h.
+/// With e = h/|h| and c = q.e: q turns by |h| dt about e (with precession), and c becomes
+/// (c + th)/(1 + c th), th = tanh(damping |h| dt). q stays on the sphere for any finite dt, damping
+/// and h.
 template <class Value>
 struct ExactFlow {
   using Scalar = scalar_t<Value>;
@@ -50,7 +51,7 @@ struct ExactFlow {
   Scalar dt;
   bool precession, damped;
 
-  /// The results in lanes of `others` are arbitrary.
+  /// Returns q after dt. The results in the lanes of `others` are arbitrary.
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> operator()(Vec3<Value> const& h, Vec3<Value> const& q,
                                                      Mask const& others) const {
     Vec3<Value> const f = Value(dt) * h;
@@ -62,7 +63,7 @@ struct ExactFlow {
     return select<Value>(near, end, far);
   }
 
-  /// Returns q after dt/2, to first order; q itself if that is too far away.
+  /// Returns q after dt/2, to first order; q itself if this would change it by 1 or more.
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> middle(Vec3<Value> const& h, Vec3<Value> const& q) const {
     Vec3<Value> const relaxing = damping * cross(q, h);
     Vec3<Value> const a = precession ? h + relaxing : relaxing;
@@ -141,9 +142,9 @@ struct ExactFlow {
     return multiply_add(Value(Scalar(2)), multiply_add(half.cosine, c, cross(v, c)), q);
   }
 
-  /// Relaxes q: with p = exp(-damping angle), a = 1 + c and b = 1 - c, to q + (1 - p) (a (e - q) +
-  /// p b (e + q)) / (a + p^2 b). The smaller of a and b comes from the part of q normal to e, so
-  /// that a spin nearly opposite to the field leaves that direction at the right time.
+  /// Relaxes q: with c = q.e, p = exp(-damping angle), a = 1 + c and b = 1 - c, to q + (1 - p) (a
+  /// (e - q) + p b (e + q)) / (a + p^2 b). The smaller of a and b comes from the part of q normal
+  /// to e, so that a spin nearly opposite to the field leaves that direction at the right time.
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> relax(Value const& angle, Vec3<Value> const& e,
                                                 Vec3<Value> const& q) const {
     constexpr Scalar longest = sizeof(Scalar) == sizeof(double) ? Scalar(340) : Scalar(40);
@@ -163,9 +164,9 @@ struct ExactFlow {
         x == zero);
   }
 
-  /// Takes one Newton step towards length 1. For spins nearly opposite to the field, an error in
-  /// the length would grow like the angle. Spins that `rests` marks (no field or no damping) keep
-  /// their bits.
+  /// Takes one Newton step towards length 1. For a spin nearly opposite to the field, an error in
+  /// the length would grow as fast as the angle to that direction does. Spins that `rests` marks
+  /// (no field or no damping) keep their bits.
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> kept_on_sphere(Vec3<Value> const& q,
                                                                 Mask const& rests) {
     Value const factor = multiply_add(Value(Scalar(-0.5)), dot(q, q), Value(Scalar(1.5)));

@@ -45,7 +45,7 @@ struct LargestDifference {
   }
 };
 
-/// Computes to = a x + b y; `to` may be one of them.
+/// Computes to = a x + b y; `to` may be x or y.
 template <class Exec, class Spins>
 void combine(Exec const& exec, double a, Spins const& x, double b, Spins const& y,
              Spins const& to) {
@@ -69,7 +69,7 @@ double length(Exec const& exec, Spins const& x) {
   return std::sqrt(inner_product(exec, x, x));
 }
 
-/// Returns the largest |x - y| of any component; NaN when there is one; waits.
+/// Returns the largest |x - y| of any component, NaN if any component is NaN; waits.
 template <class Exec, class Spins>
 double largest_difference(Exec const& exec, Spins const& x, Spins const& y) {
   static std::string const label = "cayspin::field_algebra::largest_difference";

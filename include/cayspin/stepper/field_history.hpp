@@ -23,7 +23,7 @@ class FieldHistory {
 
   /// Returns the field `back` steps before the last stored one.
   Field const& operator[](std::size_t back) const { return fields_[(newest_ + back) % Count]; }
-  /// Returns the memory for the next field: that of the oldest.
+  /// Returns the memory for the next field, which is that of the oldest field.
   Field const& following() const { return (*this)[Count - 1]; }
 
   /// Records that following() now has the next field, and that a step of dt starts from it.
@@ -34,7 +34,8 @@ class FieldHistory {
     steps_[0] = dt;
   }
 
-  /// Returns true if a step of dt may follow: it may grow by a factor of 2 at most.
+  /// Returns true if a step of dt may follow: it has the sign of the last step and is at most twice
+  /// as long.
   bool is_followed_by(double dt) const { return 0 < dt / steps_[0] && dt / steps_[0] <= 2; }
 
   /// For cayspin::serialize.
@@ -47,8 +48,8 @@ class FieldHistory {
     }
   }
 
-  /// Returns the times of the state after the last step, which is 0, and of the Count - 1 fields
-  /// before it, as multiples of `unit`.
+  /// Returns the times, in multiples of `unit`, of the end of the last step, which is 0, and of the
+  /// last Count - 1 fields.
   std::array<double, Count> times(double unit) const {
     std::array<double, Count> times{};
     double sum = 0;

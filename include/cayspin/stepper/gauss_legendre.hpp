@@ -23,7 +23,7 @@ struct GaussLegendre<1> {
   /// Eigenvalue of the matrix a_ij. If there are two, the other is its conjugate.
   static constexpr std::complex<double> eigenvalue{0.5, 0};
 
-  /// Returns m1, which is cay(f) m.
+  /// Returns m1, which is cay(f) m. `stage` becomes Y_1.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> solve(Vec3<Value> const (&f)[1],
                                                        Vec3<Value> const& m,
@@ -38,19 +38,19 @@ template <>
 struct GaussLegendre<2> {
   static constexpr double sqrt3 = 1.7320508075688772;
   static constexpr std::array nodes{0.5 - sqrt3 / 6, 0.5 + sqrt3 / 6};
-  /// The eigenvector is (1, i turned).
+  /// Eigenvalue of the matrix a_ij with the eigenvector (1, i turned).
   static constexpr std::complex<double> eigenvalue{0.25, sqrt3 / 12};
   static constexpr double turned = -2 - sqrt3;
 
-  /// Returns m1.
+  /// Returns m1. `stage` becomes Y_1 and Y_2.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> solve(Vec3<Value> const (&f)[2],
                                                        Vec3<Value> const& m,
                                                        Vec3<Value> (&stage)[2]) {
     // With u = f_1 / 4, v = f_2 / 4, p_1 = u x Y_1, p_2 = v x Y_2:
     // Y_1 = m + p_1 + (1 - 2/sqrt3) p_2, Y_2 = m + (1 + 2/sqrt3) p_1 + p_2.
-    // (1 - u x)^-1 = s R with s = 1 / (1 + |u|^2), R = 1 + u x + u u^T. Without Y_1, this is a
-    // linear system for Y_2, whose matrix has the rows a, b, c:
+    // (1 - u x)^-1 = s R with s = 1 / (1 + |u|^2), R = 1 + u x + u u^T. Eliminating Y_1
+    // leaves a linear system for Y_2, whose matrix has the rows a, b, c:
     //   Y_2 - p_2 + (s R - 1) p_2 / 3 = m + (1 + 2/sqrt3) (s R - 1) m.
     auto const plus = as_value<Value>(1 + 2 / sqrt3), minus = as_value<Value>(1 - 2 / sqrt3);
     Vec3<Value> const u = Value(0.25) * f[0], v = Value(0.25) * f[1];
@@ -71,7 +71,7 @@ struct GaussLegendre<2> {
     Vec3<Value> const p2 = cross(v, stage[1]), w = multiply_add(minus, p2, m);
     stage[0] = w + turned_by(s, u, w);
     Vec3<Value> const change = Value(2) * (cross(u, stage[0]) + p2);
-    // Round-off changes the length by |f| epsilon; this is reverted.
+    // Round-off would change the length by about |f| epsilon; this is corrected.
     Value const longer = dot(change, multiply_add(Value(0.5), change, m)) / square_to_divide_by(m);
     return m + multiply_add(Value(-longer), m + change, change);
   }
@@ -84,7 +84,8 @@ struct GaussLegendre<2> {
     Vec3<Value> const c = cross(u, w);
     return s * (c + cross(u, c));
   }
-  /// Returns unit - 4/3 (unit x v) + s/3 (r x v), for a row r of R and unit x v as `beside`.
+  /// Returns a row of the matrix: unit - 4/3 (unit x v) + s/3 (r x v), for a unit vector `unit` and
+  /// the row r of R. `third` is s/3, and `beside` is unit x v.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> row(Value const& third, Vec3<Value> const& v,
                                                      Vec3<Value> const& r, Vec3<Value> const& unit,

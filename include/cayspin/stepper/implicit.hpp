@@ -25,7 +25,7 @@ struct ImplicitOptions {
   double tolerance =
       8;  ///< bound on the last change of any component, in epsilons of the precision
   int fixed_point = 50;  ///< fixed-point iterations before Newton's method takes over
-  int newton = 30;       ///< Newton iterations; 0 disables it
+  int newton = 30;       ///< Newton iterations; 0 disables Newton's method
 };
 
 namespace detail {
@@ -53,8 +53,8 @@ struct ImplicitStage {
   }
 };
 
-/// sigma at the start of an implicit step, for isotropies that compute it from the step's solution.
-/// Zero and Constant do not, and use this empty one.
+/// sigma at the start of an implicit step, for isotropies that add it only after the equation is
+/// solved. Zero and Constant do not, and use this empty class.
 template <class Spins, class Isotropy>
 struct ImplicitSigma {
   static constexpr bool is_there = false;
@@ -90,7 +90,7 @@ class Implicit : public StepperBase<Spins> {
 
   /// Advances `spins` from t to t + dt under `generator`. A step swaps the memory of `spins` with
   /// its own, so take arrays of `spins` again after it. Waits. Throws NotConverged when no solution
-  /// was found, and std::invalid_argument when `spins` is not on the lattice given at construction.
+  /// is found, and std::invalid_argument when `spins` is not on the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
@@ -127,7 +127,7 @@ class Implicit : public StepperBase<Spins> {
  private:
   static constexpr bool is_corrected = ImplicitSigma<Spins, Isotropy>::is_there;
 
-  // Leaves the solution in next_.
+  // Leaves the solution in next_. Returns false if none is found.
   template <class Exec, class Map>
   bool solve(Exec const& exec, Map const& map, Spins const& spins) {
     double const epsilon = std::numeric_limits<Real>::epsilon();
@@ -190,8 +190,9 @@ class ImplicitLieEuler : public detail::Implicit<Spins, Isotropy, Rotation, fals
       : ImplicitLieEuler::Implicit("ImplicitLieEuler", like, isotropy, options) {}
 };
 
-/// Implicit midpoint in Cayley form, order 2: m1 = cay(dt A((m0 + m1) / 2)) m0. Conserves quadratic
-/// energies and |m|; sigma drops out. Not in the paper.
+/// Implicit midpoint in Cayley form, order 2: m1 = cay(dt A((m0 + m1) / 2)) m0. Conserves |m|
+/// and, without damping, energies that are quadratic in the spins. A sigma would have no effect.
+/// Not in the paper.
 template <class Spins>
 class ImplicitMidpoint : public detail::Implicit<Spins, isotropy::Zero, Cayley, true> {
  public:
