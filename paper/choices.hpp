@@ -3,12 +3,13 @@
 
 #include "ensemble.hpp"
 
-/// The paper's names for the maps F of its Sec. 5, as method choices of a scene.
+/// The maps F of the paper's Sec. 5, under its names, as method choices of a scene.
 namespace cayspin::paper {
 
 using io::Generator, io::Isotropy;
 
-/// Returns the method of this name with the given generator and sigma.
+/// Returns the method of this name with the given generator and isotropy; `sigma` is for
+/// Isotropy::constant.
 inline MethodChoice choose(std::string_view method, Generator generator = Generator::standard,
                            Isotropy isotropy = Isotropy::zero, double sigma = 0) {
   return {.method = io::find_method(method),

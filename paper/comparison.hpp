@@ -8,7 +8,8 @@
 
 namespace cayspin::paper {
 
-/// Prints what errata change: quantities with the formula as printed and as corrected.
+/// Prints what each erratum changes, and writes it to a CSV file: quantities that are computed with
+/// the printed formula and with the corrected one.
 class Comparison {
  public:
   explicit Comparison(Context const& context)
@@ -18,7 +19,7 @@ class Comparison {
   /// Starts erratum `number`: its place in the paper, the printed formula and the correct one.
   void begin(int number, std::string_view where, std::string_view printed,
              std::string_view corrected);
-  /// Prints a quantity with both formulas.
+  /// Prints a quantity as computed with both formulas.
   void row(std::string_view quantity, double printed, double corrected);
   void note(std::string_view text) const;
   void close() const { file_.write(); }

@@ -9,7 +9,7 @@
 namespace cayspin::paper {
 namespace {
 
-// Energies are of order 1/2, so smaller differences are rounding.
+// Energies are between 0.1 and 1, so energy errors below this are rounding.
 constexpr double round_off = 1e-14;
 
 std::string number(double value) {

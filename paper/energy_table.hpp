@@ -21,17 +21,17 @@ struct Column {
 struct Block {
   std::string_view name;
   Law law;
-  double end;  // of the interval, which starts at 0
+  double end;  // end of the time interval, which starts at 0
   std::vector<double> dts;
   std::vector<Column> columns;
 };
 
-/// Printed table of largest energy errors: the paper's next to our median, our range, and the
-/// range of means over ten bodies (the paper's statistic); and the order of the means from one dt
+/// Printed table of largest energy errors: the paper's next to our median, our range, and the range
+/// of means over ten bodies (the paper's statistic). It also has the order of the means from one dt
 /// to the next.
 class EnergyTable {
  public:
-  /// `name`: of the CSV file.
+  /// `name`: name of the CSV file, without .csv.
   EnergyTable(Context const& context, std::string_view name, std::string_view title);
   void add(Block const& block);
   /// Prints a paragraph that explains why numbers differ.

@@ -20,7 +20,8 @@ double trajectory_order(std::vector<Body> const& bodies, MethodChoice const& cho
                   0.5);
 }
 
-// Returns the order, from dt = 1 to 0.1, of means over ten bodies, as in the paper's Table 4.
+// Returns the median order, from dt = 1 to 0.1, of energy errors that are means over ten bodies, as
+// in the paper's Table 4.
 double table4_slope(std::vector<Body> const& bodies, MethodChoice const& choice) {
   auto const means = [&](double dt) {
     return means_of_ten(run_ensemble(bodies, choice, dt, 100).energy_errors);

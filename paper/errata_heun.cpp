@@ -9,7 +9,7 @@ namespace {
 
 constexpr double end = 10;
 
-// sigma_def of Sec. 5.2, as printed: <J^n, u>/<J^d, u>.
+// Returns sigma_def of Sec. 5.2, as printed: <J^n, u>/<J^d, u>.
 double printed_sigma_def(Body const& body, Vector const& m) {
   auto const& moment = body.moments;
   double above = 0, below = 0;
@@ -24,7 +24,8 @@ double printed_sigma_def(Body const& body, Vector const& m) {
   return above / below;
 }
 
-// <BV, (t - B) BV>/(4 |V|^2), V = m x Bm, B = I^-1, t its trace.
+// Returns the correct sigma_def for A = -I^-1 m: <BV, (t - B) BV>/(4 |V|^2), where V = m x Bm,
+// B = I^-1, and t is the trace of B.
 double invariant_sigma_def(Body const& body, Vector const& m) {
   Vector const v = cross(m, body.velocity(m)), bv = body.velocity(v);
   auto const& b = body.inverse_inertia;
@@ -32,7 +33,8 @@ double invariant_sigma_def(Body const& body, Vector const& m) {
   return dot(bv, trace * bv - body.velocity(bv)) / (4 * dot(v, v));
 }
 
-/// Heun on A = -I^-1 m plus factor dt^power sigma_def m.
+/// Returns a function that measures the energy error of a body for a dt. The method is Heun on
+/// A = -I^-1 m, with factor dt^power sigma_def m added to F.
 auto energy_error(double factor, int power) {
   return [=](double dt) {
     return [=](Body const& body) {

@@ -7,8 +7,8 @@
 namespace cayspin::paper {
 namespace {
 
-// Returns sigma in the second form of F^Eul_cor, but for its sign: the sum of u_i over the sum of
-// I_i u_i, with u_i = (I_j - I_k)^2 I_i (m_j m_k)^power.
+// Returns sigma in the second form of F^Eul_cor, but for its sign: the sum of the u_i divided by
+// the sum of the I_i u_i, with u_i = (I_j - I_k)^2 I_i (m_j m_k)^power.
 double second_form(Body const& body, Vector const& m, int power) {
   auto const& moment = body.moments;
   double above = 0, below = 0;
@@ -23,7 +23,7 @@ double second_form(Body const& body, Vector const& m, int power) {
   return above / below;
 }
 
-// <X, I^-1 X>/|X|^2
+// Returns <X, I^-1 X>/|X|^2 with X = m x I^-1 m.
 double first_form(Body const& body, Vector const& m) {
   Vector const x = cross(m, body.velocity(m));
   return dot(x, body.velocity(x)) / dot(x, x);

@@ -4,7 +4,8 @@
 #include "context.hpp"
 #include "slab.hpp"
 
-/// Numbers of the paper's figures: one or more CSV files each, and a one-line summary.
+/// Each function writes the numbers of one or more figures of the paper to CSV files, and prints a
+/// summary.
 namespace cayspin::paper {
 
 void figure_trajectories(Context const& context);

@@ -12,12 +12,12 @@
 /// the library does not have.
 namespace cayspin::paper {
 
-/// A without its part along m.
+/// Returns A without its part along m.
 inline Vector orthogonal_part(Vector const& a, Vector const& m) {
   return multiply_add(-dot(a, m), m, a);
 }
 
-/// A = -I^-1 m, and A without its part along m.
+/// Return A = -I^-1 m, and this A without its part along m.
 inline Vector default_generator(Body const& body, Vector const& m) {
   return -1.0 * body.velocity(m);
 }
@@ -31,7 +31,7 @@ struct HostRun {
   double energy_error;  // max over all steps of |H - H(start)|
 };
 
-/// `update(m)` returns F, with dt included.
+/// Takes steps of one body. `update(m)` returns F, with dt included.
 template <class Update>
 HostRun take_steps(Body const& body, std::int64_t steps, Update const& update) {
   HostRun run{body.start, 0};
@@ -43,7 +43,7 @@ HostRun take_steps(Body const& body, std::int64_t steps, Update const& update) {
   return run;
 }
 
-/// Heun's F for any generator A(m).
+/// Returns Heun's F for a generator A(m).
 template <class Generator>
 Vector heun_update(Generator const& generator, Vector const& m, double dt) {
   Vector const a = generator(m);

@@ -11,10 +11,10 @@ namespace cayspin::paper {
 
 inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// Errors below this are rounding.
+/// Errors below this are rounding, and have no order.
 inline constexpr double order_round_off = 1e-12;
 
-/// The two step sizes between which the orders of the errata are measured.
+/// The two step sizes between which most orders of the errata are measured.
 inline constexpr double coarse_dt = 0.05, fine_dt = 0.025;
 
 inline std::vector<Body> errata_bodies(Context const& context) {

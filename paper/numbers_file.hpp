@@ -24,7 +24,7 @@ class NumbersFile {
     text_ += line;
   }
 
-  /// Throws std::runtime_error with one line when it cannot be written.
+  /// Writes the file. Throws std::runtime_error with one line when it cannot be written.
   void write() const;
 
  private:

@@ -66,7 +66,7 @@ class WatchSpin : public HostObserver {
   std::int64_t period_;
 };
 
-// Returns the A of the slab without its part along m, at one site.
+// Returns A_o of the slab at site i: A without its part along m.
 Vector orthogonal_generator(Slab const& slab, std::vector<Vector> const& spins, std::size_t i) {
   Vector const& m = spins[i];
   Vector h{slab.applied[0] - m.x, slab.applied[1], slab.applied[2]};
@@ -90,7 +90,7 @@ std::vector<Vector> rotated(std::vector<Vector> spins, double dt, std::vector<Ve
   return spins;
 }
 
-// -<dA_o, A_o x m>/|A_o|^2 with dA_o the difference of two A_o that are dt apart.
+// Returns -<A_o', A_o x m>/|A_o|^2 of every site, where A_o is w, and A_o' = (other - w)/dt.
 std::vector<double> sigmas(std::vector<Vector> const& spins, std::vector<Vector> const& w,
                            std::vector<Vector> const& other, double dt) {
   std::vector<double> sigma(spins.size());

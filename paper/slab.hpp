@@ -33,16 +33,18 @@ inline constexpr Slab strong_damping_strong_field{
 struct SlabPath {
   std::vector<double> times;
   std::vector<Vector> spin;        // site 37
-  std::vector<double> logarithms;  // of |m|; the one of largest magnitude over the sites
+  std::vector<double> logarithms;  // ln|m| of the site where |ln|m|| is largest
   std::vector<double> sigma;       // of site 37; only for runs on plain numbers
-  std::vector<Vector> end;         // every site
+  std::vector<Vector> end;         // spins of all sites at the end
 };
 
-/// Samples the start and `looks` equally spaced times; dt must divide the time between them.
+/// Runs the slab. Samples the start and `looks` equally spaced times; dt must divide the time
+/// between them.
 SlabPath run_slab(Slab const& slab, MethodChoice const& choice, double dt, int looks);
 
-/// Runs geometric Euler with sigma = -factor <dA_o, A_o x m>/|A_o|^2, dA_o by backward differences
-/// (forward at the first step), on plain numbers: factor 1 is correct, -1 is the paper's.
+/// Runs geometric Euler on plain numbers, with sigma = -factor <A_o', A_o x m>/|A_o|^2. A_o' is a
+/// backward difference, in the first step a forward difference. Factor 1 is correct, -1 is the
+/// paper's.
 SlabPath run_slab_with_sigma(Slab const& slab, double factor, double dt, int looks);
 
 /// Returns the sigma of every site at the start, by forward differences over dt.
@@ -51,10 +53,10 @@ std::vector<double> sigma_at_start(Slab const& slab, double dt);
 /// Returns the largest distance between two paths at corresponding samples.
 double largest_distance(SlabPath const& a, SlabPath const& b);
 
-/// Returns the largest distance over the sites at the end.
+/// Returns the largest distance over the sites between the spins at the ends of two paths.
 double distance_at_end(SlabPath const& a, SlabPath const& b);
 
-/// Errors at the end of a run for five step sizes: `coarsest`, and each half the one before. Sizes
+/// Errors at the end of a run for five step sizes, `coarsest` and four successive halvings. Sizes
 /// whose error is only rounding are left out.
 struct Convergence {
   std::vector<double> dts, errors;             // largest over the sites
@@ -67,7 +69,7 @@ struct Convergence {
 Convergence converge(Slab const& slab, MethodChoice const& choice, SlabPath const& reference,
                      double coarsest = 0.02);
 
-/// Runs rkmk4 at a much smaller step.
+/// Runs rkmk4 with a much smaller step than those of `converge`.
 SlabPath reference_run(Slab const& slab);
 
 }  // namespace cayspin::paper

@@ -35,9 +35,9 @@ using AdaptiveStages = StagedStepper<Spins, tableau::FirstSameAsLast<Embedded>, 
 /// angle between the method's spin and that of the embedded solution. It is kept below a fraction
 /// of the tolerance, because the tolerance bounds the error of a run. `step(.., t, dt)` computes
 /// the spins at t + dt: the tableau's polynomial interpolates the coordinates in which the update
-/// moves spins. The internal steps do not depend on dt, except that the first one is dt if no spin
-/// turns. The method remembers its state: `spins` and t must be those at the end of the previous
-/// step. Otherwise call `reset`.
+/// moves spins. The internal steps do not depend on dt, unless no spin turns at the start: the
+/// default first step is then dt. The method remembers its state: `spins` and t must be those at
+/// the end of the previous step. Otherwise call `reset`.
 template <class Spins, class Embedded, class Update, class Isotropy = isotropy::Zero>
 class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update, Isotropy>,
                            public detail::OwnSteps {

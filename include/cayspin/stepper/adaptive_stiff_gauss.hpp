@@ -22,9 +22,9 @@ namespace cayspin::inline v0_2 {
 /// where c is the mean of A.m over the sites, but at least 0, and 0 without precession.
 ///
 /// `step(.., t, dt)` leaves the spins at t + dt; within an internal step A is interpolated
-/// linearly. The internal steps do not depend on dt, except that the first one is dt if no spin
-/// turns. The method remembers its state: `spins` and t must be those at the end of the previous
-/// step. Otherwise call `reset`.
+/// linearly. The internal steps do not depend on dt, unless no spin turns at the start: the default
+/// first step is then dt. The method remembers its state: `spins` and t must be those at the end of
+/// the previous step. Otherwise call `reset`.
 template <class Spins>
 class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps {
   using Base = StiffGauss<Spins, 2>;

@@ -89,8 +89,9 @@ class Implicit : public StepperBase<Spins> {
   std::int64_t evaluations_done() const { return evaluations_done_; }
 
   /// Advances `spins` from t to t + dt under `generator`. A step swaps the memory of `spins` with
-  /// its own, so take arrays of `spins` again after it. Waits. Throws NotConverged when no solution
-  /// is found, and std::invalid_argument when `spins` is not on the lattice given at construction.
+  /// that of the stepper, so take arrays of `spins` again after it. Waits. Throws NotConverged when
+  /// no solution is found, and std::invalid_argument when `spins` is not on the lattice given at
+  /// construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);

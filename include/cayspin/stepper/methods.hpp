@@ -35,9 +35,9 @@ class LieHeun
 };
 
 /// Runge-Kutta-Munthe-Kaas of order 4:
-/// F1 = dt A(m), F2 = D(F1/2), F3 = D(F2/2), F4 = D(F3), D(f) = dcay_f^-1 (dt A(cay(f) m)),
-/// m <- cay((F1 + 2 F2 + 2 F3 + F4)/6) m. Lewis and Nigam 2002, Sec. 4.4, with its stages 3 and 4
-/// corrected.
+/// F1 = dt xi(m), F2 = D(F1/2), F3 = D(F2/2), F4 = D(F3), D(f) = dcay_f^-1 (dt xi(cay(f) m)),
+/// m <- cay((F1 + 2 F2 + 2 F3 + F4)/6) m, xi = A + sigma m. Lewis and Nigam 2002, Sec. 4.4, with
+/// its stages 3 and 4 corrected.
 template <class Spins, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class Rkmk4 : public RungeKutta<Spins, tableau::Classical4, update::Lie<Rotation>, Isotropy> {
  public:
@@ -47,7 +47,7 @@ class Rkmk4 : public RungeKutta<Spins, tableau::Classical4, update::Lie<Rotation
 
 /// Runge-Kutta-Munthe-Kaas with any explicit tableau, of the tableau's order. To add a method,
 /// write a struct like those in cayspin::tableau. F_i = D(sum_j a_ij F_j), D(f) = dcay_f^-1 (dt
-/// xi(cay(f) m)), m <- cay(sum_i b_i F_i) m. Lewis and Nigam 2002, Sec. 2.
+/// xi(cay(f) m)), m <- cay(sum_i b_i F_i) m, xi = A + sigma m. Lewis and Nigam 2002, Sec. 2.
 template <class Spins, class Tableau, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class Rkmk : public RungeKutta<Spins, Tableau, update::Lie<Rotation>, Isotropy> {
  public:
@@ -56,8 +56,8 @@ class Rkmk : public RungeKutta<Spins, Tableau, update::Lie<Rotation>, Isotropy> 
 };
 
 /// Runge-Kutta with any explicit tableau in the stereographic chart at the spin that starts each
-/// step. All coordinates are orthogonal to that spin (update::Stereographic). Order of the tableau;
-/// accepts no sigma.
+/// step. All coordinates are orthogonal to that spin (update::Stereographic). The order is that of
+/// the tableau. It accepts no sigma.
 template <class Spins, class Tableau = tableau::Classical4>
 class StereographicRungeKutta
     : public RungeKutta<Spins, Tableau, update::Stereographic, isotropy::Zero> {
@@ -140,9 +140,9 @@ class ProjectedRk4 : public ProjectedRungeKutta<Spins, tableau::Classical4> {
 /// A Runge-Kutta method with compensated sums, for example Compensated<Rkmk4<Spins>>. It stores the
 /// rounding error of the spins at the end of a step and adds it to the next step (Kahan 1965), so
 /// that round-off does not grow with the number of steps. In float it gives most digits of double,
-/// at nearly the cost of float. It needs one more field of work memory, and stores increments. Do
-/// not compile it with -ffast-math.
-/// It has memory: `spins` must be what the previous step left. Otherwise call `reset`.
+/// at nearly the cost of float. It needs one more field of work memory, and always stores
+/// increments. Do not compile it with -ffast-math. It remembers the previous step: `spins` must be
+/// what the previous step left. Otherwise call `reset`.
 template <class Stepper>
   requires requires {
     typename Stepper::tableau_type;

@@ -32,23 +32,23 @@ struct MultirateOptions {
 ///
 /// A step predicts the expensive field from its last values, takes its substeps, and evaluates the
 /// expensive field at their end. It then repeats the substeps from the start with the field
-/// interpolated between that value and the last ones. The value is kept for the next step. Without
+/// interpolated between that value and the last ones. That value is kept for the next step. Without
 /// the second pass, feedback through the field amplifies short waves at any dt.
 ///
-/// Order 2 and 3 interpolate by the polynomials through the last Order - 1 values (first pass) and
+/// Orders 2 and 3 interpolate by the polynomials through the last Order - 1 values (first pass) and
 /// Order values (second pass). A mode of frequency w in the expensive field is damped by about (w
 /// dt)^4 / 3 more per step. Order 4 uses polynomials chosen for stability (multirate_weights.hpp),
-/// from 4 and 5 values. After unequal steps it interpolates 3 and 4 values. It changes the damping
-/// by (w dt)^6.
+/// from 4 and 5 values, or interpolates 3 and 4 values after unequal steps. With order 4 the
+/// damping of such a mode changes by about (w dt)^6 per step.
 ///
 /// With D the largest eigenvalue of the expensive field, no linear mode grew up to dt D = .05, .24,
-/// .35, .5 at damping .002, .008, .02, .1 (order 4; .02, .08, .14, .4 at order 3). Without damping
+/// .35, .5 at damping .002, .008, .02, .1 (order 4; .02, .08, .14, .4 at order 3). Without damping,
 /// short waves gain energy slowly.
 ///
-/// The first step evaluates the expensive field in each stage of its substeps. Steps may change,
-/// but grow by a factor of 2 at most; otherwise the method restarts. Work memory besides the
-/// method's: past_fields + 1 fields, and one of SlowField. A predictor-corrector form of the
-/// multirate methods of Gear and Wells (BIT 24, 1984).
+/// The first step evaluates the expensive field in each stage of its substeps. Steps may change
+/// their length, but a step that is more than twice as long as the last one, or goes the other way,
+/// is a first step again. Work memory besides the method's: past_fields + 1 fields, and one of
+/// SlowField. A predictor-corrector form of the multirate methods of Gear and Wells (BIT 24, 1984).
 template <class Stepper, class SlowTerm, int Order = 4>
 class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   using Base = detail::StepperBase<typename Stepper::spins_type>;
@@ -69,7 +69,7 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   static constexpr int ghosts = detail::ghosts_of<Stepper>;
 
   /// `slow`: the SlowField in the field of the generator. Throws std::invalid_argument when the
-  /// number of substeps is below 1.
+  /// number of substeps is below 1, or `slow` was made for another lattice.
   Multirate(Spins const& like, Stepper stepper, SlowTerm slow, MultirateOptions const& options = {})
       : Base("Multirate", like.lattice(), ghosts),
         stepper_(std::move(stepper)),
@@ -85,14 +85,14 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   /// Returns the generator evaluations by the inner method so far.
   std::int64_t evaluations_done() const { return evaluations_done_; }
   /// Returns the evaluations of the expensive field by steps so far: one a step. A first step adds
-  /// one more, and those in the stages of its substeps.
+  /// one, and those in the stages of its substeps.
   std::int64_t slow_evaluations_done() const { return slow_evaluations_done_; }
   std::size_t work_bytes() const {
     return stepper_.work_bytes() + (past_fields + 2) * begin_.bytes();
   }
 
-  /// Forgets the previous steps, so that the next step is a start. Call it after changing the spins
-  /// or the generator. cayspin::integrate calls it for each run.
+  /// Forgets the previous steps, so that the next step is a first step. Call it after changing the
+  /// spins or the generator. cayspin::integrate calls it for each run.
   void reset() {
     past_.forget();
     knows_begin_ = false;
@@ -118,9 +118,9 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
 
   /// Advances `spins` from t to t + dt under `generator`. `spins` must be those at the end of the
   /// previous step. A step may swap the memory of `spins` with the inner method's. If a field
-  /// throws, `spins` are those before the step, and the next step is a start. Throws
-  /// std::invalid_argument when `spins` is not on the lattice given at construction, or the
-  /// generator has no such expensive field.
+  /// throws, `spins` are those before the step, and the next step is a first step. Throws
+  /// std::invalid_argument when `spins` is not on the lattice given at construction and, except in
+  /// a first step, when the generator's field does not contain the SlowField.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
@@ -155,7 +155,8 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   template <class Exec, class Generator>
   void go_on(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     past_.remember(dt);
-    // In the first pass the value at the end is missing: nodes and values start with the second.
+    // In the first pass the value at the end is missing, so entry 0 of nodes and values is left
+    // out.
     auto nodes = past_.times(dt);
     std::array<Spins, past_fields> values;
     std::size_t known = std::min(past_.known(), past_fields - 1);
@@ -231,7 +232,7 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   std::int64_t substeps_;
   Spins begin_;  // the spins at the start of a step
   detail::FieldHistory<Spins, past_fields> past_;
-  // past_.following() is the expensive field at the start of the next step.
+  // If true, past_.following() is the expensive field at the start of the next step.
   bool knows_begin_ = false;
   std::int64_t evaluations_done_ = 0, slow_evaluations_done_ = 0;
 };

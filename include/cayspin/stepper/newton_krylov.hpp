@@ -13,7 +13,8 @@
 namespace cayspin::inline v0_2::detail {
 
 /// Solver of v = g(v) on a field by Newton's method with step halving. GMRES solves the linear
-/// systems, with g' times a vector from a difference of g. Allocates 16 fields at its first use.
+/// systems; it gets each product of g' and a vector from a difference of g. Allocates 16 fields at
+/// its first use.
 template <class Spins>
 class NewtonKrylov {
   using Real = typename Spins::value_type;
@@ -21,9 +22,9 @@ class NewtonKrylov {
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
 
  public:
-  /// `g(v, to)` fills `to`. `v` is the first guess and becomes the solution; `image` becomes g(v).
-  /// Returns true if, within `iterations`, the components of g(v) - v fell to `tolerance`, or to
-  /// somewhat more where round-off prevents further progress.
+  /// `g(v, to)` writes g(v) to `to`. `v` is the first guess and becomes the solution; `image`
+  /// becomes g(v). Returns true if, within `iterations`, all components of g(v) - v fell to
+  /// `tolerance`, or to somewhat more if round-off prevents further progress.
   template <class Exec, class Map>
   bool solve(Exec const& exec, Map const& g, Spins const& v, Spins const& image, double tolerance,
              int iterations) {
@@ -38,7 +39,7 @@ class NewtonKrylov {
       double scale = 1, before = norm;
       for (;; scale /= 2) {
         bool const is_last = scale < 1e-3;
-        // A small remainder that does not fall is round-off.
+        // A small g(v) - v that does not fall is round-off.
         if (scale < 1 && largest <= (is_last ? 512 : 8) * tolerance) {
           g(v, image);
           return true;
@@ -70,7 +71,8 @@ class NewtonKrylov {
     return length(exec, basis_[0]);
   }
 
-  // Solves (1 - g') correction = basis_[0], of length norm, to a thousandth.
+  // Solves (1 - g') correction = basis_[0], whose length is norm, to a thousandth of norm or as far
+  // as krylov_dimension vectors reach.
   template <class Exec, class Map>
   void solve_linear(Exec const& exec, Map const& g, Spins const& v, Spins const& image,
                     double norm) {

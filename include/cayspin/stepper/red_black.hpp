@@ -20,7 +20,7 @@ namespace cayspin::inline v0_2 {
 ///
 /// On-site terms (anisotropy, a local demagnetising field) are evaluated at the mean of the spin
 /// before and after the move, by iteration. Field terms are therefore also evaluated at spins
-/// shorter than one, and at zero. Without damping, a step of -dt undoes a step of dt.
+/// shorter than one, and at the zero vector. Without damping, a step of -dt undoes a step of dt.
 ///
 /// If the energy is quadratic in the spins and does not depend on t, both orders conserve it to
 /// round-off without damping. With damping, order 2 never raises it; order 4 may, because one of
@@ -33,14 +33,14 @@ class RedBlack : public detail::StepperBase<Spins> {
  public:
   using typename detail::StepperBase<Spins>::Real;
   static constexpr int order = Order;
-  /// Evaluations per step of a long run, where a pass over one colour counts as half. Consecutive
-  /// steps in a batch share the passes at which they meet. evaluations_done() counts the actual
-  /// passes.
+  /// Evaluations per step of a long run, where a pass over one colour counts as half an evaluation.
+  /// Consecutive steps in a batch share the pass at which they meet. evaluations_done() counts the
+  /// actual passes.
   static constexpr int evaluations = Order == 2 ? 1 : 5;
   static constexpr int ghosts = 1;  // each pass exchanges ghosts itself
   static constexpr int work_fields = 0;
 
-  /// Throws std::invalid_argument when a periodic axis has an odd number of sites above one.
+  /// Throws std::invalid_argument when a periodic axis has an odd number of sites greater than one.
   explicit RedBlack(Spins const& like)
       : RedBlack::StepperBase("RedBlack" + std::to_string(Order), like.lattice(), ghosts),
         pass_label_(this->label("::colour_pass")),
@@ -96,6 +96,8 @@ class RedBlack : public detail::StepperBase<Spins> {
   }
 
   /// Takes `count` steps that share the passes at which they meet, with the bits of single steps.
+  /// Throws std::invalid_argument when `spins` is not on the lattice given at construction, `count`
+  /// is below 1 or takes_batches is false.
   template <class Exec, class Generator>
   void batch(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
              std::int64_t count) {

@@ -17,19 +17,19 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// One pass over a colour, for fractions of a step: one flow of every spin, or two flows where two
-/// steps meet. Each flow has a length in time; `middle` is the time of its midpoint, from the start
-/// of the step. Both are in units of dt.
+/// One pass over a colour: one flow of every spin over a fraction of the step, or two flows where
+/// two steps meet. `length` of a flow is its duration, and `middle` is the time from the start of
+/// the step to the midpoint of the flow. Both are in units of dt.
 struct ColourPass {
   std::int32_t colour = 0, flows = 1;
   bool of_one_step = true;
   double length[2] = {0, 0}, middle[2] = {0, 0};
 };
 
-/// Order 2: half of colour 0, colour 1, half of colour 0. Order 4: this five times, over a, a, 1 -
-/// 4 a, a, a of the step with a = 1/(4 - 4^(1/3)) (Suzuki 1990). Adjacent halves share a pass. They
-/// stay two flows if the field changes with the spin itself: such a flow is of order 2, and its
-/// errors cancel within its own step.
+/// Returns the passes of a step. Order 2: colour 0 over dt/2, colour 1 over dt, colour 0 over dt/2.
+/// Order 4: five such steps, over a, a, 1 - 4 a, a, a of dt with a = 1/(4 - 4^(1/3)) (Suzuki 1990).
+/// Adjacent flows of colour 0 share a pass. They stay two flows if the field changes with the spin
+/// itself: such a flow is of order 2, and its errors cancel only within its own step.
 template <int Order>
 constexpr auto colour_passes() {
   constexpr std::size_t steps = Order == 2 ? 1 : 5;
@@ -52,7 +52,7 @@ constexpr auto colour_passes() {
 }
 
 /// Calls visit(pass) for the passes of `count` steps. Where two steps meet, the last flow of one
-/// and the first of the next share a pass, with equal bits.
+/// and the first flow of the next share a pass; this does not change the bits.
 template <int Order, class Visit>
 void for_each_colour_pass(std::int64_t count, Visit const& visit) {
   constexpr auto passes = colour_passes<Order>();
@@ -73,18 +73,18 @@ KOKKOS_FORCEINLINE_FUNCTION Value largest_component(Vec3<Value> const& v) {
 /// Functor that moves the spins of one colour in the fields of their neighbours.
 ///
 /// H at a site is N + D(q): the field of the neighbours, and the part that depends on the spin
-/// itself. Multiples of the spin are omitted, because they do not move it. The spin moves by the
-/// exact flow in the fixed field N + D(mean), mean = (q + q')/2 of the spin before (q) and after
-/// (q'); solved by iteration. Then (q' - q).(N + D(mean)) is zero without damping and positive with
-/// damping. An energy that is quadratic in the spins falls by exactly this number in every move.
+/// itself. Multiples of the spin are omitted, because they do not move it. The spin moves from q
+/// to q' by the exact flow in the fixed field N + D(mean), where mean = (q + q')/2 is found by
+/// iteration. Then (q' - q).(N + D(mean)) is zero without damping, and not negative with damping if
+/// dt > 0. An energy that is quadratic in the spins falls by exactly this number in every move.
 template <class Generator, class Real>
 struct RedBlackStage {
   Generator generators[2];  // prepared for the midpoints of the flows
   SiteArray<Real, 3> spins;
-  bool changes;  // the generator, between the two
+  bool changes;  // true if the two generators differ
   Real dt[2];
   std::int32_t flows, colour;
-  bool joined;  // flows in equal fields become one flow
+  bool joined;  // true if two flows may become one, because their fields are equal
 
   void set(ColourPass const& pass, double step) {
     for (int flow = 0; flow < 2; ++flow) dt[flow] = static_cast<Real>(pass.length[flow] * step);
@@ -160,7 +160,8 @@ struct RedBlackStage {
       d_ = own(q_);
       if (!varies(stage)) return;
 
-      // Changes below enough_ move the spin less than the rounding of the field does.
+      // A change of d_ below enough_ is about the rounding of the field, or moves the spin by about
+      // a quarter of its rounding.
       constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
       Value const rate = flow_.damping + Value(Real(flow_.precession ? 1 : 0));
       enough_ =

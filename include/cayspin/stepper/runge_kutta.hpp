@@ -39,8 +39,8 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
       : Base(name, like, isotropy, {name, like.lattice()}) {}
 
   /// Advances `spins` from t to t + dt under `generator`. A step may swap the memory of `spins`
-  /// with its own, so take arrays of `spins` again after it. Throws std::invalid_argument when
-  /// `spins` is not on the lattice given at construction.
+  /// with that of the stepper, so take arrays of `spins` again after it. Throws
+  /// std::invalid_argument when `spins` is not on the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
@@ -59,7 +59,7 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
     update_ghosts(exec, spins);
   }
 
-  /// Forgets the residual that rounding left at the last step.
+  /// Forgets the rounding error of the last step.
   void reset()
     requires(detail::carried_fields<Update>() > 0)
   {
@@ -80,8 +80,8 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
     visit(memory_.end());
   }
 
-  /// Returns true if `batch` can take these steps: few spins on a host space, under a generator
-  /// that does not change between steps.
+  /// Returns true if `batch` can take these steps: few spins on a host space, not on a part of a
+  /// lattice, in passes, under a generator that does not change between steps.
   template <class Exec, class Generator>
   bool takes_batches(Exec const& exec, Generator const& generator, Spins const& spins) const {
     return this->path() == Path::pass && this->lattice_.part == nullptr &&
@@ -90,7 +90,7 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
   }
 
   /// Takes `count` steps in one launch, with the bits of single steps. Throws std::invalid_argument
-  /// like `step`, and if takes_batches is false.
+  /// like `step`, when `count` is below 1, and when takes_batches is false.
   template <class Exec, class Generator>
     requires detail::is_host_execution<Exec>
   void batch(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
@@ -102,7 +102,7 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
     if (!takes_batches(exec, generator, spins))
       throw std::invalid_argument(
           this->label("::batch: these steps have to be taken one by one (takes_batches)"));
-    constexpr int steps = stages == 1 ? 2 : 1;  // in one pass through the kernels
+    constexpr int steps = stages == 1 ? 2 : 1;  // of one pass through the loops
     detail::repeat_on_calling_thread(batch_label_, count / steps,
                                      loops_of_steps(prepared, spins, dt));
     if (count % steps != 0) step(exec, generator, spins, t, dt);

@@ -20,7 +20,8 @@ struct StepBound {
 
 namespace detail {
 
-/// Returns dt, adjusted to reach the end (`left` away) exactly, without a very short last step.
+/// Returns dt, adjusted so that steps end exactly at a time that is `left` away, and the last step
+/// is not very short.
 inline double step_within(double left, double dt) {
   if (dt >= left * (1 - 1e-9)) return left;
   return 2 * dt > left ? 0.5 * left : dt;
@@ -41,7 +42,7 @@ class StepBounds {
     }
   }
 
-  /// Returns t, or the end of the jump at t.
+  /// Returns the end of the jump at t, or t if there is no jump.
   double after_jump(double t) const {
     auto const at = first_that_ends_after(t);
     return at != all_.end() && at->max_dt == 0 && at->begin <= t ? at->end : t;

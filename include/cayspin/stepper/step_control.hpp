@@ -31,8 +31,8 @@ struct StepOptions {
   double min_dt = 0;    ///< a step that would be shorter throws StepTooSmall
   double max_dt = std::numeric_limits<double>::infinity();
   double end = std::numeric_limits<double>::infinity();  ///< no stage is evaluated after this time
-  /// Intervals in which the field jumps or changes too fast for steps to detect, because it happens
-  /// between their stages. Ascending and disjoint.
+  /// Intervals in which the field jumps, or changes so fast that steps may miss it between their
+  /// stages. Ascending and disjoint.
   std::vector<StepBound> bounds = {};
 
   /// The smallest tolerance: below it, round-off hides the error of a step.
@@ -45,8 +45,8 @@ struct StepOptions {
 namespace detail {
 
 /// A proportional-integral controller (Hairer and Wanner, Solving ODEs II, IV.2): computes the next
-/// dt from the errors of this step and the previous one. Plain host arithmetic on a maximum over
-/// sites, so the sequence of steps is equal on every host space.
+/// dt from the errors of this step and the previous one. It uses plain host arithmetic on a maximum
+/// over sites, so that the steps are equal on every host space.
 class StepController {
  public:
   /// `error_order`: the error estimate is proportional to this power of dt.
@@ -62,14 +62,14 @@ class StepController {
   }
 
   /// Returns the largest allowed error of one step, in radians. It is smaller than the tolerance of
-  /// the run, because errors add up. Calibrated on switching, films and Heisenberg lattices
-  /// (docs/reports/trade.md): low orders take more steps.
+  /// the run, because errors add up, and smallest for low orders, which take more steps. The
+  /// factors were calibrated on switching, films and Heisenberg lattices (docs/reports/trade.md).
   double step_tolerance() const {
     return options_.tolerance * (exponent_ < 0.25 ? 1.0 / 12 : 1.0 / 160);
   }
 
-  /// Returns the first dt for spins that turn by at most `rate` per unit of time; `asked` if none
-  /// turns.
+  /// Returns the first dt: that of the options if it is not 0, otherwise one for spins that turn by
+  /// at most `rate` per unit of time, or `asked` if none turns.
   double first_dt(double rate, double asked) const {
     double const angle = 0.5 * std::pow(step_tolerance(), exponent_);
     bool const turns = rate > 0 && std::isfinite(rate);
@@ -79,7 +79,8 @@ class StepController {
 
   bool accepts(double error) const { return error <= step_tolerance(); }
 
-  /// Returns the dt after a step of dt with this error; NaN counts as far too large.
+  /// Returns the next dt after a step of dt with this error. An error of NaN counts as far too
+  /// large.
   double next_dt(double dt, double error) {
     double const ratio = error / step_tolerance();
     if (!(ratio <= 1)) {
@@ -111,7 +112,7 @@ class StepController {
  private:
   static constexpr double safety = 0.9, smallest = 0.1, largest = 5;
 
-  // Near equilibrium steps grow, but stay finite.
+  // Steps grow near equilibrium, but stay finite.
   double largest_dt() const { return std::min(options_.max_dt, 1e100); }
 
   StepOptions options_;
@@ -120,7 +121,8 @@ class StepController {
   bool rejected_ = false;
 };
 
-/// The internal steps of an adaptive method, which do not depend on the requested times.
+/// The internal steps of an adaptive method. They do not depend on the requested times, except that
+/// these give the first step if no spin turns.
 class OwnSteps {
  public:
   std::int64_t accepted_steps() const { return accepted_; }
@@ -137,7 +139,7 @@ class OwnSteps {
   struct Try {
     double error = 0;
     double most_growth = std::numeric_limits<double>::infinity();  // largest next dt / dt
-    bool is_solved = true;  // if false there is no error, and half the step is tried
+    bool is_solved = true;  // if false, `error` is not used, and dt is halved
   };
 
   OwnSteps(StepOptions const& options, int error_order, double least_tolerance,
@@ -147,9 +149,11 @@ class OwnSteps {
         bounds_(options.bounds, region),
         region_(region) {}
 
-  /// Calls begin(t) unless a run is in progress, and take_step() until one ends at t + dt or later.
-  /// After a jump of the field it calls begin(t) again, for the spins at the end of the last step.
-  /// An exception from either ends the run: the next step starts from its t and spins.
+  /// Calls begin(start) unless a run is in progress; `start` is t, or the end of a jump at t. Then
+  /// calls take_step() until a step ends at t + dt or later. After a jump of the field it calls
+  /// begin() again, with the end of the jump, for the spins at the end of the last step. An
+  /// exception from either call ends the run: the next step starts from its t and spins. Throws
+  /// std::invalid_argument when dt is negative or options.end is before t + dt.
   template <class Begin, class TakeStep>
   void go_on_to(double t, double dt, Begin const& begin, TakeStep const& take_step) {
     double const asked = t + dt;

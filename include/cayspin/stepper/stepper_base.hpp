@@ -23,8 +23,8 @@ template <class Stepper>
   requires requires { Stepper::ghosts; }
 inline constexpr int ghosts_of<Stepper> = Stepper::ghosts;
 
-/// Base class of steppers. Each call starts with the static checks, the run-time checks and the
-/// profiling region of begin_step.
+/// Base class of steppers. Each step or batch starts with begin_step: checks at compile time and at
+/// run time, and a profiling region.
 template <class Spins>
 class StepperBase {
  public:
@@ -57,7 +57,7 @@ class StepperBase {
   }
 
   CAYSPIN_DETAIL_NOINLINE std::string label(char const* stage) const { return region_ + stage; }
-  /// Returns the names "::stage_1", "::stage_2", ..
+  /// Returns the stepper's label followed by "::stage_1", "::stage_2", ..
   template <std::size_t Stages>
   std::array<std::string, Stages> stage_labels() const {
     std::array<std::string, Stages> labels;
@@ -65,8 +65,8 @@ class StepperBase {
     return labels;
   }
 
-  /// Checks the spins, and returns a profiling region, which ends with its lifetime. `call`: name
-  /// of the member function.
+  /// Checks the spins, and returns a profiling region, which ends when the returned object is
+  /// destroyed. `call`: name of the member function, for messages.
   template <class Exec>
   [[nodiscard]] Kokkos::Profiling::ScopedRegion begin_step(Exec const&, Spins const& spins,
                                                            char const* call = "::step") const {
@@ -75,7 +75,8 @@ class StepperBase {
     return Kokkos::Profiling::ScopedRegion(region_);
   }
 
-  /// Throws when `spins` is an old handle on memory that a step has swapped for its own.
+  /// Throws std::invalid_argument when `spins` is an old handle on memory that now belongs to the
+  /// stepper, because a step has swapped it.
   void require_other_memory(Spins const& spins, Spins const& own) const {
     if (spins.array().data == own.array().data) [[unlikely]]
       throw std::invalid_argument(

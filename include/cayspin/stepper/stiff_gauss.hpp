@@ -25,15 +25,15 @@ namespace cayspin::inline v0_2 {
 /// coordinates: m1 = cay(f) m0, f = dt A((m0 + m1) / 2). Order 4 has two coupled stages of this
 /// kind.
 ///
-/// A at the stages is extrapolated from earlier steps and corrected by (1 + b K)^-1 of the
-/// residual, with b = dt (damping - i) times an eigenvalue of the tableau. With K = -J Lap, as
-/// measured at the first step, that is Newton's method for exchange on lines of nearly parallel
-/// spins. One or two corrections per step are typical. A step whose corrections do not converge is
-/// halved.
+/// A at the stages is extrapolated from earlier steps. Each correction adds (1 + b K)^-1 times the
+/// residual, where K = -J Lap is the exchange as measured at the first step, and b = dt (damping -
+/// i) times an eigenvalue of the tableau. This is Newton's method if exchange couples sites along
+/// one axis only and the spins are nearly parallel. One or two corrections per step are typical. A
+/// step whose corrections do not converge is halved.
 ///
 /// Conserves |m| and, if the generator is conservative and H affine, the energy to round-off; if
-/// isotropic exchange is the only term, also the total spin. Works with any generator; not for
-/// parts of a lattice.
+/// isotropic exchange is the only term, also the total spin. Works with any generator, but not
+/// on parts of a lattice or on replicas.
 template <class Spins, int Order>
 class StiffGauss : public detail::StepperBase<Spins> {
   static_assert(Order == 2 || Order == 4, "StiffGauss has order 2 or 4.");
@@ -88,9 +88,10 @@ class StiffGauss : public detail::StepperBase<Spins> {
   }
 
   /// Advances `spins` from t to t + dt under `generator`. A step swaps the memory of `spins` with
-  /// its own, so take arrays of `spins` again after it. Waits. If a field throws, `spins` are
-  /// unchanged. Throws NotConverged, with `spins` unchanged, when halved steps have no solution
-  /// either, and std::invalid_argument when `spins` is not on the lattice given at construction.
+  /// that of the stepper, so take arrays of `spins` again after it. Waits. If a field throws,
+  /// `spins` are unchanged. Throws NotConverged, with `spins` unchanged, when halved steps have no
+  /// solution either, and std::invalid_argument when `spins` is not on the lattice given at
+  /// construction or the lattice has replicas.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
@@ -189,8 +190,8 @@ class StiffGauss : public detail::StepperBase<Spins> {
       if (!(change < 1)) return false;  // diverging, or not a number
       if (i == 0) {
         tolerance = tolerance_of(generator, history, change);
-        // A second correction is needed to measure how fast they converge. If this was measured a
-        // few steps ago, one correction may be enough.
+        // A second correction is needed to measure how fast corrections converge. If this was
+        // measured within the last 16 steps, one correction may be enough.
         bool const measures = !has_history || contraction_ > 0.1 || ++unmeasured_ >= 16;
         if (!measures && contraction_ * change <= tolerance) return true;
       } else {
@@ -215,8 +216,8 @@ class StiffGauss : public detail::StepperBase<Spins> {
     if constexpr (requires { generator.conserves_energy(); })
       if (generator.conserves_energy()) return 4 * epsilon;
     if (history != nullptr && history->is_complete()) return history->tolerance(first);
-    // `first` is proportional to this power of the step's rotation; without history it is the whole
-    // rotation.
+    // `first` is proportional to this power of the step's rotation. Without history it is the whole
+    // rotation of the step.
     double const of_rotation = 1 + (history != nullptr ? history->known() : 0);
     return std::max(std::min(1e-3 * first, 0.01 * std::pow(first, (Order + 1) / of_rotation)),
                     16 * epsilon);
@@ -299,7 +300,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
   double local_ = 0;
   double last_dt_ = 0;
   double contraction_ = 1;              // last measured second correction / first correction
-  int unmeasured_ = 0;                  // steps since then
+  int unmeasured_ = 0;                  // steps since that measurement
   int corrections_ = 0;                 // of the last step
   int extrapolated_ = History::fields;  // earlier values that an extrapolation uses
   bool moved_ = false;                  // start_ holds the spins before the step

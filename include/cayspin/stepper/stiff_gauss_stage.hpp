@@ -53,13 +53,13 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> across_spin(Vec3<Value> const& v, Vec3<V
 
 /// Functor that computes the part of the residual A(Y) - x normal to the spin Y at a stage; zero on
 /// a vacant site. Parts along Y have no effect, since only the cross product of x and Y counts.
-/// That of x is removed.
+/// The functor also removes the part of x along Y.
 template <class Generator, class Real>
 struct ResidualStage {
   Generator generator;
   SiteArray<Real, 3> stage, x;
   OutputArray<Real, 3> next_x, residual;
-  Real share;  // of the residual
+  Real share;  // factor of the residual
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
@@ -79,7 +79,8 @@ struct ResidualStage {
 
 /// Functor that adds to x the part of the solution normal to the spins at the stages, and computes
 /// the spins there and at the end of the step. `Scaled`: the first solution is multiplied by a
-/// complex factor, a second one by its conjugate. The value is the largest |change|^2.
+/// complex factor, a second one by its conjugate. The value to reduce is the largest |change of
+/// x|^2.
 template <int Stages, bool Scaled, class Real>
 struct CorrectStage {
   SiteArray<Real, 6> solution[std::size_t{Stages}];
@@ -150,7 +151,7 @@ struct SumAlongSpins {
 /// spins at a stage and this sum: a right side for the solver of corrections.
 template <class Real>
 struct SecondDifference {
-  SiteArray<Real, 3> spins[4];  // at the end of a step, at its start, at the starts of those before
+  SiteArray<Real, 3> spins[4];  // at the end of a step, and at the starts of the last three
   double weights[3];
   SiteArray<Real, 3> stage;
   OutputArray<Real, 3> difference;
@@ -172,7 +173,7 @@ struct SecondDifference {
   }
 };
 
-/// SecondDifference with the rate of the spins at the end of the step as the third change.
+/// SecondDifference with the rate of the spins at the end of the step in place of the third change.
 template <class Generator, class Real>
 struct SecondDifferenceWithEnd {
   Generator generator;

@@ -17,8 +17,9 @@ namespace cayspin::inline v0_2 {
 /// Options of StiffGauss.
 struct StiffOptions {
   /// Bound on the largest remaining error of any site's rotation vector. 0: round-off if the
-  /// generator is conservative, otherwise 1/200 of the usual first correction, or 1/1000 if that is
-  /// small and the order is 4.
+  /// generator conserves the energy; otherwise 1/200 of the usual first correction, for order 4
+  /// down to 1/1000 if that correction is small, and at most 1/1000 of the correction in the first
+  /// steps.
   double tolerance = 0;
   int iterations = 30;  ///< corrections before the step is halved
   int halvings = 12;    ///< how often a step is halved before it throws NotConverged
@@ -95,13 +96,13 @@ class StiffHistory {
   {
     double const now = node(0), before = times_[0], other = has_end ? 1 : times_[1];
     if (known_ == 0) return {1 / (now - other), 0, 1 / (other - now)};
-    double const last = -2 * times_[0], one_before = -2 * (times_[1] + last);  // their lengths
+    double const last = -2 * times_[0], one_before = -2 * (times_[1] + last);  // step lengths
     return {1 / ((now - before) * (now - other)), 1 / ((before - now) * (before - other) * last),
             1 / ((other - now) * (other - before) * (has_end ? 1 : one_before))};
   }
 
-  /// Interpolates at this share of the last step, with A linear in time through the stages of the
-  /// last two steps.
+  /// Returns the kernel for the spins at this share of the last step. It takes A as linear in time,
+  /// through its values at the stages of the last two steps.
   StiffDenseOutput<Real> dense_output(double dt, double share) const
     requires(Stages == 1)
   {

@@ -7,11 +7,10 @@
 // - a: stages x stages, strictly lower triangular; b: weights; c: stage times in units of dt.
 // Embedded tableaux also have an error estimate and interpolate within a step. They use one more
 // stage: the generator at the end of the step, which is the first one of the next step.
-// - error: weights, of all stages and that one, that give the step minus the embedded solution,
-// which
-//   is of order embedded_order.
-// - dense: for each stage, the coefficients of s, s^2, ... s^5 in its weight at t + s dt, of order
-// dense_order.
+// - error: weights of all stages, including that one. They give the step minus the embedded
+//   solution, which is of order embedded_order.
+// - dense: for each stage, the coefficients of s, s^2, ... s^5 in its weight at t + s dt. The
+//   interpolation is of order dense_order.
 namespace cayspin::inline v0_2::tableau {
 
 /// Euler's method: order 1, one stage.
@@ -121,7 +120,8 @@ struct Damped54 {
 };
 
 /// Commutator-free, order 4 (Celledoni, Marthinsen and Owren 2003): stages and end are reached by
-/// two rotations by the generators themselves, with weights a then second_a, b then second_b.
+/// two rotations by sums of the generators themselves: stages with the weights a, then second_a,
+/// and the end with b, then second_b.
 struct CommutatorFree4 {
   static constexpr int stages = 4, order = 4;
   static constexpr double a[4][4] = {{0, 0, 0, 0}, {0.5, 0, 0, 0}, {0, 0.5, 0, 0}, {0.5, 0, 0, 0}};

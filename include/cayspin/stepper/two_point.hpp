@@ -14,7 +14,7 @@
 #include <limits>
 
 // Steps that use two values of the generator, one of which is stored in a field: finite differences
-// of A_o, and the two-step method of Adams and Bashforth.
+// of A_o = A - (m.A) m, and the two-step method of Adams and Bashforth.
 namespace cayspin::inline v0_2 {
 
 namespace detail {
@@ -38,8 +38,8 @@ struct PredictOrthogonal {
   }
 };
 
-/// F = dt (w + sigma m0), where w is the stored A_o, and sigma comes from its difference to A_o
-/// here.
+/// F = dt (w + sigma m0), where w is the stored A_o, and sigma comes from the difference of A_o at
+/// m and w.
 struct ForwardDifference {
   static constexpr bool reads = true, writes = false;
   double cap;
@@ -52,7 +52,7 @@ struct ForwardDifference {
   }
 };
 
-/// F = dt (w + sigma m); stores w. Here w is A_o at m, sigma comes from its difference to the
+/// F = dt (w + sigma m); stores w. Here w is A_o at m, sigma comes from the difference of w and the
 /// stored A_o, and `ratio` is dt / (previous dt).
 struct BackwardDifference {
   static constexpr bool reads = true, writes = true;
@@ -148,9 +148,9 @@ struct TwoPointStage {
 
 }  // namespace detail
 
-/// A step that stores A between its two evaluations, or from one step to the next. Method defines
-/// how the step uses the stored and the new A (detail::ForwardDifferenceMethod and so on). Work
-/// memory: two fields.
+/// A stepper that stores A, or A_o, between the two evaluations of a step, or from one step to the
+/// next. Method defines how a step uses the stored and the new one, for example
+/// detail::ForwardDifferenceMethod. Work memory: two fields.
 template <class Spins, class Method, class Isotropy, class Rotation>
 class TwoPoint : public detail::StepperBase<Spins> {
   using Base = detail::StepperBase<Spins>;
@@ -179,8 +179,8 @@ class TwoPoint : public detail::StepperBase<Spins> {
 
   /// Advances `spins` from t to t + dt under `generator`. For a method that remembers the previous
   /// step, `spins` must be those at the end of that step. A step may swap the memory of `spins`
-  /// with its own: take arrays of `spins` again after it. Throws std::invalid_argument when `spins`
-  /// is not on the lattice given at construction.
+  /// with that of the stepper: take arrays of `spins` again after it. Throws std::invalid_argument
+  /// when `spins` is not on the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
@@ -223,7 +223,8 @@ class TwoPoint : public detail::StepperBase<Spins> {
     visit(next_);
   }
 
-  /// Uses `spins` as the state at t, from which the next call of `step` is one step of dt away.
+  /// Remembers `spins` as the state at t, as if a step of dt had started from it. The next call of
+  /// `step` must start at the end of that step.
   template <class Exec, class Generator>
   void remember(Exec const& exec, Generator const& generator, Spins const& spins, double t,
                 double dt)
@@ -267,8 +268,8 @@ class TwoPoint : public detail::StepperBase<Spins> {
 };
 
 /// The two-step method of Adams and Bashforth, order 2 with one evaluation: m <- cay(dt (3 xi_n -
-/// xi_(n-1)) / 2) m, xi = A + sigma m. If the step length changes: dt (xi_n + (dt / previous dt)
-/// (xi_n - xi_(n-1)) / 2). The first step is one of LieHeun.
+/// xi_(n-1)) / 2) m, xi = A + sigma m. In general the argument of cay is dt (xi_n + (dt / previous
+/// dt) (xi_n - xi_(n-1)) / 2). The first step is one of LieHeun.
 template <class Spins, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class LieAdamsBashforth2
     : public TwoPoint<Spins, detail::AdamsBashforthMethod, Isotropy, Rotation> {

@@ -25,26 +25,27 @@
 // computed, then the generator's derivative along them. field_rate.hpp lists the members that field
 // terms need. A user's generator needs
 //   Vec3<Value> rate(m, rates)    A' at m along the rates of the stencil's array
-//   auto bare()                   the generator with its part along m, if it removes that
+//   auto bare()                   the generator that keeps the part of A along m; only needed if
+//                                 the generator itself removes that part
 namespace cayspin::inline v0_2 {
 namespace isotropy {
 
 /// sigma from A' along the flow: xi = A_o + sigma m with sigma = (m.A) - <A', X> / |X|^2,
-/// X = A x m. The derivative of the field is its linear part at X. For LieEuler, and with the
-/// opposite sign for ImplicitLieEuler. Lewis and Nigam 2002, Sec. 4.1 and 4.2, with the sign and
-/// the norm corrected. Zero if X is zero.
+/// X = A x m. The derivative of an affine field is its linear part, applied to X. For LieEuler;
+/// ImplicitLieEuler adds sigma m with the opposite sign of <A', X>. Lewis and Nigam 2002, Sec. 4.1
+/// and 4.2, with the sign and the norm corrected. sigma is zero if X is zero.
 struct Analytic {};
 
 /// Like Analytic, but computed as the geodesic curvature of the orbit times its speed, sigma = k_g
-/// |X| = <m'', m x m'> / |m'|^2, m' = X: sigma as a partial connection form. Lewis and Nigam 2002,
-/// Sec. 3.2.
+/// |X| = <m'', m x m'> / |m'|^2, m' = X: sigma as a partial connection form. For LieEuler only.
+/// Lewis and Nigam 2002, Sec. 3.2.
 struct Connection {};
 
 }  // namespace isotropy
 
 namespace detail {
 
-/// X = A x m and m.A of every spin.
+/// Functor that computes X = A x m and m.A of every spin.
 template <class Generator, class Real>
 struct RateStage {
   Generator generator;
@@ -155,7 +156,8 @@ class Rates {
   bool streaming_ = false;  // stores of rates bypass the caches
 };
 
-/// Geometric Euler with sigma: m <- cay(dt (A_o + sigma m)) m, in place.
+/// Functor that takes a step of geometric Euler with sigma, in place: m <- cay(dt (A_o + sigma m))
+/// m.
 template <class Isotropy, class Rotation, class Generator, class Real>
 struct CorrectedEulerStage {
   Generator generator;  // prepared on the rates
@@ -177,7 +179,8 @@ struct CorrectedEulerStage {
   }
 };
 
-/// sigma of an implicit step: <A', X> / |X|^2, minus m.A if A is made orthogonal.
+/// Functor that computes sigma of an implicit step: <A', X> / |X|^2, minus m.A if the generator
+/// removes the part of A along m.
 template <class Generator, class Real>
 struct ImplicitSigmaStage {
   Generator generator;  // prepared on the rates
@@ -233,7 +236,7 @@ class ImplicitSigma<Spins, isotropy::Analytic> {
 }  // namespace detail
 
 /// Geometric Euler with sigma from the generator's derivative; energy error of order 2. A step
-/// evaluates the generator once, and the linear part of its field once.
+/// evaluates the generator once, and its derivative once.
 template <class Spins, class Rotation, class Isotropy>
   requires(std::same_as<Isotropy, isotropy::Analytic> ||
            std::same_as<Isotropy, isotropy::Connection>)
@@ -252,8 +255,9 @@ class LieEuler<Spins, Isotropy, Rotation> : public detail::StepperBase<Spins> {
 
   std::size_t work_bytes() const { return rates_.bytes(); }
 
-  /// Advances `spins` from t to t + dt under `generator`, whose derivative along the flow is known.
-  /// Throws std::invalid_argument when `spins` is not on the lattice given at construction.
+  /// Advances `spins` from t to t + dt under `generator`, whose derivative must be available
+  /// (see the top of this file). Throws std::invalid_argument when `spins` is not on the lattice
+  /// given at construction, or the field has biquadratic couplings.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);

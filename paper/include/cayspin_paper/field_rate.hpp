@@ -27,7 +27,7 @@
 //                                             time t
 namespace cayspin::inline v0_2::detail {
 
-/// Contribution of a uniform applied field to dH/dt.
+/// The contribution of a uniform applied field to dH/dt, as a term.
 struct AppliedRate {
   Vec3<double> rate;
 
@@ -107,8 +107,8 @@ auto prepared_rate(SlowField<Spins, Term> const& term, Exec const& exec, Spins c
   return term.prepare(exec, rates, t);
 }
 
-/// Functor that applies the linear part of an affine field at a stencil's centre to the stencil's
-/// array.
+/// Functor that applies the linear part of an affine field to the stencil's array, and returns the
+/// result at the stencil's centre.
 struct LinearField {
   template <class Term>
   static constexpr bool skips = false;
@@ -141,7 +141,8 @@ struct LinearField {
   }
 };
 
-/// The derivative of a field at a spin m, along the rates of the stencil's array.
+/// Functor that computes the derivative of a field at a spin m, along the rates of the stencil's
+/// array.
 template <class Value>
 struct FieldRate {
   Vec3<Value> m;
@@ -182,8 +183,8 @@ auto prepare_rate(Term const& term, Exec const& exec, Spins const& rates, double
     return prepare_term(term, exec, rates, t);
 }
 
-/// The first is true if kernels can evaluate the linear part of a prepared field H, the second if
-/// they can evaluate the derivative of H along rates.
+/// has_linear_part is true if kernels can evaluate the linear part of a prepared field H;
+/// has_derivative is true if they can evaluate the derivative of H along rates.
 template <class Term, class Stencil>
 constexpr bool has_linear_part();
 template <class Term, class Stencil>

@@ -21,8 +21,8 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// Stage `Stage` of the misprinted method. Stages 0 to 2 store their generator a = dt xi and move
-/// m0 by it; the last one forms all increments and ends the step.
+/// Stage `Stage` of the misprinted method. Stages 0 to 2 store a = dt xi, and move m0 by 1/2, 1/2
+/// and 1 times a to the next stage. The last stage forms all increments and ends the step.
 template <int Stage, class Isotropy, class Generator, class Real>
 struct AsPrintedStage {
   using Tableau = tableau::Classical4;
@@ -43,7 +43,8 @@ struct AsPrintedStage {
     f[Stage] = Value(dt) * isotropy(stencil.center(), evaluate(generator, stencil));
     if constexpr (last) {
       unrolled<3>([&](auto j) { f[j()] = site.load(generators[j()]); });
-      // The last increment comes first, because each needs the generator of the stage before.
+      // The last increment comes first, because each overwrites a of its stage, and the increment
+      // of the next stage needs that a.
       unrolled<3>([&](auto j) {
         constexpr int stage = 3 - j();
         f[stage] = Cayley::inverse_differential(
@@ -64,8 +65,8 @@ struct AsPrintedStage {
 
 }  // namespace detail
 
-/// Runge-Kutta-Munthe-Kaas as printed in Lewis and Nigam 2002, Sec. 4.4: stages 3 and 4 use the
-/// generators A_2, A_3 as arguments instead of the increments F_2, F_3. Order 3.
+/// Runge-Kutta-Munthe-Kaas as printed in Lewis and Nigam 2002, Sec. 4.4: stages 3 and 4 take the
+/// generators A_2 and A_3 in place of the increments F_2 and F_3. Order 3.
 template <class Spins, class Isotropy = isotropy::Zero>
 class Rkmk4AsPrinted : public detail::StepperBase<Spins> {
   using Base = detail::StepperBase<Spins>;
@@ -97,7 +98,7 @@ class Rkmk4AsPrinted : public detail::StepperBase<Spins> {
     stage<3>(exec, generator, spins, levels_[0], spins, t, dt);
   }
 
-  /// One step on a linear mode (cayspin/stability.hpp).
+  /// Returns the factor by which a linear mode grows in one step (cayspin/stability.hpp).
   static detail::Complex mode_growth(detail::Complex z, double q) {
     using detail::NearAxis;
     using Linear = detail::LinearUpdate<update::Lie<Cayley>>;

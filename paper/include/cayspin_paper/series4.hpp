@@ -46,8 +46,8 @@ struct Series4PaperCorrection {
   }
 };
 
-/// The truncated series of F, from a_k = d^k A / dt^k on the exact flow. Lewis and Nigam 2002, Sec.
-/// 5.3; it holds for any part of A along m.
+/// The truncated series of F, from a_k = d^k A / dt^k on the exact flow. It holds for any part of A
+/// along m. Lewis and Nigam 2002, Sec. 5.3.
 struct DirectSeries {
   using Correction = Series4Correction;
   template <class Value>
@@ -72,7 +72,7 @@ struct DirectSeries {
 };
 
 /// The orthogonal series as printed in the paper, from the derivatives of A_o. It has the same
-/// order as the direct series, and three times its energy error.
+/// order as the direct series of A_o, and for rigid bodies three times the energy error of that.
 struct PaperSeries : DirectSeries {
   using Correction = Series4PaperCorrection;
   template <class Value>
@@ -86,7 +86,7 @@ struct PaperSeries : DirectSeries {
   }
 };
 
-/// m^(K+1) = d^K/dt^K (A x m)
+/// Returns the derivative K + 1 of m, d^K/dt^K (A x m).
 template <int K, class Generator, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> next_derivative(Generator const& generator,
                                                         Vec3<Value> const* m,
@@ -118,7 +118,8 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> end_of_series(Generator const& generator
   return Cayley::rotate(f, m[0]);
 }
 
-/// A whole step, if A at a site depends only on that site's spin, and linearly.
+/// Functor that takes a whole step, if A at a site is linear in the site's spin and depends on no
+/// other spin.
 template <class Series, class Isotropy, class Generator, class Real>
 struct LocalSeriesStage {
   Generator generator;
@@ -176,10 +177,10 @@ struct SeriesStage {
 
 /// The symbolic series of order 4 in Cayley coordinates:
 /// F = dt a + dt^2 a_1/2 + dt^3 (2 a_2 + |a|^2 a + a_1 x a)/12
-///   + dt^4 (a_3 + |a|^2 a_1 + a_2 x a + 2 <a_1, a> a)/24, a_k = d^k A / dt^k on the exact flow,
-/// by recurrence. Rigid bodies take one kernel. Landau-Lifshitz takes four, with a field that is
-/// affine in the spins and does not depend on t. isotropy::Energy is for rigid bodies only.
-/// Lewis and Nigam 2002, Sec. 4.4 and 5.3.
+///   + dt^4 (a_3 + |a|^2 a_1 + a_2 x a + 2 <a_1, a> a)/24, a = A, a_k = d^k A / dt^k on the
+/// exact flow, by recurrence. Rigid bodies take one kernel. Landau-Lifshitz takes four, with a
+/// field that is affine in the spins and does not depend on t. isotropy::Energy is for rigid bodies
+/// only. Lewis and Nigam 2002, Sec. 4.4 and 5.3.
 template <class Spins, class Isotropy = isotropy::Zero, class Series = detail::DirectSeries>
 class Series4 : public detail::StepperBase<Spins> {
   static_assert(std::is_same_v<Isotropy, isotropy::Zero> ||
@@ -202,9 +203,10 @@ class Series4 : public detail::StepperBase<Spins> {
     return next_.bytes() * (derivatives_[0].sites() == 0 ? 1 : work_fields);
   }
 
-  /// Advances `spins` from t to t + dt under `generator`. Swaps their memory with its own, so take
-  /// arrays of `spins` again after a step. Throws std::invalid_argument when `spins` is not on the
-  /// lattice given at construction, and for a field that is not affine in the spins.
+  /// Advances `spins` from t to t + dt under `generator`. A step swaps the memory of `spins` with
+  /// that of the stepper, so take arrays of `spins` again after it. Throws std::invalid_argument
+  /// when `spins` is not on the lattice given at construction, and for a field that is not affine
+  /// in the spins.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     static_assert(!detail::depends_on_time<Generator>, "Series4 refuses fields that depend on t.");
@@ -278,7 +280,7 @@ class Series4 : public detail::StepperBase<Spins> {
 };
 
 /// The orthogonal series as printed in the paper, from the derivatives of A_o. It drops the part of
-/// the generator along m. Also valid and of order 4, with a larger energy error than Series4.
+/// the generator along m. It is also of order 4, but has a larger energy error than Series4.
 template <class Spins, class Isotropy = isotropy::Zero>
 class Series4Paper : public Series4<Spins, Isotropy, detail::PaperSeries> {
  public:

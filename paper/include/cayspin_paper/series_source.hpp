@@ -15,10 +15,12 @@
 
 // Derivatives of the library's generators for the series. A user's generator needs
 //   Vec3<Value> series_source(stencil)           the source of A: H, or A itself
-//   Vec3<Value> linear_series_source(stencil)    its linear part; requires is_affine() on the host
-// Vec3<Value> derivative<K>(m, source) the K-th time derivative of A, from derivatives of m and of
-// the source
-//   static bool is_local                         A is linear in the site's spin, without neighbours
+//   Vec3<Value> linear_series_source(stencil)    the linear part of the source; requires
+//                                                is_affine() on the host
+//   Vec3<Value> derivative<K>(m, source)         the K-th time derivative of A, from the
+//                                                derivatives of m and of the source
+//   static bool is_local                         A is linear in the site's spin, and does not
+//                                                depend on neighbours
 namespace cayspin::inline v0_2::detail {
 
 template <int N, int K>
@@ -130,7 +132,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> series_derivative(Generator const& gener
   return SeriesOf<Generator>::template derivative<K>(generator, m, source);
 }
 
-/// d^K/dt^K of A - (m.A) m.
+/// Returns d^K/dt^K of A - (m.A) m.
 template <int K, class Generator, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> orthogonal_derivative(Generator const& generator,
                                                               Vec3<Value> const* m,
