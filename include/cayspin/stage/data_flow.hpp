@@ -45,9 +45,8 @@ constexpr bool has_second_rotation(int row) {
 }
 
 /// True for chains of three or more stages whose increments depend on the previous increment. They
-/// store two arrays:
-/// the last increment, and the weighted sum, which every second stage updates. No other choice
-/// moves less memory.
+/// store two arrays: the last increment, and the weighted sum, which every second stage updates. No
+/// other choice moves less memory.
 template <class Tableau, class Update>
 inline constexpr bool keeps_sum = Tableau::stages > 2 &&
                                   is_chain<Tableau>() && Update::increment_needs_argument;

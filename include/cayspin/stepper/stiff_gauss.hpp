@@ -31,9 +31,9 @@ namespace cayspin::inline v0_2 {
 /// one axis only and the spins are nearly parallel. One or two corrections per step are typical. A
 /// step whose corrections do not converge is halved.
 ///
-/// Conserves |m| and, if the generator is conservative and H affine, the energy to round-off; if
-/// isotropic exchange is the only term, also the total spin. Works with any generator, but not
-/// on parts of a lattice or on replicas.
+/// Conserves |m|. If H is affine and the generator has no damping, also conserves the energy to
+/// round-off, and the total spin if isotropic exchange is the only term. Works with any generator,
+/// but not on parts of a lattice or on replicas.
 template <class Spins, int Order>
 class StiffGauss : public detail::StepperBase<Spins> {
   static_assert(Order == 2 || Order == 4, "StiffGauss has order 2 or 4.");

@@ -156,8 +156,7 @@ class Rates {
   bool streaming_ = false;  // stores of rates bypass the caches
 };
 
-/// Functor that takes a step of geometric Euler with sigma, in place: m <- cay(dt (A_o + sigma m))
-/// m.
+/// Functor that takes a step of geometric Euler, in place: m <- cay(dt (A_o + sigma m)) m.
 template <class Isotropy, class Rotation, class Generator, class Real>
 struct CorrectedEulerStage {
   Generator generator;  // prepared on the rates
