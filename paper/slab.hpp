@@ -29,7 +29,7 @@ inline constexpr Slab strong_damping{"strong_damping", weak_field, 10, true, 1, 
 inline constexpr Slab strong_damping_strong_field{
     "strong_damping_strong_field", strong_field, 10, true, 0.1, {1, 0, 0}};
 
-/// The path of one spin, with other observables.
+/// The path of the spin at site 37, with other observables.
 struct SlabPath {
   std::vector<double> times;
   std::vector<Vector> spin;        // site 37

@@ -22,7 +22,7 @@ struct alignas(cache_line_bytes) StripProgress {
 
 /// Crew of threads that do `steps` steps of each strip. Step n of a strip may start when its
 /// neighbours have done n - apart steps. The first strip and the last are neighbours, too. Any
-/// number of threads may work, in any order: a thread that waits for long takes over steps of other
+/// number of threads may work, in any order: a thread that waits long takes over steps of other
 /// strips. `progress` has one entry more than there are strips. All entries must be 0 before the
 /// work, and are 0 after it.
 struct StripCrew {

@@ -97,7 +97,8 @@ constexpr int level_fields() {
   return Tableau::stages < 3 ? 1 : 2;
 }
 
-/// Returns the number of fields, of three numbers per site, that a method needs besides the spins.
+/// Returns the number of fields, of three numbers per site, that a method needs in addition to the
+/// spins.
 template <class Tableau, class Update>
 constexpr int work_fields() {
   int const levels = level_fields<Tableau, Update>() + carried_fields<Update>();
@@ -108,7 +109,8 @@ constexpr int work_fields() {
   return levels + increments;
 }
 
-/// The arrays that stage `Stage` reads besides its own spins, and writes besides the next spins.
+/// The arrays that stage `Stage` reads in addition to its own spins, and writes in addition to the
+/// next spins.
 template <class Tableau, class Update, int Stage>
 struct StageDataFlow {
   static constexpr int stages = Tableau::stages;

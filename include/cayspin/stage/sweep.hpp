@@ -29,7 +29,7 @@ enum class Path {
 
 namespace detail {
 
-/// Memory that a sweep needs besides fields. Empty if default-constructed.
+/// Memory that a sweep needs in addition to fields. Empty if default-constructed.
 template <class Real, class MemorySpace>
 class SweepBuffers {
  public:

@@ -15,7 +15,8 @@
 // `move` is for stages and `finish` is for the end of the step; displacement(f, m0) is the change
 // of the spin, finish(f, m0) - m0. recovers_increments(stages) is true if a chain of `stages`
 // stages (each uses only the increment before it) does not store increments, but recomputes them
-// from the spins to which they move m0.
+// from the spins to which they move m0. Where `increment` does not use f, comments omit this
+// argument.
 namespace cayspin::inline v0_2::update {
 
 /// Runge-Kutta-Munthe-Kaas: f in the Lie algebra, m = Rotation(f) m0, f' = dRotation_f^-1 (A).

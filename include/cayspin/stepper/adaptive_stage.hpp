@@ -74,8 +74,8 @@ struct EndOutputs {
   OutputArray<Real, 3> increments[std::size_t{Tableau::stages - 1}] = {};
 };
 
-/// Functor that computes the generator at the end of a step, and the squared distance of the end
-/// from the embedded solution.
+/// Functor that computes the generator at the end of a step, and the squared distance of the spin
+/// there from the embedded solution.
 template <class Tableau, class Update, class Isotropy, class Generator, class Real>
 struct EndStage {
   using Flow = StageDataFlow<Tableau, Update, Tableau::stages - 1>;

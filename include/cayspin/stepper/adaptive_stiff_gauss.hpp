@@ -46,7 +46,7 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
     this->solving_.iterations = 10;
   }
 
-  /// Forgets the run so far: the next step starts from its t and spins.
+  /// Forgets the run so far: the next step starts from the t and spins that it is given.
   void reset() {
     Base::reset();
     OwnSteps::reset();

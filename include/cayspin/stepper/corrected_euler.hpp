@@ -5,7 +5,7 @@
 #include <cayspin/stepper/methods.hpp>
 #include <cayspin/stepper/two_point.hpp>
 
-// Geometric Euler with a sigma that raises the order of its energy error by one.
+// Geometric Euler with a sigma that raises the order of the energy error from 1 to 2.
 namespace cayspin::inline v0_2 {
 
 /// Geometric Euler with sigma from a forward difference: the energy error is of order 2, and a step

@@ -47,8 +47,9 @@ struct MultirateOptions {
 ///
 /// The first step evaluates the expensive field in each stage of its substeps. Steps may change
 /// their length, but a step that is more than twice as long as the last one, or goes the other way,
-/// is a first step again. Work memory besides the method's: past_fields + 1 fields, and one of
-/// SlowField. A predictor-corrector form of the multirate methods of Gear and Wells (BIT 24, 1984).
+/// is a first step again. Work memory in addition to the method's: past_fields + 1
+/// fields, and one of SlowField. A predictor-corrector form of the multirate methods of Gear and
+/// Wells (BIT 24, 1984).
 template <class Stepper, class SlowTerm, int Order = 4>
 class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   using Base = detail::StepperBase<typename Stepper::spins_type>;
@@ -84,8 +85,8 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
 
   /// Returns the generator evaluations by the inner method so far.
   std::int64_t evaluations_done() const { return evaluations_done_; }
-  /// Returns the evaluations of the expensive field by steps so far: one a step. A first step adds
-  /// one, and those in the stages of its substeps.
+  /// Returns the evaluations of the expensive field by steps so far: one per step. A first step
+  /// takes one more, and those in the stages of its substeps.
   std::int64_t slow_evaluations_done() const { return slow_evaluations_done_; }
   std::size_t work_bytes() const {
     return stepper_.work_bytes() + (past_fields + 2) * begin_.bytes();

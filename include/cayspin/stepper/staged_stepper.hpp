@@ -32,7 +32,8 @@ class StagedStepper : public StepperBase<Spins> {
  public:
   using typename StepperBase<Spins>::Real;
   static constexpr int ghosts = Tableau::stages;
-  /// Fields of three numbers per site besides the spins, when stages run one by one.
+  /// Number of fields, of three numbers per site, in addition to the spins when stages run one by
+  /// one.
   static constexpr int work_fields = Memory::fields_of_passes;
 
   /// Uses this path from now on instead of the automatic choice, and allocates its memory. Keeps

@@ -129,7 +129,7 @@ class OwnSteps {
   std::int64_t rejected_steps() const { return rejected_; }
   /// Returns the dt of the next internal step.
   double next_dt() const { return next_dt_; }
-  /// Forgets the run so far: the next step starts from its t and spins.
+  /// Forgets the run so far: the next step starts from the t and spins that it is given.
   void reset() { running_ = false; }
   /// Returns true if the internal steps have reached t, the end of a step of dt.
   bool has_reached(double t, double dt) const { return end_time_ >= t - slack(dt); }
@@ -152,8 +152,8 @@ class OwnSteps {
   /// Calls begin(start) unless a run is in progress; `start` is t, or the end of a jump at t. Then
   /// calls take_step() until a step ends at t + dt or later. After a jump of the field it calls
   /// begin() again, with the end of the jump, for the spins at the end of the last step. An
-  /// exception from either call ends the run: the next step starts from its t and spins. Throws
-  /// std::invalid_argument when dt is negative or options.end is before t + dt.
+  /// exception from either call ends the run: the next step starts from the t and spins that it is
+  /// given. Throws std::invalid_argument when dt is negative or options.end is before t + dt.
   template <class Begin, class TakeStep>
   void go_on_to(double t, double dt, Begin const& begin, TakeStep const& take_step) {
     double const asked = t + dt;

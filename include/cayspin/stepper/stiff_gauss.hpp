@@ -175,7 +175,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
   }
 
   /// Leaves the spins after the step in end_, and A at its stages in x_. `Shifted`: corrections use
-  /// K + local_ in place of K. Returns false if it does not converge.
+  /// K + local_ in place of K. Returns false if corrections do not converge.
   template <bool Shifted = false, class Exec, class Generator>
   bool solve(Exec const& exec, Generator const& generator, Spins const& spins, double t, double dt,
              History* history) {
