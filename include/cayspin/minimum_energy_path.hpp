@@ -54,8 +54,9 @@ class PathFinder {
   using Real = typename Spins::value_type;
 
  public:
+  /// `evaluations`: those before this search, which count towards the limit.
   PathFinder(Exec const& exec, Field const& field, std::vector<Spins> const& images,
-             PathOptions const& options)
+             PathOptions const& options, std::int64_t evaluations)
       : exec_(exec),
         field_(field),
         options_(options),
@@ -68,7 +69,7 @@ class PathFinder {
     Kokkos::deep_copy(exec, is_mobile_.allocation(), Real(0));
     auto const& pattern = saddle_.spins();
     auto const found = probe(exec, field, options.time, like, pattern, is_mobile_);
-    found_.evaluations += found.evaluations;
+    found_.evaluations = evaluations + found.evaluations;
     strongest_ = found.strongest();
     preconditioner_.set(like.lattice(), found, options.preconditioned);
   }
@@ -220,18 +221,17 @@ class PathFinder {
     auto const& [image, fraction] = valley->place;
     auto& spins = saddle_.spins();
     point_between(exec_, string_.spins(image), string_.spins(image + 1), fraction, spins);
-    auto const so_far = found_.evaluations;
-    auto const found =
-        minimize(exec_, field_, spins,
-                 {.torque = options_.torque,
-                  .evaluations = std::max<std::int64_t>(1, options_.evaluations - so_far),
-                  .time = options_.time,
-                  .preconditioned = options_.preconditioned,
-                  .observer = [this, so_far](Minimum const& now) {
-                    return proceeds(so_far + now.evaluations, now.energy.value, now.torque)
-                               ? Next::proceed
-                               : Next::stop;
-                  }});
+    auto const so_far = found_.evaluations + string_.evaluations();
+    auto const found = minimize(
+        exec_, field_, spins,
+        {.torque = options_.torque,
+         .evaluations = std::max<std::int64_t>(1, options_.evaluations - so_far),
+         .time = options_.time,
+         .preconditioned = options_.preconditioned,
+         .observer = [this, so_far](Minimum const& now) {
+           return proceeds(so_far + now.evaluations, now.energy.value, now.torque) ? Next::proceed
+                                                                                   : Next::stop;
+         }});
     found_.evaluations += found.evaluations;
     stopped_ = found.end == MinimizeEnd::interrupted;
     if (found.end != MinimizeEnd::converged || is_known(spins)) return false;
@@ -344,6 +344,7 @@ MinimumEnergyPath minimum_energy_path(Exec const& exec, Field const& field,
     throw std::invalid_argument("cayspin::minimum_energy_path: a path has at least 3 images");
   for (auto const& image : images)
     require_lattice("cayspin::minimum_energy_path", saddle.lattice(), image.lattice());
+  MinimumEnergyPath unfinished;
   auto const relax_end = [&](Spins& spins) {
     return minimize(exec, field, spins,
                     {.torque = options.torque,
@@ -351,12 +352,12 @@ MinimumEnergyPath minimum_energy_path(Exec const& exec, Field const& field,
                      .time = options.time,
                      .preconditioned = options.preconditioned,
                      .observer = [&](Minimum const& now) {
-                       return options.observer ? options.observer({now.evaluations,
-                                                                   now.energy.value, now.torque})
-                                               : Next::proceed;
+                       auto const evaluations = unfinished.evaluations + now.evaluations;
+                       return options.observer
+                                  ? options.observer({evaluations, now.energy.value, now.torque})
+                                  : Next::proceed;
                      }});
   };
-  MinimumEnergyPath unfinished;
   std::array<Minimum, 2> ends;
   for (std::size_t i = 0; i < 2; ++i) {
     ends[i] = relax_end(i == 0 ? images.front() : images.back());
@@ -365,10 +366,8 @@ MinimumEnergyPath minimum_energy_path(Exec const& exec, Field const& field,
         ends[i].end == MinimizeEnd::interrupted ? PathEnd::interrupted : PathEnd::ends_not_at_rest;
     if (ends[i].end != MinimizeEnd::converged) return unfinished;
   }
-  auto found =
-      detail::PathFinder(exec, field, images, options).find(saddle, ends[0].energy, ends[1].energy);
-  found.evaluations += unfinished.evaluations;
-  return found;
+  return detail::PathFinder(exec, field, images, options, unfinished.evaluations)
+      .find(saddle, ends[0].energy, ends[1].energy);
 }
 
 }  // namespace cayspin::inline v0_2

@@ -61,11 +61,11 @@ struct TrajectoryHeader {
 
 /// Storage layout of /spins.
 struct TrajectoryStorage {
-  int compression = 0;      ///< level of deflate with shuffle, 0 (none) to 9
-  std::int64_t chunk = 0;   ///< planes along z in a chunk; 0: the frame, or as many as 256 MiB hold
+  int compression = 0;     ///< level of deflate with shuffle, 0 (none) to 9
+  std::int64_t chunk = 0;  ///< planes along z in a chunk; 0: the frame, or as many as 256 MiB hold
   /// Number of planned frames. A kill loses none of them, and none in the first 8180 chunks.
   std::int64_t frames = 0;
-  bool sync = false;        ///< a power cut loses at most the frame being written
+  bool sync = false;  ///< a power cut loses at most the frame being written
 };
 
 /// Division of a frame into pieces along z for writing. Each piece has `planes` planes, but the

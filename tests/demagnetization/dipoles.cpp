@@ -211,6 +211,9 @@ TEST(DipolarFieldsOfOneLattice, RefuseWhatDoesNotFit) {
   EXPECT_THROW(Field(lattice, Crystal::fcc()), std::invalid_argument);
   EXPECT_THROW(Field(lattice, bcc, {.periodic_images = {-1, 0, 0}}), std::invalid_argument);
   EXPECT_THROW(Field(lattice, bcc, {.periodic_images = {1, all, 0}}), std::invalid_argument);
+  Crystal const flat{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1e-5}}}, {{0, 0, 0}}};
+  EXPECT_THROW(Field(flat.lattice({2, 2, 1}), flat, {.periodic_images = {all, all, all}}),
+               std::invalid_argument);
   EXPECT_THROW(Field(lattice, bcc, {.strength = std::numeric_limits<double>::infinity()}),
                std::invalid_argument);
   EXPECT_THROW(Field(lattice, bcc, {.demagnetizing_factors = {0, 0, std::nan("")}}),

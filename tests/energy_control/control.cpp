@@ -116,6 +116,28 @@ TEST(EnergyControl, TakesDriftAwayInSinglePrecision) {
   EXPECT_LT(with.norm, 500 * epsilon<float>);
 }
 
+TEST(EnergyControl, TakesBodiesOfDifferentInertia) {
+  using Memory = Space::memory_space;
+  Lattice const lattice = Lattice::chain(5);
+  SiteField<double, 3, Memory> const inverse("inverse_inertia", lattice);
+  copy_from_host(std::vector<double>{1, 0.5, 0.2, 0.3, 1, 0.7, 2, 1, 0.1, 1, 0.2, 1, 1, 3, 2},
+                 inverse);
+  RigidBodyEnsemble const bodies(inverse);
+  auto drift_of = [&](bool held) {
+    Spins spins = random_spins(lattice, 5);
+    Rkmk4<Spins> stepper(spins);
+    Drift<RigidBodyEnsemble<double, Memory, 3>> seen{bodies};
+    EnergyControl control(spins, bodies);
+    Times const times{0, 0.2, 1000};
+    if (held)
+      integrate(Space{}, stepper, bodies, spins, times, seen, control);
+    else
+      integrate(Space{}, stepper, bodies, spins, times, seen);
+    return seen.energy;
+  };
+  EXPECT_LT(drift_of(true), 0.2 * drift_of(false));
+}
+
 template <class Stepper>
 void expect_order_kept(std::string const& method, int order) {
   auto const generator = slab.natural();

@@ -28,11 +28,11 @@ struct Setting {
   std::int64_t steps = 6;
   std::array<std::int64_t, 3> shape{1, 1, 1};
   bool along_field = false;
-  double switched_on_at = 0;            // > 0: the field is 0 before this time
-  double start_length = 1;              // of the first spin, set after the normalisation
-  std::int64_t fault_at = -1;           // step after which a spin is made NaN
-  std::int64_t normalized = 0;          // steps between Newton steps to |m| = 1; 0: none
-  double tolerance = 1e-4, min_dt = 0;  // of adaptive methods, which are observed every dt
+  double switched_on_at = 0;               // > 0: the field is 0 before this time
+  double start_length = 1;                 // of the first spin, set after the normalisation
+  std::int64_t fault_at = -1;              // step after which a spin is made NaN
+  std::int64_t normalized = 0;             // steps between Newton steps to |m| = 1; 0: none
+  double tolerance = 1e-4, min_dt = 0;     // of adaptive methods, which are observed every dt
   std::optional<double> temperature = {};  // empty: no [thermal]
   std::optional<double> multirate = {};    // strength of a slab's field as a SlowField
   std::int64_t substeps = 1;

@@ -132,8 +132,14 @@ TYPED_TEST(Paths, HaveTwoSaddles) {
   double const coupling = 0.1;
   EffectiveField const field(SiteDependentUniaxialAnisotropy(constants, {0, 0, 1}),
                              UniaxialAnisotropy(-0.5, {0, 1, 0}), Exchange(lattice, coupling));
-  auto const found =
-      this->find(field, lattice, {0, 0, 1, 0, 0, 1}, {0, 0, -1, 0, 0, -1}, this->options());
+  auto options = this->options();
+  std::int64_t evaluations = 0;
+  options.observer = [&](PathProgress const& now) {
+    EXPECT_GE(now.evaluations, evaluations);
+    evaluations = now.evaluations;
+    return Next::proceed;
+  };
+  auto const found = this->find(field, lattice, {0, 0, 1, 0, 0, 1}, {0, 0, -1, 0, 0, -1}, options);
   ASSERT_EQ(found.end, PathEnd::converged);
   ASSERT_EQ(found.saddles.size(), 2U);
   // At each saddle, one spin is nearly perpendicular to its easy axis, and the other is tilted by

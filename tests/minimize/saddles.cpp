@@ -50,6 +50,15 @@ TYPED_TEST(Saddles, TheTopOfTheEnergy) {
   EXPECT_NEAR(found.curvature, 2, 1e-5);
 }
 
+TYPED_TEST(Saddles, KeptOnesHaveTheirLowestCurvature) {
+  auto spins = spins_of<typename TestFixture::Spins>(Lattice::chain(1), {0, 0, -1});
+  auto const found = minimize(this->exec, Zeeman{{0, 0, 2}}, spins,
+                              {.keep_saddles = true, .lowest_curvature = true});
+  EXPECT_EQ(found.end, MinimizeEnd::converged);
+  EXPECT_EQ(at(numbers_of(spins), 0).z, -1);
+  EXPECT_NEAR(found.curvature, -2, 1e-5);
+}
+
 // Without a preconditioner, some of these searches find a curvature below zero in their last step.
 TYPED_TEST(Saddles, WhereTheSearchOnlyJustFindsTheWay) {
   auto const lattice = Lattice::chain(200);

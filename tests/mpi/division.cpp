@@ -72,6 +72,10 @@ TEST(Division, RanksThatDisagreeAreRefused) {
   auto crystal = open;
   crystal.cell_sites = 2;
   EXPECT_THROW(mpi::Domain(MPI_COMM_WORLD, last ? crystal : open, 2), std::invalid_argument);
+  auto const copies = open.with_replicas(2);
+  EXPECT_THROW(mpi::Domain(MPI_COMM_WORLD, last ? copies : open, 2), std::invalid_argument);
+  crystal.cell_sites = 0;
+  EXPECT_THROW(mpi::Domain(MPI_COMM_WORLD, crystal, 2), std::invalid_argument);
   EXPECT_THROW(mpi::Domain(MPI_COMM_WORLD, open, mpi::Depth(2, last ? 3 : 2)),
                std::invalid_argument);
 }

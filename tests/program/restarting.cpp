@@ -172,6 +172,17 @@ TEST_F(Restarting, GoesOnFromTheCheckpointOfAMethodThatRemembers) {
   }
 }
 
+TEST_F(Restarting, NamesKeysThatAreNewToTheRun) {
+  run_to("12", "first.h5");
+  for (auto const& [setting, key] :
+       {std::pair{"integrator.until_torque=1e-9", "integrator.until_torque"},
+        std::pair{"lattice.regions='i < 9 ? 0 : 1'", "lattice.regions"}}) {
+    auto const outcome = start(to_second({"--set", setting}));
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    EXPECT_TRUE(contains(outcome.errors, key)) << outcome.errors;
+  }
+}
+
 TEST_F(Restarting, NeedsTheCheckpointOfAMethodThatRemembers) {
   Arguments const ab2 = set("integrator.method='ab2'");
   run_to("12", "first.h5", ab2);

@@ -102,6 +102,16 @@ TEST_F(TorqueModes, MoveAsInARun) {
     }
 }
 
+// As without torques, H is the field per moment.
+TEST_F(TorqueModes, AreRefusedByTheFieldPerMoment) {
+  auto const outcome =
+      modes(scene("shape = [2]\nmoments = [2.5]\n[field]\nanisotropy = { constant = 1.0, axis = "
+                  "[0, 0, 1] }\napplied = [0.3, 0, 0.3]",
+                  "slonczewski = { damping_like = 1e-14, polarization = [0, 0, 1] }"),
+            {"--at-rest"});
+  EXPECT_TRUE(contains(outcome.errors, "max |m x H| is 0.3, ")) << outcome.errors;
+}
+
 TEST_F(TorqueModes, OfFrozenSpinsAreNone) {
   auto const outcome =
       modes(scene("shape = [2]\nfrozen = \"1\"\n[field]\napplied = [0, 0, 1]",

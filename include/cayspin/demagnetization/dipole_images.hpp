@@ -161,8 +161,7 @@ class DipoleImages {
       double const factor = 2 * std::numbers::pi / (area * length), phase = scalar_product(g, r);
       double const c = factor * std::cos(phase), s = factor * std::sin(phase);
       // d^2 (up + down) / dz^2
-      double const second =
-          length * (length * (up + down) - 4 * alpha_ / root * gauss * of_z);
+      double const second = length * (length * (up + down) - 4 * alpha_ / root * gauss * of_z);
       sum.add_product(-c * (up + down), g, g)
           .add_product(-2 * s * length * (up - down), g, n)
           .add_product(c * second, n, n);
