@@ -2,10 +2,12 @@
 #include "applied_field.hpp"
 
 #include "failure.hpp"
+#include "text.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace cayspin::simulation {
@@ -16,16 +18,17 @@ std::array<io::AppliedComponent, 3> const none{0.0, 0.0, 0.0};
 
 }  // namespace
 
-AppliedField::AppliedField(io::Field const& field)
-    : AppliedField(field.applied.value_or(none), "field.applied") {
+AppliedField::AppliedField(io::Field const& field, io::Units const& units)
+    : AppliedField(field.applied.value_or(none), "field.applied", units) {
   own_ = field.own.uniform;
   mu0_ = field.mu0;
   present_ = field.applied || own_;
   depends_on_time_ = depends_on_time_ || own_;
 }
 
-AppliedField::AppliedField(std::array<io::AppliedComponent, 3> const& components, std::string key)
-    : key_(std::move(key)) {
+AppliedField::AppliedField(std::array<io::AppliedComponent, 3> const& components, std::string key,
+                           io::Units const& units)
+    : key_(std::move(key)), units_(units) {
   for (std::size_t c = 0; c < 3; ++c) {
     if (auto const* text = std::get_if<std::string>(&components[c])) {
       io::Expression expression(*text, {"t"});
@@ -38,10 +41,12 @@ AppliedField::AppliedField(std::array<io::AppliedComponent, 3> const& components
 }
 
 Vec3<double> AppliedField::operator()(double t) const {
+  auto const not_finite = [&] {
+    return NumbersFailed(fmt::format("{}: is not finite at t = {}", key_, time_text(units_, t)));
+  };
   if (own_) {
     auto const h = own_(t);
-    if (!std::isfinite(h[0]) || !std::isfinite(h[1]) || !std::isfinite(h[2]))
-      throw NumbersFailed(fmt::format("field.applied, t = {}: the result is not finite", t));
+    if (!std::isfinite(h[0]) || !std::isfinite(h[1]) || !std::isfinite(h[2])) throw not_finite();
     return {mu0_ * h[0], mu0_ * h[1], mu0_ * h[2]};
   }
   auto const at = [&](std::size_t c) {
@@ -49,8 +54,8 @@ Vec3<double> AppliedField::operator()(double t) const {
     if (!expression) return mu0_ * std::get<double>(components_[c]);
     try {
       return mu0_ * (*expression)(&t);
-    } catch (std::runtime_error const& error) {
-      throw NumbersFailed(fmt::format("{}, t = {}: {}", key_, t, error.what()));
+    } catch (std::runtime_error const&) {
+      throw not_finite();
     }
   };
   return {at(0), at(1), at(2)};

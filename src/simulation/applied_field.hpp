@@ -3,6 +3,7 @@
 
 #include "io/expression.hpp"
 #include "io/field.hpp"
+#include "io/units.hpp"
 
 #include <cayspin/vec3.hpp>
 
@@ -16,8 +17,10 @@ namespace cayspin::simulation {
 /// The uniform field mu0 applied(t) of a scene, or another vector given by expressions.
 class AppliedField {
  public:
-  explicit AppliedField(io::Field const& field);
-  AppliedField(std::array<io::AppliedComponent, 3> const& components, std::string key);
+  /// `units`: of the scene, for messages.
+  explicit AppliedField(io::Field const& field, io::Units const& units = {});
+  AppliedField(std::array<io::AppliedComponent, 3> const& components, std::string key,
+               io::Units const& units = {});
 
   bool present() const { return present_; }
   bool depends_on_time() const { return depends_on_time_; }
@@ -31,6 +34,7 @@ class AppliedField {
   double mu0_ = 1;
   bool present_ = true, depends_on_time_ = false;
   std::string key_ = "field.applied";
+  io::Units units_;
 };
 
 }  // namespace cayspin::simulation

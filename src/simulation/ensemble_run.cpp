@@ -6,6 +6,7 @@
 #include "restart.hpp"
 #include "run_files.hpp"
 #include "scene_minimizer.hpp"
+#include "text.hpp"
 #include "turn.hpp"
 
 #include <fmt/format.h>
@@ -67,8 +68,9 @@ std::optional<std::string> EnsembleRun::continue_from(std::filesystem::path cons
   }
   auto const info = io::read_ensemble_info(file);
   if (info.ensemble.replicas != scene_.ensemble.replicas)
-    throw UsageError(fmt::format("{}: it has {} replicas, the scene {}; accepted: as many",
-                                 file.string(), info.ensemble.replicas, scene_.ensemble.replicas));
+    throw UsageError(fmt::format("{}: it has {}, and the scene has {}; accepted: the same number",
+                                 file.string(), counted(info.ensemble.replicas, "replica"),
+                                 scene_.ensemble.replicas));
   auto const plan = make_plan(first().scene(), settings_.precision);
   auto const end =
       scene_.integrator.steps > 0 ? plan.times.steps : std::numeric_limits<std::int64_t>::max();

@@ -33,12 +33,16 @@ Kokkos::InitializationSettings settings(std::string const& space, std::optional<
   if (!device) return settings;
   int const devices = Kokkos::num_devices();
   if (devices < 1)
-    throw UsageError("--device: there is no device, or no backend for one is compiled in");
+    throw UsageError(
+        fmt::format("--device {}: there is no device, or no backend for one is compiled in; "
+                    "accepted: no --device",
+                    *device));
   if (is_on_host(space))
     throw UsageError(fmt::format("--device {}: --space {} is on the host; accepted: no --device",
                                  *device, space));
   if (*device >= devices)
-    throw UsageError(fmt::format("--device {}: accepted: 0 .. {}", *device, devices - 1));
+    throw UsageError(fmt::format("--device {}: accepted: {}", *device,
+                                 devices == 1 ? "0" : fmt::format("0 to {}", devices - 1)));
   settings.set_device_id(*device);
   return settings;
 }

@@ -109,8 +109,8 @@ double largest_exchange(io::Scene const& scene) {
   auto const range = range_of_sites(scene, numbers, key);
   if (range.least < 0 && range.largest > 0)
     throw io::scene_error(scene, numbers.key_or(key),
-                          "the constants must have one sign, as the harmonic mean of a positive "
-                          "and a negative one is no bond");
+                          "the constants must all have the same sign, as the harmonic mean of a "
+                          "positive and a negative one is no bond");
   double factor = 1;
   for (auto const& between : scene.field.exchange_between)
     factor = std::max(factor, std::abs(between.factor));

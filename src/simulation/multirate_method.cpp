@@ -146,7 +146,8 @@ void require_slow_field_fits(io::Scene const& scene, Variant const& variant) {
   if (auto const& demag = scene.field.demag;
       scene.field.own.nonlocal && demag && demag->multirate == false)
     refuse(scene, fmt::format("field.{}.multirate", demag->key),
-           "is computed with the program's own field, which is expensive with substeps",
+           "false does not go with substeps and a program's own nonlocal field: demag is evaluated "
+           "together with that field, once a step",
            "true, or no such key");
   if (!takes_slow_fields(integrator, variant))
     refuse(

@@ -127,7 +127,7 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
 // Returns the largest value of damping * temperature * gyromagnetic ratio / moment at any site and
 // at 1001 equally spaced times of the run.
 double largest_heat(io::Scene const& scene, Times const& times) {
-  TemperatureInTime const temperature(*scene.thermal);
+  TemperatureInTime const temperature(*scene.thermal, scene.units);
   double const begin = times.at(times.first), end = times.at(times.steps);
   double largest = 0;
   constexpr int samples = 1000;
@@ -255,20 +255,20 @@ std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units) 
   if (dt > plan.stable_dt && plan.stable_dt > 0)
     return fmt::format("{} is above the stable {}", text, time_text(units, plan.stable_dt, 6));
   if (dt > plan.stable_dt)
-    return fmt::format("{} is not stable: at this damping the method amplifies at every dt", text);
+    return fmt::format("{} is not stable: at this damping errors grow at every dt", text);
   // A stable dt is not always short enough: methods of order 8 are stable even at steps that no
   // longer resolve the motion.
   double const most = std::isfinite(plan.stable_dt) ? 3 : 2;
   if (!(plan.turn <= most))
-    return fmt::format("{} turns spins by up to {:.3g} radians a step, too many to follow", text,
+    return fmt::format("{} turns spins by up to {:.3g} radians a step, too far to follow", text,
                        plan.turn);
   if (auto const& shortest = plan.features->shortest; shortest && plan.substep > shortest->length)
     return fmt::format("{} is longer than {}, a feature of {} at t = {}, which steps may miss",
                        text, time_text(units, shortest->length, 3), shortest->key,
                        time_text(units, shortest->time, 6));
   if (plan.noise_turn > Plan::most_noise)
-    return fmt::format("{} lets noise turn spins by {:.3g} radians a step, too many to follow",
-                       text, plan.noise_turn);
+    return fmt::format("{} lets noise turn spins by {:.3g} radians a step, too far to follow", text,
+                       plan.noise_turn);
   return std::nullopt;
 }
 
@@ -293,9 +293,11 @@ bool fits(Plan const& plan) { return plan.memory.total() <= io::available_memory
 void require_memory(io::Scene const& scene, Plan const& plan, int ranks) {
   std::int64_t const available = io::available_memory() / ranks;
   if (plan.memory.total() > available)
-    throw io::scene_error(scene, "lattice.shape",
-                          fmt::format("the run needs {} of memory, {} are available",
-                                      bytes_text(plan.memory.total()), bytes_text(available)));
+    throw io::scene_error(
+        scene, "lattice.shape",
+        fmt::format("the run needs {} of memory, and {} is available; accepted: a smaller lattice, "
+                    "single precision, or a run on more ranks",
+                    bytes_text(plan.memory.total()), bytes_text(available)));
 }
 
 }  // namespace cayspin::simulation

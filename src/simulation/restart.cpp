@@ -142,8 +142,7 @@ LastFrame last_frame(io::TrajectoryInfo const& trajectory, std::vector<io::Stage
       auto const now = static_cast<std::size_t>(state.begin.stage), next = now + 1;
       if (next >= stages.size() || frame == 0)
         throw UsageError(
-            fmt::format("{}: its frame {} is of stage {}; accepted: the scene in as "
-                        "many stages",
+            fmt::format("{}: its frame {} is of stage {}; accepted: a scene with that stage",
                         trajectory.path.string(), frame, of_frames[frame]));
       stages[now].scene.begin = state.begin;
       state.begin = io::begin_after(stages[now].scene, steps[frame - 1], stages[next].scene);
@@ -237,7 +236,7 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
     refuse(units.si ? "it is in reduced units" : "it is in SI units", "the units of the scene");
   if (before)
     if (auto const key = other_lattice_key(*before, scene); !key.empty())
-      refuse(fmt::format("its {} is another than the scene's", key),
+      refuse(fmt::format("its {} differs from the scene's", key),
              "the lattice that it was run with");
   if (stored != to_string(precision))
     refuse(fmt::format("its spins are in {} precision", stored),
@@ -262,12 +261,10 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
     refuse(fmt::format("it ends at step {}, the scene at step {}", step_, end),
            "a scene that ends later");
   if (needs_memory && from_.is_ensemble)
-    refuse(
-        "its method, or a key such as until_torque, needs more than frames to go on with the "
-        "same bits",
-        "an ensemble that steps only from its spins, or one that starts anew");
+    refuse("its method, or a key such as until_torque, needs more than frames to continue exactly",
+           "an ensemble that steps only from its spins, or one that starts anew");
   if (needs_memory && !uses_checkpoint_)
-    refuse("the run needs more than its frames to go on with the same bits, and " +
+    refuse("the run needs more than its frames to continue exactly, and " +
                io::checkpoint_beside(from_.path).string() + " is not there",
            "a file with its checkpoint, or initial.file in place of a restart: a run that starts "
            "from the last frame");
@@ -281,11 +278,12 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
     shift_ = static_cast<std::int64_t>(shift);
   }
   if (!ran)
-    warning_ = from_.path.string() + ": its scene cannot be read, and is taken for this one";
+    warning_ = from_.path.string() +
+               ": its scene cannot be read; it is assumed to be the same as this one";
   else if (!changes.empty())
-    warning_ = fmt::format("{}: other than in its scene: {}{}", from_.path.string(),
+    warning_ = fmt::format("{}: these keys differ from its scene: {}{}", from_.path.string(),
                            fmt::join(changes, ", "),
-                           !alike && remembers(scene, plan) ? "; the method begins again" : "");
+                           !alike && remembers(scene, plan) ? "; the method starts anew" : "");
 }
 
 std::vector<double> Restart::spins(io::Scene const& scene, io::SiteBox const& box) const {

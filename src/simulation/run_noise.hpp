@@ -23,7 +23,7 @@ template <class Spins>
 class RunNoise {
  public:
   RunNoise(io::Scene const& scene, SceneGenerator<Spins> const& generator, Spins const& like)
-      : noise_(noise(scene, generator, like)), temperature_(*scene.thermal) {}
+      : noise_(noise(scene, generator, like)), temperature_(*scene.thermal, scene.units) {}
 
   /// Applies the noise after step `step`, calls look() if `wanted`, and applies the noise before
   /// the next step, unless look() returns stop or the step is the last. `first`: the step from

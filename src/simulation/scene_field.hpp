@@ -28,9 +28,11 @@ class SceneField {
   using SlowTerm = SlowField<Spins, WholeField<Spins>>;
 
   /// `has_slow`: the field that is computed from all spins at once is multirate.
-  SceneField(io::Field const& field, Lattice const& lattice, bool has_slow,
+  SceneField(io::Field const& field, io::Units const& units, Lattice const& lattice, bool has_slow,
              std::optional<FieldInPass<Spins>> pass)
-      : lattice_terms_(lattice_terms_of(field, lattice)), applied_(field), pass_(std::move(pass)) {
+      : lattice_terms_(lattice_terms_of(field, lattice)),
+        applied_(field, units),
+        pass_(std::move(pass)) {
     if (!pass_)
       for (auto const& term : field.anisotropies) quadratic_.add(term.constant, term.axis);
     if (field.slab_demag) add(*field.slab_demag, field.mu0, lattice);

@@ -76,7 +76,7 @@ SceneField<Spins> field_of(io::Scene const& scene, Lattice const& lattice, bool 
   if (field.demag && !field.demag->dipoles && std::filesystem::is_regular_file(scene.path, ignored))
     field.demag->cache = std::filesystem::path(scene.path).replace_extension(".demag");
   field = with_joined_own_field<typename Spins::value_type>(scene, std::move(field), lattice);
-  return SceneField<Spins>(field, lattice, has_slow, std::move(pass));
+  return SceneField<Spins>(field, scene.units, lattice, has_slow, std::move(pass));
 }
 
 template <class Spins>

@@ -6,6 +6,7 @@
 #include "scene_generator.hpp"
 #include "scene_minimizer.hpp"
 #include "space.hpp"
+#include "text.hpp"
 #include "torque_modes.hpp"
 #include "turning_of_sites.hpp"
 
@@ -246,9 +247,9 @@ void require_bands(io::Scene const& scene, std::vector<std::array<double, 3>> co
     if (lattice.boundary[axis] != io::BoundaryKind::periodic) {
       if (any_wave([](double k) { return k != 0; }))
         throw UsageError(
-            fmt::format("--wave-vector: it has a component along axis {}, which is open; accepted: "
+            fmt::format("--wave-vector: it has a component along {}, which is open; accepted: "
                         "0 there, or a periodic axis",
-                        axis));
+                        "xyz"[axis]));
       continue;
     }
     // A single cell is its own neighbour, so bonds between cells would have no phase.
@@ -257,8 +258,8 @@ void require_bands(io::Scene const& scene, std::vector<std::array<double, 3>> co
     if (cells[axis] == 1 ? varies && reach > 0 : cells[axis] < 2 * reach)
       throw io::scene_error(
           scene, "lattice.shape",
-          fmt::format("{} {} along axis {}, and bonds reach over {}; accepted: at least {}",
-                      cells[axis], cells[axis] == 1 ? "cell" : "cells", axis, reach,
+          fmt::format("{} along {}, and bonds reach over {}; accepted: at least {}",
+                      counted(cells[axis], "cell"), "xyz"[axis], counted(reach, "cell"),
                       2 * reach + 1));
   }
 }

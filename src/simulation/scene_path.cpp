@@ -96,7 +96,8 @@ void require_same_frozen_spins(io::Scene const& scene, std::vector<double> const
   for (std::size_t i = 0; i < from.size() && !frozen.empty(); ++i)
     if (frozen[i / 3] && std::abs(from[i] - to[i]) > 1e-6)
       throw io::scene_error(scene, "lattice.frozen",
-                            "both ends have other spins there; accepted: the same ones");
+                            "the frozen spins of the two ends differ; accepted: the same spins in "
+                            "both");
 }
 
 }  // namespace

@@ -225,7 +225,7 @@ std::int64_t SceneRun::step_at(double t) const {
 
 void SceneRun::require_reachable(std::int64_t count) const {
   if (!io::has_integrator(scene_))
-    throw UsageError("the scene has no table [integrator]; accepted: a search for an equilibrium");
+    throw UsageError("the scene has no table [integrator]; accepted: relax()");
   if (count < 0) throw UsageError(fmt::format("{} steps; accepted: a whole number >= 0", count));
   constexpr std::int64_t last = std::int64_t{1} << 53U;  // times beyond it are not exact
   if (count > last - number_)

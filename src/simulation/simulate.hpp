@@ -2,6 +2,7 @@
 #pragma once
 
 #include "failure.hpp"
+#include "io/scene.hpp"
 #include "kokkos_settings.hpp"
 #include "precision.hpp"
 #include "scene_generator.hpp"
@@ -45,6 +46,7 @@ struct Simulation {
   Spins spins;
   SceneGenerator<Spins> generator;
   Times times;
+  io::Units units;  // for messages
   RunObserver<Exec, Spins>* observer = nullptr;
 
   /// `start`: unit vectors, sites x 3.
@@ -55,7 +57,9 @@ struct Simulation {
   }
   Simulation(io::Scene const& scene, Lattice const& lattice, Times const& times_of_run,
              std::vector<double> const& start)
-      : Simulation(lattice, times_of_run, start, SceneGenerator<Spins>(scene, lattice)) {}
+      : Simulation(lattice, times_of_run, start, SceneGenerator<Spins>(scene, lattice)) {
+    units = scene.units;
+  }
 
   /// Runs to the end of the times, or until a failure or a stop by `observed_by`.
   Ending advance(OpenMethod& method, RunObserver<Exec, Spins>& observed_by);

@@ -114,8 +114,8 @@ void require_same_terms(io::Scene const& first, io::Scene const& scene) {
   if (more_scalars(scene).terms == before) return;
   throw io::scene_error(
       scene, "field",
-      fmt::format("has other terms than at the start, and output.terms stores the energy of each; "
-                  "accepted: the terms {}, or output.terms = false",
+      fmt::format("has different terms from those at the start, and output.terms stores the energy "
+                  "of each; accepted: the terms {}, or output.terms = false",
                   fmt::join(before, ", ")));
 }
 

@@ -32,7 +32,8 @@ void FieldInPass<Spins>::Terms::add_sources(io::Scene const& scene, io::SiteBox 
   if (profiles.size() > most)
     throw io::scene_error(scene, "field.sources",
                           "has " + std::to_string(profiles.size()) +
-                              " times that differ; accepted: at most " + std::to_string(most));
+                              " different factors `time`; accepted: at most " +
+                              std::to_string(most));
   for (auto const& [time, vectors] : profiles) {
     std::vector<double> lengths(vectors.size() / 3);
     for (std::size_t site = 0; site < lengths.size(); ++site)
@@ -40,7 +41,7 @@ void FieldInPass<Spins>::Terms::add_sources(io::Scene const& scene, io::SiteBox 
     SiteField<Real, 3, Memory> profile("FieldInPass::source", lattice_);
     copy_from_host(vectors, profile);
     cayspin::detail::update_ghosts(typename Memory::execution_space(), lattice_, profile);
-    sources_.push_back({profile, AppliedField({time, 0.0, 0.0}, "field.sources"),
+    sources_.push_back({profile, AppliedField({time, 0.0, 0.0}, "field.sources", scene.units),
                         largest_of_parts(lattice_, lengths)});
   }
 }

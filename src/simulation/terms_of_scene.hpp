@@ -223,7 +223,7 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
   });
   seen_ = lattice_terms_of(seen, lattice);
   if (scene.field.in_time.there()) {
-    in_time_.emplace(scene.field.in_time.components(), "field.in_time");
+    in_time_.emplace(scene.field.in_time.components(), "field.in_time", scene.units);
     auto const uniform = io::without_numbers_of_sites(scene.field);
     uniform_.exchange = uniform.exchange;
     uniform_.dmi = uniform.dmi;

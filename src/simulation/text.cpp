@@ -36,10 +36,6 @@ std::string duration_text(double seconds) {
   return fmt::format("{} d {} h", total / 86400, total / 3600 % 24);
 }
 
-std::string counted(std::int64_t count, std::string_view what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
-
 std::string cells_text(std::array<std::int64_t, 3> const& shape, std::int64_t cell_sites) {
   auto text = fmt::format("{} x {} x {}", shape[0], shape[1], shape[2] / cell_sites);
   if (cell_sites > 1) text += fmt::format(" cells of {} sites", cell_sites);

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/counted.hpp"
 #include "io/units.hpp"
 
 #include <array>
 #include <cstdint>
 #include <string>
-#include <string_view>
 
 namespace cayspin::simulation {
+
+using io::counted;
 
 /// Returns "1.2 GB", for example.
 std::string bytes_text(double bytes);
 std::string bytes_text(std::int64_t bytes);
 /// Returns "3 min 20 s", for example.
 std::string duration_text(double seconds);
-/// Returns "1 step" or "2 steps", for example.
-std::string counted(std::int64_t count, std::string_view what);
 /// Returns the cells of a lattice in the form of TrajectoryHeader: "4 x 3 x 2", or "4 x 3 x 2 cells
 /// of 3 sites".
 std::string cells_text(std::array<std::int64_t, 3> const& shape, std::int64_t cell_sites);

@@ -4,6 +4,7 @@
 #include "failure.hpp"
 #include "io/expression.hpp"
 #include "io/scene.hpp"
+#include "text.hpp"
 
 #include <cayspin/units.hpp>
 
@@ -32,7 +33,9 @@ inline double typed_temperature(io::Scene const& scene) {
 /// The common temperature of the sites at t. Throws NumbersFailed if it is negative or not finite.
 class TemperatureInTime {
  public:
-  explicit TemperatureInTime(io::Thermal const& thermal) : temperature_(thermal.temperature) {
+  /// `units`: of the scene, for messages.
+  TemperatureInTime(io::Thermal const& thermal, io::Units const& units)
+      : temperature_(thermal.temperature), units_(units) {
     if (auto const* const text = std::get_if<std::string>(&thermal.in_time))
       expression_.emplace(*text, std::vector<std::string>{"t"});
     else
@@ -45,16 +48,21 @@ class TemperatureInTime {
     double factor = -1;
     try {
       factor = (*expression_)(&t);
-    } catch (std::runtime_error const& error) {
-      throw NumbersFailed(fmt::format("thermal.temperature, t = {}: {}", t, error.what()));
+    } catch (std::runtime_error const&) {
+      fail("is not finite", t);
     }
-    if (!(factor >= 0))
-      throw NumbersFailed(fmt::format("thermal.temperature, t = {}: is negative", t));
+    if (!(factor >= 0)) fail("is negative", t);
     return factor * temperature_;
   }
 
  private:
+  [[noreturn]] void fail(char const* what, double t) const {
+    throw NumbersFailed(
+        fmt::format("thermal.temperature: {} at t = {}", what, time_text(units_, t)));
+  }
+
   double temperature_;
+  io::Units units_;
   std::optional<io::Expression> expression_;
 };
 

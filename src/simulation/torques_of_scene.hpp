@@ -15,14 +15,14 @@ template <class Spins>
 void FieldInPass<Spins>::Terms::add_torques(io::Scene const& scene, io::SiteBox const& box) {
   auto const& [zhang_li, slonczewski] = scene.field.torque;
   if (zhang_li) {
-    torques_.velocity.emplace(zhang_li->velocity, "torque.zhang_li.velocity");
+    torques_.velocity.emplace(zhang_li->velocity, "torque.zhang_li.velocity", scene.units);
     torques_.nonadiabaticity = zhang_li->nonadiabaticity;
   }
   if (!slonczewski) return;
   constexpr char const* key = "torque.slonczewski";
   torques_.strengths.emplace(
       std::array<io::AppliedComponent, 3>{slonczewski->damping_like, slonczewski->field_like, 0.0},
-      key);
+      key, scene.units);
   if (!slonczewski->polarizations.there())
     torques_.polarization = vector(slonczewski->polarization);
   torques_.lambda = slonczewski->lambda;

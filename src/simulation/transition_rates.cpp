@@ -3,6 +3,7 @@
 
 #include "failure.hpp"
 #include "growth_rate.hpp"
+#include "text.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -105,10 +106,10 @@ class State {
     if (std::ssize(translations) == count) return volume_of(translations);
     auto const rotated = rotations();
     if (std::ssize(rotated) != count)
-      throw NumbersFailed(fmt::format(
-          "rates: {} has {} zero modes; accepted: none, translations along {} periodic axes, or "
-          "rotations of all spins",
-          name_, count, translations.size()));
+      throw NumbersFailed(
+          fmt::format("rates: {} has {}; accepted: none, translations along periodic axes, or "
+                      "rotations of all spins",
+                      name_, counted(count, "zero mode")));
     constexpr std::array volumes{2 * pi, 4 * pi, 8 * pi * pi};  // of all angles
     return volumes[rotated.size() - 1] * volume_of(rotated);
   }

@@ -44,7 +44,8 @@ class Turn {
  private:
   static void require_free(bool taken = taken_) {
     if (taken)
-      throw UsageError("a field or an observer's question may not use a run that is stepping");
+      throw UsageError(
+          "this run is taking a step: a field function or an observer's due() may not use it");
   }
   static std::recursive_mutex& mutex_of_others() {
     static std::recursive_mutex one;

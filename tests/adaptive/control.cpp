@@ -309,6 +309,9 @@ TEST(AdaptiveFailure, FieldsTooStrongForTimeAreRefused) {
       auto const number = said.find("a step below ");
       ASSERT_NE(number, std::string::npos) << said;
       EXPECT_GT(std::stod(said.substr(number + 13)), 0) << said;
+      EXPECT_EQ(error.t(), 1);
+      EXPECT_GT(error.dt(), 0);
+      EXPECT_EQ(error.min_dt(), 0);
     }
     EXPECT_EQ(copy_to_host(spins), start);
   }

@@ -190,7 +190,7 @@ TEST(Following, WhatStandsStillIsRefused) {
   auto const refused = [&](std::string const& change, std::string const& words) {
     expect_refused([&] { return scene_of(text, {following[0], change}); }, words);
   };
-  std::string const along = " differs along x, along which the lattice follows";
+  std::string const along = " differs along x, along which lattice.follow moves the lattice";
   refused("lattice.regions='i % 2'", "lattice.follow: lattice.regions" + along);
   refused("lattice.occupied='i > 3'", "lattice.follow: lattice.occupied" + along);
   refused("lattice.frozen='i == 0'", "lattice.follow: lattice.frozen" + along);
@@ -199,7 +199,7 @@ TEST(Following, WhatStandsStillIsRefused) {
   refused("field.sources=[{profile=['x',0,0]}]", "lattice.follow: field.sources" + along);
   refused("system.damping='x'", "lattice.follow: system.damping" + along);
   refused("lattice.boundary='periodic'", "the lattice is periodic along x");
-  refused("lattice.follow.axis='y'", "the lattice has no neighbours along y");
+  refused("lattice.follow.axis='y'", "the lattice has only one cell along y");
   refused("lattice.follow.axis='a'", "lattice.follow.axis: ");
   refused("lattice.follow.quantity='charge'", "the charge is that of planes along x and y");
   refused("lattice.follow.value=1.5", "lattice.follow.value: ");

@@ -201,7 +201,7 @@ TEST(GyromagneticOfSites, IsRefusedInOneLine) {
   };
   expect_refused(with("'i'", "method = 'heun'"),
                  "lattice.gyromagnetic: is 0 at site (0, 0, 0); accepted: numbers > 0");
-  expect_refused(with("'1+i'", "method = 'series4'"), "one applied field for all spins");
+  expect_refused(with("'1+i'", "method = 'series4'"), "one gyromagnetic ratio for all spins");
   expect_refused(with("'1+i'", "method = 'euler', isotropy = 'analytic'"),
                  "gyromagnetic ratios that differ");
   expect_refused(with("'1+i'", "method = 'heun', energy_control = true"), "other than 1");

@@ -167,7 +167,7 @@ TEST(MultirateFields, AreRefusedInOneLine) {
   scene.field.slab_demag.reset();
   scene.field.demag = io::Demagnetization{};
   scene.field.demag->multirate = false;
-  expect_refused([&] { return scene; }, ".multirate: is computed with the program's own field");
+  expect_refused([&] { return scene; }, ".multirate: false does not go with substeps and a ");
 }
 
 TEST(MultirateFields, AreInThePlan) {

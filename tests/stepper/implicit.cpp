@@ -94,6 +94,8 @@ TYPED_TEST(ImplicitStep, WithoutRootLeavesTheSpins) {
       FAIL() << "converged";
     } catch (NotConverged const& error) {
       EXPECT_NE(std::string(error.what()).find("dt = 3"), std::string::npos) << error.what();
+      EXPECT_EQ(error.t(), 0.5);
+      EXPECT_EQ(error.dt(), 3);
     }
     EXPECT_EQ(copy_to_host(spins), before);
     // The stepper can still be used.

@@ -143,8 +143,8 @@ class SiteDependentExchange : public detail::PreparedOnce {
         detail::signs_of(constants_, "cayspin::SiteDependentExchange: the constants");
     if (signs.negative && signs.positive)
       throw std::invalid_argument(
-          "cayspin::SiteDependentExchange: the constants must have one sign, as the harmonic mean "
-          "of a positive and a negative one is no bond");
+          "cayspin::SiteDependentExchange: the constants must all have the same sign, as the "
+          "harmonic mean of a positive and a negative one is no bond");
     find_bonds();
   }
 

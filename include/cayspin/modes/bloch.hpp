@@ -84,8 +84,8 @@ inline void require_periodic_along(std::vector<std::array<double, 3>> const& wav
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (wave[axis] != 0 && lattice.boundary[axis] != Boundary::periodic)
         throw std::invalid_argument(
-            "cayspin::bloch_modes: a wave vector has a component along axis " +
-            std::to_string(axis) + ", which is open; accepted: 0 there, or a periodic axis");
+            std::string("cayspin::bloch_modes: a wave vector has a component along ") +
+            "xyz"[axis] + ", which is open; accepted: 0 there, or a periodic axis");
 }
 
 using Point = Eigen::Vector3d;
@@ -119,9 +119,9 @@ class BlochProblem {
       double const around = wave[axis] * static_cast<double>(cells[axis]);
       if (reaches_around[axis] && std::abs(around - std::round(around)) > 1e-9)
         throw std::invalid_argument(
-            "cayspin::bloch_modes: the interaction reaches around the lattice; accepted: more "
-            "cells along axis " +
-            std::to_string(axis) + ", or a wave vector with a whole number of waves in it");
+            std::string("cayspin::bloch_modes: the interaction reaches around the lattice; "
+                        "accepted: more cells along ") +
+            "xyz"[axis] + ", or a wave vector with a whole number of waves in it");
     }
     Eigen::MatrixXcd sum = Eigen::MatrixXcd::Zero(turning.rows(), turning.cols());
     for (auto const& [distance, hessian] : blocks) {

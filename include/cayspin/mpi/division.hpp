@@ -44,8 +44,10 @@ inline bool can_divide(Lattice const& lattice, Depth const& depth, Division cons
 
 /// Describes the depth in words.
 inline std::string to_text(Depth const& depth) {
-  if (depth.y == depth.z) return std::to_string(depth.y) + " rows or planes";
-  return std::to_string(depth.y) + " rows or " + std::to_string(depth.z) + " planes";
+  auto const* const row = depth.y == 1 ? " row" : " rows";
+  auto const* const plane = depth.z == 1 ? " plane" : " planes";
+  if (depth.y == depth.z) return std::to_string(depth.y) + row + " or" + plane;
+  return std::to_string(depth.y) + row + " or " + std::to_string(depth.z) + plane;
 }
 
 /// Returns the division into this many parts that repeats the least work on ghosts, estimated as if

@@ -11,13 +11,22 @@
 
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 namespace cayspin::inline v0_2 {
 
 /// Thrown when an implicit step's equation was not solved. The spins are those before the step.
 class NotConverged : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  NotConverged(std::string const& message, double start, double length)
+      : std::runtime_error(message), t_(start), dt_(length) {}
+
+  /// Return the start and the length of the step.
+  double t() const { return t_; }
+  double dt() const { return dt_; }
+
+ private:
+  double t_, dt_;
 };
 
 /// Options of the solver in implicit steps.
@@ -105,7 +114,8 @@ class Implicit : public StepperBase<Spins> {
     if (!solve(
             exec, [&](Spins const& from, Spins const& to) { map(from, to, AtMiddle); }, spins))
       throw NotConverged(this->label("::step: the equation of the step from t = ") + to_text(t) +
-                         " is not solved: dt = " + to_text(dt) + " is too large");
+                             " is not solved: dt = " + to_text(dt) + " is too large",
+                         t, dt);
     if constexpr (is_corrected) {
       sigma_.find(exec, generator, spins, t, dt);
       evaluations_done_ += sigma_.evaluations;

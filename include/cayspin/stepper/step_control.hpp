@@ -20,7 +20,17 @@ namespace cayspin::inline v0_2 {
 /// step starts a run from them.
 class StepTooSmall : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  StepTooSmall(std::string const& message, double start, double length, double least)
+      : std::runtime_error(message), t_(start), dt_(length), min_dt_(least) {}
+
+  /// Return the start and the length of the step that would have been needed.
+  double t() const { return t_; }
+  double dt() const { return dt_; }
+  /// Returns the smallest step that the options allow.
+  double min_dt() const { return min_dt_; }
+
+ private:
+  double t_, dt_, min_dt_;
 };
 
 /// Options for the steps of an adaptive method.
@@ -227,11 +237,12 @@ class OwnSteps {
 
   StepBounds bounds_;
   [[noreturn]] void give_up(double t, double dt) const {
-    throw StepTooSmall(region_ + "::step: from t = " + to_text(t) +
-                       " the tolerance needs a step below " + to_text(dt) +
-                       (options_.min_dt > dt
-                            ? ", and the smallest allowed is " + to_text(options_.min_dt)
-                            : "; the numbers are not finite, or the field is not smooth"));
+    throw StepTooSmall(
+        region_ + "::step: from t = " + to_text(t) + " the tolerance needs a step below " +
+            to_text(dt) +
+            (options_.min_dt > dt ? ", and the smallest allowed is " + to_text(options_.min_dt)
+                                  : "; the numbers are not finite, or the field is not smooth"),
+        t, dt, options_.min_dt);
   }
 
   std::string region_;

@@ -109,8 +109,9 @@ class StiffGauss : public detail::StepperBase<Spins> {
     if (!solved) {
       give_back(spins);
       throw NotConverged(this->label("::step: the equation of the step from t = ") +
-                         detail::to_text(t) + " is not solved: dt = " + detail::to_text(dt) +
-                         " is too large");
+                             detail::to_text(t) + " is not solved: dt = " + detail::to_text(dt) +
+                             " is too large",
+                         t, dt);
     }
   }
 
