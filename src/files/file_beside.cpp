@@ -55,7 +55,7 @@ void FileBeside::commit() {
 }
 
 void FileBeside::fail() const {
-  throw_unwritten(path_, errno == 0 ? "the disk takes no more" : std::strerror(errno));
+  throw_unwritten(path_, errno == 0 ? "the disk is full" : std::strerror(errno));
 }
 
 }  // namespace cayspin::inline v0_2::io

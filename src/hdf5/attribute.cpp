@@ -140,7 +140,7 @@ void RootAttributes::require_version(char const* name, std::int64_t accepted,
   if (version != accepted)
     throw_failure(
         path_, action,
-        "its format is " + std::to_string(version) + "; accepted is " + std::to_string(accepted));
+        "its format is " + std::to_string(version) + "; accepted: " + std::to_string(accepted));
 }
 
 }  // namespace cayspin::inline v0_2::io

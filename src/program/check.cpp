@@ -41,8 +41,10 @@ std::optional<double> repeated_on(CheckOptions const& options, io::Scene const& 
                                   Plan const& plan) {
   if (!options.ranks) return std::nullopt;
   if (plan.variant.ghosts == 0)
-    throw UsageError(fmt::format("--ranks {}: the method runs only on one rank; accepted: another",
-                                 *options.ranks));
+    throw UsageError(
+        fmt::format("--ranks {}: method \"{}\" runs only on one rank; accepted: no --ranks, or "
+                    "another integrator.method",
+                    *options.ranks, plan.variant.method->word));
   auto const parts = read_parts(*options.ranks, plan.lattice, depth_of_parts(scene, plan));
   return repeated_share(plan.lattice, plan.variant.ghosts, parts);
 }
@@ -130,7 +132,7 @@ std::string output_text(io::Scene const& scene, Plan const& plan) {
   if (output.table) text += ", samples also in a text table";
   if (output.regions) text += ", samples of each region";
   if (output.terms) text += ", energies of each term";
-  if (output.sync) text += ", each frame safe from power cuts";
+  if (output.sync) text += ", each frame protected against power cuts";
   return text;
 }
 
@@ -170,12 +172,14 @@ void print_output(io::Scene const& scene, Plan const& plan) {
 
 void print_memory(Plan const& plan, Precision precision, char const* work) {
   auto const& memory = plan.memory;
-  print("memory", fmt::format("{:.6g} bytes per site in {} precision: spins {}, {} {}, fields "
-                              "{}; with {} of buffers on the host {}",
-                              bytes_per_site(plan), to_string(precision), bytes_text(memory.spins),
-                              work, bytes_text(memory.work), bytes_text(memory.field),
-                              bytes_text(memory.files), bytes_text(memory.total())));
-  if (!is_start_checked(plan)) print("", "the start's numbers are not checked: too many sites");
+  print("memory",
+        fmt::format("{}: spins {}, {} {}, fields {}, and {} of buffers on the host; {:.6g} bytes "
+                    "per site in {} precision, without the buffers",
+                    bytes_text(memory.total()), bytes_text(memory.spins), work,
+                    bytes_text(memory.work), bytes_text(memory.field), bytes_text(memory.files),
+                    bytes_per_site(plan), to_string(precision)));
+  if (!is_start_checked(plan))
+    print("", "the numbers of the start are not checked: the lattice is too large");
   if (!fits(plan)) print("", "more memory than is available now");
 }
 
@@ -187,8 +191,8 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
   print_notes(scene);
   if (repeated)
     print("ranks",
-          fmt::format("each repeats {:.3g} % of its work, and has {} of its neighbours at each "
-                      "inner end",
+          fmt::format("each does {:.3g} % more work than on its own sites, and holds {} of each "
+                      "neighbour",
                       100 * *repeated, mpi::to_text(depth_of_parts(scene, plan))));
   print_output(scene, plan);
 }
@@ -196,15 +200,18 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
 // Names only what is known beforehand. Other choices depend on the field, and are made when the
 // search starts.
 std::string search_text(io::Scene const& scene) {
-  return fmt::format("L-BFGS {}, to max |m x H| < --torque{}",
-                     scene.field.exchange ? "preconditioned by exchange" : "without exchange",
-                     scene.field.applied_in_turn.empty() ? "" : ", each from the state before");
+  return fmt::format(
+      "L-BFGS {}, until max |m x H| is below the --torque of cayspin relax{}",
+      scene.field.exchange ? "preconditioned by exchange" : "without exchange",
+      scene.field.applied_in_turn.empty() ? "" : "; each field starts at the state found before");
 }
 
 int check_to_relax(CheckOptions const& options, io::Scene const& scene) {
   if (options.ranks)
-    throw UsageError(fmt::format(
-        "--ranks {}: the scene is for cayspin relax, which runs on one rank", *options.ranks));
+    throw UsageError(
+        fmt::format("--ranks {}: the scene is for cayspin relax, which runs on one rank; accepted: "
+                    "no --ranks",
+                    *options.ranks));
   auto const plan = make_plan_to_relax(scene, options.precision);
   auto const start = is_start_checked(plan) ? check_start(scene) : std::vector<double>();
   if (options.json) {
@@ -223,8 +230,8 @@ int check_to_relax(CheckOptions const& options, io::Scene const& scene) {
 int check_in_stages(CheckOptions const& options, io::Scene const& scene) {
   if (options.ranks)
     throw UsageError(
-        fmt::format("--ranks {}: not told of a run in stages; accepted: a scene "
-                    "without [[stage]]",
+        fmt::format("--ranks {}: check does not report this for a run in stages; accepted: no "
+                    "--ranks, or a scene without [[stage]]",
                     *options.ranks));
   auto const planned = plan_stages(scene, options.precision);
   auto const& largest = *std::ranges::max_element(
@@ -255,9 +262,10 @@ io::Scene first_replica(CheckOptions const& options, io::Scene const& scene) {
   for (auto const& varied : ensemble.vary) keys.push_back(varied.key);
   if (!options.json)
     print("ensemble",
-          fmt::format("{} replicas of what follows, whose memory is for one{}", ensemble.replicas,
+          fmt::format("{}{}; what follows is the first, and its memory that of one",
+                      counted(ensemble.replicas, "replica"),
                       keys.empty() ? std::string()
-                                   : fmt::format("; they vary in {}", fmt::join(keys, ", "))));
+                                   : fmt::format(", which vary in {}", fmt::join(keys, ", "))));
   return io::is_to_relax(scene) ? io::replica_to_relax(scene, 0) : io::replica_of(scene, 0);
 }
 
@@ -295,7 +303,7 @@ Command add_check(CLI::App& program) {
   add_scene_options(*command, *options);
   add_json_option(*command, options->json);
   add_ranks_option(*command, options->ranks,
-                   "Say what a run with so many parts along y and z repeats");
+                   "Report the work that a run with Y x Z parts along y and z would repeat");
   return {command, [options](Ranks&) { return check(*options); }};
 }
 

@@ -33,7 +33,7 @@ std::string evaluations_text(io::Scene const& scene, Variant const& variant) {
 
 std::string stability_text(io::Units const& units, Plan const& plan) {
   if (!has_stable_dt(plan)) return "no limit known beforehand";
-  if (plan.stable_dt == 0) return "none: at this damping the method amplifies at every dt";
+  if (plan.stable_dt == 0) return "none: at this damping errors grow at every dt";
   return fmt::format("{}; dt is {:.3g} of it{}", both(units, plan.stable_dt, 6),
                      std::min(plan.times.dt / plan.stable_dt, std::numeric_limits<double>::max()),
                      plan.times.dt > plan.stable_dt ? ", which is too large" : "");

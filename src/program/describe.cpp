@@ -93,8 +93,8 @@ std::string lattice_text(io::Scene const& scene) {
   if (auto const& follow = lattice.follow)
     more +=
         fmt::format("; follows {} along {}", io::to_string(follow->quantity), "xyz"[follow->axis]);
-  return fmt::format("{} = {} sites{}", cells_text(lattice.shape, cell_sites), io::sites(scene),
-                     more);
+  return fmt::format("{} = {}{}", cells_text(lattice.shape, cell_sites),
+                     counted(io::sites(scene), "site"), more);
 }
 
 // Returns the term's formula with its parameters inserted.
@@ -245,7 +245,7 @@ void add_anisotropies(io::Scene const& scene,
 }
 
 std::string couplings_text(io::Scene const& scene, std::vector<Coupling> const& couplings) {
-  auto const text = fmt::format("{} bonds of a cell", couplings.size());
+  auto const text = counted(std::ssize(couplings), "bond") + " of a cell";
   if (!scene.material) return text;
   double largest = 0;
   for (auto const& coupling : couplings) {
@@ -289,7 +289,8 @@ std::string images_text(std::array<int, 3> const& images) {
     if (images[axis] == infinitely_many_images)
       infinite += fmt::format("{}{}", infinite.empty() ? "" : " and ", "xyz"[axis]);
     else if (images[axis] > 0)
-      text += fmt::format(", {} images on each side along {}", images[axis], "xyz"[axis]);
+      text +=
+          fmt::format(", {} on each side along {}", counted(images[axis], "image"), "xyz"[axis]);
   if (!infinite.empty()) text += ", infinitely many images along " + infinite;
   return text;
 }

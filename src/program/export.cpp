@@ -43,10 +43,10 @@ std::vector<std::int64_t> chosen_frames(ExportOptions const& options, std::int64
   auto const [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || stop != text.data() + text.size() || number < -frames ||
       number >= frames)
-    throw UsageError(
-        fmt::format("--frames {}: accepted: last, all, 0 to {}, or -1 to -{} from the "
-                    "end of {}",
-                    text, frames - 1, frames, options.file.string()));
+    throw UsageError(fmt::format(
+        "--frames {}: accepted: last, all, {} from the end of {}", text,
+        frames == 1 ? "0, or -1" : fmt::format("0 to {}, or -1 to -{}", frames - 1, frames),
+        options.file.string()));
   return {number < 0 ? frames + number : number};
 }
 
@@ -65,8 +65,8 @@ io::OvfMesh mesh_of(io::TrajectoryInfo const& info) {
                                                      {"initial={uniform=[0,0,1]}"});
   if (!is_rectangular(scene.lattice))
     throw std::runtime_error(fmt::format(
-        "{}: its sites are no rectangular mesh, which is all that OVF has; accepted: a file of a "
-        "lattice with one site in a cell along the axes",
+        "{}: its sites do not form a rectangular mesh, as OVF requires; accepted: a file of a "
+        "lattice of one site per cell, with cells along x, y and z",
         info.path.string()));
   io::OvfMesh mesh;
   mesh.nodes = info.header.shape;

@@ -59,7 +59,7 @@ void print_more(io::TrajectoryInfo const& info) {
   energy += more.regions;
   for (auto const& term : more.terms)
     fmt::print("{:<12} energy {:.9g}{}\n", term, *energy++, joule);
-  if (more.shift) fmt::print("{:<12} {} cells\n", "shift", *energy);
+  if (more.shift) fmt::print("{:<12} {} {}\n", "shift", *energy, *energy == 1 ? "cell" : "cells");
 }
 
 void print_scene(char const* name, std::string const& text) {
@@ -68,7 +68,8 @@ void print_scene(char const* name, std::string const& text) {
 
 void print_sweep(std::filesystem::path const& file, io::SweepInfo const& sweep) {
   auto const& header = sweep.header;
-  fmt::print("{:<12} {}, a sweep of {} runs\n", "file", file.string(), sweep.runs.size());
+  fmt::print("{:<12} {}, a sweep of {}\n", "file", file.string(),
+             counted(std::ssize(sweep.runs), "run"));
   fmt::print("{:<12} {}\n", "complete",
              sweep.complete ? "yes" : "no: the same command continues it");
   fmt::print("{:<12} {}\n{:<12} {}\n", "precision", header.precision, "space", header.space);
@@ -102,9 +103,10 @@ void print_trajectory(io::TrajectoryInfo const& info, std::optional<bool> being_
                info.cost.relaxed->converged ? "yes" : "no", info.cost.relaxed->torque,
                header.units.si ? " T" : "");
   if (has_ended)
-    fmt::print("{:<12} {} evaluations, {} in all, {} stepping\n", "cost", info.cost.evaluations,
-               duration_text(info.cost.wall_seconds), duration_text(info.cost.step_seconds));
-  fmt::print("{:<12} {}, {} threads\n", "space", header.space, header.threads);
+    fmt::print("{:<12} {}, {} in all, {} stepping\n", "cost",
+               counted(info.cost.evaluations, "evaluation"), duration_text(info.cost.wall_seconds),
+               duration_text(info.cost.step_seconds));
+  fmt::print("{:<12} {}, {}\n", "space", header.space, counted(header.threads, "thread"));
   fmt::print("{:<12} cayspin {} ({}), Kokkos {}\n", "written by", header.cayspin_version,
              header.git_commit, header.kokkos_version);
   print_scene("scene", header.scene_text);

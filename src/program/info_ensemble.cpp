@@ -25,8 +25,8 @@ void print_range(std::string const& name, std::vector<double> const& values) {
 void print_ensemble(std::filesystem::path const& file, io::EnsembleInfo const& info) {
   auto const& header = info.header;
   auto const* const joule = header.units.si ? " J" : "";
-  fmt::print("{:<12} {}, an ensemble of {} replicas\n", "file", file.string(),
-             info.ensemble.replicas);
+  fmt::print("{:<12} {}, an ensemble of {}\n", "file", file.string(),
+             counted(info.ensemble.replicas, "replica"));
   fmt::print("{:<12} {}\n", "complete", info.complete ? "yes" : "no");
   fmt::print("{:<12} {} in each replica, {} precision\n", "lattice",
              sites_text(header.shape, header.cell_sites), header.precision);
@@ -48,13 +48,14 @@ void print_ensemble(std::filesystem::path const& file, io::EnsembleInfo const& i
       fmt::print("{:<12} {} in all\n", "replicas", info.last.size());
   }
   if (!info.relaxed.empty())
-    fmt::print("{:<12} {} of {} replicas\n", "converged",
+    fmt::print("{:<12} {} of {}\n", "converged",
                std::ranges::count(info.relaxed, true, &io::RelaxedReplica::converged),
-               info.ensemble.replicas);
+               counted(info.ensemble.replicas, "replica"));
   if (info.cost.wall_seconds > 0)
-    fmt::print("{:<12} {} evaluations, {} in all, {} stepping\n", "cost", info.cost.evaluations,
-               duration_text(info.cost.wall_seconds), duration_text(info.cost.step_seconds));
-  fmt::print("{:<12} {}, {} threads\n", "space", header.space, header.threads);
+    fmt::print("{:<12} {}, {} in all, {} stepping\n", "cost",
+               counted(info.cost.evaluations, "evaluation"), duration_text(info.cost.wall_seconds),
+               duration_text(info.cost.step_seconds));
+  fmt::print("{:<12} {}, {}\n", "space", header.space, counted(header.threads, "thread"));
   fmt::print("{:<12} {} ({}), Kokkos {}\n", "written by", header.cayspin_version, header.git_commit,
              header.kokkos_version);
   fmt::print("scene:\n{}{}", header.scene_text, header.scene_text.ends_with('\n') ? "" : "\n");

@@ -102,9 +102,9 @@ void print_path(std::filesystem::path const& file, io::Path const& path) {
   for (std::size_t k = 0; k < std::min(path.energy.size(), most_rows); ++k)
     fmt::print("{:>6}  {:>12.6g}  {:>20.12g}\n", k, path.distance[k], path.energy[k]);
   print_rest(path.energy.size());
-  fmt::print("{:<12} {} evaluations, {}\n", "cost", path.evaluations,
+  fmt::print("{:<12} {}, {}\n", "cost", counted(path.evaluations, "evaluation"),
              duration_text(path.wall_seconds));
-  fmt::print("{:<12} {}, {} threads\n", "space", header.space, header.threads);
+  fmt::print("{:<12} {}, {}\n", "space", header.space, counted(header.threads, "thread"));
   fmt::print("{:<12} {} ({})\n", "written by", header.cayspin_version, header.git_commit);
   print_scene(header.scene_text);
 }
@@ -118,7 +118,8 @@ void print_modes(std::filesystem::path const& file, io::BandsContents const& fou
   fmt::print("{:<12} max |m x H| = {:.3g}{}\n", "at rest", found.torque,
              found.units.si ? " T" : "");
   has_waves ? print_bands(found) : print_spectrum(found);
-  fmt::print("{:<12} {} evaluations\n{:<12} {}\n", "cost", found.evaluations, "space", found.space);
+  fmt::print("{:<12} {}\n{:<12} {}\n", "cost", counted(found.evaluations, "evaluation"), "space",
+             found.space);
   fmt::print("{:<12} cayspin {} ({})\n", "written by", found.cayspin_version, found.git_commit);
   print_scene(found.scene_text);
 }

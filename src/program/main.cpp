@@ -71,7 +71,9 @@ struct OtherProgram {
 
 std::vector<OtherProgram> other_programs() {
   return {
-      {"reproduce", "The tables, figures and errata of Lewis and Nigam 2002, beside the paper's",
+      {"reproduce",
+       "Recompute the tables and figures of Lewis and Nigam 2002, beside the paper's values, and "
+       "list its errata",
        become_sibling, "cayspin-reproduce"},
       {"plot", "Draw the spins of a trajectory file, one frame or a movie", become_script,
        "plot_texture.py"},

@@ -69,12 +69,11 @@ void print_table() {
         joined(rotations(variant)), variant.order, evaluations(variant), variant.work_fields);
   }
   fmt::print(
-      "\nevaluations: of the generator, per step; adaptive methods choose their steps by\n"
-      "integrator.tolerance. work fields: memory beside the state, in fields\n"
-      "of three numbers per site; at most so many. A constant isotropy is typed\n"
-      "{{ constant = SIGMA }}, compensated as integrator.compensated = true. The baselines, at "
-      "the\n"
-      "end, take neither generator, isotropy nor rotation.\n");
+      "\nevaluations: evaluations of the generator per step; adaptive methods choose their steps\n"
+      "by integrator.tolerance. work fields: the largest memory besides that of the spins, in\n"
+      "fields of three numbers per site. A constant isotropy is typed {{ constant = SIGMA }},\n"
+      "compensated as integrator.compensated = true. The baselines, at the end, take neither\n"
+      "generator, isotropy nor rotation.\n");
 }
 
 Json table_json() {

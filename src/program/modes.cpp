@@ -4,6 +4,7 @@
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
 #include "describe.hpp"
+#include "end_of_search.hpp"
 #include "files/file_beside.hpp"
 #include "info_file.hpp"
 #include "io/notes.hpp"
@@ -114,8 +115,8 @@ io::Scene scene_of(ModesCommand const& options) {
         io::with_shape_of_start(io::read_scene_to_relax(options.scene, options.overrides));
     if (!scene.field.applied_in_turn.empty())
       throw io::scene_error(scene, "field.applied",
-                            "a list of fields has a state for each; accepted: three numbers, or "
-                            "the file that cayspin relax writes");
+                            "a list of fields has one equilibrium for each field; accepted: three "
+                            "numbers, or the file that cayspin relax writes");
     return scene;
   }
   auto const info = io::read_info(options.scene);
@@ -146,8 +147,8 @@ class ModesOfScene {
       at = equilibrium_with_torques(at.evaluations);
     if (at.end == MinimizeEnd::interrupted) return interrupted();
     if (at.end != MinimizeEnd::converged)
-      throw NumbersFailed(fmt::format("{}: no equilibrium was found: {} after {} evaluations",
-                                      scene_.path.string(), to_string(at.end), at.evaluations));
+      throw NumbersFailed(fmt::format("{}: no equilibrium was found: {}", scene_.path.string(),
+                                      end_text(at.end, at.evaluations)));
     auto contents = header();
     contents.torque = at.torque * scene_.units.field;
     auto const numbers = copy_to_host(spins_);
@@ -178,7 +179,8 @@ class ModesOfScene {
     else if (!options_.quiet)
       report(contents);
     if (contents.converged) return Status::done;
-    fmt::print(stderr, "{}: modes not converged, for: {}\n", scene_.path.string(), to_string(end));
+    fmt::print(stderr, "{}: the modes did not converge: {}\n", scene_.path.string(),
+               why_ended(to_string(end)));
     return Status::numbers_failed;
   }
 
@@ -213,12 +215,14 @@ class ModesOfScene {
         find_rest_with_torques<Real, Space>(exec_, scene_, spins_, options_.search,
                                             options_.torque / scene_.units.field, options_.at_rest);
     found.evaluations += evaluations;
+    auto const* const tesla = scene_.units.si ? " T" : "";
     if (found.end == MinimizeEnd::stagnated)
       throw NumbersFailed(fmt::format(
-          "{}: {}: max |m x H| is {:.3g}, with the torque's field in H; accepted: at most {:.3g}",
+          "{}: {}: max |m x H| is {:.3g}{}, with the torque's field in H; accepted: at most "
+          "{:.3g}{}",
           scene_.path.string(),
           options_.at_rest ? "the start is not at rest" : "no equilibrium with [torque] was found",
-          found.torque * scene_.units.field, options_.torque));
+          found.torque * scene_.units.field, tesla, options_.torque, tesla));
     return found;
   }
 
@@ -237,7 +241,7 @@ class ModesOfScene {
     io::write_bands(path, contents, options_.overwrite);
     if (options_.json) print_json(as_json(read_info_file(path)));
     if (options_.json || options_.quiet) return Status::done;
-    fmt::print("wave vector, in cycles a cell; frequencies{}\n", scene_.units.si ? ", GHz" : "");
+    fmt::print("wave vector, in cycles per cell; frequencies{}\n", scene_.units.si ? ", GHz" : "");
     for (std::size_t i = 0; i < found.frequencies.size(); ++i) {
       auto const& k = contents.wave_vectors[i];
       fmt::print("{:>8.5g} {:>8.5g} {:>8.5g} ", k[0], k[1], k[2]);
@@ -344,14 +348,15 @@ Command add_modes(CLI::App& program) {
                       "Error of the shapes (default: 1e-9)");
   command
       ->add_option("--evaluations", options->search.evaluations,
-                   "Most evaluations of a field in each search (default: 100000)")
+                   "Largest number of evaluations of the field in each search (default: 100000)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 53U));
   command->add_flag("--at-rest", options->at_rest, "The start is the equilibrium: do not relax");
   command->add_flag("--hessian", options->hessian,
                     "Also the lowest eigenvalues of the energy's Hessian, and their vectors");
   command
       ->add_option("--wave-vector", options->corners,
-                   "Waves in place of modes: a corner of a path of wave vectors, in cycles a cell")
+                   "Waves in place of modes: a corner of a path of wave vectors, in cycles per "
+                   "cell")
       ->allow_extra_args(false)
       ->type_name("KX,KY,KZ");
   command->add_option("--points", options->points, "From one corner to the next (default: 50)")

@@ -102,9 +102,14 @@ int find_path(PathCommandOptions const& options) {
   }
   auto const output = output_file(scene, options.output);
   output_file(other, options.output);  // the file of --to must not be replaced either
+  auto const cells_of = [](io::Lattice const& lattice) {
+    return cells_text(lattice.shape, std::ssize(lattice.basis));
+  };
   if (scene.lattice.shape != other.lattice.shape)
-    throw UsageError(fmt::format("--to {}: has another shape than --from {}", options.to.string(),
-                                 options.from.string()));
+    throw UsageError(
+        fmt::format("--to {}: its lattice is {}, that of --from {} is {}; accepted: the same shape",
+                    options.to.string(), cells_of(other.lattice), options.from.string(),
+                    cells_of(scene.lattice)));
   auto const from = spins_of(scene, first), to = spins_of(other, last);
   io::require_writable(output, options.overwrite);
   auto const space = chosen_space(options.space);
@@ -131,19 +136,19 @@ int find_path(PathCommandOptions const& options) {
   if (options.json && has_path)
     print_json(as_json(read_info_file(output)));
   else if (!options.quiet && !options.json && (end == PathEnd::converged || has_saddles))
-    fmt::print("{} after {} evaluations, {} images\n{}\n", path.end, path.evaluations,
-               path.energy.size(), barrier_text(scene, path));
+    fmt::print("{} after {}, {}\n{}\n", path.end, counted(path.evaluations, "evaluation"),
+               counted(std::ssize(path.energy), "image"), barrier_text(scene, path));
   if (end == PathEnd::converged) return Status::done;
   if (has_saddles)
     fmt::print(
         stderr,
-        "{}: the saddles are found, but {}, after {} evaluations; {} has both; accepted: more "
-        "--images\n",
-        scene.path.string(), path.end, path.evaluations, output.string());
+        "{}: the saddles are found, but the path between them does not settle within {}; {} has "
+        "the saddles and the path as it is; accepted: more --images\n",
+        scene.path.string(), counted(path.evaluations, "evaluation"), output.string());
   else
     fmt::print(
-        stderr, "{}: no {}path: {}, after {} evaluations{}\n", scene.path.string(),
-        has_path ? "converged " : "", path.end, path.evaluations,
+        stderr, "{}: no {}path: {}, after {}{}\n", scene.path.string(),
+        has_path ? "converged " : "", path.end, counted(path.evaluations, "evaluation"),
         has_path ? fmt::format("; {} has the images as they are", output.string()) : std::string());
   return Status::numbers_failed;
 }
@@ -167,11 +172,12 @@ Command add_path(CLI::App& program) {
                       "Largest |m x H| of the ends and the saddle (default: 1e-6)");
   command
       ->add_option("--evaluations", options->search.evaluations,
-                   "Most evaluations of the field (default: 1000000)")
+                   "Largest number of evaluations of the field (default: 1000000)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 53U));
   command->add_flag(
       "--rates", options->search.rates,
-      "Prefactors of harmonic transition state theory and of Langer's, of small lattices");
+      "Also the prefactors of harmonic transition state theory and of Langer's theory, for small "
+      "lattices");
   command->add_flag("--quiet", options->quiet, "No report");
   add_json_option(*command, options->json);
   return {command, [options](Ranks&) { return find_path(*options); }};

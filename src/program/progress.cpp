@@ -100,8 +100,8 @@ void Progress::close(Summary const& summary, std::int64_t frames, std::string co
     rate = fmt::format(", stepping at {}spin updates/s",
                        rate_text(updates / std::max(summary.step_seconds, 1e-9)));
   if (summary.own_steps > 0)
-    rate += fmt::format(", {} of its own, {} rejected", counted(summary.own_steps, "step"),
-                        summary.rejected);
+    rate += fmt::format(", {} of the method, {} rejected",
+                        counted(summary.own_steps, "internal step"), summary.rejected);
   say(fmt::format("{}: {}, {} in {}{}", file, counted(summary.steps, "step"),
                   counted(frames, "frame"), duration_text(total.count()), rate));
 }

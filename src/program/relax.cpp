@@ -4,6 +4,7 @@
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
 #include "describe.hpp"
+#include "end_of_search.hpp"
 #include "info_file.hpp"
 #include "io/notes.hpp"
 #include "io/run_output.hpp"
@@ -81,8 +82,12 @@ class Relaxation {
     interrupted ? file_->close(cost_) : file_->finish(cost_);
     if (options_.json) print_found();
     if (failures_ == 0) return Status::done;
-    fmt::print(stderr, "{}: {} of {} states not converged, the first for: {}\n",
-               scene_.path.string(), failures_, fields.size(), to_string(first_failure_));
+    auto const why = why_ended(to_string(first_failure_));
+    if (fields.size() == 1)
+      fmt::print(stderr, "{}: not converged: {}\n", scene_.path.string(), why);
+    else
+      fmt::print(stderr, "{}: {} of {} states did not converge; the first: {}\n",
+                 scene_.path.string(), failures_, fields.size(), why);
     return interrupted ? Status::interrupted : Status::numbers_failed;
   }
 
@@ -117,12 +122,10 @@ class Relaxation {
 
   void report(std::size_t count, Minimum const& found) const {
     auto const& m = last_.magnetization;
-    fmt::print(
-        "{} of {}: {} after {} evaluations, max |m x H| = {:.3g}{}, energy {}, <m> = "
-        "({:.6g}, {:.6g}, {:.6g})\n",
-        states_ + 1, count, to_string(found.end), found.evaluations,
-        found.torque * scene_.units.field, scene_.units.si ? " T" : "",
-        energy_text(scene_.units, last_.energy.value), m.x, m.y, m.z);
+    fmt::print("{} of {}: {}, max |m x H| = {:.3g}{}, energy {}, <m> = ({:.6g}, {:.6g}, {:.6g})\n",
+               states_ + 1, count, end_text(found.end, found.evaluations),
+               found.torque * scene_.units.field, scene_.units.si ? " T" : "",
+               energy_text(scene_.units, last_.energy.value), m.x, m.y, m.z);
     std::fflush(stdout);
   }
 
@@ -175,10 +178,10 @@ Command add_relax(CLI::App& program) {
   command->add_option("--torque", options->torque, "Largest |m x H| (default: 1e-6)");
   command
       ->add_option("--evaluations", options->evaluations,
-                   "Most evaluations of a field (default: 100000)")
+                   "Largest number of evaluations of the field (default: 100000)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 53U));
   command->add_flag("--keep-saddles", options->keep_saddles,
-                    "End at a state without torque, also where the energy falls from there");
+                    "Accept a state without torque even if the energy falls from it");
   command->add_flag("--quiet", options->quiet, "No progress");
   add_json_option(*command, options->json);
   return {command, [options](Ranks&) { return relax(*options); }};

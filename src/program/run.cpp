@@ -205,7 +205,8 @@ Command add_run(CLI::App& program) {
   auto* const command =
       program.add_subcommand("run", "Run a scene and write its trajectory (HDF5)");
   add_device_options(*command, *options);
-  add_ranks_option(*command, options->ranks, "Parts of the lattice along y and z, on ranks of MPI");
+  add_ranks_option(*command, options->ranks,
+                   "Number of parts of the lattice along y and z, one for each MPI rank");
   command->add_option("--restart", options->restart,
                       "Go on from the last frame of a trajectory file");
   command->add_flag_callback(

@@ -175,12 +175,13 @@ int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
   if (search.json)
     print_json(as_json(read_info_file(output_file(scene, options.output))));
   else if (!search.quiet)
-    fmt::print("{}: {} of {} replicas converged after {} evaluations in {}\n",
+    fmt::print("{}: {} of {} converged after {} in {}\n",
                output_file(scene, options.output).string(), std::ssize(found) - failures,
-               found.size(), cost.evaluations, duration_text(cost.wall_seconds));
+               counted(std::ssize(found), "replica"), counted(cost.evaluations, "evaluation"),
+               duration_text(cost.wall_seconds));
   if (failures == 0) return Status::done;
-  fmt::print(stderr, "{}: {} of {} replicas not converged\n", scene.path.string(), failures,
-             found.size());
+  fmt::print(stderr, "{}: {} of {} did not converge\n", scene.path.string(), failures,
+             counted(std::ssize(found), "replica"));
   return Status::numbers_failed;
 }
 

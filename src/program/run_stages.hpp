@@ -3,6 +3,7 @@
 
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
+#include "end_of_search.hpp"
 #include "io/checkpoint.hpp"
 #include "io/relax.hpp"
 #include "io/stages.hpp"
@@ -169,8 +170,8 @@ class RunOfStages {
     total_.step_seconds += clock.seconds();
     interrupted_ = found.end == MinimizeEnd::interrupted;
     auto const state =
-        fmt::format("{} after {} evaluations, max |m x H| = {:.3g}{}", to_string(found.end),
-                    found.evaluations, found.torque * units.field, units.si ? " T" : "");
+        fmt::format("{}, max |m x H| = {:.3g}{}", end_text(found.end, found.evaluations),
+                    found.torque * units.field, units.si ? " T" : "");
     if (found.end == MinimizeEnd::converged)
       progress_.tell(state);
     else if (!interrupted_)
@@ -202,9 +203,6 @@ class RunOfStages {
     step_ = times.first + summary.steps;
     failure_ = failure ? failure : watch.failure();
     broke_ = failure.has_value();
-    // Messages of the library itself have times in reduced units.
-    if (failure && scene().units.si)
-      *failure_ += fmt::format(" (times in units of {:.6g} s)", scene().units.time);
     interrupted_ = watch.interrupted();
     if (watch.at_saddle()) saddles_.push_back(now_);
     keep(simulation.spins);

@@ -215,8 +215,8 @@ void print_text(AdviseOptions const& options, io::Scene const& scene, Advised co
   if (candidate.method->adaptive)
     fmt::print("tolerance   {:.3g}\n", choice.steps.tolerance);
   else
-    fmt::print("dt          {:.9g}{}, {} steps\n", resolved.dt, units.si ? " s" : "",
-               resolved.steps);
+    fmt::print("dt          {:.9g}{}, {}\n", resolved.dt, units.si ? " s" : "",
+               counted(resolved.steps, "step"));
   fmt::print("error       {:.2g}, predicted, at a dozen times{}\n", choice.error,
              advised.why_shorter.empty() ? "" : " up to the horizon");
   fmt::print("time        {}, predicted, without files\n", duration_text(choice.seconds));
@@ -224,7 +224,8 @@ void print_text(AdviseOptions const& options, io::Scene const& scene, Advised co
   if (auto const reason = warning_of(scene, resolved, candidate.precision))
     fmt::print("run warns   dt {}; the error takes that into account\n", *reason);
   fmt::print("run it      {}\n", command_of(options, scene, resolved, candidate.precision));
-  fmt::print("\nfound in {}; next to it:\n", duration_text(advised.seconds));
+  fmt::print("\nfound in {}{}\n", duration_text(advised.seconds),
+             advised.others.size() > 1 ? "; the next best:" : "");
   for (std::size_t i = 1; i < std::min<std::size_t>(advised.others.size(), 4); ++i)
     fmt::print("  {:<33} {}\n", advised.others[i].candidate.name(),
                duration_text(advised.others[i].seconds));
@@ -295,7 +296,7 @@ int advise_on(AdviseOptions const& options) {
   }
   if (!advised.choice) {
     if (advised.others.empty())
-      throw NumbersFailed(fmt::format("{}: no method gets to an error of {:g}", scene.path.string(),
+      throw NumbersFailed(fmt::format("{}: no method reaches an error of {:g}", scene.path.string(),
                                       options.error));
     auto const& first = advised.others.front();
     throw NumbersFailed(fmt::format("{}: {} would take {}, beyond the budget of {}",

@@ -15,7 +15,7 @@ namespace cayspin::inline v0_2::io {
 /// Throws std::invalid_argument unless the precision is "single" or "double".
 inline void require_precision(std::string const& precision) {
   if (precision != single_precision && precision != double_precision)
-    throw std::invalid_argument("precision is '" + precision + "'; accepted are single and double");
+    throw std::invalid_argument("precision is '" + precision + "'; accepted: single, double");
 }
 
 /// Throws std::invalid_argument unless all extents are at least 1, and 64 bytes per site fit into

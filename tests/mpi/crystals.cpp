@@ -264,7 +264,7 @@ TEST_F(CrystalsOnRanks, NeedPartsOfWholeCellsAsThickAsBondsReach) {
   auto const outcome = start_on(3, run_of(far, "out.h5"));
   EXPECT_EQ(outcome.status, 0);
   EXPECT_EQ(outcome.errors,
-            "warning: 1 of 3 ranks have no part: one has at least 4 rows or 6 planes\n");
+            "warning: 1 of 3 ranks has nothing to do: a part needs at least 4 rows or 6 planes\n");
   auto const stiff = write("stiff.toml", scene_of(bcc, "method = \"stiff2\"\ndt = 0.02"));
   expect_refused(start_on(2, run_of(stiff, "out.h5")), "runs only on one rank");
 }

@@ -25,6 +25,12 @@ TEST(Division, RepeatsLeast) {
   EXPECT_EQ(divide(Lattice::chain(64), 4, 1), (Division{1, 1}));
 }
 
+TEST(Division, DepthsAreCountedInWords) {
+  EXPECT_EQ(mpi::to_text(1), "1 row or plane");
+  EXPECT_EQ(mpi::to_text({1, 2}), "1 row or 2 planes");
+  EXPECT_EQ(mpi::to_text(4), "4 rows or planes");
+}
+
 TEST(Division, WhatDoesNotFitIsRefused) {
   EXPECT_THROW(divide(Lattice::chain(64), 4, 2), std::invalid_argument);
   EXPECT_THROW(divide(Lattice::cubic(8, 7, 7), 4, 2), std::invalid_argument);

@@ -30,8 +30,8 @@ TEST_F(OnRanks, WriteTheSameFile) {
       auto const outcome = start_on(ranks, run_of(scene, "other.h5", more));
       EXPECT_EQ(outcome.status, 0) << outcome.errors;
       bool const one_idle = std::string(cut) == "1,3";
-      EXPECT_EQ(outcome.errors, one_idle ? "warning: 1 of 4 ranks have no part: one has at least 4 "
-                                           "rows or planes\n"
+      EXPECT_EQ(outcome.errors, one_idle ? "warning: 1 of 4 ranks has nothing to do: a part needs "
+                                           "at least 4 rows or planes\n"
                                          : "");
       EXPECT_EQ(outcome.output, "");
       expect_same("one.h5", "other.h5");

@@ -184,6 +184,9 @@ TEST_F(Checking, TextNamesWhatIsModelled) {
                     "H = -0.2 (m.e) e", "(0.3, -0.2, 0.1)", "n = (1, 0, 0)", "seed 3", "order 4",
                     "25 steps of 0.02", "stable dt", "bytes per site", "4 frames"}));
   EXPECT_FALSE(exists("chain.h5"));
+  auto const spin = output_of({"check", "spin.toml"});
+  EXPECT_TRUE(contains(spin, "1 x 1 x 1 = 1 site"));
+  EXPECT_FALSE(contains(spin, "1 sites"));
 }
 
 TEST_F(Checking, MethodsListsEveryMethodOnce) {
@@ -234,7 +237,7 @@ TEST_F(Checking, SaysWhatRanksRepeat) {
     expect_refused(joined({"check", "chain.toml", "--ranks", parts}, periodic),
                    "--ranks " + parts + ": accepted:");
   EXPECT_TRUE(contains(output_of(joined({"check", "chain.toml", "--ranks", "1,2"}, periodic)),
-                       "ranks       each repeats 9.38 % of its work"));
+                       "ranks       each does 9.38 % more work than on its own sites, and holds "));
 }
 
 // A film that is periodic in its plane and uniform has N = 1 along its normal.

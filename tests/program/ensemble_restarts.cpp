@@ -90,7 +90,7 @@ TEST_F(EnsembleRestarts, NameWhatDiffers) {
                               "part.h5", "--set", "system.damping=0.7"});
   EXPECT_EQ(outcome.status, 0);
   EXPECT_EQ(outcome.errors,
-            "warning: --restart part.h5: other than in its scene: system.damping\n");
+            "warning: --restart part.h5: these keys differ from its scene: system.damping\n");
 }
 
 TEST_F(EnsembleRestarts, AreRefusedInOneLine) {
@@ -107,7 +107,8 @@ TEST_F(EnsembleRestarts, AreRefusedInOneLine) {
   refused({"--restart", "one.h5"}, "--restart one.h5: it is of a scene without [ensemble]");
   refused({"--restart", "none.h5"}, "none.h5");
   refused({"--restart", "all.toml"}, "all.toml");
-  refused(joined(from_part, {"--set", "ensemble.replicas=4"}), "it has 3 replicas, the scene 4");
+  refused(joined(from_part, {"--set", "ensemble.replicas=4"}),
+          "it has 3 replicas, and the scene has 4");
   refused(joined(from_part, {"--precision", "single"}), "its spins are in double precision");
   refused(joined(from_part, {"--set", "lattice.shape.0=21"}), "its lattice is");
   refused(joined(from_part, {"--set", "integrator.steps=5"}), "it ends at step 5, the scene at");
@@ -122,7 +123,7 @@ TEST_F(EnsembleRestarts, AreRefusedInOneLine) {
     ASSERT_EQ(
         run(joined(with_memory, {"--output", "memory.h5", "--set", "integrator.steps=5"})).status,
         0);
-    refused(joined(with_memory, {"--restart", "memory.h5"}), "needs more than frames to go on");
+    refused(joined(with_memory, {"--restart", "memory.h5"}), "needs more than frames to continue");
   }
 }
 

@@ -311,8 +311,8 @@ TEST_F(Ensembles, AreNoStartOfACrystal) {
 TEST_F(Ensembles, AreChecked) {
   write("all.toml", chain_scene() + vary("\"field.exchange\" = [1, 2, 3]\n"));
   EXPECT_TRUE(contains(output_of({"check", "all.toml"}),
-                       "3 replicas of what follows, whose memory is for one; they vary in "
-                       "field.exchange"));
+                       "3 replicas, which vary in field.exchange; what follows is the first, and "
+                       "its memory that of one\n"));
 }
 
 TEST_F(Ensembles, AreRefusedInOneLine) {
@@ -326,8 +326,8 @@ TEST_F(Ensembles, AreRefusedInOneLine) {
   refused("[ensemble]\nvary = {}\n", "ensemble.replicas: is missing");
   refused("[ensemble]\nreplicas = 0\n", "ensemble.replicas: 0 is too small");
   refused("[ensemble]\nreplicas = 2\ncopies = 3\n", "ensemble.copies: unknown key");
-  refused(vary("\"lattice.spacing\" = [1, 2, 3]\n"), "is the same in all replicas");
-  refused(vary("\"integrator.dt\" = [1, 2, 3]\n"), "is the same in all replicas");
+  refused(vary("\"lattice.spacing\" = [1, 2, 3]\n"), "must be the same in all replicas");
+  refused(vary("\"integrator.dt\" = [1, 2, 3]\n"), "must be the same in all replicas");
   refused(vary("\"field.exchange\" = [1, 2]\n"), "accepted: as many numbers as replicas");
   refused(vary("\"field.exchange\" = { from = 1 }\n"), "to: is missing");
   refused(vary("\"field.exchange\" = 'x'\n"), "as many numbers as replicas");

@@ -41,6 +41,8 @@ TEST_F(Info, SaysWhatAFileHolds) {
       output, {"complete     yes", "20 x 3 x 1 sites, double precision", "frames       4",
                "step 25, t = 0.5", "100 evaluations", "random = { seed = 3 }"}));
   EXPECT_FALSE(contains(output, "progress"));
+  run_into("one.h5", chain_scene(), {"--threads", "1"});
+  EXPECT_TRUE(contains(output_of({"info", "one.h5"}), ", 1 thread\n"));
 }
 
 TEST_F(Info, SaysThatARunFailed) {

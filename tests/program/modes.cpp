@@ -360,7 +360,7 @@ TEST_F(Bands, NeedCellsOnlyWhereBondsReach) {
   expect_refused(
       joined({"modes", write("scene.toml", head + "shape = [1, 8]\n[field]\n" + both + tail)},
              wave),
-      "1 cell along axis 0, and bonds reach over 1");
+      "1 cell along x, and bonds reach over 1 cell");
 }
 
 TEST_F(Bands, RefuseWhatHasNone) {
@@ -374,9 +374,9 @@ TEST_F(Bands, RefuseWhatHasNone) {
       {"0.1,0,0", "--set", "lattice.boundary=\"periodic\"", "--set", "lattice.frozen=\"i < 1\""},
       "the cells differ");
   std::string const strip = "lattice.boundary=[\"periodic\",\"open\"]";
-  refused({"0,0.3,0", "--set", strip}, "along axis 1, which is open; accepted: 0 there");
+  refused({"0,0.3,0", "--set", strip}, "along y, which is open; accepted: 0 there");
   refused({"0.3,0,0", "--set", strip, "--set", "lattice.shape=[1,8]"},
-          "1 cell along axis 0, and bonds reach over 1; accepted: at least 3");
+          "1 cell along x, and bonds reach over 1 cell; accepted: at least 3");
   refused({"0.3,0,0", "--set", "lattice.boundary=[\"periodic\",\"open\",\"open\"]", "--set",
            "lattice.shape=[3,40,40]"},
           "has 1600 sites in a cell, which extends over the open axes");

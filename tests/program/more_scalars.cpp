@@ -170,8 +170,8 @@ TEST_F(MoreInFiles, OfOtherTermsAreRefusedInStages) {
   for (Arguments const& command :
        {Arguments{"run", "scene.toml", "--output", "a.h5"}, Arguments{"check", "scene.toml"}})
     expect_refused(joined(command, terms),
-                   "field: has other terms than at the start, and output.terms stores the energy "
-                   "of each; accepted: the terms exchange, ");
+                   "field: has different terms from those at the start, and output.terms stores "
+                   "the energy of each; accepted: the terms exchange, ");
   output_of({"check", "scene.toml"});
 }
 

@@ -56,8 +56,8 @@ TEST_F(OutputFiles, AreNamedByCheck) {
       output_of(joined({"check", "chain.toml"}, set("output.xdmf=true", "output.table=true",
                                                     "output.compression=3", "output.sync=true")));
   EXPECT_TRUE(contains(output,
-                       "to chain.h5, compressed at level 3, described by an XDMF "
-                       "file, samples also in a text table, each frame safe from power cuts"));
+                       "to chain.h5, compressed at level 3, described by an XDMF file, samples "
+                       "also in a text table, each frame protected against power cuts"));
 }
 
 TEST_F(OutputFiles, ThatAreReadAreNamedByCheck) {
@@ -76,7 +76,7 @@ TEST_F(OutputFiles, SyncChangesNoBitAndLeavesNoJournal) {
 TEST_F(OutputFiles, SyncIsRefusedInASweep) {
   expect_refused({"sweep", "chain.toml", "--over", "system.damping=0.1,0.2", "--set",
                   "output.sync=true", "--output", "swept.h5"},
-                 "output.sync: true: a sweep is not kept from power cuts");
+                 "output.sync: true: a sweep is not protected against power cuts");
 }
 
 }  // namespace

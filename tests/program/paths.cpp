@@ -268,9 +268,9 @@ uniform = [0, 0, 1]
   EXPECT_EQ(outcome.status, 3);
   EXPECT_TRUE(is_one_line(outcome.errors));
   EXPECT_TRUE(contains_all(
-      outcome.errors, {": the saddles are found, but the path between the saddles does not settle, "
-                       "after ",
-                       " evaluations; path.h5 has both; accepted: more --images\n"}));
+      outcome.errors,
+      {": the saddles are found, but the path between them does not settle within ",
+       " evaluations; path.h5 has the saddles and the path as it is; accepted: more --images\n"}));
   EXPECT_TRUE(contains(outcome.output, "\nbarriers 2.08801"));
   EXPECT_NEAR(attribute("barrier_forward"), 2.08801527, 1e-6);
   EXPECT_EQ(start(arguments({"--images", "16", "--overwrite"})).status, 0);

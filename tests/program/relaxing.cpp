@@ -126,7 +126,8 @@ TEST_F(Relax, SaysWhenItDoesNotConverge) {
   auto const outcome = relax(scene, {"--evaluations", "12"});
   EXPECT_EQ(outcome.status, 3);
   EXPECT_TRUE(is_one_line(outcome.errors));
-  EXPECT_TRUE(contains(outcome.errors, "1 of 1 states not converged, the first for: evaluation"));
+  EXPECT_TRUE(contains(outcome.output, "1 of 1: stopped at the limit of 1"));
+  EXPECT_TRUE(contains(outcome.errors, ": not converged: evaluation limit reached\n"));
   auto const info = info_of("out.h5");
   EXPECT_TRUE(info.complete);
   EXPECT_FALSE(info.cost.relaxed->converged);
@@ -166,7 +167,8 @@ TEST_F(Relax, IsChecked) {
   auto const said = output_of({"check", file, "--set", list});
   EXPECT_TRUE(contains_all(
       said, {"H = h in turn, 3 of them: h = (0.3, 0, 0.001) to (-0.3, 0, 0.001)",
-             "relax       L-BFGS preconditioned by exchange, to max |m x H| < --torque, each from",
+             "relax       L-BFGS preconditioned by exchange, until max |m x H| is below the "
+             "--torque of cayspin relax; each field starts at the state found before\n",
              "search ", "output      3 frames, "}));
   for (std::string const part : {"stable dt", "method", "per step"})
     EXPECT_FALSE(contains(said, part)) << part;

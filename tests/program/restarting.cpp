@@ -29,8 +29,8 @@ class Restarting : public ProgramTest {
                     std::string const& end = "") const {
     auto const outcome = start(to_second(more));
     EXPECT_EQ(outcome.status, 0) << outcome.errors;
-    EXPECT_EQ(outcome.errors,
-              "warning: --restart first.h5: other than in its scene: " + keys + end + "\n");
+    EXPECT_EQ(outcome.errors, "warning: --restart first.h5: these keys differ from its scene: " +
+                                  keys + end + "\n");
   }
 
   void expect_refused(Arguments const& more, std::string const& part,
@@ -75,8 +75,7 @@ TEST_F(Restarting, IsRefusedForAnotherStateThanTheScenes) {
 TEST_F(Restarting, IsRefusedOnAnotherLattice) {
   run_to("12", "first.h5");
   auto const expect_key = [&](std::string const& change, std::string const& key) {
-    expect_refused(set(change),
-                   "first.h5: its " + key + " is another than the scene's; accepted: ");
+    expect_refused(set(change), "first.h5: its " + key + " differs from the scene's; accepted: ");
   };
   expect_key("lattice.spacing=2.0", "lattice.spacing");
   expect_key("lattice.spacing=[1.0,1.0000001]", "lattice.spacing");
@@ -99,10 +98,10 @@ TEST_F(Restarting, IsRefusedOnAnotherCell) {
   };
   std::string const square = "[[1,0,0],[0,1,0],[0,0,1]]";
   run_to("12", "first.h5", with_cell(square));
-  expect_refused(with_cell("[[1,0,0],[0.5,1,0],[0,0,1]]"), "its lattice.cell is another");
+  expect_refused(with_cell("[[1,0,0],[0.5,1,0],[0,0,1]]"), "its lattice.cell differs");
   auto other = with_cell(square);
   expect_refused(joined(other, set("lattice.basis=[[0,0,0],[0.5,0.4,0]]")),
-                 "its lattice.basis is another");
+                 "its lattice.basis differs");
   output_of(to_second(other));
 }
 
@@ -110,8 +109,8 @@ TEST_F(Restarting, IsRefusedWhereOtherSitesAreVacant) {
   Arguments const some = set("lattice.occupied='i<15'");
   run_to("12", "first.h5", some);
   for (std::string const occupied : {"i<16", "i<14", "i<15 || j==2"})
-    expect_refused(set("lattice.occupied='" + occupied + "'"), "its lattice.occupied is another");
-  expect_refused({}, "its lattice.occupied is another");
+    expect_refused(set("lattice.occupied='" + occupied + "'"), "its lattice.occupied differs");
+  expect_refused({}, "its lattice.occupied differs");
   run_to("25", "whole.h5", some);
   output_of(to_second(set("lattice.occupied='i<=14'")));
   EXPECT_EQ(last_spins("second.h5"), last_spins("whole.h5"));
@@ -137,7 +136,7 @@ TEST_F(Restarting, ForgetsTheStepsOfAnotherMotion) {
     if (method == "dp5") same = joined(same, set("integrator.tolerance=1e-6"));
     run_to("12", "first.h5", joined(same, {"--overwrite"}));
     auto const other = joined(same, set("field.applied=[3.0,-0.2,0.1]"));
-    expect_named(other, "field.applied", "; the method begins again");
+    expect_named(other, "field.applied", "; the method starts anew");
     // Without --restart: the stored state is the start of a new run.
     run_to("13", "third.h5",
            joined(other, joined(set("initial={file='first.h5'}"), {"--overwrite"})));
@@ -201,7 +200,7 @@ TEST_F(Restarting, NeedsTheCheckpointOfAMethodThatRemembers) {
 
 TEST_F(Restarting, BeginsAnewByAnotherMethod) {
   run_to("12", "first.h5");
-  expect_named(set("integrator.method='ab2'"), "integrator.method", "; the method begins again");
+  expect_named(set("integrator.method='ab2'"), "integrator.method", "; the method starts anew");
   run_to("25", "third.h5", set("integrator.method='ab2'", "initial={file='first.h5'}"));
   EXPECT_EQ(info_of("second.h5").frame_steps.front(), 12);
 }

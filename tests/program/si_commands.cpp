@@ -113,7 +113,10 @@ TEST_F(SiScene, MessagesHaveSeconds) {
       {"run", scene, "--quiet", "--output", "small.h5", "--set",
        "integrator={method='tsit5',tolerance=1e-9,dt=5e-12,steps=2,min_dt=4e-12,max_dt=4e-12}"});
   EXPECT_EQ(small.status, 3);
-  EXPECT_TRUE(contains(small.errors, "(times in units of 6.15747e-12 s)"));
+  EXPECT_TRUE(contains(small.errors, "integrator.tolerance: from t = 0 s it needs a step below "));
+  EXPECT_TRUE(contains(small.errors,
+                       " s, and integrator.min_dt is 4e-12 s; accepted: a larger tolerance, or a "
+                       "smaller min_dt; "));
 
   auto const pole = start({"run", scene, "--quiet", "--output", "pole.h5", "--set",
                            "field.applied=['t > 1e-9 ? 1/0 : 0.1',0,0]"});

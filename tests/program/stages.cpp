@@ -222,7 +222,7 @@ TEST_F(Stages, KeepTheFramesBeforeAFailure) {
   write("scene.toml", chain_scene() + "[[stage]]\nrelax.evaluations = 3\n");
   auto const relaxed = start({"run", "scene.toml", "--quiet", "--output", "out.h5", "--overwrite"});
   EXPECT_EQ(relaxed.status, 3);
-  EXPECT_TRUE(contains(relaxed.errors, "stage 1: relax: evaluation limit after "))
+  EXPECT_TRUE(contains(relaxed.errors, "stage 1: relax: stopped at the limit of "))
       << relaxed.errors;
   EXPECT_TRUE(contains(relaxed.errors, "the last good frame is 3 in out.h5 (step 25"))
       << relaxed.errors;

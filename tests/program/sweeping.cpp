@@ -220,7 +220,7 @@ TEST_F(Sweeping, AnotherSweepInTheFileIsRefused) {
   write("text.h5", "precious");
   expect_refused(arguments("text.h5"), "text.h5");
   run(chain_scene());
-  expect_refused(arguments("out.h5"), "it exists and has no sweep");
+  expect_refused(arguments("out.h5"), "it exists and is not the file of a sweep");
 }
 
 TEST_F(Sweeping, OnlyOneProcessHasAFile) {

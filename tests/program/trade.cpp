@@ -325,7 +325,7 @@ TEST_F(Trading, AdvisesInTheOnePrecisionThatIsAskedFor) {
     auto const command = advice.substr(advice.find("run it"));
     EXPECT_EQ(command.find("--precision single") != std::string::npos, precision == "single")
         << advice;
-    std::istringstream lines(advice.substr(advice.find("next to it")));
+    std::istringstream lines(advice.substr(advice.find("the next best:")));
     std::string line;
     std::getline(lines, line);
     while (std::getline(lines, line))
@@ -363,8 +363,9 @@ TEST_F(Trading, ALatticeThatDoesNotFitIsRefusedWithItsNeed) {
         joined({"check", "scene.toml"}, set("integrator={method='auto',error=1e-3,end=4.0}"))}) {
     auto const outcome =
         expect_status(2, joined(command, set("lattice={shape=[300000000,3000000]}")));
-    EXPECT_TRUE(contains(outcome.errors, "lattice.shape: to try methods needs ")) << outcome.errors;
-    EXPECT_TRUE(contains(outcome.errors, " are available")) << outcome.errors;
+    EXPECT_TRUE(contains(outcome.errors, "lattice.shape: trying methods needs ")) << outcome.errors;
+    EXPECT_TRUE(contains(outcome.errors, " is available; accepted: a smaller lattice"))
+        << outcome.errors;
   }
 }
 

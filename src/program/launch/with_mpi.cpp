@@ -3,6 +3,7 @@
 #include "launched_ranks.hpp"
 #include "simulation/one_rank.hpp"
 #include "simulation/parts.hpp"
+#include "simulation/text.hpp"
 
 #include <cayspin/mpi/domain.hpp>
 
@@ -80,8 +81,8 @@ class MpiRanks final : public Ranks {
     if (!asked) return most_parts(lattice, depth);
     auto const chosen = read_parts(*asked, lattice, depth);
     if (std::int64_t{chosen[0]} * chosen[1] > count_)
-      throw UsageError(
-          fmt::format("--ranks {}: accepted: parts for at most {} ranks", *asked, count_));
+      throw UsageError(fmt::format("--ranks {}: accepted: at most {} in all, one for each rank",
+                                   *asked, counted(count_, "part")));
     return chosen;
   }
 
@@ -93,8 +94,9 @@ class MpiRanks final : public Ranks {
       MPI_Comm those = MPI_COMM_NULL;
       MPI_Comm_split(comm_, has_part ? 0 : 1, rank_, &those);
       if (is_first())
-        fmt::print(stderr, "warning: {} of {} ranks have no part: one has at least {}\n",
-                   count_ - parts, count_, mpi::to_text(depth));
+        fmt::print(stderr, "warning: {} of {} ranks {} nothing to do: a part needs at least {}\n",
+                   count_ - parts, count_, count_ - parts == 1 ? "has" : "have",
+                   mpi::to_text(depth));
       use(those);
     }
     if (!has_part || parts == 1) return {.local = lattice, .none = !has_part};

@@ -14,7 +14,8 @@ namespace {
 
 std::string outcome_text(io::SweptRun const& run) {
   if (run.status != Status::done) return fmt::format("failed: {}", run.message);
-  auto const text = fmt::format("{} steps in {}", run.step, duration_text(run.cost.wall_seconds));
+  auto const text =
+      fmt::format("{} in {}", counted(run.step, "step"), duration_text(run.cost.wall_seconds));
   return run.message.empty() ? text : fmt::format("{}; {}", text, run.message);
 }
 

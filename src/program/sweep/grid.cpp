@@ -108,7 +108,7 @@ Grid make_grid(SweepOptions const& options) {
       io::check_files(scene);
       if (scene.output.sync)
         throw io::scene_error(scene, "output.sync",
-                              "true: a sweep is not kept from power cuts; accepted: false");
+                              "true: a sweep is not protected against power cuts; accepted: false");
       std::int64_t steps = 0;
       for (auto const& stage : io::stages_of(scene)) {
         steps += stage.relax ? 0 : stage.scene.integrator.steps;

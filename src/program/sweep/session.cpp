@@ -93,8 +93,8 @@ void Session::open(bool is_new) {
 void Session::require_same_sweep() const {
   if (!io::is_sweep(file_))
     throw UsageError(
-        fmt::format("--output {}: it exists and has no sweep; accepted: another file, or "
-                    "--overwrite",
+        fmt::format("--output {}: it exists and is not the file of a sweep; accepted: another "
+                    "file, or --overwrite",
                     file_.string()));
   auto const other = difference(info_.header, io::read_sweep(file_).header);
   if (other.empty()) return;
@@ -187,7 +187,9 @@ void Session::take(std::int64_t number, std::int64_t status, std::string const& 
                           fmt::format("{}:/runs/{}", file_.string(), io::swept_run_name(number)));
   if (status == Status::done && !whole) {
     taken.status = Status::wrong_usage;
-    taken.message = "its file is not that of the scene that was read when the sweep began";
+    taken.message =
+        "the run's file does not hold a complete run of the scene with which the sweep began: the "
+        "scene file has changed since";
   }
   info_.runs[index(number)] = taken;
   // A successful run need not be recorded at once: if the record is lost, its complete file is

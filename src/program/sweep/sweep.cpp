@@ -47,7 +47,7 @@ Sharing share_machine(SweepOptions const& options, Grid const& grid, std::size_t
       grid.largest > 0 ? io::available_memory() / grid.largest : io::available_memory();
   if (options.jobs && *options.jobs > fits)
     throw UsageError(fmt::format(
-        "--jobs {}: each run takes {} of memory, {} are available; "
+        "--jobs {}: each run takes {} of memory, and {} is available; "
         "accepted: at most {}",
         *options.jobs, bytes_text(grid.largest), bytes_text(io::available_memory()), fits));
   std::int64_t jobs = options.jobs.value_or(on_host ? cores / options.threads.value_or(1) : 1);
@@ -145,7 +145,7 @@ int close_sweep(SweepOptions const& options, Session const& session, double seco
                      count([](auto const& run) { return run.status == Status::done; });
   if (!options.quiet) {
     print_table(info);
-    fmt::print("{}: {} runs in {}\n", options.output.string(), info.runs.size(),
+    fmt::print("{}: {} in {}\n", options.output.string(), counted(std::ssize(info.runs), "run"),
                duration_text(seconds));
     std::fflush(stdout);
   }
@@ -153,11 +153,12 @@ int close_sweep(SweepOptions const& options, Session const& session, double seco
   auto const first =
       std::ranges::find_if(info.runs, [](auto const& run) { return run.status != Status::done; });
   auto const number = first - info.runs.begin();
-  auto const message = fmt::format(
-      "{}: {} of {} runs failed; run {}, {}: {}", options.output.string(), failed + stuck,
-      info.runs.size(), io::swept_run_name(number), values_text(info.header, number),
-      first->message.empty() ? fmt::format("it ended with status {}", first->status)
-                             : first->message);
+  auto const message =
+      fmt::format("{}: {} of {} failed; run {}, {}: {}", options.output.string(), failed + stuck,
+                  counted(std::ssize(info.runs), "run"), io::swept_run_name(number),
+                  values_text(info.header, number),
+                  first->message.empty() ? fmt::format("it ended with status {}", first->status)
+                                         : first->message);
   if (failed > 0) throw NumbersFailed(message);
   throw std::runtime_error(message);
 }
@@ -171,8 +172,8 @@ int sweep_over(SweepOptions const& options) {
     return close_sweep(options, session,
                        std::chrono::duration<double>(Clock::now() - begin).count());
   auto const open = session.open_runs().size();
-  fmt::print(stderr, "{}: interrupted with {} of {} runs to do; the same command goes on\n",
-             options.output.string(), open, session.info().runs.size());
+  fmt::print(stderr, "{}: interrupted with {} of {} to do; the same command continues it\n",
+             options.output.string(), open, counted(std::ssize(session.info().runs), "run"));
   return Status::interrupted;
 }
 

@@ -296,7 +296,8 @@ Known fine_solution(Pilot const& pilot, Horizon& horizon, double error, double s
     }
     horizon.halve(why);
   }
-  throw NumbersFailed("there is no solution to compare with: " + horizon.why_shorter);
+  throw NumbersFailed(pilot.scene().path.string() +
+                      ": there is no solution to compare with: " + horizon.why_shorter);
 }
 
 // Tries the steps of the actual run, if no trial has shown their error. An extrapolated error may

@@ -106,7 +106,8 @@ Pilot::Pilot(io::Scene scene, std::string space, double error)
                           "accepted: temperature = 0");
   if (auto const needed = bytes(fine_tsit5()); needed > available_)
     throw io::scene_error(scene_, "lattice.shape",
-                          fmt::format("to try methods needs {} of memory, {} are available",
+                          fmt::format("trying methods needs {} of memory, and {} is available; "
+                                      "accepted: a smaller lattice",
                                       bytes_text(needed), bytes_text(available_)));
   start_ = io::initial_spins(scene_);
 }

@@ -149,7 +149,8 @@ Horizon horizon_within(Pilot const& pilot, double seconds) {
   for (int halvings = most_halvings;;) {
     double const time = std::ldexp(pilot.end(), -halvings);
     auto const tried = pilot.run(fine_tsit5(), time, {0, 1e-2});
-    if (tried.failure) throw NumbersFailed(*tried.failure);
+    if (tried.failure)
+      throw NumbersFailed(fmt::format("{}: {}", pilot.scene().path.string(), *tried.failure));
     auto const own_steps = tried.summary.own_steps;
     bool const too_long = tried.seconds() > seconds && own_steps > most_short;
     if (!too_long || halvings == most_halvings) longest = {time, own_steps, tried.seconds()};
@@ -181,7 +182,8 @@ Reference converged_reference(Pilot const& pilot, double seconds) {
                               tightest, uncertainty,
                               time_text(pilot.scene().units, horizon.time, 6)));
   }
-  throw NumbersFailed("there is no reference: " + horizon.why_shorter);
+  throw NumbersFailed(fmt::format("{}: there is no reference solution: {}",
+                                  pilot.scene().path.string(), horizon.why_shorter));
 }
 
 }  // namespace cayspin::program::trade

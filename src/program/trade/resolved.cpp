@@ -97,8 +97,10 @@ io::Scene with_method(io::Scene const& scene, std::string const& space, Precisio
     advised = advise(Pilot(scene, space, *integrator.error),
                      {*integrator.error, {}, precision, progress});
   if (!advised.choice)
-    throw NumbersFailed(fmt::format("{}: no method gets to an error of {:g} in {} precision",
-                                    scene.path.string(), *integrator.error, to_string(precision)));
+    throw NumbersFailed(
+        fmt::format("{}: no method reaches an error of {:g} in {} precision; accepted: a larger "
+                    "integrator.error",
+                    scene.path.string(), *integrator.error, to_string(precision)));
   return io::with_overrides(scene, resolve(scene, *advised.choice).overrides);
 }
 
