@@ -20,7 +20,8 @@ int read_site(Table const& table) {
   auto const item = table.find("site");
   if (!item) return -1;
   auto const sites = table.scene().lattice.basis.size();
-  auto const accepted = fmt::format("a site of the cell, 0 to {}", sites - 1);
+  auto const accepted = sites == 1 ? "0, the only site of the cell"
+                                   : fmt::format("a site of the cell, 0 to {}", sites - 1);
   auto const site = integer(*item, {accepted, 0});
   if (site >= static_cast<std::int64_t>(sites))
     item->fail(fmt::format("the cell has no site {}", site), accepted);
@@ -52,8 +53,8 @@ void read_axes(Item const& of_both, std::array<Item, 2> const& each, Scene& scen
 CrystalAnisotropy read_cubic(Table const& table) {
   CrystalAnisotropy term;
   auto& scene = table.scene();
-  refuse_keys(table, {"constant", "axis"}, "belongs to a uniaxial one");
-  refuse_keys(table, {"hexagonal", "in_plane"}, "belongs to a hexagonal one");
+  refuse_keys(table, {"constant", "axis"}, "belongs to a uniaxial anisotropy");
+  refuse_keys(table, {"hexagonal", "in_plane"}, "belongs to a hexagonal anisotropy");
   term.constant =
       constant_of_sites(table.required("cubic", "a finite number"), scene, term.factors);
   if (auto const second = table.find("constant2"))
@@ -68,8 +69,8 @@ CrystalAnisotropy read_cubic(Table const& table) {
 CrystalAnisotropy read_hexagonal(Table const& table) {
   CrystalAnisotropy term{.hexagonal = true};
   auto& scene = table.scene();
-  refuse_keys(table, {"constant", "constant2"}, "belongs to a uniaxial one");
-  refuse_keys(table, {"axes"}, "belongs to a cubic one");
+  refuse_keys(table, {"constant", "constant2"}, "belongs to a uniaxial anisotropy");
+  refuse_keys(table, {"axes"}, "belongs to a cubic anisotropy");
   term.constant =
       constant_of_sites(table.required("hexagonal", "a finite number"), scene, term.factors);
   auto const in_plane = table.required("in_plane", "a vector at right angles with axis, to 1e-4");
@@ -90,8 +91,8 @@ void read_anisotropy(Item const& item, Scene& scene, Field& field) {
     field.crystal_anisotropies.push_back(read_hexagonal(table));
     return;
   }
-  refuse_keys(table, {"axes"}, "belongs to a cubic one");
-  refuse_keys(table, {"in_plane"}, "belongs to a hexagonal one");
+  refuse_keys(table, {"axes"}, "belongs to a cubic anisotropy");
+  refuse_keys(table, {"in_plane"}, "belongs to a hexagonal anisotropy");
   Anisotropy term;
   term.constant =
       constant_of_sites(table.required("constant", "a finite number"), scene, term.factors);

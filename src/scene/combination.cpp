@@ -29,7 +29,8 @@ void check_energy_control(Scene const& scene) {
            "damping = 0 with precession, or no such key");
   if (!integrator.method->has_equal_steps())
     refuse(scene, key,
-           fmt::format("method \"{}\" does not step from the spins that it changes",
+           fmt::format("method \"{}\" chooses its steps and continues from a state of its own, not "
+                       "from the spins that energy_control changes",
                        integrator.method->word),
            "a method with steps of dt, or no such key");
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "bond_key.hpp"
+#include "io/counted.hpp"
 #include "quantity.hpp"
 #include "sections.hpp"
 #include "unit_cell_file.hpp"
@@ -63,9 +64,9 @@ void refuse_beyond(Item const& item, Lattice const& lattice, std::array<int, 3> 
   cells[2] /= static_cast<std::int64_t>(lattice.basis.size());
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (lattice.boundary[axis] == BoundaryKind::open && std::abs(offset[axis]) >= cells[axis])
-      item.fail(fmt::format("leaves the lattice from every cell: the offset along {} is {}, and "
-                            "there are {} cells",
-                            "xyz"[axis], offset[axis], cells[axis]),
+      item.fail(fmt::format("leaves the lattice from every cell: the offset along {0} is {1}, and "
+                            "the lattice has {2} along {0}",
+                            "xyz"[axis], offset[axis], counted(cells[axis], "cell")),
                 "a shorter offset, a larger shape, or boundary \"periodic\"");
 }
 
@@ -76,7 +77,8 @@ Coupling read_coupling(Item const& item, Scene& scene) {
   std::array<int, 2> between{};
   std::array<int, 3> offset{};
   if (auto const two = table.find("between")) {
-    auto const accepted = fmt::format("two sites of the cell, 0 to {}", sites - 1);
+    auto const accepted = sites == 1 ? "[0, 0], as the cell has one site"
+                                     : fmt::format("two sites of the cell, 0 to {}", sites - 1);
     auto const both = entries(*two, 2, 2, accepted);
     for (std::size_t end = 0; end < 2; ++end) {
       between[end] = small_integer(both[end], 0, accepted);
@@ -97,7 +99,7 @@ Coupling read_coupling(Item const& item, Scene& scene) {
              biquadratic = table.find("biquadratic");
   if (tensor) {
     for (auto const& other : {J, D})
-      if (other) other->fail("stands beside a tensor, which says it", "no such key");
+      if (other) other->fail("stands beside a tensor, which already contains it", "no such key");
     made.tensor = read_tensor(*tensor, scene);
   } else if (J || D) {
     made = Coupling::of(between, offset, J ? read_strength(*J, scene) : 0,
@@ -124,12 +126,12 @@ void refuse_twice(std::vector<Item> const& items, std::vector<Coupling> const& c
   for (std::size_t i = 0; i < couplings.size(); ++i) {
     auto const refuse = [&](auto const& other, std::string_view how) {
       if (other != seen.end())
-        items[i].fail(fmt::format("is the bond of {}{}", items[other->second].key, how),
+        items[i].fail(fmt::format("is the same bond as {}{}", items[other->second].key, how),
                       "each bond once, or from both ends with { pairs = [..], both_directions = "
                       "true }");
     };
     refuse(seen.find(key_of(couplings[i])), "");
-    refuse(seen.find(reversed(key_of(couplings[i]))), ", reversed");
+    refuse(seen.find(reversed(key_of(couplings[i]))), ", from its other end");
     seen.emplace(key_of(couplings[i]), i);
   }
 }
@@ -151,7 +153,7 @@ std::vector<Coupling> one_direction(std::vector<Item> const& items,
   std::map<BondKey, std::size_t> seen;
   for (std::size_t i = 0; i < couplings.size(); ++i)
     if (auto const [at, is_new] = seen.emplace(key_of(couplings[i]), i); !is_new)
-      items[i].fail(fmt::format("is the bond of {}", items[at->second].key), accepted);
+      items[i].fail(fmt::format("is the same bond as {}", items[at->second].key), accepted);
   std::vector<Coupling> once;
   for (std::size_t i = 0; i < couplings.size(); ++i) {
     auto const back = seen.find(reversed(key_of(couplings[i])));

@@ -47,7 +47,7 @@ void read_basis(Item const& item, Lattice& lattice) {
   auto const sites = entries(item, 1, most_sites, accepted);
   for (auto const& entry : sites) lattice.basis.push_back(triple(entry));
   if (auto const two = crystal(lattice).sites_at_one_place())
-    sites[(*two)[1]].fail(fmt::format("is the place of site {}, too", (*two)[0]),
+    sites[(*two)[1]].fail(fmt::format("is at the same place as site {}", (*two)[0]),
                           "sites at places of their own");
 }
 
@@ -73,7 +73,7 @@ void read_crystal(Table const& root, Table const& table, Lattice& lattice) {
   if (auto const item = table.find("crystal")) {
     for (auto const* const name : {"cell", "basis"})
       if (auto const other = table.find(name))
-        other->fail("stands beside lattice.crystal, which says it", "no such key");
+        other->fail("stands beside lattice.crystal, which already sets it", "no such key");
     use(word_among<Crystal (*)()>(crystals, *item)());
   }
   if (!table.contains("crystal") && !table.contains("cell") && !table.contains("basis"))
@@ -97,8 +97,10 @@ void check_crystal(Scene const& scene) {
   if (!is_crystal(lattice)) return;
   auto const refuse_if = [&](bool there, std::string_view key, std::string_view accepted) {
     if (!there) return;
-    auto const needs = lattice.basis.size() > 1 ? "needs one site in a cell"
-                                                : "needs a cell along the axes, of the spacing";
+    auto const needs =
+        lattice.basis.size() > 1
+            ? "needs one site in a cell"
+            : "needs a cell with edges along x, y and z of the lengths lattice.spacing";
     detail::refuse(scene, key, needs, accepted);
   };
   bool const si = scene.units.si;

@@ -53,8 +53,9 @@ void read_demagnetizing_factors(Table const& table, Demagnetization& demag) {
     return number(each, {accepted, 0, 1});
   });
   if (std::ranges::count(demag.periodic_images, infinitely_many_images) < 3)
-    item->fail("is of a lattice that is periodic along x, y and z, without periodic_images",
-               "no such key");
+    item->fail(
+        "applies only to a lattice that is periodic along x, y and z, without periodic_images",
+        "no such key");
 }
 
 // Reads `true` or `false`, or a table. In a crystal, demag is the field of dipoles.

@@ -123,7 +123,7 @@ Ensemble read_ensemble(Table const& root) {
     std::string const key(name.str());
     auto const item = *keys.find(key);
     if (!may_vary(key))
-      item.fail("is the same in all replicas",
+      item.fail("must be the same in all replicas",
                 "a number of [field], [torque] or [material], thermal.temperature, "
                 "system.damping");
     ensemble.vary.push_back({key, read_values(item, root.scene(), ensemble.replicas)});

@@ -70,7 +70,7 @@ void read_follow(Table const& root, Scene& scene) {
   if (follow.axis == 2 && lattice.basis.size() > 1)
     axis_item.fail("\"z\" does not go with several sites in a cell", "\"x\", \"y\"");
   if (lattice.shape[follow.axis] < 2)
-    axis_item.fail(fmt::format("the lattice has no neighbours along {}", name),
+    axis_item.fail(fmt::format("the lattice has only one cell along {}", name),
                    "an axis with several cells");
   if (lattice.boundary[follow.axis] == BoundaryKind::periodic)
     axis_item.fail(fmt::format("the lattice is periodic along {}, and nothing comes in", name),
@@ -88,7 +88,8 @@ void require_alike_where_followed(Scene const& scene) {
     if (!differs_along(lattice, axis, read)) return;
     detail::refuse(
         scene, "lattice.follow",
-        fmt::format("{} differs along {}, along which the lattice follows", key, axes[axis]),
+        fmt::format("{} differs along {}, along which lattice.follow moves the lattice", key,
+                    axes[axis]),
         fmt::format("values per site that are the same along {}, or no such key", axes[axis]));
   };
   auto const check = [&](SiteNumbers const& numbers, std::string_view key) {

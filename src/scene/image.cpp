@@ -89,7 +89,8 @@ void read_image_keys(Table const& table, SiteNumbers& numbers) {
     numbers.levels = levels_of(*levels);
   else if (table.item().key != "lattice.occupied")
     table.item().fail("an image needs levels",
-                      "levels = [128], or several: the number of them that a grey value reaches");
+                      "levels = [128], or several grey values: a pixel's number is how many of "
+                      "them its grey value reaches");
 }
 
 std::vector<double> numbers_of_image(SiteNumbers const& numbers, Lattice const& lattice,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "initial_state.hpp"
+#include "io/counted.hpp"
 #include "random_bits.hpp"
 #include "sections.hpp"
 #include "site_expression.hpp"
@@ -36,7 +37,8 @@ RandomStart read_random(Item const& item, Scene& scene) {
 
 GivenStart read_given(Item const& item, Scene const& scene) {
   constexpr std::string_view accepted =
-      "uniform, expression, random, file or state; a run of such a scene has its start in its file";
+      "uniform, expression, random, file or state; the first frame of such a run's file is that "
+      "start";
   if (!boolean(item)) item.fail("false has no meaning", "true, or another key");
   if (!scene.given.spins)
     item.fail("stands for spins that a program gives, and none did", accepted);
@@ -176,10 +178,10 @@ struct Start {
       zeros += occupied[site] && m[0] == 0 && m[1] == 0 && m[2] == 0;
     }
     if (zeros > 0)
-      detail::refuse(
-          scene, "initial.file",
-          fmt::format("is zero on {} of the {} sites that lattice.occupied fills", zeros, there),
-          fmt::format("lattice.occupied = {{ file = \"{}\" }}, or no such key", name));
+      detail::refuse(scene, "initial.file",
+                     fmt::format("is zero on {} of the {} that lattice.occupied fills", zeros,
+                                 counted(there, "site")),
+                     fmt::format("lattice.occupied = {{ file = \"{}\" }}, or no such key", name));
   }
 
   void set_all(std::vector<double> const& values, std::string_view key) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "io/notes.hpp"
 
+#include "io/counted.hpp"
 #include "io/ovf.hpp"
 #include "sections.hpp"
 
@@ -114,10 +115,11 @@ class Notes {
     auto const note = [&](std::string_view key, std::array<std::int64_t, 2> const& regions,
                           std::int64_t range) {
       if (meet(regions, range)) return;
-      auto const which = fmt::format("acts nowhere: spins of regions {} and {} are nowhere ",
-                                     regions[0], regions[1]);
-      add(key, which + (range == 0 ? "neighbours"
-                                   : fmt::format("{} cells without a spin apart", range)));
+      auto const which =
+          fmt::format("acts nowhere: no spins of regions {} and {} ", regions[0], regions[1]);
+      add(key, which + (range == 0 ? "are neighbours"
+                                   : fmt::format("have {} without a spin between them",
+                                                 counted(range, "cell"))));
     };
     for (auto const& bond : scene_.field.interlayers)
       note("field.interlayer", bond.regions, bond.range);
@@ -191,9 +193,9 @@ class Notes {
         fits = fits || !(leaves(bonds[next]) || comes_back(bonds[next]));
       if (!fits)
         add("field.couplings.shells",
-            fmt::format("entry {}, for pairs {:.6g} apart, acts nowhere: no such pair fits into "
+            fmt::format("entry {}, for pairs {:.6g}{} apart, acts nowhere: no such pair fits into "
                         "the lattice",
-                        shell, shortest * scene_.units.length));
+                        shell, shortest * scene_.units.length, scene_.units.si ? " m" : ""));
     }
   }
 
@@ -296,11 +298,12 @@ class Notes {
       look("material.mu_s", material.moment, 1e-26, 1e-20,
            "J/T is far from a Bohr magneton, 9.274e-24 J/T");
       look("material.J", exchange, 0, 1e-18,
-           "J is far above the bonds of spins; 1 meV is 1.602e-22 J");
+           "J is far above the exchange between two spins; 1 meV is 1.602e-22 J");
     } else {
       look("material.Ms", material.moment, 100, 1e7,
-           "A/m is far from those of magnets; mu0 Ms = 1 T is 7.96e5 A/m");
-      look("material.A", exchange, 0, 1e-9, "J/m is far above those of magnets, about 1e-11 J/m");
+           "A/m is far from the Ms of magnets; mu0 Ms = 1 T is 7.96e5 A/m");
+      look("material.A", exchange, 0, 1e-9,
+           "J/m is far above the A of magnets, about 1e-11 J/m");
     }
     for (double const edge : scene_.lattice.spacing)
       if (edge * scene_.units.length > 1e-4)

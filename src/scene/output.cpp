@@ -11,7 +11,7 @@ namespace {
 
 CheckpointPeriod checkpoint_period(Item const& item) {
   constexpr std::string_view accepted =
-      "seconds of the run's own time >= 0, where 0 is never, or \"N steps\"";
+      "seconds of wall-clock time >= 0, where 0 means never, or \"N steps\" with N >= 1";
   if (!item.node->is_string()) return {number(item, {accepted, 0}), 0};
   auto const text = string(item, accepted);
   std::int64_t steps = 0;

@@ -14,7 +14,7 @@ void check_ovf_of_sites(std::filesystem::path const& path, Lattice const& lattic
                         std::int64_t components) {
   if (lattice.basis.size() > 1)
     throw std::runtime_error(
-        fmt::format("{}: OVF has one {} in a cell, and lattice.basis {}; accepted: HDF5",
+        fmt::format("{}: OVF has one {} per cell, and lattice.basis has {}; accepted: HDF5",
                     path.string(), components == 3 ? "spin" : "value", lattice.basis.size()));
   auto const mesh = read_ovf_mesh(path, components);
   if (mesh.nodes == lattice.shape) return;

@@ -42,7 +42,7 @@ void require_changeable(std::string const& key, std::string const& place,
   constexpr std::string_view known[] = {"units", "lattice", "initial"};
   bool const is_known = is_among(table, known) || is_among(table, changeable);
   fail(place, prefix + key,
-       is_known ? std::string("stays as it is for all of a run") : std::string("unknown key"),
+       is_known ? std::string("cannot change during a run") : std::string("unknown key"),
        is_of_output     ? fmt::format("{}", fmt::join(of_output, ", "))
        : prefix.empty() ? fmt::format("keys of {}", fmt::join(changeable, ", "))
                         : fmt::format("name, relax, and keys of {}", fmt::join(changeable, ", ")));
@@ -156,7 +156,7 @@ void check_stage(Scene const& own, Scene const& stage) {
            "the method and dt or tolerance that `cayspin advise` names for a stage");
   auto const &a = own.lattice, &b = stage.lattice;
   if (a.shape != b.shape || a.cell != b.cell || a.basis != b.basis)
-    refuse(stage, "field.couplings", "its file has another cell than that of the stage before",
+    refuse(stage, "field.couplings", "its file has a different cell from that of the stage before",
            "a file with the same cell");
 }
 

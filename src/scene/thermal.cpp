@@ -147,11 +147,11 @@ void require_moderate_noise(Scene const& scene, double heat) {
   bool const has_moments = !lattice.moments.empty() || lattice.moments_of_sites.there();
   detail::refuse(
       scene, "integrator.dt",
-      fmt::format("damping times temperature times dt{} is {:.3g}: the noise of a step would "
-                  "lose all memory of a direction",
+      fmt::format("damping times temperature times dt{} is {:.3g}: the noise of one step would "
+                  "erase all memory of a spin's direction",
                   has_moments ? " over the least moment" : "", half),
-      fmt::format("a dt up to {:.6g}, better a tenth of it",
-                  integrator.dt / half * scene.units.time));
+      fmt::format("a dt up to {:.6g}{}, better a tenth of it",
+                  integrator.dt / half * scene.units.time, scene.units.si ? " s" : ""));
 }
 
 }  // namespace cayspin::inline v0_2::io

@@ -2,6 +2,7 @@
 #include "unit_cell_file.hpp"
 
 #include "bond_key.hpp"
+#include "io/counted.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -47,11 +48,16 @@ class Lines {
   }
   /// Returns the next line. Throws at the end of the file, and for a line of fewer than `least`
   /// words. `what`: the expected part, for the message.
-  Words required(std::size_t least, std::string_view what) {
+  Words required(std::size_t least, std::string_view what) { return required(least, what, what); }
+  /// `accepted`: the words of the line, for the message.
+  Words required(std::size_t least, std::string_view what, std::string_view accepted) {
     auto words = next();
     if (!words) fail(fmt::format("ends before {}", what));
-    if (words->size() < least) fail(fmt::format("has {} words; accepted: {}", words->size(), what));
+    if (words->size() < least) refuse_words(*words, accepted);
     return std::move(*words);
+  }
+  [[noreturn]] void refuse_words(Words const& words, std::string_view accepted) const {
+    fail(fmt::format("has {}; accepted: {}", counted(std::ssize(words), "word"), accepted));
   }
 
   double number(std::string const& word) const {
@@ -100,9 +106,12 @@ Crystal read_crystal(Lines& lines) {
   auto const counts = lines.required(1, "the number of atoms");
   auto const atoms = lines.integer(counts[0], 1, most_sites);
   crystal.basis.clear();
+  auto const last = fmt::format("the last of {}", counted(atoms, "atom"));
   for (std::int64_t i = 0; i < atoms; ++i)
     crystal.basis.push_back(lines.vector(
-        lines.required(4, fmt::format("{} atoms, of each number x y z ..", atoms)), 1));
+        lines.required(4, last,
+                       fmt::format("\"number x y z ..\" for each of {}", counted(atoms, "atom"))),
+        1));
   if (auto const two = crystal.sites_at_one_place())
     lines.fail(fmt::format("atoms {} and {} are at one place", (*two)[0], (*two)[1]));
   return crystal;
@@ -110,8 +119,8 @@ Crystal read_crystal(Lines& lines) {
 
 void require_sites(Lines const& lines, Crystal const& file, Crystal const& scene) {
   if (file.basis.size() != scene.basis.size())
-    lines.fail(fmt::format("has {} atoms in a cell; accepted: {}, as lattice.basis",
-                           file.basis.size(), scene.basis.size()));
+    lines.fail(fmt::format("has {} in a cell; accepted: {}, as lattice.basis",
+                           counted(std::ssize(file.basis), "atom"), scene.basis.size()));
   for (std::size_t i = 0; i < file.basis.size(); ++i) {
     auto const &there = file.basis[i], &here = scene.basis[i];
     auto const is_far = [](double a, double b) { return std::abs(a - b) > 1e-4; };
@@ -154,13 +163,14 @@ Tensors read_interactions(Lines& lines, Words const& head, std::int64_t atoms) {
   constexpr std::int64_t most_bonds = 100'000'000, most_cells = 1'000'000;
   auto const count = lines.integer(head[0], 0, most_bonds);
   auto const numbers = head.size() > 1 ? numbers_of(lines, head[1]) : 1;
-  auto const accepted =
-      fmt::format("{} interactions, of each number i j dx dy dz and {} of J", count, numbers);
+  auto const accepted = fmt::format("\"number i j dx dy dz\" and {} of J for each of {}",
+                                    counted(static_cast<std::int64_t>(numbers), "number"),
+                                    counted(count, "interaction"));
+  auto const last = fmt::format("the last of {}", counted(count, "interaction"));
   Tensors tensors;
   for (std::int64_t n = 0; n < count; ++n) {
-    auto const words = lines.required(6 + numbers, accepted);
-    if (words.size() > 6 + numbers)
-      lines.fail(fmt::format("has {} words; accepted: {}", words.size(), accepted));
+    auto const words = lines.required(6 + numbers, last, accepted);
+    if (words.size() > 6 + numbers) lines.refuse_words(words, accepted);
     BondKey key;
     auto& [between, offset] = key;
     for (std::size_t end = 0; end < 2; ++end)
@@ -169,9 +179,15 @@ Tensors read_interactions(Lines& lines, Words const& head, std::int64_t atoms) {
       offset[axis] = static_cast<int>(lines.integer(words[3 + axis], -most_cells, most_cells));
     if (key == reversed(key)) lines.fail(fmt::format("couples atom {} to itself", between[0]));
     if (!tensors.emplace(key, read_tensor(lines, words, numbers)).second)
-      lines.fail(name_of(key) + " stands there twice");
+      lines.fail(name_of(key) + " occurs twice");
   }
   return tensors;
+}
+
+/// Returns what is wrong with a line after the interactions. `head`: the line that counts them.
+std::string behind_last(Words const& head) {
+  return fmt::format("comes after the last of {} interaction{}", head[0],
+                     head[0] == "1" ? "" : "s");
 }
 
 /// Returns each bond once, with the mean of its numbers from both ends, which may differ by
@@ -183,8 +199,7 @@ Tensors one_way(Lines const& lines, Tensors const& tensors) {
   Tensors once;
   for (auto const& [key, tensor] : tensors) {
     auto const back = tensors.find(reversed(key));
-    if (back == tensors.end())
-      lines.fail(name_of(key) + " does not stand there from its other end");
+    if (back == tensors.end()) lines.fail(name_of(key) + " is not given from its other end");
     if (!(key < reversed(key))) continue;
     auto& mean = once[key];
     for (std::size_t i = 0; i < 3; ++i)
@@ -223,12 +238,12 @@ std::vector<Coupling> read_unit_cell_couplings(std::filesystem::path const& path
     std::ranges::transform(tensor, coupling(key).tensor.begin(),
                            [&](double number) { return scale * number; });
   if (auto const more = lines.next()) {
-    if (more->size() != 2) lines.fail(fmt::format("is more than the {} interactions", head[0]));
+    if (more->size() != 2) lines.fail(behind_last(head));
     if (numbers_of(lines, (*more)[1]) != 1)
       lines.fail("biquadratic interactions that are not isotropic are not known");
     for (auto const& [key, tensor] : one_way(lines, read_interactions(lines, *more, atoms)))
       coupling(key).biquadratic = scale * tensor[0];
-    if (lines.next()) lines.fail(fmt::format("is more than the {} interactions", (*more)[0]));
+    if (lines.next()) lines.fail(behind_last(*more));
   }
   std::vector<Coupling> all;
   for (auto const& [key, made] : couplings) all.push_back(made);

@@ -292,7 +292,7 @@ TEST(Crystals, StartsFromOtherFilesAreRefused) {
                   "its extents are (4, 3, 4, 3); accepted: (2, 2, 3, 4, 3) or (frame, "
                   "2, 2, 3, 4, 3)"},
         {"empty.h5", "it holds no frame"},
-        {"state.ovf", "OVF has one spin in a cell, and lattice.basis 2; accepted: HDF5"}}) {
+        {"state.ovf", "OVF has one spin per cell, and lattice.basis has 2; accepted: HDF5"}}) {
     auto const scene = crystal_from(folder, file);
     for (auto const& message :
          {refusal([&] { check_files(scene); }), refusal([&] { initial_spins(scene); })}) {

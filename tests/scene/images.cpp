@@ -54,7 +54,7 @@ TEST(Images, WrongKeysAreRefusedInOneLine) {
   for (auto const& text :
        {exchange_of("{ image = 'a.png' }"), lattice_with("frozen = { image = 'a.png' }")})
     expect_holds(refusal_of_image(folder, text),
-                 ": an image needs levels; accepted: levels = [128], or several");
+                 ": an image needs levels; accepted: levels = [128], or several grey values: ");
 }
 
 #if defined(CAYSPIN_HAS_PNG)

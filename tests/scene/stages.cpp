@@ -158,12 +158,13 @@ TEST(Stages, ThatCannotBeAreRefusedInOneLine) {
     std::string stage, line;
   };
   for (auto const& [stage, line] : std::vector<Wrong>{
-           {"lattice.shape = [5, 3, 2]", "scene.toml:13: stage[0].lattice: stays as it is"},
-           {"units = \"SI\"", "scene.toml:13: stage[0].units: stays as it is for all of a run"},
-           {"initial.uniform = [1, 0, 0]", "stage[0].initial: stays as it is for all of a run"},
-           {"system.kind = \"rigid_body\"", "stage[0].system.kind: stays as it is"},
+           {"lattice.shape = [5, 3, 2]",
+            "scene.toml:13: stage[0].lattice: cannot change during a "},
+           {"units = \"SI\"", "scene.toml:13: stage[0].units: cannot change during a run"},
+           {"initial.uniform = [1, 0, 0]", "stage[0].initial: cannot change during a run"},
+           {"system.kind = \"rigid_body\"", "stage[0].system.kind: cannot change during a run"},
            {"output.file = \"b.h5\"",
-            "stage[0].output.file: stays as it is for all of a run; accepted: output.every, "
+            "stage[0].output.file: cannot change during a run; accepted: output.every, "
             "output.scalars_every"},
            {"label = \"a\"", "scene.toml:13: stage[0].label: unknown key; accepted: name, relax, "},
            {"field = 3", "stage[0].field: is no table"},

@@ -168,7 +168,8 @@ TEST(UnitCellFile, WrongLinesAreNamed) {
            {"1 1\n0 0", "1.5 1\n0 0", "6: 1.5 is not a whole number"},
            {"1 1\n0 0", "2 1\n0 0 0 0\n0 0", "8: atoms 0 and 1 are at one place"},
            {"1 1\n0 0", "99999999999 1\n0 0", "6: 99999999999 is not a whole number"},
-           {"0 0 0 0 0\n", "0 0 0\n", "7: has 3 words; accepted: 1 atoms, of each number x y z"},
+           {"0 0 0 0 0\n", "0 0 0\n",
+            "7: has 3 words; accepted: \"number x y z ..\" for each of 1 atom"},
            {"2 isotropic", "2 isotropisch",
             "8: \"isotropisch\" is no kind of exchange; accepted: "
             "isotropic, vectorial, tensorial"},
@@ -176,11 +177,13 @@ TEST(UnitCellFile, WrongLinesAreNamed) {
            {"2 isotropic", "-2 isotropic", "8: -2 is not a whole number from 0"},
            {"2 isotropic", "1 isotropic",
             "9: the bond from atom 0 to atom 0 of the cell (1, 0, 0) "
-            "away does not stand there from its other end"},
-           {"2 isotropic", "3 isotropic", "10: ends before 3 interactions, of each"},
+            "away is not given from its other end"},
+           {"2 isotropic", "3 isotropic", "10: ends before the last of 3 interactions"},
            {"2 isotropic", "2 tensorial",
-            "9: has 7 words; accepted: 2 interactions, of each number i j dx dy dz and 9 of J"},
-           {"1 0 0 2.5\n1", "1 0 0 2.5 0 0\n1", "9: has 9 words; accepted: 2 interactions"},
+            "9: has 7 words; accepted: \"number i j dx dy dz\" and 9 numbers of J for each of 2 "
+            "interactions"},
+           {"1 0 0 2.5\n1", "1 0 0 2.5 0 0\n1",
+            "9: has 9 words; accepted: \"number i j dx dy dz\" and 1 number of J "},
            {"0 0 0 1 0 0 2.5", "0 0 1 1 0 0 2.5", "9: 1 is not a whole number from 0 to 0"},
            {"0 0 0 1 0 0 2.5", "0 -1 0 1 0 0 2.5", "9: -1 is not a whole number from 0 to 0"},
            {"0 0 0 1 0 0 2.5", "0 0 0 0 0 0 2.5", "9: couples atom 0 to itself"},
@@ -189,13 +192,15 @@ TEST(UnitCellFile, WrongLinesAreNamed) {
            {"0 0 0 1 0 0 2.5", "0 0 0 1 0 0 2.5x", "9: \"2.5x\" is not a finite number"},
            {"-1 0 0 2.5", "1 0 0 2.5",
             "10: the bond from atom 0 to atom 0 of the cell (1, 0, 0) "
-            "away stands there twice"},
+            "away occurs twice"},
            {"-1 0 0 2.5", "-1 0 0 2.4",
             "10: the bond from atom 0 to atom 0 of the cell (-1, 0, 0) "
             "away is 2.4 there and 2.5 from its other end"},
-           {"-1 0 0 2.5", "-1 0 0 2.5\n2 0 0 0 1 0 1", "11: is more than the 2 interactions"},
+           {"-1 0 0 2.5", "-1 0 0 2.5\n2 0 0 0 1 0 1",
+            "11: comes after the last of 2 interactions"},
            {"-1 0 0 2.5", "-1 0 0 2.5\n2 tensorial", "11: biquadratic interactions that are not "},
-           {"-1 0 0 2.5", "-1 0 0 2.5\n0 isotropic\nmore", "12: is more than the 0 interactions"},
+           {"-1 0 0 2.5", "-1 0 0 2.5\n0 isotropic\nmore",
+            "12: comes after the last of 0 interactions"},
            {"# a chain", std::string(5000, 'x'), "1: is longer than 4096 characters"}}) {
     auto const refused = refusal_of_cell(folder, replaced(chain_cell, from, to));
     EXPECT_TRUE(refused.starts_with(message)) << to << '\n' << refused << '\n' << message;

@@ -49,7 +49,7 @@ integrator.method = 'bs3'; integrator.tolerance = 1e-3; integrator.min_dt = 0.2;
 integrator.energy_control = true | : | needs a system that conserves its energy
 system.damping = 0.0; field.applied = [0,0,1];
  integrator = {method='tsit5',tolerance=1e-3,end=1.0,energy_control=true}
-  | .energy_control: | does not step from the spins that it changes
+  | .energy_control: | continues from a state of its own, not from the spins
 integrator.method = 'euler'; integrator.compensated = true | :
   | accepted: "rkmk4", "rkmk5", "projected_rk4", "projected_rk5"
 integrator.method = 'rkmk4'; integrator.compensated = true; integrator.rotation = 'exponential' | :

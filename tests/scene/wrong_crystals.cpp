@@ -25,9 +25,10 @@ lattice.basis = [] | : has 0 entries | an array of sites
 lattice.basis = 'bcc' | : 'bcc' is a string | an array of sites
 lattice.basis = [0, 0, 0] | [0]: 0 is an integer | three numbers
 lattice.basis = [[0, 0, 0], [0.5, 0.5]] | [1]: has 2 entries | three numbers
-lattice.basis = [[0, 0, 0], [0.5, 0, 0], [0, 0, 0]] | [2]: is the place of site 0, too
+lattice.basis = [[0, 0, 0], [0.5, 0, 0], [0, 0, 0]] | [2]: is at the same place as site 0
   | sites at places of their own
-lattice.basis = [[0.5, 0, 0.9999999], [0.2, 0, 0], [-0.5, 3, 0]] | [2]: is the place of site 0, too
+lattice.basis = [[0.5, 0, 0.9999999], [0.2, 0, 0], [-0.5, 3, 0]]
+  | [2]: is at the same place as site 0
   | places
 lattice.basis =; lattice.crystal = 'fc' | : "fc" is not known, did you mean "fcc"?
   | "bcc", "fcc", "hcp", "honeycomb", "kagome", "pyrochlore"
@@ -93,7 +94,7 @@ field.couplings = [{ between = [0, 1], biquadratic = true }] | [0].biquadratic: 
   | a finite number
 field.couplings = [{ between = [0, 1], offset = [1, 2, 0], J = 1 },
  { between = [1, 0], offset = [-1, -2, 0], J = 1 }]
-  | [1]: is the bond of field.couplings[0], reversed; | each bond once
+  | [1]: is the same bond as field.couplings[0], from its other end; | each bond once
 field.couplings = {} | : has no bonds | shells
 field.couplings = { both_directions = true, shells = [1] } | .both_directions: belongs to pairs
 field.couplings = { pairs = [{ J = 1 }], file = 'a.ucf' } | : has a file and other bonds
@@ -103,7 +104,7 @@ field.couplings = { pairs = [{ offset = [1, 0, 0], J = 1 }], both_directions = t
 field.couplings = { pairs = [{ offset = [1, 0, 0], J = 1 }, { offset = [-1, 0, 0], J = 2 }], both_directions = true }
   | .pairs[0]: differs from field.couplings.pairs[1]
 field.couplings = { pairs = [{ offset = [1, 0, 0], J = 1 }, { offset = [-1, 0, 0], J = 1 }] }
-  | .pairs[1]: is the bond of field.couplings.pairs[0], reversed | both_directions
+  | .pairs[1]: is the same bond as field.couplings.pairs[0], from its other end | both_directions
 field.couplings = { shells = [1], file = 'a.ucf' } | : has a file and other bonds | { file = "NAME.ucf" }
 field.couplings = { shell = [1] } | .shell: unknown key | did you mean "shells"?
 field.couplings = { shells = 1 } | .shells: 1 is an integer | the J of pairs at the first
@@ -124,22 +125,23 @@ field.anisotropy = [{ constant = 1, axis = [0, 0, 1], site = -1 }] | [0].site: -
   | 0 to 1
 field.anisotropy = { cubicc = 1 } | .cubicc: unknown key | did you mean "cubic"?
 field.anisotropy = { cubic = 1 } | .axes: is missing | two vectors at right angles
-field.anisotropy = { cubic = 1, axis = [0, 0, 1] } | .axis: belongs to a uniaxial one | no such key
-field.anisotropy = { cubic = 1, constant = 1, axes = [[1, 0, 0], [0, 1, 0]] }
-  | .constant: belongs to a uniaxial one | no such key
-field.anisotropy = { constant = 1, axes = [[1, 0, 0], [0, 1, 0]] } | .axes: belongs to a cubic one
+field.anisotropy = { cubic = 1, axis = [0, 0, 1] } | .axis: belongs to a uniaxial anisotropy
   | no such key
+field.anisotropy = { cubic = 1, constant = 1, axes = [[1, 0, 0], [0, 1, 0]] }
+  | .constant: belongs to a uniaxial anisotropy | no such key
+field.anisotropy = { constant = 1, axes = [[1, 0, 0], [0, 1, 0]] }
+  | .axes: belongs to a cubic anisotropy | no such key
 field.anisotropy = { cubic = true, axes = [[1, 0, 0], [0, 1, 0]] } | .cubic: true is a boolean
   | a finite number
 field.anisotropy = { cubic = 1, constant2 = 'q', axes = [[1, 0, 0], [0, 1, 0]] }
   | .constant2: expression | a formula in x, y, z
 field.anisotropy = { cubic = 1, in_plane = [1, 0, 0], axes = [[1, 0, 0], [0, 1, 0]] }
-  | .in_plane: belongs to a hexagonal one | no such key
+  | .in_plane: belongs to a hexagonal anisotropy | no such key
 field.anisotropy = { hexagonal = 1, cubic = 1, axes = [[1, 0, 0], [0, 1, 0]] }
-  | .hexagonal: belongs to a hexagonal one | no such key
-field.anisotropy = { hexagonal = 1, axes = [[1, 0, 0], [0, 1, 0]] } | .axes: belongs to a cubic one
-  | no such key
-field.anisotropy = { hexagonal = 1, constant2 = 1 } | .constant2: belongs to a uniaxial one
+  | .hexagonal: belongs to a hexagonal anisotropy | no such key
+field.anisotropy = { hexagonal = 1, axes = [[1, 0, 0], [0, 1, 0]] }
+  | .axes: belongs to a cubic anisotropy | no such key
+field.anisotropy = { hexagonal = 1, constant2 = 1 } | .constant2: belongs to a uniaxial anisotropy
   | no such key
 field.anisotropy = { hexagonal = 1, axis = [0, 0, 1] } | .in_plane: is missing
   | a vector at right angles with axis
@@ -147,7 +149,7 @@ field.anisotropy = { hexagonal = 1, in_plane = [0, 0, 1] } | .axis: is missing |
 field.anisotropy = { hexagonal = 1, axis = [0, 0, 1], in_plane = [1, 0, 1] }
   | .in_plane: the axes are not at right angles, by 0.707 | two vectors at right angles
 field.anisotropy = { constant = 1, axis = [0, 0, 1], in_plane = [1, 0, 0] }
-  | .in_plane: belongs to a hexagonal one | no such key
+  | .in_plane: belongs to a hexagonal anisotropy | no such key
 field.dmi = { d2d = 1, bulk = 1 } | : is of D2d and of another symmetry | { d2d = D }
 field.dmi = { d2d = 1, normal = [0, 0, 1] } | : is of D2d and of another symmetry | { d2d = D }
 field.dmi = { d2d = true } | .d2d: true is a boolean | an expression
@@ -168,14 +170,15 @@ field.dmi = { interfacial = 1, normal = [0, 0, 1] } | : needs one site in a cell
   | field.couplings with D
 field.dmi = { bulk = 1 } | : needs one site in a cell | field.couplings with D
 lattice.basis =; lattice.cell = [[1, 0, 0], [0.5, 1, 0], [0, 0, 1]]; field = { exchange = 1 }
-  | .exchange: needs a cell along the axes | field.couplings with J
+  | .exchange: needs a cell with edges along x, y and z of the lengths | field.couplings with J
 field.dipoles = 1 | : 1 is an integer | true, or { strength, periodic_images, demagnetizing_factors
 field.demag = 1 | : 1 is an integer | true, or { strength, periodic_images, demagnetizing_factors
 field.dipoles = { images = [1, 0, 0] } | .images: unknown key | periodic_images
 field.dipoles = { periodic_images = [1, -1, 0] } | .periodic_images[1]: -1 is too small | 0 to 1000
 field.dipoles = { strength = nan } | .strength: nan is not finite
 field.dipoles = { demagnetizing_factors = [0, 0, 1] }
-  | .demagnetizing_factors: is of a lattice that is periodic along x, y and z | no such key
+  | .demagnetizing_factors: applies only to a lattice that is periodic along x, y and z
+  | no such key
 field.dipoles = { demagnetizing_factors = [0, 0, 2] } | .demagnetizing_factors[2]: 2 | 0 to 1
 field.dipoles = { demagnetizing_factors = [0, 1] } | .demagnetizing_factors: has 2 entries
 )");
@@ -212,7 +215,7 @@ TEST(WrongCrystal, OfABondTypedTwiceIsNamedByItsLine) {
                                   "[{ between = [0, 1], J = 1 },\n"
                                   "{ between = [1, 1], offset = [1, 0, 0], J = 1 },\n"
                                   "{ between = [0, 1], offset = [0, 0, 0], D = [1, 0, 0] }]"))
-                  .starts_with("scene.toml:16: field.couplings[2]: is the bond of "
+                  .starts_with("scene.toml:16: field.couplings[2]: is the same bond as "
                                "field.couplings[0]; accepted: each bond once"));
 }
 
