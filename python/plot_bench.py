@@ -27,7 +27,8 @@ def print_stream(results):
     for file in results.context:
         rates = [results.values.get((file, case), {}).get("GB/s") for case in STREAM]
         if all(rates):
-            print(f"  {file}, {results.threads(file)} threads".ljust(56), *(
+            threads = results.threads(file)
+            print(f"  {file}, {threads} thread{'s' * (threads != 1)}".ljust(56), *(
                 f"{results.median(case, 'GB/s', file):7.1f} ({min(rate):.1f} .. {max(rate):.1f})"
                 for case, rate in zip(STREAM, rates)))
 

@@ -21,10 +21,11 @@ def parse_arguments():
                         help="its ending chooses the kind, .png, .svg or .pdf "
                              "(default: FILE_texture.png, FILE_path.png or FILE_modes.png)")
     parser.add_argument("--frame", type=command_line.frame,
-                        help="last (default) or a number, counted from 0; from the end: -1; an "
-                             "image of a path; the mode that moves (default: 0)")
+                        help="the frame, image of a path or (with --movie) mode: a number from 0, "
+                             "from the end as -1, or last (default: last; for modes 0)")
     parser.add_argument("--replica", type=command_line.whole, metavar="N",
-                        help="of an ensemble, counted from 0, or from the end: -1 (default: 0)")
+                        help="the replica of an ensemble, counted from 0, or from the end: -1 "
+                             "(default: 0)")
     parser.add_argument("--plane", metavar="z=0",
                         help="an axis and the number of a plane (default: the middle one across "
                              "the axis of fewest cells)")
@@ -34,14 +35,14 @@ def parse_arguments():
                              "from blue to red (default: hue)")
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--difference", type=command_line.frame, metavar="FRAME",
-                      help="draw |difference| to this frame")
+                      help="draw |difference| from this frame")
     what.add_argument("--charge", action="store_true",
                       help="draw the topological charge of each cell of a film")
     parser.add_argument("--movie", type=pathlib.Path, metavar="MOVIE",
                         help="all frames, images of a path, or a mode that moves, .mp4 (by ffmpeg) "
                              "or .gif, in place of a picture")
     parser.add_argument("--fps", type=command_line.real, default=20,
-                        help="frames in a second (default: 20)")
+                        help="frames per second (default: 20)")
     return parser.parse_args()
 
 
@@ -161,7 +162,8 @@ def errors_of(file):
     try:
         yield
     except (OSError, KeyError, TypeError, ValueError) as error:
-        raise SystemExit(f"{file}: {error.args[-1]}") from None
+        reason = " ".join(str(error.args[-1] if error.args else error).split())
+        raise SystemExit(f"{file}: {reason}") from None
 
 
 def main():

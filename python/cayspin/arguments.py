@@ -73,8 +73,8 @@ def is_false(thing: Any) -> bool:
 def wants_stop(answer: Any) -> bool:
     """Whether an observer returned the True of Python or NumPy."""
     if isinstance(answer, np.ndarray) and answer.dtype == bool and answer.ndim:
-        raise CayspinError(f"observe: the function returned {answer.size} truths; accepted: one, "
-                           "as from all() or any()")
+        raise CayspinError(f"observe: the function returned an array of {answer.size}; "
+                           "accepted: one boolean, as from all() or any()")
     return _one(answer) is True
 
 
@@ -132,12 +132,17 @@ def file_name(path: Any, name: str) -> str:
     return text
 
 
+def counted(count: int, what: str) -> str:
+    """A text such as "1 site" or "2 sites"."""
+    return f"{count} {what}{'' if count == 1 else 's'}"
+
+
 def numbers(array: Any, name: str) -> np.ndarray:
     """A numpy array of float32 or float64 with aligned elements; a copy only if necessary."""
     try:
         array = np.asarray(array)
     except ValueError:
-        raise CayspinError(f"{name}: rows of other lengths; accepted: an array") from None
+        raise CayspinError(f"{name}: rows of different lengths; accepted: an array") from None
     if array.dtype.kind not in "buif":
         raise CayspinError(f"{name}: an array of {array.dtype}; accepted: one of real numbers")
     if array.dtype not in (np.float32, np.float64):

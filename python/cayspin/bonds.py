@@ -28,7 +28,7 @@ class File:
             with open(self.path, encoding="utf-8") as file:
                 text = file.read()
         except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or "no UTF-8 text"
+            reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
             raise CayspinError(f"{self.path}: cannot be read: {reason}") from None
         self.rows = []
         for line, content in enumerate(text.split("\n"), 1):

@@ -53,8 +53,8 @@ class Ensemble:
         missing += [f"attribute {name}" for name in ("replicas", "scene", "complete")
                     if name not in self.file.attrs]
         if missing:
-            raise CayspinError(f"{self.path}: no ensemble, it has no {missing[0]}; accepted: the "
-                               "file of an ensemble")
+            raise CayspinError(f"{self.path}: not an ensemble: it has no {missing[0]}; accepted: "
+                               "the file of an ensemble")
 
     def __getattr__(self, name: str) -> Any:
         if name in self._names:

@@ -77,11 +77,13 @@ class EnsembleSimulation:
         if self._scene._scene.has_integrator and until is None and self._scene.steps == 0:
             raise _cayspin.CayspinError("run: the scene has no end; accepted: run(until=t), or "
                                         "integrator.end in the scene")
-        end = self._run.last_step if until is None else self._run.step_at(
-            arguments.real(until, "run: until"))
+        if until is not None:
+            until = arguments.real(until, "run: until")
+        end = self._run.last_step if until is None else self._run.step_at(until)
         if end < self.steps:
-            raise _cayspin.CayspinError(f"run: until step {end}, and {self.steps} are taken; "
-                                        "accepted: a later time")
+            passed = end * self._scene.dt if until is None else until
+            raise _cayspin.CayspinError(f"run: until: t = {passed:g} has passed, the time is "
+                                        f"{self.time:g}; accepted: a later time")
         self._advance(end - self.steps, True)
 
     def relax(self, torque: float = 1e-6, evaluations: int = 100000,
@@ -101,7 +103,8 @@ class EnsembleSimulation:
 
     def _advance(self, count, until_torque):
         if not self._scene._scene.has_integrator:
-            raise _cayspin.CayspinError("the scene has no integrator; accepted: relax()")
+            name = "run" if until_torque else "step"
+            raise _cayspin.CayspinError(f"{name}: the scene has no integrator; accepted: relax()")
         self._run.require_reachable(count)
         if not self._dt_is_checked:
             warning = self._run.warning()

@@ -95,7 +95,7 @@ def tables(path: Any, text: str, key: str, otherwise: str) -> dict:
     except ValueError as error:
         raise CayspinError(f"{path}: its scene cannot be read: {error}") from None
     except ImportError as error:
-        raise CayspinError(f"{path}: to read {key} of its scene takes {error}; accepted: "
+        raise CayspinError(f"{path}: reading {key} of its scene requires {error}; accepted: "
                            f"{otherwise}") from None
 
 

@@ -152,7 +152,8 @@ def checked_lattice(name: str, sites: int, cell: Any, positions: Any,
     """Checks and returns the cell, the positions of its sites and the periodic axes."""
     cell = np.eye(3) if cell is None else arguments.numbers(cell, f"{name}: cell")
     if cell.shape != (3, 3) or not abs(np.linalg.det(cell)) > 0:
-        raise CayspinError(f"{name}: cell: no volume; accepted: three vectors")
+        raise CayspinError(f"{name}: cell: no volume; accepted: three vectors that "
+                           "span a volume")
     if positions is None:
         if sites > 1:
             raise CayspinError(f"{name}: {sites} sites in a cell, and no positions; accepted: "

@@ -59,7 +59,8 @@ def _text_without_applied(scene, path):
     try:
         tables = toml.loads(scene.text)
     except ImportError as error:
-        raise _cayspin.CayspinError(f"{path}: to replace its field.applied takes {error}") from None
+        raise _cayspin.CayspinError(f"{path}: replacing its field.applied requires {error}"
+                                    ) from None
     applied = tables.get("field", {}).pop("applied", None)
     return None if applied is None else toml_text.document(tables)
 

@@ -48,8 +48,8 @@ def _input_files(command: str, scene: Scene) -> list[str]:
     try:
         tables = toml.loads(scene.text)
     except ImportError as error:
-        raise CayspinError(f"{command}: to find the input files of the scene takes {error}; "
-                           "accepted: a scene without such files") from None
+        raise CayspinError(f"{command}: finding the input files of the scene requires "
+                           f"{error}; accepted: a scene without such files") from None
     return [one for name, table in tables.items() if name != "output" for one in found(table, name)]
 
 
@@ -91,7 +91,7 @@ def _ask(command: str, scene: Scene, *options: str) -> dict:
     if done.returncode:
         message = _as_of_a_call(command, done.stderr.strip(), str(file),
                                 scene._overrides is None, changed)
-        message = message or f"{command}: the program ended with {done.returncode}"
+        message = message or f"{command}: the program ended with status {done.returncode}"
         raise (NumbersFailed if done.returncode == 3 else CayspinError)(message)
     try:
         answer = json.loads(done.stdout)

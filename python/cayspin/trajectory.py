@@ -73,7 +73,7 @@ class Trajectory:
         if not missing and (found["spins"].ndim not in (5, 6) or found["spins"].shape[-1] != 3):
             missing.append("frames of spins")
         if missing:
-            raise CayspinError(f"{self.path}: no trajectory, it has no {missing[0]}; "
+            raise CayspinError(f"{self.path}: not a trajectory: it has no {missing[0]}; "
                                "accepted: the file of a run")
 
     def __getattr__(self, name: str) -> Any:

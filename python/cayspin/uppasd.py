@@ -32,7 +32,8 @@ def _columns(file, line, words, accepted, spare=0):
     while numbers < len(words) and as_float(words[numbers]) is not None:
         numbers += 1
     if not len(names) <= numbers <= len(names) + spare:
-        file.refuse(line, f"{numbers} numbers", f"{len(names)}, {accepted}")
+        file.refuse(line, arguments.counted(numbers, "number"),
+                    f"{arguments.counted(len(names), 'number')}, {accepted}")
     return words[:len(names)]
 
 
@@ -42,7 +43,8 @@ class _Cell:
     def __init__(self, posfile, cell, posfiletype):
         self.vectors = np.eye(3) if cell is None else arguments.numbers(cell, "read_uppasd: cell")
         if self.vectors.shape != (3, 3) or not abs(np.linalg.det(self.vectors)) > 0:
-            raise CayspinError("read_uppasd: cell: no volume; accepted: three vectors")
+            raise CayspinError("read_uppasd: cell: no volume; accepted: three vectors that span a "
+                               "volume")
         self.inverse = np.linalg.inv(self.vectors)
         self.spans = 1 / np.linalg.norm(self.inverse, axis=0)  # between opposite faces
         if not self.spans.min() >= 4 * NEAR:
@@ -79,7 +81,9 @@ class _Cell:
             atoms[file.whole(line, words[0], "site")] = (file.whole(line, words[1], "type"),
                                                          file.reals(line, words[2:], "number"))
         if not file.rows or sorted(atoms) != list(range(1, len(file.rows) + 1)):
-            file.refuse(line, f"{len(file.rows)} lines of {len(atoms)} sites",
+            lines, sites = len(file.rows), len(atoms)
+            file.refuse(line, f"{arguments.counted(lines, 'line')} of "
+                              f"{arguments.counted(sites, 'site')}",
                         "site type x y z of sites 1, 2, .., each once")
         return [atoms[site] for site in sorted(atoms)]
 
@@ -131,7 +135,7 @@ def _both_ends(file, cell, names, posfiletype, maptype, sym):
         elif posfiletype == "D":
             vector = vector @ cell.vectors
         if not np.abs(vector @ cell.inverse).max() <= MOST_CELLS:
-            file.refuse(line, "a vector out of all cells", f"one of at most {MOST_CELLS:g} cells")
+            file.refuse(line, "a vector that is too long", f"one of at most {MOST_CELLS:g} cells")
         is_bond = False
         for image in _orbit(vector, _GENERATORS[sym]):
             for key in cell.bonds(i, j, image):

@@ -143,7 +143,7 @@ def _draw_bands(file):
     turns = sorted(set(turns))
     axis.set_xticks(along[turns], ["(" + ", ".join(f"{k:.3g}" for k in waves[i]) + ")"
                                    for i in turns])
-    axis.set_xlabel("wave vector, cycles a cell")
+    axis.set_xlabel("wave vector, cycles per cell")
     axis.set_ylabel("frequency (GHz)" if si else "angular frequency")
     axis.set_ylim(bottom=min(0, frequency.min()))
     return figure

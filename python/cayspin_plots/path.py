@@ -28,7 +28,7 @@ def texture_of(file, image, before, texture):
     title, other = f"image {number}", None
     if before is not None:
         before = number_of(file, before)
-        other, title = file["spins"][before], f"{title}, difference to image {before}"
+        other, title = file["spins"][before], f"{title}, difference from image {before}"
     return texture.Texture(file["spins"][number], spacing, boundary, None, si, title), other
 
 

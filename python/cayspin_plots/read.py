@@ -58,7 +58,8 @@ def opened(path, what):
         with h5py.File(path, "r") as file:
             yield file
     except (OSError, KeyError, TypeError, ValueError) as error:
-        raise SystemExit(f"{path}: cannot read the {what}: {error.args[-1]}") from None
+        reason = " ".join(str(error.args[-1] if error.args else error).split())
+        raise SystemExit(f"{path}: cannot read the {what}: {reason}") from None
 
 
 def _dataset(file, name, rank, columns=()):

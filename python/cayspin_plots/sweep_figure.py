@@ -47,8 +47,8 @@ def draw(sweep, axes_keys):
             _draw_maps(row, sweep, axes_keys, energy, m, where)
     failed = int((~sweep.done).sum())
     note = f", {failed} of them without an end" if failed else ""
-    figure.suptitle(f"{pathlib.Path(sweep.path).name}: {sweep.done.size} runs{note}", x=0.01,
-                    ha="left")
+    runs = "1 run" if sweep.done.size == 1 else f"{sweep.done.size} runs"
+    figure.suptitle(f"{pathlib.Path(sweep.path).name}: {runs}{note}", x=0.01, ha="left")
     return figure
 
 

@@ -42,7 +42,7 @@ class Advice(PackageTest):
                                 "seconds", "memory", "horizon", "units", "warning", "overrides",
                                 "others", "space", "threads"})
         text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-        for word in ("scene ", "method ", "error ", "memory ", "run it ", "next to it"):
+        for word in ("scene ", "method ", "error ", "memory ", "run it ", "the next best:"):
             self.assertIn(word, text)
 
     def test_what_only_this_program_can_run(self):
@@ -74,7 +74,7 @@ class Advice(PackageTest):
 
     def test_a_program_that_ends_without_a_word(self):
         with unittest.mock.patch.dict(os.environ, {"CAYSPIN_PROGRAM": "/bin/false"}):
-            self.assert_refused(cayspin.CayspinError, "advise: the program ended with 1",
+            self.assert_refused(cayspin.CayspinError, "advise: the program ended with status 1",
                                 cayspin.advise, scene(), error=0.1)
 
 

@@ -91,7 +91,7 @@ class Observers(PackageTest):
 
     def test_several_truths_are_refused(self):
         for answer in (np.array([True]), np.ones(3) > 0, np.zeros((2, 2), bool)):
-            self.assert_refused(cayspin.CayspinError, "truths; accepted: one", self.steps_with,
+            self.assert_refused(cayspin.CayspinError, "; accepted: one boolean", self.steps_with,
                                 answer)
 
     def test_in_a_run_with_a_file(self):
@@ -216,7 +216,7 @@ class Calls(PackageTest):
                          (1, None, ["spins"], np.array(["spins", "charge"])))
             self.refused("colors ", lambda word: of.plot(colors=word), (1, np.array(["hue", "x"])))
             self.refused("plane ", lambda plane: of.plot(plane=plane), (0, "0", ["z=0"]))
-        self.refused("a difference to an array of ", lambda m: sim.plot(before=m),
+        self.refused("a difference from an array of ", lambda m: sim.plot(before=m),
                      ("m", np.full(sim.spins.shape, "a")))
         with cayspin.open(self.folder / "run.h5") as file:
             self.refused("plot: frame: ", file.plot, NO_WHOLE_NUMBERS)

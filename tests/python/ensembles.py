@@ -140,7 +140,7 @@ class EnsembleSimulations(unittest.TestCase):
             self.assertEqual((sim.steps, sim.time), (11, 11 * 0.02))
             sim.run()
             np.testing.assert_array_equal(sim.spins, whole.spins)
-            with self.assertRaisesRegex(cayspin.CayspinError, "3 replicas, the scene 2"):
+            with self.assertRaisesRegex(cayspin.CayspinError, "3 replicas, and the scene has 2"):
                 cayspin.EnsembleSimulation(scene(ensemble={"replicas": 2}), restart=file)
 
     def test_each_relaxes_by_itself(self):

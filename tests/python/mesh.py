@@ -112,7 +112,7 @@ class Meshes(PackageTest):
             refused("scale ", scale=scale)
         refused("scale: ", scale="a")
         refused("center: ", center=3)
-        refused("triangles: rows of other lengths", mesh=[[[1, 2, 3]], [[1]]])
+        refused("triangles: rows of different lengths", mesh=[[[1, 2, 3]], [[1]]])
 
     @unittest.skipUnless(importlib.util.find_spec("trimesh"), "trimesh is not installed")
     def test_files(self):

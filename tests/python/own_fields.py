@@ -176,7 +176,7 @@ class OwnFields(PackageTest):
             sim.step(10)
             self.assertEqual(len(times) - before, 10 * calls_per_step)
         self.assert_refused(
-            cayspin.SceneError, "field.demag.multirate: is computed with the program's own field",
+            cayspin.SceneError, "field.demag.multirate: false does not go with substeps and a ",
             lambda: cayspin.Simulation(scene({"demag": {"multirate": False}, "nonlocal": slab},
                                              integrator={**TABLES["integrator"], "substeps": 2})))
 

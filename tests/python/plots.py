@@ -227,9 +227,9 @@ class PlotTexture(ScriptTest):
         self.assert_no_picture("cannot be opened", file=self.text_file())
         other = self.folder / "other.h5"
         h5py.File(other, "w").close()
-        self.assert_no_picture("no trajectory, it has no spins", file=other)
+        self.assert_no_picture("not a trajectory: it has no spins", file=other)
         chain = write(self.folder / "chain.h5")
-        self.assert_no_picture("a crystal or a chain", "--charge", file=chain)
+        self.assert_no_picture("a crystal, a chain or a single spin", "--charge", file=chain)
         crystal = write(self.folder / "crystal.h5", cell_sites=2)
         self.assert_no_picture("have no positions", file=crystal)
         with h5py.File(chain, "r+") as data:

@@ -149,7 +149,7 @@ class OwnFields(PackageTest):
         sims = []
         of = scene(field={"applied": lambda t: sims[0].step() if sims else (0, 0, 1)})
         sims.append(cayspin.Simulation(of))
-        self.assert_refused(cayspin.CayspinError, "may not use a run that is stepping",
+        self.assert_refused(cayspin.CayspinError, "this run is taking a step: a field function",
                             sims[0].step)
 
 

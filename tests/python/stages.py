@@ -222,8 +222,8 @@ class Stages(PackageTest):
         sim.step(3)
         before = sim.spins.copy()
         for keys, value, words in (
-                ("lattice.shape", [5, 3], "lattice: stays as it is for all of a run"),
-                ("output.file", "a.h5", "output.file: stays as it is"),
+                ("lattice.shape", [5, 3], "lattice: cannot change during a run"),
+                ("output.file", "a.h5", "output.file: cannot change during a run"),
                 ("field.Exchange", 1, "did you mean"),
                 ("integrator.dt", -1, "integrator.dt: "),
                 ("integrator.method", "heun", "integrator.dt: is missing"),

@@ -80,11 +80,11 @@ class Bits(PackageTest):
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             cayspin.Simulation(of, restart=file)
-        with self.assertWarnsRegex(UserWarning, "other than in its scene: field.applied$"):
+        with self.assertWarnsRegex(UserWarning, "these keys differ from its scene: field.applied$"):
             cayspin.Simulation(scene(field={"applied": [0.2, 0, 0]}), restart=file)
         for lattice, key in (({"spacing": 3.0}, "spacing"), ({"frozen": "i==0"}, "frozen"),
                              ({"occupied": "i>0"}, "occupied")):
-            self.assert_refused(cayspin.CayspinError, f"lattice.{key} is another",
+            self.assert_refused(cayspin.CayspinError, f"lattice.{key} differs",
                                 cayspin.Simulation, scene(lattice=lattice), restart=file)
 
     def test_noise_is_that_of_the_seed(self):
@@ -120,7 +120,7 @@ class Time(PackageTest):
         sim.run(until=0.5)
         self.assertEqual((sim.steps, sim.time), (10, 0.5))
         self.assert_refused(cayspin.CayspinError, "whole number of steps", sim.run, until=0.52)
-        self.assert_refused(cayspin.CayspinError, "accepted: a later time", sim.run, until=0.25)
+        self.assert_refused(cayspin.CayspinError, "has passed, the time is", sim.run, until=0.25)
 
     def test_scene_without_end(self):
         for keys in ({}, {"method": "tsit5", "tolerance": 1e-5}):

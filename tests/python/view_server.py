@@ -104,7 +104,7 @@ class Start(ScriptTest):
         self.assert_no_page(f"{self.folder}: it is a folder; accepted: a file", self.folder)
         self.assert_no_page("text.h5: cannot be read", self.text_file())
         h5py.File(self.folder / "other.h5", "w").close()
-        self.assert_no_page("no trajectory, it has no spins", "other.h5")
+        self.assert_no_page("not a trajectory: it has no spins", "other.h5")
         chain = write(self.folder / "chain.h5")
         port = Page(self, chain).port
         self.assert_no_page(f"cayspin: --port {port}: Address already in use", "--port", port, chain)

@@ -32,7 +32,7 @@ class Arrays(PackageTest):
         "an array of object": np.full(SHAPE, None),
         "an array of datetime64": np.zeros(SHAPE, "M8[s]"),
         "an array of [(": np.zeros(SHAPE, ROW),
-        "rows of other lengths": [[1, 2], [3]],
+        "rows of different lengths": [[1, 2], [3]],
     }
     OTHER_SHAPES = ((7, 3, 2, 3), (2, 3, 7, 2), (2, 3, 7, 4), (0, 3, 7, 3), (1, *SHAPE), (126, 3),
                     (2, 7, 3, 3), (3, 2, 3, 7))

@@ -71,12 +71,13 @@ class WrongFiles(FilesTest):
 
         with written("attribute.h5", ensemble_format=1) as file:
             pass
-        self.assert_refused(cayspin.CayspinError, "no ensemble, it has no spins", cayspin.open,
+        self.assert_refused(cayspin.CayspinError, "not an ensemble: it has no spins", cayspin.open,
                             self.folder / "attribute.h5")
         names = ("spins", "time", "step", "energy", "norm_defect", "magnetization")
         for part, add in {
-                "no trajectory, it has no spins": lambda file, name: file.create_group(name),
-                "no trajectory, it has no scalars": lambda file, name: file.create_dataset(name, (3, 1, 3, 4, 3)),
+                "not a trajectory: it has no spins": lambda file, name: file.create_group(name),
+                "not a trajectory: it has no scalars":
+                    lambda file, name: file.create_dataset(name, (3, 1, 3, 4, 3)),
         }.items():
             with written("others.h5") as file:
                 for name in names:
@@ -154,7 +155,7 @@ class WrongOptions(FilesTest):
                 self.assert_refused(cayspin.CayspinError, f"limit {limit!r}; accepted: a finite",
                                     of.plot, quantity="charge", limit=limit)
         for of in (sim, ensemble):
-            self.assert_refused(cayspin.CayspinError, "before: rows of other lengths; accepted: ",
+            self.assert_refused(cayspin.CayspinError, "before: rows of different lengths; accepted",
                                 of.plot, before=[[1], [1, 2]])
         self.assert_refused(cayspin.CayspinError, "no option before; accepted: difference_to, ",
                             run.plot, before=np.zeros(FRAME))

@@ -221,10 +221,10 @@ def _picture(texture, plane, quantity, colors, before, limit):
     if limit is not None and not _is_limit(limit):
         raise ValueError(f"limit {' '.join(repr(limit).split())}; accepted: a finite number >= 0")
     if before is not None and before.dtype.kind not in "buif":
-        raise ValueError(f"a difference to an array of {before.dtype}; accepted: one of real "
+        raise ValueError(f"a difference from an array of {before.dtype}; accepted: one of real "
                          "numbers")
     if before is not None and (quantity == "charge" or before.shape != texture.spins.shape):
-        raise ValueError(f"a difference to spins of shape {before.shape} with quantity "
+        raise ValueError(f"a difference from spins of shape {before.shape} with quantity "
                          f'"{quantity}"; accepted: {texture.spins.shape} with "spins"')
     chosen = plane_of(texture.spins.shape, plane)
     up, right = chosen.cut(texture.spins).shape[-3:-1]
@@ -232,8 +232,8 @@ def _picture(texture, plane, quantity, colors, before, limit):
     if texture.positions is not None or texture.spins.ndim == 5:
         kind = "crystal"
     if quantity == "charge" and (kind != "film" or up == 1):
-        raise ValueError('quantity "charge" of a crystal or a chain; accepted: a film of two cells '
-                         "or more each way")
+        raise ValueError('quantity "charge" of a crystal, a chain or a single spin; accepted: a '
+                         "film of two cells or more each way")
     return _Picture(texture, chosen, quantity, colors, before, limit), kind
 
 
@@ -266,7 +266,7 @@ def draw(texture: Texture, axes: Any = None, *, plane: str | None = None,
     try:
         before = None if before is None else np.asarray(before)
     except ValueError:
-        raise ValueError("before: rows of other lengths; accepted: spins of shape "
+        raise ValueError("before: rows of different lengths; accepted: spins of shape "
                          f"{texture.spins.shape}") from None
     if axes is not None and not hasattr(axes, "quiver"):
         raise ValueError(f"axes: {axes!r}; accepted: matplotlib axes, or None")

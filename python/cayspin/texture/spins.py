@@ -92,7 +92,7 @@ def lattice_of(scene: str) -> tuple[list[float], list[str], bool]:
     try:
         tables = toml.loads(scene)
     except ImportError as error:
-        raise ValueError(f"to read the text of a scene takes {error}") from None
+        raise ValueError(f"reading the text of a scene requires {error}") from None
     found = []
     for key, otherwise in (("spacing", 1.0), ("boundary", "open")):
         given = tables.get("lattice", {}).get(key, otherwise)
@@ -124,8 +124,8 @@ def require_trajectory(file: Any) -> None:
     """Raises ValueError for an open file of other content."""
     missing = [name for name in ("spins", "time") if name not in file]
     if missing or file["spins"].ndim not in (5, 6) or file["spins"].shape[-1] != 3:
-        raise ValueError(f"no trajectory, it has no {missing[0] if missing else 'frames of spins'};"
-                         " accepted: the file of a run")
+        lacks = missing[0] if missing else "frames of spins"
+        raise ValueError(f"not a trajectory: it has no {lacks}; accepted: the file of a run")
 
 
 def of_file(file: Any, frame: int = -1,
@@ -139,6 +139,6 @@ def of_file(file: Any, frame: int = -1,
     other = None
     if before is not None:
         before = frame_number(file, before)
-        other, title = file["spins"][before], f"{title}, difference to frame {before}"
+        other, title = file["spins"][before], f"{title}, difference from frame {before}"
     positions = file["positions"][:] if "positions" in file else None
     return Texture(file["spins"][number], spacing, boundary, positions, si, title), other

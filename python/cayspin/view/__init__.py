@@ -39,7 +39,7 @@ class View:
                 messages.seek(0)
                 message = messages.read().strip().rpartition("\n")[2]
                 raise CayspinError(message if message or not late else
-                                   f"view: the page has not begun after {LONGEST_START} s")
+                                   f"view: the page did not start within {LONGEST_START} s")
         atexit.register(self.close)
 
     def close(self) -> None:

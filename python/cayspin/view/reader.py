@@ -71,7 +71,7 @@ class Reader:
             except ValueError as error:
                 raise ValueError(f"{self.path}: {error}") from None
             except (OSError, KeyError, RuntimeError) as error:
-                reason = " ".join(str(error.args[-1]).split())
+                reason = " ".join(str(error.args[-1] if error.args else error).split())
             if tries_left:
                 time.sleep(0.05)
         raise ValueError(f"{self.path}: cannot be read: {reason}; accepted: a file that cayspin "
