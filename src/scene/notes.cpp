@@ -302,8 +302,7 @@ class Notes {
     } else {
       look("material.Ms", material.moment, 100, 1e7,
            "A/m is far from the Ms of magnets; mu0 Ms = 1 T is 7.96e5 A/m");
-      look("material.A", exchange, 0, 1e-9,
-           "J/m is far above the A of magnets, about 1e-11 J/m");
+      look("material.A", exchange, 0, 1e-9, "J/m is far above the A of magnets, about 1e-11 J/m");
     }
     for (double const edge : scene_.lattice.spacing)
       if (edge * scene_.units.length > 1e-4)
