@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/division_by.hpp>
 #include <cayspin/detail/memory.hpp>
 #include <cayspin/row_layout.hpp>
 #include <cayspin/vec3.hpp>
@@ -36,20 +37,21 @@ struct DeviceLayout {
   std::int32_t last[3];  // last index along each axis, in a replica
   Index step[3];         // distance of the next site along each axis
   Index wrap[3];         // takes a step past an end to the other end, or back to the site
-  bool periodic_x, has_replicas;
+  bool periodic_x;
+  DivisionBy replica;  // the number of a plane's replica
 
   explicit DeviceLayout(RowLayout const& layout)
       : last{layout.nx - 1, layout.ny - 1, layout.replica_planes - 1},
         step{1, static_cast<Index>(layout.pitch), static_cast<Index>(layout.plane)},
         periodic_x(layout.periodic[0]),
-        has_replicas(layout.has_replicas()) {
+        replica(layout.has_replicas() ? DivisionBy(layout.replica_planes) : DivisionBy()) {
     for (int axis = 0; axis < 3; ++axis)
       wrap[axis] = layout.periodic[axis] ? step[axis] * (last[axis] + 1) : step[axis];
   }
 
   /// Returns the number of a plane in its replica.
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t plane_of_replica(std::int32_t z) const {
-    return has_replicas ? z % (last[2] + 1) : z;
+    return z - replica.quotient(z) * (last[2] + 1);
   }
 
   /// Returns true if Index can count the numbers of a component and of one more plane, and can

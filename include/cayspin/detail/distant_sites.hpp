@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/division_by.hpp>
 #include <cayspin/detail/memory.hpp>
 #include <cayspin/row_layout.hpp>
 #include <cayspin/vec3.hpp>
@@ -17,14 +18,14 @@ struct DistantSites {
   SiteArray<Real, 3> array;
   std::int32_t extent[3];  // of one replica
   bool periodic[3];
-  bool has_replicas;
+  DivisionBy replica;  // the number of a plane's replica
   std::ptrdiff_t pitch, plane;
 
   DistantSites(SiteArray<Real, 3> const& of, RowLayout const& layout)
       : array(of),
         extent{layout.nx, layout.ny, layout.replica_planes},
         periodic{layout.periodic[0], layout.periodic[1], layout.periodic[2]},
-        has_replicas(layout.has_replicas()),
+        replica(layout.has_replicas() ? DivisionBy(layout.replica_planes) : DivisionBy()),
         pitch(layout.pitch),
         plane(layout.plane) {}
 
@@ -41,7 +42,7 @@ struct DistantSites {
 
   /// Returns the number of a plane in its replica.
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t plane_of_replica(std::int32_t z) const {
-    return has_replicas ? z % extent[2] : z;
+    return z - replica.quotient(z) * extent[2];
   }
   /// Returns a pointer to the first site of row (y + dy, z + dz), or null past an open end. |dy|
   /// and |dz| must be at most the extents along y and z.
