@@ -19,6 +19,14 @@ namespace {
 }
 
 #if defined(CAYSPIN_HAS_PNG)
+/// State of libpng. As a member, it is also freed if a constructor throws.
+struct PngImage : png_image {
+  PngImage() : png_image{} { version = PNG_IMAGE_VERSION; }
+  PngImage(PngImage const&) = delete;
+  PngImage& operator=(PngImage const&) = delete;
+  ~PngImage() { png_image_free(this); }
+};
+
 /// A PNG file after its header has been read.
 class PngFile {
  public:
@@ -27,15 +35,11 @@ class PngFile {
     auto const status = std::filesystem::status(path, error);
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
       refuse_image(path, "it is not a regular file");
-    image_.version = PNG_IMAGE_VERSION;
     if (png_image_begin_read_from_file(&image_, path.c_str()) == 0) refuse();
     // Deflate compresses by at most 1032 : 1, and a byte holds at most 8 pixels.
     auto const size = std::filesystem::file_size(path, error);
     if (error || pixels() / 8256 > size) refuse_image(path, "it is truncated");
   }
-  PngFile(PngFile const&) = delete;
-  PngFile& operator=(PngFile const&) = delete;
-  ~PngFile() { png_image_free(&image_); }
 
   Image read() {
     Image image{image_.width, image_.height, std::vector<unsigned char>(pixels())};
@@ -51,7 +55,7 @@ class PngFile {
   [[noreturn]] void refuse() { refuse_image(path_, std::string(image_.message)); }
 
   std::filesystem::path const& path_;
-  png_image image_{};
+  PngImage image_;
 };
 #else
 /// Build without PNG support: refuses every file.
