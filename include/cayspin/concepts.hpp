@@ -86,7 +86,7 @@ int evaluations_of_next_step(Stepper const& stepper) {
 /// |---|---|---|
 /// | `check_spins(spins)` | throws for unsuitable spins or invalid values | accepts all spins |
 /// | `auto prepare(exec, spins, t)` | the term for kernels at time t | the term itself |
-/// | `static bool depends_on_time` | H at fixed spins changes with t | false |
+/// | `static bool depends_on_time` | what prepare returns depends on t, not on the spins | false |
 /// | `bool is_stationary(exec, spins)` | one prepare serves all t and spins | if without prepare |
 /// | `bool needs_only_time(exec, spins)` | prepare ignores spins | if either of these two is true |
 /// | `bool is_affine()` | H is affine in the spins | true if it has a degree |

@@ -107,7 +107,7 @@ bool needs_only_time(Term const& term, Exec const& exec, Spins const& spins) {
     return depends_on_time<Term> || is_stationary(term, exec, spins);
 }
 
-/// Returns true if prepare_for_rows needs t but not the spins.
+/// Returns true if prepare_for_rows does not need the spins.
 template <class Term, class Exec, class Spins>
 bool rows_need_only_time(Term const& term, Exec const& exec, Spins const& spins) {
   if constexpr (requires { term.rows_need_only_time(exec, spins); })

@@ -233,8 +233,9 @@ std::vector<double> noise_of_cell_sites(Scene const& scene);
 /// Returns true if the damping, temperature, moment or gyromagnetic ratio is site-dependent.
 bool has_noise_of_sites(Scene const& scene);
 /// Returns for each site the gyromagnetic ratio over the moment, times damping and temperature if
-/// these are site-dependent; 0 where no spin moves. In Gilbert's form, site-dependent damping also
-/// divides it by 1 + damping^2. Throws SceneError for a negative number.
+/// these are site-dependent; 0 where no spin moves. In Gilbert's form with site-dependent
+/// damping, it is also divided by 1 + damping^2. Throws SceneError for a negative damping or
+/// temperature.
 std::vector<double> noise_of_sites(Scene const& scene, SiteBox const& box);
 /// Returns the largest number of noise_of_sites, or of noise_of_cell_sites unless
 /// has_noise_of_sites.

@@ -39,7 +39,7 @@ struct EndOption {
   }
 };
 
-/// Calls work(). Errors of the file name the option, and the file as it was typed.
+/// Calls work(). If the file is at fault, the error names the option, and the file as it was typed.
 template <class Work>
 auto for_option(EndOption const& option, Work const& work) {
   try {

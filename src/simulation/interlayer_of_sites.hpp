@@ -133,7 +133,8 @@ struct InterlayerOfSites {
       }
     }
     /// Returns a better approximation of the s that minimises k (1 - m.s) - J s.s' - B (s.s')^2;
-    /// for B = 0 it is exact at the given s'. If k = 0, s is m.
+    /// for B = 0 it is exact at the given s'. Without exchange (k = 0) returns m, the
+    /// spin of the cell.
     KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> at_face(Value const& k, Vec3<Value> const& m,
                                                            Value const& J, Value const& B,
                                                            Vec3<Value> const& s,

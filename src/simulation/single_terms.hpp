@@ -10,7 +10,7 @@
 
 namespace cayspin::simulation {
 
-/// Returns a scene for each term of the field, with only that term, and the name of the term's key.
+/// Returns, for each term of the field, the name of its key and a scene with only that term.
 std::vector<std::pair<std::string, io::Scene>> single_terms(io::Scene const& scene);
 
 /// Returns which numbers a scene's samples have in addition to Scalars. Rigid bodies have one term,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Messages of a step, counted by intercepting MPI: one message per face, or on hosts one per
-// component of a large face between planes, and nothing between the stages.
+// Messages of a step, counted by intercepting MPI: one for each face, and none between stages. On
+// hosts, a large face across z (between planes) takes three, one for each component.
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>

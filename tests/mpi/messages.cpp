@@ -33,7 +33,7 @@ void for_all(HostField<Real, Components> const& field, Work const& work) {
           work({x, y, z}, c, array.data[c * array.stride + layout.row_offset(y, z) + x]);
 }
 
-/// Sets each number of the part's own sites to number_of() of its place, and those of ghosts to -1.
+/// Fills the part's own sites with number_of() their place and component, and the ghosts with -1.
 template <class Real, int Components>
 void fill(Domain const& domain, HostField<Real, Components> const& field) {
   auto const& local = domain.local();

@@ -131,7 +131,7 @@ TEST(InitialStates, TakeLengthsInMetresInSi) {
     }
 }
 
-// Reading the text again gives an equal state.
+// Overrides read the scene's text again. The state stays the same unless they change it.
 TEST(InitialStates, SurviveOverrides) {
   auto const scene = scene_of(permalloy_film, {"initial={state='vortex', radius=9e-9}"});
   EXPECT_EQ(initial_spins(with_overrides(scene, {"integrator.dt=1e-15"})), initial_spins(scene));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Bonds between layers act on the spins at the interface, not at the centres of cells. Tests the
-// gradient of the energy, the energy, and the saturation of thick layers, which is that of the
-// continuum.
+// gradient of the energy, the energy, and the field that saturates thick layers, which is that of
+// the continuum.
 #include "scenes_of_text.hpp"
 
 #include <cmath>

@@ -36,7 +36,7 @@ inline std::vector<std::pair<std::string, Lattice>> lattices_of_others(Lattice c
   return lattices;
 }
 
-/// Returns fields on such lattices, and empty fields.
+/// Returns fields on lattices_of_others(own), and empty ones: default-constructed and moved from.
 template <class Field>
 std::vector<std::pair<std::string, Field>> fields_of_others(Lattice const& own) {
   std::vector<std::pair<std::string, Field>> fields{{"default-constructed", Field()},

@@ -166,7 +166,7 @@ auto prepare_stage(Generator const& generator, Exec const& exec, Spins const& sp
     return prepare_term(generator, exec, spins, t);
 }
 
-/// Returns true if prepare_stage needs t but not the spins.
+/// Returns true if prepare_stage does not need the spins.
 template <class Isotropy, class Generator, class Exec, class Spins>
 bool stages_need_only_time(Generator const& generator, Exec const& exec, Spins const& spins) {
   if constexpr (is_host_execution<Exec> && !std::is_same_v<Isotropy, isotropy::Energy>)
