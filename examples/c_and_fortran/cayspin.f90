@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-! cayspin/cayspin.h as a module. Texts end with c_null_char; a NULL text is c_null_ptr.
+! cayspin/cayspin.h as a module. Texts end with c_null_char; `space` and `applied` may be c_null_ptr.
 module cayspin
   use, intrinsic :: iso_c_binding
   implicit none
