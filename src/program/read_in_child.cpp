@@ -51,7 +51,7 @@ void lower_limit(decltype(RLIMIT_CPU) resource, rlim_t most, rlim_t spare = 0) {
   ::setrlimit(resource, &limit);
 }
 
-rlim_t address_space() {
+[[maybe_unused]] rlim_t address_space() {
   rlim_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
   return pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));

@@ -121,7 +121,7 @@ TEST(Guard, EnergiesAreHeldWhereDampingLetsThemOnlyFall) {
       "scene.toml")));
   // At a temperature the energy may rise.
   auto warm = scene(0.5);
-  warm.thermal = io::Thermal{.temperature = 0.1};
+  warm.thermal.emplace().temperature = 0.1;
   EXPECT_FALSE(energy_must_fall(warm));
   warm.thermal->temperature = 0;
   EXPECT_TRUE(energy_must_fall(warm));

@@ -16,7 +16,9 @@ Scene with_lattice(std::string const& lattice) {
 }
 
 std::vector<double> values(Scene const& scene, std::string const& expression, SiteBox const& box) {
-  return numbers_of_sites(scene, {.expression = expression}, "values", box);
+  SiteNumbers numbers;
+  numbers.expression = expression;
+  return numbers_of_sites(scene, numbers, "values", box);
 }
 std::vector<double> values(Scene const& scene, std::string const& expression) {
   return values(scene, expression, whole(scene));

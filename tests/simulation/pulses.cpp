@@ -91,10 +91,11 @@ TEST(Pulses, ThatEqualStepsMayMissAreWarnedOf) {
                                pulses.tables(), pulses.end / double(steps), steps));
       auto const plan = make_plan(scene, Precision::double_precision);
       auto const warning = dt_warning(plan, scene.units).value_or("");
-      if (share > 1)
+      if (share > 1) {
         EXPECT_NE(warning, "") << scene.text;
-      else if (!pulses.overlap())
+      } else if (!pulses.overlap()) {
         EXPECT_EQ(warning.find("may miss"), std::string::npos) << warning << '\n' << scene.text;
+      }
     }
   }
 }
