@@ -247,7 +247,7 @@ class Files(TextureTest):
         self.assert_refused(cayspin.CayspinError, "axes: 3; accepted: matplotlib axes", sim.plot, 3)
         self.assert_refused(cayspin.CayspinError, "key: 'no'; accepted: True", sim.plot, key="no")
         chain = texture.Texture(random_spins((1, 1, 9), 1))
-        self.assert_refused(ValueError, "a crystal or a chain", texture.draw, chain,
+        self.assert_refused(ValueError, "of a crystal, a chain or a single spin", texture.draw, chain,
                             quantity="charge")
 
     def test_vacancies(self):
@@ -272,7 +272,7 @@ class Files(TextureTest):
                 np.testing.assert_allclose(sites.get_facecolors()[:, :3],
                                            hue_colors(run.spins[-1].reshape(-1, 3)))
                 self.assertLessEqual(len(arrows.U), 40)
-            self.assert_refused(cayspin.CayspinError, "a crystal or a chain", run.plot,
+            self.assert_refused(cayspin.CayspinError, "of a crystal, a chain or a single spin", run.plot,
                                 quantity="charge")
 
 

@@ -99,7 +99,7 @@ TEST(OvfOfSites, ThatIsWrongIsRefusedInOneLine) {
   expect_holds(refusal_of_files(folder, replaced(bcc, "exchange = 1",
                                                  "anisotropy = { constant = { file = 'film.ovf' }, "
                                                  "axis = [0, 0, 1] }")),
-               "OVF has one value in a cell, and lattice.basis 2; accepted: HDF5");
+               "OVF has one value per cell, and lattice.basis has 2; accepted: HDF5");
 }
 
 }  // namespace
