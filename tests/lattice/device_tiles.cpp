@@ -153,7 +153,7 @@ RowLayout large_layout(std::int32_t nz) {
   layout.nx = layout.ny = 1 << 10;
   layout.pitch = layout.nx;
   layout.plane = layout.ny * layout.pitch;
-  layout.nz = nz;
+  layout.nz = layout.replica_planes = nz;
   return layout;
 }
 

@@ -16,6 +16,7 @@ struct DivisionBy {
 
   /// By default, every quotient is 0.
   DivisionBy() = default;
+  /// The divisor must be at least 1.
   explicit DivisionBy(std::int32_t divisor) {
     // 2^bits >= divisor, and the multiplier is 2^(31 + bits) / divisor, rounded up: less than 2^32,
     // and too large by less than 2^bits / divisor.
