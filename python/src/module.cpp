@@ -99,8 +99,7 @@ Minimum relax(SceneRun& run, double torque, std::int64_t evaluations,
   return found;
 }
 
-// Returns the modes' frequencies, decays, errors and shapes, whether all have converged, and the
-// number of evaluations.
+// Returns frequencies, decays, errors, shapes, whether all have converged, and evaluations.
 nb::tuple modes(SceneRun& run, std::int64_t count, double tolerance, std::int64_t evaluations) {
   FoundModes found;
   {
@@ -354,8 +353,7 @@ void define_recorder(nb::module_& module) {
       });
 }
 
-// Removes "Scene:12: " from a message: a scene given as tables has no lines, and 12 would be a line
-// of the text that is generated from them.
+// Removes "Scene:12: " from a message: scenes given as tables have no lines.
 std::string without_line_of_tables(std::string_view line) {
   constexpr std::string_view name = "Scene:";
   if (!line.starts_with(name)) return std::string(line);

@@ -289,8 +289,7 @@ std::string images_text(std::array<int, 3> const& images) {
     if (images[axis] == infinitely_many_images)
       infinite += fmt::format("{}{}", infinite.empty() ? "" : " and ", "xyz"[axis]);
     else if (images[axis] > 0)
-      text +=
-          fmt::format(", {} on each side along {}", counted(images[axis], "image"), "xyz"[axis]);
+      text += ", " + counted(images[axis], "image") + " on each side along " + "xyz"[axis];
   if (!infinite.empty()) text += ", infinitely many images along " + infinite;
   return text;
 }

@@ -13,8 +13,8 @@ namespace cayspin::inline v0_2::detail {
 class RandomBitsOfColumns;
 
 /// 16 random bits for each place, which is a number, by Philox: eight counters serve 64 places. A
-/// place gets the same bits whether it is drawn alone or with others in a register. Devices draw
-/// for one place at a time.
+/// place gets the same bits whether it is drawn by itself or with others in a register. Devices
+/// draw for one place at a time.
 template <bool OnHost>
 class RandomBits {
   friend class RandomBitsOfColumns;

@@ -126,13 +126,13 @@ class Descent {
     return 8 * (of_spins + std::numeric_limits<double>::epsilon()) * energy.magnitude;
   }
 
-  /// Turns the spins along search.direction, and then corrects them by Newton steps that leave soft
-  /// modes alone. Along a curved valley the energy rises in the first turn and falls in the
-  /// corrections (the watchdog of Chamberlain, Powell, Lemarechal and Pedersen 1982). Returns true
-  /// once the energy is lower than before, or the torque where round-off hides the difference of
-  /// energies. Otherwise tries up to two shorter turns, then restores the spins and returns false.
-  /// `slope`: the derivative of the energy along search.direction. `longest`: the length of its
-  /// longest vector.
+  /// Turns the spins along search.direction, and then corrects them by Newton steps that do not
+  /// move along soft modes. Along a curved valley the energy rises in the first turn and falls in
+  /// the corrections (the watchdog of Chamberlain, Powell, Lemarechal and Pedersen 1982). Returns
+  /// true once the energy is lower than before, or the torque where round-off hides the difference
+  /// of energies. Otherwise tries up to two shorter turns, then restores the spins and returns
+  /// false. `slope`: the derivative of the energy along search.direction. `longest`: the length of
+  /// its longest vector.
   template <class Exec, class Field>
   bool move_and_correct(Exec const& exec, Field const& field, Spins& spins, double slope,
                         double longest, MinimizeOptions const& options) {
