@@ -23,8 +23,8 @@ class Simulation:
     """A simulation of a `scene`: its spins, which step forward in time.
 
     `precision` is "double" or "single", `space` an execution space that was compiled in (default:
-    that of Kokkos), `threads` the number of its threads: the first simulation of a process decides
-    that.
+    that of Kokkos), `threads` the number of its threads, which the first simulation of a process
+    decides.
 
     `restart` names a file of save(), or the trajectory of a run: the simulation continues from
     there, bit-identical to an uninterrupted run. The lattice in the file has to be the scene's; a
@@ -63,8 +63,8 @@ class Simulation:
 
         Raises NumbersFailed when spins are not finite, leave the sphere or gain energy without a
         source, SceneError for a dt that integrator.refuse_unstable refuses, CayspinError without an
-        integrator or beyond the last possible step. An exception of an observer or of a field of
-        your own reaches you; the spins are then those of the last complete step.
+        integrator or beyond the last possible step. An exception of an observer or of your own
+        field reaches you; the spins are then those of the last complete step.
         """
         n = arguments.whole(n, "step")
         if not self._scene._scene.has_integrator:
@@ -82,7 +82,7 @@ class Simulation:
 
         Frames go into the HDF5 file `output`, or into the scene's output.file; output=False writes
         none. `overwrite` replaces an existing file. The run ends early if the scene's until_torque
-        or an observer says so. If an observer changes dt, the run still ends at `until`.
+        or an observer says so. If an observer changes dt, the run still ends at the same time.
 
         Raises NumbersFailed and SceneError as step() does. Raises CayspinError for a time that has
         passed or is not a whole number of steps, for a scene without end, and for a file that
@@ -103,6 +103,8 @@ class Simulation:
                                         f"{self.time:g}; accepted: a later time")
         self._run.require_reachable(end - self.steps)
         self._check_dt()
+        if until is None:
+            until = self.time + (end - self.steps) * self._scene.dt
         if output is None:
             output = self._scene._scene.output
         if output is None or arguments.is_false(output):
@@ -158,11 +160,11 @@ class Simulation:
     def modes(self, count: int = 8, tolerance: float = 1e-9,
               evaluations: int = 100000) -> Modes:
         """Finds the `count` slowest normal modes, at most 128, about the spins. The spins have to
-        be in equilibrium: call relax() before. In a mode they move by the real part of
+        be in equilibrium: call relax() first. In a mode they move by the real part of
         shape e^((i w - decay) t), with w the angular frequency, 2 pi frequency in SI.
 
-        With [torque], for at most 1024 sites, first call run() until the spins are at rest under
-        the current. A mode with a negative decay grows.
+        A scene with [torque] may have at most 1024 sites; first call run() until the spins are at
+        rest under the current. A mode with a negative decay grows.
 
         `tolerance` is the relative error of the shapes; frequencies are more accurate. The search
         takes at most `evaluations` of the field of all sites.

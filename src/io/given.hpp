@@ -18,4 +18,8 @@ struct Given {
   std::map<std::string, GivenNumbers, std::less<>> numbers;  ///< for keys with { given = true }
 };
 
+/// Returns empty arrays for the keys with { given = true } of a scene's text, so that it can be
+/// parsed without the program's numbers. Call nothing that reads values per site of such a scene.
+Given without_numbers(std::string const& scene_text);
+
 }  // namespace cayspin::inline v0_2::io

@@ -266,7 +266,8 @@ io::Scene first_replica(CheckOptions const& options, io::Scene const& scene) {
                       counted(ensemble.replicas, "replica"),
                       keys.empty() ? std::string()
                                    : fmt::format(", which vary in {}", fmt::join(keys, ", "))));
-  return io::is_to_relax(scene) ? io::replica_to_relax(scene, 0) : io::replica_of(scene, 0);
+  return io::with_shape_of_start(io::is_to_relax(scene) ? io::replica_to_relax(scene, 0)
+                                                        : io::replica_of(scene, 0));
 }
 
 int check(CheckOptions const& options) {

@@ -358,7 +358,7 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
       lines.emplace_back("interlayer",
                          fmt::format("E = {:.6g} m.m' + {:.6g} (m.m')^2, regions {} and {}{}{}",
                                      -bilinear, 0 - biquadratic, regions[0], regions[1],
-                                     range > 0 ? fmt::format(", {} cells apart", range) : "",
+                                     range > 0 ? fmt::format(", {} without a spin between", counted(range, "cell")) : "",
                                      field.exchange_at_faces.there() ? ", at the faces" : ""));
     for (auto const& [name, factor] : {std::pair{"exchange", field.in_time.exchange},
                                        {"anisotropy", field.in_time.anisotropy},

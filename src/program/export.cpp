@@ -58,11 +58,12 @@ bool is_rectangular(io::Lattice const& lattice) {
   return true;
 }
 
-// Returns a mesh with nodes in the middle of the lattice's cells. Ignores the start of the scene,
-// which may be vectors in the memory of the program that ran it.
+// Returns a mesh with nodes in the middle of the lattice's cells. Ignores the start of the scene and
+// its values per site, which may have been in the memory of the program that ran it.
 io::OvfMesh mesh_of(io::TrajectoryInfo const& info) {
   auto const scene = io::parse_scene_to_run_or_relax(info.header.scene_text, info.path,
-                                                     {"initial={uniform=[0,0,1]}"});
+                                                     {"initial={uniform=[0,0,1]}"},
+                                                     io::without_numbers(info.header.scene_text));
   if (!is_rectangular(scene.lattice))
     throw std::runtime_error(fmt::format(
         "{}: its sites do not form a rectangular mesh, as OVF requires; accepted: a file of a "

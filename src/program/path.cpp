@@ -19,6 +19,7 @@
 #include <cstdio>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace cayspin::program {
 namespace {
@@ -70,6 +71,21 @@ std::vector<double> spins_of(io::Scene const& scene, EndOption const& option) {
   });
 }
 
+// `from` and `to`: spins of lattices of the same shape. A site without a spin has a zero vector.
+void require_same_vacancies(PathCommandOptions const& options, std::vector<double> const& from,
+                            std::vector<double> const& to) {
+  auto const is_vacant = [](std::vector<double> const& spins, std::size_t at) {
+    return spins[at] == 0 && spins[at + 1] == 0 && spins[at + 2] == 0;
+  };
+  for (std::size_t at = 0; at < from.size(); at += 3)
+    if (is_vacant(from, at) != is_vacant(to, at))
+      throw UsageError(
+          fmt::format("--to {}: has {} spin on site {} (counted from 0, x fastest), where --from {} "
+                      "has {}; accepted: spins on the same sites",
+                      options.to.string(), is_vacant(to, at) ? "no" : "a", at / 3,
+                      options.from.string(), is_vacant(from, at) ? "none" : "one"));
+}
+
 std::string barrier_text(io::Scene const& scene, io::Path const& path) {
   auto const text = [&](double energy) {
     return energy_text(scene.units, energy / scene.units.energy);
@@ -111,6 +127,7 @@ int find_path(PathCommandOptions const& options) {
                     options.to.string(), cells_of(other.lattice), options.from.string(),
                     cells_of(scene.lattice)));
   auto const from = spins_of(scene, first), to = spins_of(other, last);
+  require_same_vacancies(options, from, to);
   io::require_writable(output, options.overwrite);
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, options.device);

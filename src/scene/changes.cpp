@@ -79,6 +79,8 @@ bool same(toml::table const& a, toml::table const& b) {
 }
 
 bool same(toml::node const& a, toml::node const& b) {
+  // Integers are compared exactly: as double, seeds above 2^53 could be equal.
+  if (a.is_integer() && b.is_integer()) return *a.as_integer() == *b.as_integer();
   if (a.is_number() && b.is_number()) return a.value<double>() == b.value<double>();
   if (a.type() != b.type()) return false;
   return a.visit([&](auto const& typed) {

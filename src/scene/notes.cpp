@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <array>
@@ -61,9 +62,10 @@ class Notes {
     auto const& [system, field] = std::tie(scene_.system, scene_.field);
     if (!system.precession && system.damping == 0 && !system.dampings.there() && !has_torque(field))
       add("system.precession", "false with damping = 0: no spin moves");
-    if (field.mu0 != 1 && !field.applied && field.applied_in_turn.empty() && !field.slab_demag &&
-        !field.demag)
-      add("field.mu0", "acts nowhere: there is neither applied, slab_demag, demag nor dipoles");
+    if (field.mu0 != 1 && !field.applied && field.applied_in_turn.empty() &&
+        field.sources.empty() && !field.slab_demag && !field.demag)
+      add("field.mu0",
+          "acts nowhere: there is no applied, sources, slab_demag, demag or dipoles");
   }
 
   void of_neighbours() {
@@ -176,16 +178,26 @@ class Notes {
         add("field.couplings.file", "acts nowhere: no bond of it fits into the lattice");
       return;
     }
-    if (scene_.places.contains("field.couplings.shells")) return of_shells(bonds);
-    for (std::size_t i = 0; i < bonds.size(); ++i)
+    auto const first = look_at_shells(bonds);
+    for (std::size_t i = first; i < bonds.size(); ++i)
       if (comes_back(bonds[i]))
-        add(fmt::format("field.couplings[{}]", i),
+        add(first > 0 ? "field.couplings.pairs" : fmt::format("field.couplings[{}]", i),
             "couples each site to itself, once around the periodic lattice");
   }
 
-  void of_shells(std::vector<Coupling> const& bonds) {
-    int shell = 0;
-    for (std::size_t first = 0, next; first < bonds.size(); first = next, ++shell) {
+  std::size_t shells() const {
+    if (!scene_.places.contains("field.couplings.shells")) return 0;
+    auto const document = toml::parse(scene_.text);
+    auto const* const typed = document.at_path("field.couplings.shells").as_array();
+    return typed == nullptr ? 0 : typed->size();
+  }
+
+  // Returns how many of the bonds belong to shells. They are the first, with the nearest shell
+  // first.
+  std::size_t look_at_shells(std::vector<Coupling> const& bonds) {
+    auto const count = shells();
+    std::size_t first = 0, next = 0;
+    for (std::size_t shell = 0; shell < count && first < bonds.size(); first = next, ++shell) {
       double const shortest = length(bonds[first]);
       bool fits = false;
       for (next = first;
@@ -197,6 +209,7 @@ class Notes {
                         "the lattice",
                         shell, shortest * scene_.units.length, scene_.units.si ? " m" : ""));
     }
+    return first;
   }
 
   void of_sites() {
@@ -262,8 +275,8 @@ class Notes {
     return start != nullptr && scene_.lattice.occupied.file == start->path;
   }
 
-  // Adds a note if the cells of an OVF file have another size than those of the lattice. Spins are
-  // assigned by index, whatever the size.
+  // Adds a note if the cells of an OVF start file differ in size from those of the lattice. Spins
+  // are assigned by index, whatever the size.
   void of_mesh() {
     auto const* const start = std::get_if<FileStart>(&scene_.initial);
     if (start == nullptr || !scene_.units.si || !is_ovf(start->path)) return;
@@ -289,7 +302,7 @@ class Notes {
       if (value != 0 && !(std::abs(value) >= least && std::abs(value) <= most))
         add(key, fmt::format("{:.6g} {}", value, meaning));
     };
-    // With factors of sites the constant is only their unit.
+    // With site-dependent factors, the constant is only their unit.
     double const exchange =
         scene_.field.exchange_factors.there() ? 0 : material.exchange.value_or(0);
     look("material.gamma", material.gamma, 1e9, 1e13,

@@ -136,6 +136,20 @@ Slonczewski read_slonczewski(Item const& item, Scene& scene) {
   return read;
 }
 
+bool is_zero(AppliedComponent const& component) {
+  auto const* const number = std::get_if<double>(&component);
+  return number != nullptr && *number == 0;
+}
+
+// A torque of zeros is the same scene as none: its energy falls, and `cayspin relax` takes it.
+void drop_zeros(Torque& torque) {
+  if (torque.zhang_li && std::ranges::all_of(torque.zhang_li->velocity, is_zero))
+    torque.zhang_li.reset();
+  if (auto const& of = torque.slonczewski;
+      of && is_zero(of->damping_like) && is_zero(of->field_like))
+    torque.slonczewski.reset();
+}
+
 }  // namespace
 
 Torque read_torque(Table const& root, SystemKind kind) {
@@ -151,6 +165,7 @@ Torque read_torque(Table const& root, SystemKind kind) {
     slonczewski->fail("does not go with zhang_li where gamma differs from site to site",
                       "one of the two, or one gamma");
   if (slonczewski) torque.slonczewski = read_slonczewski(*slonczewski, root.scene());
+  drop_zeros(torque);
   return torque;
 }
 

@@ -143,6 +143,8 @@ double largest_heat(io::Scene const& scene, Times const& times) {
                       time_text(scene.units, t)));
     }
   }
+  if (scene.columns && !scene.columns->temperatures.empty())
+    largest *= std::ranges::max(scene.columns->temperatures);
   double const damping = scene.system.dampings.there() ? 1 : scene.system.damping;
   return io::largest_noise(scene) * damping * largest;
 }

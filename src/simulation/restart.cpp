@@ -244,7 +244,8 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
   // Computed like the times in the file, so that times of the same scene have equal bits.
   double const dt = scene.integrator.dt * units.time;
   auto const is_at = [&](std::int64_t step) {
-    return std::abs(time - plan.times.at(step) * units.time) <= 1e-9 * dt;
+    double const round_off = 8 * std::numeric_limits<double>::epsilon() * time;
+    return std::abs(time - plan.times.at(step) * units.time) <= 1e-9 * dt + round_off;
   };
   if (!is_at(step_)) {
     // Noise depends on the number of the step, so a run with noise must keep its step numbers.

@@ -150,6 +150,20 @@ DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header, hsize_t r
                                 std::move(properties), path, inner);
 }
 
+// Returns the bytes that a frame may take in the file: the first frame of chunks that hold several
+// frames takes all of them.
+std::uint64_t bytes_of_chunks(hid_t spins, Extents const& inner, std::uint64_t number_bytes,
+                              std::filesystem::path const& path) {
+  PropertyHandle const properties(H5Dget_create_plist(spins));
+  Extents chunk(inner.size() + 1);
+  check(H5Pget_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), path,
+        "cannot read the chunks of spins");
+  auto bytes = number_bytes * chunk[0];
+  for (std::size_t axis = 0; axis < inner.size(); ++axis)
+    bytes *= (inner[axis] + chunk[axis + 1] - 1) / chunk[axis + 1] * chunk[axis + 1];
+  return bytes;
+}
+
 template <class Real>
 std::vector<Real> in_file_order(std::vector<std::byte> const& bytes,
                                 TrajectoryHeader const& header) {
@@ -181,6 +195,9 @@ class EnsembleFile::Implementation {
     write_varied(file.get(), ensemble, path_);
     if (!options.positions.empty()) write_positions(file.get(), header, options.positions, path_);
     spins_ = create_spins(file.get(), header, replicas_, options.storage, path_);
+    auto const extents = extents_of_frame(header, replicas_);
+    bytes_of_chunks_ =
+        bytes_of_chunks(spins_.get(), extents, frame_bytes_ / elements(extents), path_);
     frames_ = ReplicaSeries::create(file.get(), replicas_, path_);
     scalars_ = create_group(file.get(), "scalars", path_);
     samples_ = ReplicaSeries::create(scalars_.get(), replicas_, path_);
@@ -199,7 +216,7 @@ class EnsembleFile::Implementation {
     require_replicas(scalars.size());
     if (spins.size() != frame_bytes_)
       throw std::logic_error(path_.string() + ": spins of another lattice or precision");
-    space_.reserve(frame_bytes_ + overhead + 64 * replicas_, path_);
+    space_.reserve(bytes_of_chunks_ + overhead + 64 * replicas_, path_);
     Extents begin(extents_of_frame(header_, replicas_).size() + 1);
     begin[0] = static_cast<hsize_t>(written_);
     auto extents = extents_of_frame(header_, replicas_);
@@ -280,6 +297,7 @@ class EnsembleFile::Implementation {
   TrajectoryHeader header_;
   hsize_t replicas_;
   std::size_t frame_bytes_;
+  std::uint64_t bytes_of_chunks_ = 0;
   FileHandle file_;
   DatasetHandle spins_;
   GroupHandle scalars_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Each replica of a lattice moves as a lattice of its own: the same bits, whatever the term, the
-// method, the shape and the boundaries, also with noise.
+// Each replica of a lattice has the bits of a separate run, whatever the term, the method, the
+// shape and the boundaries, also with noise.
 #include "../support/backends.hpp"
 #include "../support/coefficients.hpp"
 
@@ -149,7 +149,7 @@ TYPED_TEST(Replicas, HaveNoiseOfTheirOwn) {
   using Spins = typename TypeParam::Spins;
   for (Lattice const& one : lattices_of_replicas()) {
     SCOPED_TRACE(name_of(one));
-    std::vector<double> const factors{0.5, 2, 0, 1, 0.25};
+    std::vector<double> const factors{0.1, 1.5, 0, 1, 3};
     auto const cell = static_cast<std::size_t>(one.cell_sites);
     for (bool const of_replicas : {false, true}) {
       auto const run = [&](Lattice const& lattice, std::uint64_t seed, double temperature) {

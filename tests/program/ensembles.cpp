@@ -297,6 +297,24 @@ TEST_F(Ensembles, WarnOfTheHottestReplica) {
   EXPECT_FALSE(exists("b.h5"));
 }
 
+// No replica alone has too much noise for this dt.
+TEST_F(Ensembles, TakeAStepThatIsLongForATemperatureOfOne) {
+  write("all.toml", replaced(chain_scene(), "[lattice]", "[thermal]\ntemperature = 0.001\n[lattice]") +
+                        vary("\"thermal.temperature\" = { from = 0.001, to = 0.01 }\n", 32));
+  expect_status(0, joined({"run", "all.toml", "--quiet", "--output", "all.h5"},
+                          set("integrator.dt=0.6", "system.damping=2", "field.exchange=0.01")));
+}
+
+TEST_F(Ensembles, AreCheckedWithTheShapeOfTheirStart) {
+  write("one.toml", chain_scene());
+  output_of(joined({"run", "one.toml", "--quiet", "--output", "one.h5"},
+                   set("lattice.occupied='i!=1'")));
+  write("all.toml", chain_scene() + vary("\"field.exchange\" = [1, 2, 3]\n"));
+  for (std::string const command : {"check", "run"})
+    expect_status(0, joined({command, "all.toml"}, set("initial={file='one.h5'}",
+                                                       "output.file='all.h5'")));
+}
+
 TEST_F(Ensembles, AreNoStartOfACrystal) {
   run_ensemble(chain_scene() + vary("\"field.exchange\" = [1, 2]\n", 2));
   auto const shape = read_dataset("all.h5", "/spins").extents;

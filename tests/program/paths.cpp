@@ -72,6 +72,15 @@ uniform = [1, 0, 0]
     EXPECT_EQ(energy.at(static_cast<std::size_t>(image[i])), of_saddles[i]);
 }
 
+TEST_F(PathCommand, RefusesEndsWithOtherVacancies) {
+  write_ends(scene);
+  expect_status(0, {"relax", in_folder("scene.toml"), "--output", "b.h5", "--quiet", "--overwrite",
+                    "--set", "lattice.occupied='i!=1'"});
+  expect_refused(arguments(), "--to b.h5: has no spin on site 1 (counted from 0, x fastest), where "
+                              "--from a.h5 has one");
+  EXPECT_FALSE(exists("path.h5"));
+}
+
 TEST_F(PathCommand, FindsTheBarrierOfAMacrospin) {
   write_ends(scene);
   auto const outcome = start(arguments({"--images", "12", "--rates"}));
@@ -249,8 +258,8 @@ TEST_F(PathCommand, SaysWhyThereIsNoPath) {
   EXPECT_TRUE(limited.errors.ends_with("; path.h5 has the images as they are\n")) << limited.errors;
 }
 
-// With five images a path of a chain of twenty spins misses the highest saddle and does not settle;
-// with sixteen it finds it.
+// With five images a path of a chain of twenty spins misses the highest saddle and does not settle.
+// With sixteen the path finds that saddle.
 TEST_F(PathCommand, PrintsTheSaddlesOfAPathThatDoesNotSettle) {
   write_ends(R"toml([system]
 kind = "llg"

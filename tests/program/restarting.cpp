@@ -123,8 +123,13 @@ TEST_F(Restarting, NamesWhatElseDiffers) {
   expect_named(set("thermal={temperature=0.01,seed=2}"), "thermal");
   expect_named(set("integrator.dt=0.01"), "integrator.dt");
   EXPECT_EQ(info_of("second.h5").frame_steps.front(), 24);
-  // 1.0 equals 1, and keys that only the new run has are not named.
+  // 1.0 equals 1, and keys of [output] and [initial] are not named.
   output_of(to_second(set("field.exchange=1", "output.every=3", "initial={uniform=[0,0,1]}")));
+}
+
+TEST_F(Restarting, NamesASeedThatWouldBeEqualAsDouble) {
+  run_to("12", "first.h5", set("thermal={temperature=0.01,seed=9007199254740993}"));
+  expect_named(set("thermal={temperature=0.01,seed=9007199254740992}"), "thermal.seed");
 }
 
 // After a change of the field, the method's memory (a previous rate, a step length) would be wrong,

@@ -98,7 +98,8 @@ class Stages(PackageTest):
         np.testing.assert_allclose(sim.spins, other.spins, rtol=0, atol=1e-14)
 
     def assert_replaced(self, table, old, key, new, **tables):
-        """Changing `key` of `table` from `old` to `new` keeps nothing of the old value."""
+        """Expects that setting `key` of `table`, which is `old`, to `new` keeps nothing of the old
+        value."""
         first, _, inner = key.partition(".")
         expected = {**old, first: {**old[first], inner: new} if inner else new}
         with self.subTest(key=key, new=new):
@@ -201,6 +202,10 @@ class Stages(PackageTest):
                 self.assertEqual(list(run.scalars["step"]), [*range(0, steps, 16), steps])
                 np.testing.assert_array_equal(run.spins[-1], sim.spins)
                 self.assertTrue(run.complete)
+        sim = cayspin.Simulation(scene(integrator={"method": "rkmk4", "dt": 0.02, "end": 1.0}))
+        sim.observe(10, lambda sim: sim.set("integrator.dt", 0.01) if sim.steps == 10 else None)
+        sim.run()
+        self.assertEqual(sim.steps, 10 + 80)
         sim = cayspin.Simulation(scene())
         sim.observe(49, lambda sim: sim.set("integrator.dt", 0.04))
         with self.assertRaisesRegex(cayspin.CayspinError, "t = 1 is 0.5 steps of dt = 0.04"):

@@ -75,6 +75,22 @@ TEST(Crystals, TermsOfOneSiteArrive) {
   EXPECT_TRUE(has_torque(scene.field));
 }
 
+TEST(Crystals, TorqueOfZerosIsNone) {
+  std::string const all_zero = "zhang_li={velocity=[0,-0.0,0],nonadiabaticity=1}";
+  std::string const across = "slonczewski={polarization=[0,0,1],damping_like=0,field_like=";
+  auto const has = [](std::string const& torque) {
+    return has_torque(
+        crystal_with({"lattice={shape=[4]}", "field={exchange=1}", "torque={" + torque + "}"})
+            .field);
+  };
+  EXPECT_FALSE(has(all_zero));
+  EXPECT_FALSE(has(across + "0}"));
+  EXPECT_FALSE(has(all_zero + "," + across + "0}"));
+  EXPECT_TRUE(has(all_zero + "," + across + "1e-300}"));
+  EXPECT_TRUE(has(across + "'0*t'}"));
+  EXPECT_TRUE(has("zhang_li={velocity=[0,0,1e-300]}," + across + "0}"));
+}
+
 TEST(Crystals, AnyNewKeyNeedsAPass) {
   std::string const plain = "field={exchange=1,anisotropy={constant=1,axis=[0,0,1]}}";
   EXPECT_FALSE(needs_pass(crystal_with({"lattice={shape=[4]}", plain})));

@@ -59,6 +59,7 @@ TEST(Notes, SayWhatActsNowhere) {
           {{single, "field.dmi={bulk=1}"}, "field.dmi: acts nowhere"},
           {{"field.mu0=2"}, "field.mu0: acts nowhere"},
           {{"field.mu0=2", "field.applied=[0,0,1]"}, ""},
+          {{"field.mu0=2", "field.sources=[{profile=[0,0,1]}]"}, ""},
           {{chain, "field.exchange=1", "lattice.regions='i>3'",
             "field.exchange_between=[{between=[0,1],factor=2}]"},
            ""},
@@ -87,7 +88,13 @@ TEST(Notes, SayWhatActsNowhere) {
           {{chain, "field.couplings={shells=[1,1,1,1,1,1,1]}"}, ""},
           {{chain, "field.couplings={shells=[1,1,1,1,1,1,1,1]}"}, "entry 7, for pairs 8 apart"},
           {{chain, "lattice.boundary='periodic'", "field.couplings=[{offset=[8,0,0],J=1}]"},
-           "couples each site to itself"},
+           "field.couplings[0]: couples each site to itself"},
+          {{chain, "lattice.boundary='periodic'",
+            "field.couplings={shells=[1],pairs=[{offset=[8,0,0],J=1}]}"},
+           "field.couplings.pairs: couples each site to itself"},
+          {{chain, "field.couplings={shells=[1],pairs=[{offset=[8,0,0],J=1}]}"}, ""},
+          {{chain, "field.couplings={shells=[1,0,0,0,0,0,0,1],pairs=[{offset=[7,0,0],J=1}]}"},
+           "field.couplings.shells: entry 7, for pairs 8 apart"},
       }) {
     auto const found = notes_with(overrides);
     SCOPED_TRACE(testing::PrintToString(overrides) + testing::PrintToString(found));

@@ -2,6 +2,7 @@
 // The disk fills up or fails during a run. The runs are child processes, whose exit status also
 // shows whether HDF5 could close.
 #include "hdf5/handle.hpp"
+#include "io/ensemble_file.hpp"
 #include "io/scene.hpp"
 #include "trajectory/format.hpp"
 #include "trajectory_test.hpp"
@@ -9,7 +10,11 @@
 #include <fcntl.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdlib>
+#include <iterator>
+#include <span>
 
 namespace cayspin::inline v0_2::io {
 namespace {
@@ -89,6 +94,35 @@ TEST_F(SmallDisk, FullDiskAtTheEndKeepsTheFrames) {
   auto const info = read_info(path);
   EXPECT_FALSE(info.complete);
   EXPECT_EQ(info.frames, 5);
+}
+
+[[noreturn]] void write_ensemble_until_it_fails(fs::path const& path, rlim_t room) {
+  limit_file_size(room);
+  exit_after([&] {
+    constexpr int replicas = 20;
+    EnsembleFile file(path, small_header(), {.replicas = replicas},
+                      {.storage = {.frames = 1000000}});
+    std::vector<std::byte> all;
+    for (int replica = 0; replica < replicas; ++replica)
+      std::ranges::copy(std::as_bytes(std::span(numbered_spins<double>(small_header(), replica))),
+                        std::back_inserter(all));
+    for (int frame = 0; frame < 1000000; ++frame)
+      file.write_frame(frame, frame, std::vector<Scalars>(replicas), all);
+  });
+}
+
+// A chunk holds 123 frames, 1.4 MB. The disk is full before the first frame, and later.
+TEST_F(SmallDisk, FullDiskLeavesTheFramesOfAnEnsemble) {
+  auto const path = folder_ / "a.h5";
+  for (rlim_t const room : {2000000, 2400000, 2800000, 6000000}) {
+    EXPECT_EXIT(write_ensemble_until_it_fails(path, room), testing::ExitedWithCode(3),
+                "a.h5: cannot write the file: File too large$");
+    auto const info = read_ensemble_info(path);
+    EXPECT_FALSE(info.complete);
+    EXPECT_EQ(info.frames > 0, room > 4000000) << room;
+    if (info.frames > 0) EXPECT_EQ(read_ensemble_spins(path, info).size(), 20 * 3 * 24U);
+    fs::remove(path);
+  }
 }
 
 // Makes all later writes to `path` fail, as on a broken disk.

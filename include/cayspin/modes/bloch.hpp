@@ -191,6 +191,7 @@ BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Sp
   BlochProblem problem;
   problem.cells = cells.cells;
   problem.turning = Eigen::MatrixXd::Zero(rows, rows);
+  evaluations = found.evaluations + hessian.evaluations();
   if (rows == 0) return problem;  // no spin moves
   Spins const vector = named("modes::vector"), product = named("modes::product");
   std::vector<Eigen::MatrixXd> blocks(

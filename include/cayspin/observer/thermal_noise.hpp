@@ -39,9 +39,9 @@ struct ThermalNoiseOptions {
 
 /// Thermal noise for LandauLifshitz with damping and any one-step method: half of it is applied
 /// before each step and half after. A half turns each spin by a random rotation vector, whose
-/// components have the variance s^2 = u - u^2/12 with u = damping temperature dt. Spins without a
-/// field then diffuse with an error of third order in u. Together with the step this is a splitting
-/// of second order, which samples Boltzmann's distribution of E / temperature.
+/// components have the variance s^2 = u - u^2/12 with u = damping * temperature * dt. Spins without
+/// a field then diffuse with an error of third order in u. Together with the step this is a
+/// splitting of second order, which samples Boltzmann's distribution exp(-E / temperature).
 ///   ThermalNoise const noise(spins, damping, {.temperature = 0.5, .seed = 1});
 ///   integrate(exec, stepper, generator, spins, times, noise.after_steps(times), observers...,
 ///             noise.before_steps());
@@ -58,9 +58,9 @@ class ThermalNoise {
   enum class Half { before, after };
 
   /// Throws std::invalid_argument for a temperature, damping or factor that is negative or not
-  /// finite, if numbers are given but not one for each site of a cell or for each replica, and if
-  /// columns are to be replicas on a lattice with replicas, on a part, or with numbers for a cell's
-  /// sites.
+  /// finite, and if options.cell_sites or options.replicas is neither empty nor of the right size.
+  /// With options.columns_are_replicas, also throws on a lattice with replicas, on a part of a
+  /// lattice, and if there are options.cell_sites.
   ThermalNoise(Spins const& like, double damping, ThermalNoiseOptions const& options)
       : lattice_(like.lattice()), damping_(damping), options_(options) {
     if (!(damping >= 0) || !std::isfinite(damping))
@@ -81,9 +81,9 @@ class ThermalNoise {
     make_room_for_turns();
   }
   /// Multiplies damping times temperature at each site by a factor, which may contain the damping,
-  /// the temperature, or one over the moment; 0 where a spin does not move. Factors other than 0
-  /// and 1 replace options.cell_sites and options.replicas, which must then be empty. Throws
-  /// std::invalid_argument if these are not empty, if columns are to be replicas, for factors on
+  /// the temperature, or one over the moment; 0 where a spin does not move. If there are factors
+  /// other than 0 and 1, options.cell_sites and options.replicas must be empty. Throws
+  /// std::invalid_argument if that rule is broken, if columns are to be replicas, for factors on
   /// another lattice, for a negative or non-finite factor, and like the other constructor.
   ThermalNoise(Spins const& like, double damping, ThermalNoiseOptions const& options,
                ScalarField<Real, typename Spins::memory_space> const& factors)
@@ -189,7 +189,9 @@ class ThermalNoise {
         double const of_replica = options_.replicas.empty() ? 1 : options_.replicas[number / sites];
         double const of_site =
             options_.cell_sites.empty() ? 1 : options_.cell_sites[number % sites];
-        double const of_all = u * of_replica * of_site;
+        // In the order of a lattice of its own, whose temperature is this product: equal bits.
+        double const temperature = options_.temperature * of_replica;
+        double const of_all = damping_ * temperature * std::abs(dt) * of_site;
         turns(number) = {turn_of<Exec>(of_all), of_all == 0};
       }
     });
@@ -226,7 +228,7 @@ class ThermalNoise {
     std::size_t const stride = column_numbers_.size() / 4;
     auto const* const found = column_numbers_.get(exec, u, [&](auto const& numbers) {
       for (std::size_t column = 0; column < options_.replicas.size(); ++column) {
-        // Multiplied in this order, so that the rounding is that of a lattice of this temperature.
+        // Multiplied in this order, so that the rounding is that of a lattice at this temperature.
         double const temperature = options_.replicas[column] * options_.temperature;
         auto const turn = turn_of<Exec>(damping_ * temperature * std::abs(dt));
         for (std::size_t i = 0; i < 4; ++i) numbers(i * stride + column) = turn.numbers()[i];

@@ -26,10 +26,10 @@ namespace cayspin::inline v0_2 {
 /// kind.
 ///
 /// A at the stages is extrapolated from earlier steps. Each correction adds (1 + b K)^-1 times the
-/// residual, where K = -J Lap is the exchange as measured at the first step, and b = dt (damping -
-/// i) times an eigenvalue of the tableau. This is Newton's method if exchange couples sites along
-/// one axis only and the spins are nearly parallel. One or two corrections per step are typical. A
-/// step whose corrections do not converge is halved.
+/// residual, where K = -J Lap is the exchange as measured at the first step, b = dt (damping - i)
+/// times an eigenvalue of the tableau, and i stands for m x. This is Newton's method if exchange
+/// couples sites along one axis only and the spins are nearly parallel. One or two corrections per
+/// step are typical. A step whose corrections do not converge is halved.
 ///
 /// Conserves |m|. If H is affine and the generator has no damping, also conserves the energy to
 /// round-off, and the total spin if isotropic exchange is the only term. Works with any generator,
@@ -89,7 +89,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
 
   /// Advances `spins` from t to t + dt under `generator`. A step swaps the memory of `spins` with
   /// that of the stepper, so take arrays of `spins` again after it. Waits. If a field throws,
-  /// `spins` are unchanged. Throws NotConverged, with `spins` unchanged, when halved steps have no
+  /// `spins` is unchanged. Throws NotConverged, with `spins` unchanged, when halved steps have no
   /// solution either, and std::invalid_argument when `spins` is not on the lattice given at
   /// construction or the lattice has replicas.
   template <class Exec, class Generator>
@@ -144,7 +144,9 @@ class StiffGauss : public detail::StepperBase<Spins> {
       for (Spins const& field : *own) this->require_other_memory(spins, field);
     if (exchange_.known) return;
     evaluations_done_ += exchange_.measure(exec, measure_label_, generator, spins, stage_[0], t);
+    exchange_.known = false;  // if make_solver() throws, the next step calls it again
     make_solver();
+    exchange_.known = true;
     contraction_ = 1;
   }
 

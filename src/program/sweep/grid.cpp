@@ -20,7 +20,7 @@ namespace cayspin::program::sweep {
 namespace {
 
 constexpr double most_runs = 1e5;
-// Starts are checked before the first run, until they have this many sites in all.
+// Starts are checked before the first run, up to this many sites in all.
 constexpr std::int64_t most_checked = 20'000'000;
 
 // Returns true if two keys, given as for --set, are equal, or one is a table that contains the
@@ -61,8 +61,8 @@ std::vector<io::SweptKey> read_keys(SweepOptions const& options) {
   return keys;
 }
 
-// Searches fields for features in time only if the scene sets refuse_unstable: each run does that
-// itself.
+// Searches fields for features in time only if the scene sets refuse_unstable, because each run
+// searches again.
 Plan plan_of(io::Stage const& stage, Precision precision) {
   auto const& scene = stage.scene;
   if (stage.relax) return make_plan_to_relax(scene, precision);
@@ -101,9 +101,7 @@ Grid make_grid(SweepOptions const& options) {
     auto overrides = options.overrides;
     std::ranges::copy(header.overrides(run), std::back_inserter(overrides));
     try {
-      auto scene = io::read_scene(options.scene, overrides);
-      if (checked + io::sites(scene) <= most_checked)
-        scene = io::with_shape_of_start(std::move(scene));
+      auto const scene = io::with_shape_of_start(io::read_scene(options.scene, overrides));
       output_file(scene, options.output);
       io::check_files(scene);
       if (scene.output.sync)
