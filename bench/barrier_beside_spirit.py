@@ -5,11 +5,11 @@
     python3 -m pip install spirit
     OMP_NUM_THREADS=1 python3 bench/barrier_beside_spirit.py [--repeat 3]
 
-The skyrmion is that of Spirit's tests: 16 x 16 sites, periodic, and in meV exchange 10, Bloch DMI 6
-and a field of 2.894190905 (25 T on 2 Bohr magnetons). Both programs relax the ends and use 16
-images. Spirit starts from its homogeneous transition. As its manual recommends, it relaxes the path
-roughly before the highest image climbs. Both stop when max |m x H| at the saddle is below a bound.
-One evaluation computes H at all sites of one image."""
+The skyrmion is that of Spirit's tests: 16 x 16 sites, periodic, with an exchange of 10 meV, a Bloch
+DMI of 6 meV and a field of 2.894190905 meV (25 T on 2 Bohr magnetons). Both programs relax the ends
+and use 16 images. Spirit starts from its homogeneous transition. As its manual recommends, it
+relaxes the path roughly before the highest image climbs. Both stop when max |m x H| at the saddle
+is below a bound. One evaluation computes H at all sites of one image."""
 
 import argparse
 import pathlib

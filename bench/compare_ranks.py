@@ -9,7 +9,7 @@ Columns of the table, for a lattice of the given number of sites:
 - weak: the time of two independent ranks with this lattice each over that of two ranks that share
   one of twice its length,
 - in step: like weak, but the independent ranks wait for each other after each step,
-- exchange: the part of the time that is spent on exchanging ghosts, in the strong and in the weak
+- exchange: the part of the time that is spent exchanging ghosts, in the strong and in the weak
   case.
 The runs alternate, and the best of each kind counts.
 """

@@ -71,6 +71,7 @@ class SpinWavePreconditioner {
     }
   };
   /// Functor that computes v' + m x v'' normal to the spins, and keeps the right side along them.
+  /// v' and v'' are the real and the imaginary part of the solution.
   struct Turn {
     cayspin::SiteArray<double, 6> solution;
     SiteArray right, spins;

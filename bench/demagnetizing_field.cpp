@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Milliseconds of an evaluation of the demagnetising field in the default space, next to only the
+// Milliseconds per evaluation of the demagnetising field in the default space, next to those of the
 // six transforms of a zero-padded lattice, by FFTW with measured plans or by cuFFT. With
 // OMP_NUM_THREADS=1 field and transforms run on one thread. Cases are named PRECISION/field/SHAPE
 // and PRECISION/transforms/SHAPE.

@@ -19,8 +19,8 @@ using namespace cayspin;
 using Spins = SpinField<double>;
 using scene::Default, scene::Orthogonal;
 
-// Rigid bodies in place of the scene. The structs after this one are the scene with one change
-// each.
+// Rigid bodies in place of the scene. Each later struct with a generator() is the scene with one
+// change.
 struct Bodies {
   static auto generator(Lattice const&) { return RigidBody::principal(1, 2, 3); }
 };

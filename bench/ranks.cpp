@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Nanoseconds per spin and step on the ranks that mpiexec starts, and the part of the time spent on
+// Nanoseconds per spin and step on the ranks that mpiexec starts, and the part of the time spent
 // exchanging ghosts, measured by Kokkos' regions: one line per method. Usage: bench_ranks NX NY NZ
 // [MODE]; compare_ranks.py and model_ranks.py start it. Mode "apart": each rank has a lattice of
 // this size to itself; "in_step": the same, and ranks wait for each other after each step;

@@ -21,7 +21,7 @@ namespace scene {
 inline constexpr double exchange = 1, anisotropy = 0.5, applied = 0.3, damping = 0, dt = 0.02;
 
 /// A lattice that fits the second-level cache, and is small enough for the calling thread to do all
-/// work.
+/// the work.
 inline cayspin::Lattice in_l2() { return cayspin::Lattice::cubic(128, 4, 4); }
 
 /// A lattice, and the text for its size in the names of cases.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The cost of equilibria of films and cubes, to max |m x H| < 1e-6: field evaluations and seconds
-// of cayspin::minimize, with and without its preconditioner, of Barzilai and Borwein's steps with
-// the same kernels, and of a relaxation in time. `bench_steady_states --large`: also 256^2 and 64^3
-// spins. Methods stop after 60000 evaluations.
+// The cost of finding equilibria of films and cubes, to max |m x H| < 1e-6: field evaluations and
+// seconds of cayspin::minimize, with and without its preconditioner, of Barzilai and Borwein's
+// steps with the same kernels, and of a relaxation in time. `bench_steady_states --large`: also
+// 256^2 and 64^3 spins. Methods stop after 60000 evaluations.
 #include "random_spins.hpp"
 
 #include <cayspin/cayspin.hpp>

@@ -26,7 +26,7 @@ foreach(processor x86-64-v3 x86-64-v4)
   endforeach()
 endforeach()
 
-# The wheel contains libraries of others, and so also their licences.
+# The wheel contains the libraries of other projects, and therefore also their licences.
 foreach(package libhdf5-dev libfmt-dev libmuparser-dev libtomlplusplus-dev libeigen3-dev
                 libcli11-dev nlohmann-json3-dev libfftw3-dev libpng-dev zlib1g-dev libgomp1)
   set(copyright /usr/share/doc/${package}/copyright)

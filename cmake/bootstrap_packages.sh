@@ -17,7 +17,7 @@ tests=("${mpi[@]}" "${docs[@]}" libgtest-dev nlohmann-json3-dev valgrind clang l
   python3-selenium zsh)
 bench=(libbenchmark-dev)
 everything=("${core[@]}" "${io[@]}" "${program[@]}" "${python[@]}" "${tests[@]}" "${bench[@]}") # except drawing
-# Only in Debian 12: elsewhere the tests that need them are skipped.
+# Debian 12 has these. Where apt does not have one, the tests that need it are skipped.
 left_out_where_unknown=(chromium chromium-driver libclang-rt-14-dev)
 
 is_installed() {
@@ -97,8 +97,8 @@ provide_nvdisasm() {
   ! find_nvcc || provide_tools nvdisasm python3 "$root/tests/cuda/requirements.txt"
 }
 
-# Programs of others that must read our files in the tests `interchange`. They are installed for the
-# Python of the tests, which has the packages that they need.
+# Other projects' programs that must read our files in the tests `interchange`. They are installed
+# for the Python of the tests, which has the packages that they need.
 provide_interchange_tools() {
   provide_tools interchange "$PYTHON" "$root/tests/interchange/requirements.txt"
 }

@@ -3,11 +3,11 @@
 # Kokkos 4.7.0 does not build with CUDA 13, which changed two signatures and dropped sm_70, the
 # default of nvcc_wrapper. Its Views have members marked [[no_unique_address]], which nvcc 12.9 and
 # 13 lay out differently for host and device, so that kernels cannot use a View. Patches a source
-# tree in place; leaves a patched tree and a newer Kokkos unchanged.
+# tree in place; leaves a patched tree and other versions unchanged.
 cmake_policy(VERSION 3.25)
 
-# replace_once(<file> <old> <new>) replaces old by new. Leaves a file that holds new; stops unless
-# any other holds old exactly once.
+# replace_once(<file> <old> <new>) replaces old by new. Does nothing if the file already holds new;
+# otherwise stops unless it holds old exactly once.
 function(replace_once file old new)
   file(READ "${file}" text)
   string(FIND "${text}" "${new}" mended)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Uses arrays of another code, here plain arrays and OpenMP loops, through unmanaged Views, which
-// allocate nothing. A write head moves along a track. The other code computes the field of the head
-// and reads the bits; cayspin integrates the motion of the spins. Numbers are copied when one code
-// hands over to the other, not in each step.
+// Uses the arrays of another code, which works on plain arrays with OpenMP loops. Unmanaged Views,
+// which allocate nothing, give access to the arrays. A write head moves along a track. The other
+// code computes the field of the head and reads the bits; cayspin integrates the motion of the
+// spins. Numbers are copied when one code hands over to the other, not in each step.
 #include <cayspin/cayspin.hpp>
 
 #include <array>

@@ -87,7 +87,7 @@ def problem_1(quick):
     return loops
 
 
-# Donahue et al., J. Appl. Phys. 87, 5520 (2000), and muMAG's page of the problem: d, Hc, <m_x> and
+# Donahue et al., J. Appl. Phys. 87, 5520 (2000), and muMAG's page on the problem: d, Hc, <m_x> and
 # <m_y> at zero field. The first row is their limit for small particles.
 DONAHUE = ((0.1, .05707, 1, 0), (2, .05694, 1, 0), (5, .05612, .9999, 0), (8, .05515, .9995, 0),
            (10, .05454, .9989, 0), (12, .05389, .9886, .0631), (15, .05258, .9784, .0795),

@@ -14,7 +14,7 @@ using HostSpace = Kokkos::DefaultHostExecutionSpace;
 using HostSpins = Simulation<double, HostSpace>::Spins;
 using HostObserver = RunObserver<HostSpace, HostSpins>;
 
-/// Runs a chain, spacing 1, like `cayspin run`, but with starts and inverse inertias from memory
+/// Runs a chain with spacing 1 like `cayspin run`, but with starts and inverse inertias from memory
 /// and without files. Returns the final state. `starts`: one unit vector per site, as (sites, 3)
 /// numbers. `inverse_inertia`: one tensor per body; ignored for spins. Throws NumbersFailed when
 /// the run fails.

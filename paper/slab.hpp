@@ -9,7 +9,7 @@
 namespace cayspin::paper {
 
 /// The paper's slab of 100 spins with all constants 1 (its Sec. 6). The paper does not give the
-/// start, the easy axis and the spacing: we use spacing 1, and the start of
+/// start, the easy axis or the spacing: we use spacing 1, and the start of
 /// scenes/slab_switching.toml.
 struct Slab {
   std::string_view name;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The sources of the site: the pages as they are, with a tree, and a listing of each file of the
-repository that a page links to."""
+"""The sources of the site: the pages, with links that lead within the site and a tree of pages, and
+a listing of each file of the repository that a page links to."""
 
 import os
 import pathlib

@@ -80,7 +80,7 @@ class Module:
         return " ".join(ast.get_source_segment(self.source, node).split()) if node else ""
 
     def comment(self, node):
-        """The text of `#: ..` behind a field, or in the lines above it."""
+        """The text of `#: ..` after a field, or in the lines above it."""
         behind = self.lines[node.end_lineno - 1].partition("#:")[2].strip()
         above = []
         for line in reversed(self.lines[:node.lineno - 1]):
@@ -189,7 +189,7 @@ def things() -> Dict[str, List[Thing]]:
 
 
 def markdown(doc):
-    """A docstring, whose indented blocks are code and whose named pages are links."""
+    """A docstring as Markdown: indented blocks become code, and named pages become links."""
     doc = re.sub(r"docs/reference/(\w+\.md)", r"[\1](\1)", doc)
     lines, block = [], []
     for line in [*inspect.cleandoc(doc).split("\n"), "end"]:

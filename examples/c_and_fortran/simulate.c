@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception */
-/* Runs a scene from C: takes some steps, reads the spins in place, and completes the run. */
+/* Runs a scene from C: takes 100 steps, reads the spins in place, and completes the run. */
 #include <cayspin/cayspin.h>
 
 #include <math.h>

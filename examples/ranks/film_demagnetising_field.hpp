@@ -143,13 +143,13 @@ class FilmDemagnetisingField {
       return reinterpret_cast<fftw_complex*>(numbers);
     }
     std::size_t columns() const { return k_.of(rank_); }
-    /// Returns where of_rows_ holds a rank's share, which may be empty, of the spectrum of
-    /// component c of this rank's row y.
+    /// For component c of this rank's row y, returns where of_rows_ holds the part of the spectrum
+    /// that goes to rank `rank`. That part may be empty.
     Complex* in_rows(std::size_t c, std::size_t y, std::size_t rank) {
       return of_rows_.data() + 3 * rows() * k_.begin[rank] + (c * rows() + y) * k_.of(rank);
     }
 
-    // With FFTW_ESTIMATE and FFTW_UNALIGNED all rows on all ranks have the same plan, and thus
+    // With FFTW_ESTIMATE and FFTW_UNALIGNED all rows on all ranks have the same plan, which gives
     // equal bits.
     void make_plans() {
       constexpr unsigned flags = FFTW_ESTIMATE | FFTW_UNALIGNED;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A code with a communicator and a View of its own, divided along z, that uses cayspin for the
+// A code that has its own communicator and its own View, divided along z, and uses cayspin for the
 // steps. The printed numbers have equal bits on any number of ranks.
 #include <cayspin/cayspin.hpp>
 #include <cayspin/mpi/domain.hpp>

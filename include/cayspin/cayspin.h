@@ -33,7 +33,7 @@ typedef enum cayspin_status CAYSPIN_AS_INT {
   CAYSPIN_WRONG_USAGE = 1,    /* a null pointer, or an argument that is not accepted */
   CAYSPIN_WRONG_SCENE = 2,    /* the scene, or a file that it names */
   CAYSPIN_NUMBERS_FAILED = 3, /* a failed check of the spins or the energy, or a failed method */
-  CAYSPIN_FAILED = 4          /* out of memory, a file that cannot be written, or else */
+  CAYSPIN_FAILED = 4          /* any other failure, such as a file that cannot be written */
 } cayspin_status;
 
 typedef enum cayspin_precision CAYSPIN_AS_INT {

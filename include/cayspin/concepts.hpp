@@ -87,14 +87,14 @@ int evaluations_of_next_step(Stepper const& stepper) {
 /// | `check_spins(spins)` | throws for unsuitable spins or invalid values | accepts all spins |
 /// | `auto prepare(exec, spins, t)` | the term for kernels at time t | the term itself |
 /// | `static bool depends_on_time` | what prepare returns depends on t, not on the spins | false |
-/// | `bool is_stationary(exec, spins)` | one prepare serves all t and spins | if without prepare |
-/// | `bool needs_only_time(exec, spins)` | prepare ignores spins | if either of these two is true |
+/// | `bool is_stationary(exec, spins)` | one prepare fits all t and spins | if it has no prepare |
+/// | `bool needs_only_time(exec, spins)` | prepare ignores spins | if either one above is true |
 /// | `bool is_affine()` | H is affine in the spins | true if it has a degree |
 /// | `static bool is_conservative` | false: H has no energy, as for a torque | true |
 ///
 /// If a term has prepare, the device members belong to the returned object. A term made of other
 /// terms inherits the host members from Forwarding (field/forwarding.hpp), and its device members
-/// may include gather (field/parts.hpp). Some methods of the paper need derivatives of terms; these
+/// may include gather (field/parts.hpp). Some methods of the paper need derivatives of terms, which
 /// are in cayspin_paper.
 template <class Term, class Spins = SpinField<double, Kokkos::HostSpace>>
 concept FieldTerm = requires {
@@ -124,7 +124,7 @@ concept Generator =
 /// | `step(exec, generator, spins, t, dt)` | advances spins from t to t + dt | required |
 /// | `static int evaluations` | generator evaluations per step | evaluations_done() is required |
 /// | `int64 evaluations_done()` | generator evaluations so far | evaluations is required |
-/// | `int next_step_evaluations()` | those of the next step; a first may need more | evaluations |
+/// | `int next_step_evaluations()` | generator evaluations in the next step | evaluations |
 /// | `static int order` | order of convergence | unknown |
 /// | `static int ghosts` | ghost layers that a step needs at inner ends of a part | refuses parts |
 /// | `reset()` | forgets the previous steps | nothing to forget |

@@ -34,15 +34,15 @@ struct Times {
 struct Summary {
   std::int64_t steps = 0;
   std::int64_t evaluations = 0;  // generator evaluations
-  double step_seconds = 0;       // time spent stepping, fenced, without observers
-  bool stopped = false;          // by an observer
+  double step_seconds = 0;       // wall-clock time of the steps, without observers
+  bool stopped = false;          // by an observer, before the last step
   std::int64_t own_steps = 0;    // accepted steps of an adaptive method
   std::int64_t rejected = 0;     // rejected steps of an adaptive method
 };
 
-/// Observer that calls another one at steps whose number is a multiple of `period` (0, the initial
-/// state, included) and at the last step. If the other one has a due(Step), that must be true as
-/// well. Every keeps a reference to an observer that is a variable, which must outlive it; a
+/// Observer that calls another one at steps whose number is a multiple of `period`, including 0
+/// (the initial state), and at the last step. If the other one has a due(Step), that must also be
+/// true. Every refers to an observer that is a variable; the variable must outlive Every. A
 /// temporary is moved into Every.
 ///   Every(10, control)             refers to `control`
 ///   Every(10, Record(field, to))

@@ -69,8 +69,8 @@ struct Lattice {
 
   friend bool operator==(Lattice const&, Lattice const&) = default;
 
-  /// Throws std::invalid_argument for an invalid extent, spacing, or number of ghosts, of sites in
-  /// a cell or of replicas, and for more than 1e15 sites. The message names the first fault.
+  /// Throws std::invalid_argument for an invalid extent or spacing, an invalid number of ghosts, of
+  /// sites in a cell or of replicas, and more than 1e15 sites. The message names the first fault.
   void validate() const {
     constexpr std::int64_t most_extent = std::numeric_limits<std::int32_t>::max() / 4;
     for (std::size_t axis = 0; axis < 3; ++axis) {

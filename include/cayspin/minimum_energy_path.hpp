@@ -323,12 +323,12 @@ constexpr int path_work_fields(std::size_t images) {
 
 /// Finds a minimum energy path between two states, and the saddles on it.
 ///
-/// `minimize` relaxes the first and the last image; the images between them become the path. The
-/// start is a path along the great circle of each spin (through x or y, where the spins at the ends
-/// are opposite), with a disturbance of 0.1 rad without symmetry. This string of images descends
-/// perpendicular to itself by preconditioned L-BFGS. From the maxima of the energy along the
-/// string, Newton's method climbs to saddles until the torque is below its bound; then the string
-/// relaxes between them. `saddle` receives the highest saddle, if one is found.
+/// `minimize` relaxes the first and the last image; the images between them become the path. By
+/// default the start is a path along the great circle of each spin (through x or y, where the spins
+/// at the ends are opposite), with a disturbance of 0.1 rad without symmetry. The images descend
+/// perpendicular to the path by preconditioned L-BFGS. From the maxima of the energy along the
+/// path, Newton's method climbs to saddles until the torque is below its bound; then the images
+/// relax between them. `saddle` receives the highest saddle, if one is found.
 ///   std::vector<Spins> images = ...;  // the first and the last are the states
 ///   Spins saddle("saddle", lattice);
 ///   auto const path = cayspin::minimum_energy_path(exec, field, images, saddle);

@@ -123,8 +123,8 @@ class ModesAt {
   std::int64_t evaluations_ = 0;
 };
 
-/// Multiplies a mode, real + i imaginary, by a complex number that makes its longest vector of
-/// length 1 and the largest component of that vector real and positive. If vectors or components
+/// Multiplies a mode, real + i imaginary, by a complex number, after which its longest vector has
+/// length 1 and the largest component of that vector is real and positive. If vectors or components
 /// differ only by round-off, the first counts.
 template <class Exec, class Spins>
 void normalize_mode(Exec const& exec, Spins const& real, Spins const& imaginary) {

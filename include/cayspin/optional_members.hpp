@@ -5,8 +5,8 @@
 
 #include <concepts>
 
-// How the library calls field terms and generators. Each function calls the member that it is named
-// after or, if there is none, does what the tables in concepts.hpp give as the default.
+// How the library calls field terms and generators. Each function calls a member of the term or
+// generator or, if there is none, uses the default, as in the tables of concepts.hpp.
 // field/parts.hpp has the functions for a field made of several terms.
 namespace cayspin::inline v0_2::detail {
 

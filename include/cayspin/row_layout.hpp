@@ -23,8 +23,8 @@ struct RowRange {
 
 /// Memory layout of the sites: one array per component, with rows along x padded to whole cache
 /// lines. If rows are longer than a line, the strides of rows, planes and components are odd
-/// numbers of lines, and the stride of planes is not close to a whole number of pages. This keeps
-/// neighbours from competing for the same cache sets.
+/// numbers of lines, and a stride of planes of a page or more is not close to a whole number of
+/// pages. This keeps neighbours from competing for the same cache sets.
 struct RowLayout {
   std::int32_t nx = 0, ny = 0, nz = 0;
   std::int32_t replica_planes = 0;  // planes of one replica
@@ -35,7 +35,7 @@ struct RowLayout {
   std::ptrdiff_t origin = 0;  // position of site 0 in the allocation; a pack may read before it
   RowRange own;               // all rows but the ghosts
   Part const* part = nullptr;
-  std::int32_t parity = 0;  // parity of y + z in the whole lattice where it is even in this part
+  std::int32_t parity = 0;  // of y + z in the whole lattice where y + z is even in this part
 
   template <class Real>
   static RowLayout of(Lattice const& lattice) {
@@ -133,7 +133,7 @@ struct SiteArray {
 };
 
 /// A SiteArray that a kernel only writes. `streaming`: stores bypass the caches, for fields that do
-/// not fit them.
+/// not fit into them.
 template <class Real, int Components>
 struct OutputArray : SiteArray<Real, Components> {
   bool streaming = false;

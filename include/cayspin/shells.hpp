@@ -74,9 +74,9 @@ inline constexpr double same_distance = 1e-4;
 
 /// Returns exchange bonds between all pairs of sites at the first, second, ... distance in a
 /// crystal, with the constants exchange[0], exchange[1], ... `repeats` says for each cell vector
-/// whether there are other cells along it. Throws std::invalid_argument for an invalid crystal, for
-/// more than two million bonds, and, if no vector repeats, for more constants than there are
-/// distances in a cell.
+/// whether there are other cells along it. Throws std::invalid_argument for an invalid crystal, if
+/// the search would have to list more than two million bonds, and, if no vector repeats, for more
+/// constants than there are distances in a cell.
 inline std::vector<Coupling> couplings_of_shells(Crystal const& crystal,
                                                  std::vector<double> const& exchange,
                                                  std::array<bool, 3> const& repeats = {true, true,

@@ -26,8 +26,8 @@ inline Lattice const& validated(Lattice const& lattice) {
 }
 
 /// Functor that initialises a field. Its tasks are the rows, and then the margins before, between
-/// and after the components. Packs at the ends of rows read some of this padding. Results from it
-/// are discarded, but must not trap or be denormal.
+/// and after the components. Packs at the ends of rows also compute with padding. The results are
+/// discarded, but the padding must hold numbers that neither trap nor become denormal.
 template <class Real>
 struct FillField {
   Real* data;
@@ -204,8 +204,8 @@ CAYSPIN_DETAIL_NOINLINE std::array<Field, Count> numbered_fields(std::string con
 template <std::floating_point Real, class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 using ScalarField = SiteField<Real, 1, MemorySpace>;
 
-/// A unit vector per site, initially +z. Steppers preserve the lengths of the spins that they are
-/// given: check spins that you copy in with require_unit_spins (observer/normalize.hpp).
+/// A unit vector per site, initially +z. Geometric steppers preserve the lengths of the spins that
+/// they are given: check spins that you copy in with require_unit_spins (observer/normalize.hpp).
 template <std::floating_point Real, class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class SpinField : public SiteField<Real, 3, MemorySpace> {
  public:

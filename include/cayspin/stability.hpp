@@ -180,8 +180,8 @@ bool amplifies(Complex rate, double dt, double sigma, bool clearly) {
 /// Returns the largest dt up to which a mode does not grow, but at most `limit`; 0 if the mode
 /// grows even at dt = 1e-9 `unit`. grows(dt, clearly) has the meaning of amplifies(), and `unit` is
 /// the time scale of the mode. The search starts at dt = from * unit. If the mode grows clearly
-/// there, the search goes down, otherwise up. At shorter steps, round-off would hide the growth by
-/// methods of high order.
+/// there, the search goes down, otherwise up. It does not start at a shorter step, where round-off
+/// hides the small growth that methods of high order cause.
 template <class Grows>
 double first_amplifying_step(Grows const& grows, double unit, double limit, double from) {
   double stable = from * unit, unstable = stable;

@@ -47,8 +47,8 @@ struct Vec3 {
   KOKKOS_FORCEINLINE_FUNCTION Vec3& operator-=(Vec3 const& a) { return *this = *this - a; }
 };
 
-/// Short names, for use in terms, of the value type of a stencil, a spin or a site, and of the type
-/// of its vectors.
+/// Short names for use in terms: the value type of a stencil, a spin or a site, and the type of its
+/// vectors.
 template <class Stencil>
 using ValueOf = typename Stencil::value_type;
 template <class Stencil>

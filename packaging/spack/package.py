@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""cayspin for Spack 1.0 and newer. In a clone, with this file in a repository of yours as
-packages/cayspin/package.py:  spack dev-build --source-path CLONE cayspin@main
-Does the installed package work?  spack test run cayspin"""
+"""cayspin for Spack 1.0 and newer. Put this file into your own Spack repository, as
+packages/cayspin/package.py, and run:  spack dev-build --source-path CLONE cayspin@main
+To test the installed package:  spack test run cayspin"""
 
 import os
 import pathlib

@@ -24,8 +24,8 @@ class EnsembleSimulation:
         sim.spins  # (replica, nz, ny, nx, 3)
 
     `precision` is "double" or "single", `space` an execution space that was compiled in (default:
-    that of Kokkos), `threads` the number of its threads: the first simulation of a process decides
-    that. `restart` names the file of an ensemble: the simulation continues from its last frame,
+    that of Kokkos), `threads` the number of its threads, which the first simulation of a process
+    decides. `restart` names the file of an ensemble: the simulation continues from its last frame,
     unless the method remembers more than the spins.
 
     Ctrl-C stops it between two steps with KeyboardInterrupt; some replicas may then be further than

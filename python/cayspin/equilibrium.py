@@ -18,11 +18,13 @@ class Minimum:
     iterations: int  #: steps of the search
     evaluations: int  #: of the field of all sites
     saddles: int  #: saddles left during the search
-    curvature: float  #: upper bound of the lowest curvature, energy / rad^2, if converged
+    #: upper bound of the lowest curvature, energy / rad^2, if converged; inf with `keep_saddles`
+    curvature: float
 
     @property
     def converged(self) -> bool:
-        """Whether the torque is below its bound, and the energy falls in no direction."""
+        """Whether the torque is below its bound and, without `keep_saddles`, the energy falls in no
+        direction."""
         return self.end == "converged"
 
 

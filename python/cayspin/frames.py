@@ -48,8 +48,7 @@ def texture_of(file: Any, path: Any, frame: int, before: int | None = None,
 
 
 class Frames:
-    """Some of the frames of a dataset, read one by one; if frames have several replicas, those of
-    one."""
+    """Some of the frames of a dataset, read one by one; of one replica, if frames have several."""
 
     def __init__(self, dataset: Any, frames: range, replica: int | None = None):
         self.dataset, self.frames, self.replica = dataset, frames, replica

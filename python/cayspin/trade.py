@@ -171,7 +171,7 @@ class Advice:
     space: str  #: the execution space in which `seconds` holds
     threads: int  #: the number of its threads
     scene: Scene  #: with the method and its steps: Simulation(advice.scene, advice.precision)
-    others: list[dict]  #: method and seconds of the next ones
+    others: list[dict]  #: method and seconds of the other methods, cheapest first
 
 
 def trade(scene: Scene, seconds: float = 10, precision: str | None = None,

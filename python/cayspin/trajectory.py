@@ -50,8 +50,9 @@ class Trajectory:
         except (OSError, ValueError) as error:
             reason = " ".join(str(error).split())
             raise CayspinError(f"{self.path}: cannot be opened: {reason}") from None
-        #: the same names at the samples, and where the scene asks for them region_magnetization,
-        #: (sample, region, 3), region_energy, (sample, region), and term_energy, (sample, term)
+        #: time, step, energy, norm_defect and magnetization at the samples; where the scene asks
+        #: for them, also region_magnetization, (sample, region, 3), region_energy,
+        #: (sample, region), and term_energy, (sample, term)
         self.scalars: dict[str, Any] = {}
         try:
             with reading(self.file, self.path):

@@ -33,6 +33,6 @@ def draw_components(axes, trajectory):
 
 
 def _limit(component):
-    """The largest magnitude; 1 if it is only rounding, which is not worth a scale of its own."""
+    """The largest magnitude; 1 if it is only rounding, which is not worth its own scale."""
     largest = float(np.abs(component).max())
     return largest if largest > 1e-9 else 1.0

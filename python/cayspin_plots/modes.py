@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The modes of a file of `cayspin modes`: their spectrum, amplitudes and phases, one of them that
-moves, or bands along a path."""
+"""The modes in a file of `cayspin modes`: their spectrum, amplitudes and phases, frames of one
+moving mode, or bands along a path."""
 
 import math
 
@@ -10,7 +10,7 @@ import numpy as np
 from . import style
 
 MOST_MODES = 16
-FRAMES = 40  # of a period
+FRAMES = 40  # in a period
 TURN = 0.5  # radians: the largest angle by which a moving mode turns a spin
 ATTRIBUTE = "cayspin_modes_format"
 

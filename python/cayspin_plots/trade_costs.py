@@ -45,8 +45,9 @@ def cheapest(methods, error, key="seconds"):
 
 
 def gain(trade, error):
-    """Time of the best baseline over that of the best other method in double precision, and that
-    method. None if no method reaches the error; infinite if no baseline does."""
+    """Time of the best baseline over that of the best method that is neither a baseline nor
+    WITHOUT_GEOMETRY, in double precision, and that method. None if no such method reaches the
+    error; infinite if no baseline does."""
     double = [method for method in trade["methods"] if is_double(method)]
     here, winner = cheapest([method for method in double
                              if method["method"] not in (*BASELINES, WITHOUT_GEOMETRY)], error)

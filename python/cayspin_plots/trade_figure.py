@@ -42,7 +42,8 @@ def axes_that_differ(trade):
 
 
 def name_ends(axis, ends):
-    """Names beside the right end of the axes, each by a thin line from the end of its curve."""
+    """Writes names beside the right end of the axes. A thin line joins each to the end of its
+    curve."""
     low, high = (np.log(limit) for limit in axis.get_ylim())
     apart, heights = 0.05, []
     for x, y, name, color in sorted(ends, key=lambda end: end[1]):

@@ -12,14 +12,14 @@ namespace cayspin::inline v0_2::io {
 /// Runs `reading` in a trial (set_trial); does nothing if no trial is set.
 void try_before(std::filesystem::path const& path, std::function<void()> const& reading);
 
-/// Runs `reading` in a trial; if no trial is set, runs it here.
+/// Runs `reading` in a trial; if no trial is set, runs it directly.
 void try_reading(std::filesystem::path const& path, std::function<void()> const& reading);
 
 /// Rethrows the exception being handled. If memory ran out, throws a std::runtime_error about the
 /// file instead.
 [[noreturn]] void rethrow_reading(std::filesystem::path const& path);
 
-/// Runs `reading` in a trial, then here, and returns its result. `reading` must open the file
+/// Runs `reading` in a trial, then directly, and returns its result. `reading` must open the file
 /// itself, so that it runs the same code on the same bytes both times.
 template <class Reading>
 auto read_guarded(std::filesystem::path const& path, Reading const& reading) {

@@ -63,7 +63,7 @@ FileHandle open_file(std::filesystem::path const& path, Locking locking = Lockin
 /// Reads all of a small file into memory and opens it there. No process may be writing it.
 FileHandle open_file_in_memory(std::filesystem::path const& path);
 
-// Creates a group of the file `path`.
+// Creates a group in the file `path`.
 GroupHandle create_group(hid_t parent, char const* name, std::filesystem::path const& path);
 GroupHandle open_group(hid_t parent, char const* name, std::filesystem::path const& path);
 

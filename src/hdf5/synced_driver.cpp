@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// HDF5 file driver (1.10 to 1.14) for SyncedFile.
+// File driver for SyncedFile, for HDF5 1.10 to 1.14.
 #include "synced_file.hpp"
 
 #include <fcntl.h>
@@ -102,7 +102,7 @@ herr_t unlock(H5FD_t* file) { return change_lock(file, LOCK_UN); }
 H5FD_class_t const driver = {
 #ifdef H5FD_CLASS_VERSION
     .version = H5FD_CLASS_VERSION,
-    .value = static_cast<H5FD_class_value_t>(511),  // the last of unregistered drivers
+    .value = static_cast<H5FD_class_value_t>(511),  // the last value for unregistered drivers
 #endif
     .name = "cayspin_synced",
     .maxaddr = std::numeric_limits<off_t>::max(),

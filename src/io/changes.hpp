@@ -14,8 +14,8 @@ namespace cayspin::inline v0_2::io {
 /// lattice, as in "lattice.spacing"; empty if none does. Scenes in SI are compared by their
 /// spacings in m. Site-dependent numbers are compared site by site, unless both scenes name the
 /// same expression or file, or both get the numbers from a program. Along an axis with one cell,
-/// spacing and boundary are ignored, except in crystals with several sites per cell and with demag.
-/// Throws SceneError when a file cannot be read.
+/// spacing and boundary are ignored, unless a cell has several sites or a scene has demag. Throws
+/// SceneError when a file cannot be read.
 std::string changed_lattice_key(Scene const& before, Scene const& now);
 
 /// Returns the keys whose values differ between two scene texts, such as "field.applied", in

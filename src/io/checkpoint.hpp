@@ -59,8 +59,8 @@ class CheckpointWriter final : public Checkpoint {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Reader of a checkpoint. Verifies each field by a checksum of its own, and everything else by the
-/// checksum of the file. Files of earlier versions do not have the latter.
+/// Reader of a checkpoint. Verifies each field by the field's checksum, and everything else by the
+/// file's, which files of earlier versions do not have.
 class CheckpointReader final : public Checkpoint {
  public:
   explicit CheckpointReader(std::filesystem::path path);

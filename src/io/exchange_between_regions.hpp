@@ -18,7 +18,7 @@ struct ExchangeBetween {
 struct Interlayer {
   std::array<std::int64_t, 2> regions = {};
   double bilinear = 0, biquadratic = 0;  ///< J, B
-  std::int64_t range = 0;                ///< number of cells between the regions, without a spin
+  std::int64_t range = 0;                ///< number of cells without a spin between m and m'
 };
 
 }  // namespace cayspin::inline v0_2::io

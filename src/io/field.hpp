@@ -52,7 +52,7 @@ struct Field {
   SiteNumbers exchange_factors, dmi_factors;  ///< multiply constants, which then are 1
   std::vector<ExchangeBetween> exchange_between;
   std::vector<Interlayer> interlayers;
-  SiteNumbers exchange_at_faces;  ///< A up to faces; empty: interlayers couple centres
+  SiteNumbers exchange_at_faces;  ///< A between centre and face; empty: interlayers couple centres
   std::vector<Anisotropy> anisotropies;
   std::vector<CrystalAnisotropy> crystal_anisotropies;
   InTime in_time;

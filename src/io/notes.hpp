@@ -9,14 +9,15 @@
 namespace cayspin::inline v0_2::io {
 
 /// Returns one line, "FILE:LINE: key: message", for each key of a scene that has no effect, does
-/// not fit another key, or has a value that looks as if typed in other units. `cayspin check`
-/// prints these notes, `run` and `relax` print them as warnings. Reads some of the files that the
-/// scene names. Throws SceneError.
+/// not fit another key, or has a value that looks as if typed in other units; also for a start file
+/// whose zero vectors mean sites without a spin. `cayspin check` prints these notes, `run` and
+/// `relax` print them as warnings. Reads some of the files that the scene names. Throws SceneError.
 std::vector<std::string> notes(Scene const& scene);
 
-/// Returns the scene, in which zero vectors of the start file mean sites without a spin: sets
-/// lattice.occupied = { file = START }. The scene is unchanged if it has lattice.occupied already,
-/// or if none or all of the vectors are zero. Reads the start file. Throws SceneError.
+/// Returns the scene with lattice.occupied = { file = START }, so that sites with a zero vector in
+/// the start file have no spin. The scene is unchanged if its start is not a file, if it has
+/// lattice.occupied already, or if none or all of the vectors are zero. Reads the start file.
+/// Throws SceneError.
 Scene with_shape_of_start(Scene scene);
 
 }  // namespace cayspin::inline v0_2::io

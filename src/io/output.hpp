@@ -11,7 +11,7 @@
 namespace cayspin::inline v0_2::io {
 
 /// The interval at which a run writes FILE.checkpoint.h5, in seconds or in steps; never if both are
-/// 0. The run can continue from that file with the same bits.
+/// 0. A run continued from that file gives the same bits as an uninterrupted one.
 struct CheckpointPeriod {
   double seconds = 600;
   std::int64_t steps = 0;
@@ -23,7 +23,7 @@ struct CheckpointPeriod {
 struct Output {
   std::optional<std::filesystem::path> file;  ///< as typed: relative to the working directory
   std::int64_t every = 1;                     ///< steps between frames, >= 1; default: all steps
-  std::int64_t scalars_every = 1;  ///< steps between scalar samples, >= 1; default: every
+  std::int64_t scalars_every = 1;  ///< steps between scalar samples, >= 1; default: `every`
   int compression = 0;             ///< compression level of /spins: 0 (none) to 9
   std::int64_t chunk = 0;          ///< planes along z in a chunk of /spins; 0: all
   bool xdmf = false;               ///< FILE.xdmf for viewers

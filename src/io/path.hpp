@@ -19,8 +19,8 @@ struct SaddleOfPath {
 };
 
 /// Prefactors of rates in harmonic transition state theory, and in Langer's theory, which includes
-/// damping. A rate is prefactor T^((z0 - zs) / 2) exp(-barrier / kT). The state that is left has z0
-/// zero modes, and the saddle zs.
+/// damping. A rate is prefactor T^((z0 - zs) / 2) exp(-barrier / kT). The initial state has z0 zero
+/// modes, and the saddle zs.
 struct RatesOfPath {
   double prefactor_forward = 0, prefactor_backward = 0;  ///< reduced, or in 1/s with T in K
   double langer_forward = 0, langer_backward = 0;        ///< prefactors of Langer's theory

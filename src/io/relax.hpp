@@ -28,7 +28,7 @@ Scene parse_scene_to_run_or_relax(std::string text, std::filesystem::path const&
 bool has_integrator(Scene const& scene);
 
 /// Returns true for a scene that cannot be run, but only searched for equilibria: it has no
-/// [[stage]], and no [integrator] or a list of fields.
+/// [[stage]], and either lacks [integrator] or has a list of fields.
 bool is_to_relax(Scene const& scene);
 
 /// Returns [field] for each equilibrium that the scene asks for: once, or with each of the listed

@@ -24,7 +24,7 @@ struct RunOutputOptions {
 };
 
 /// Writer of a run's files in a separate thread, which buffers up to two frames or pieces of
-/// frames. If writing fails, the next call throws the error, with a message like those of
+/// frames. If writing fails, a later call throws the error, with a message like those of
 /// TrajectoryFile. All calls must come from one thread, which must not use HDF5 until finish(),
 /// close() or the destructor.
 class RunOutput {

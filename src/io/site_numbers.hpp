@@ -23,7 +23,7 @@ struct SiteNumbers {
   double unit = 1;  ///< multiplies each number, which may be typed in SI
   std::string key;  ///< in SI, the key in [material] that gives the numbers
   std::filesystem::path image = {};
-  std::vector<int> levels = {};  ///< grey values; a pixel's number: how many it reaches
+  std::vector<int> levels = {};  ///< grey values; a pixel's number is how many it reaches
 
   bool there() const {
     return !expression.empty() || !file.empty() || !image.empty() || !per_region.empty() || given;

@@ -25,7 +25,7 @@ namespace cayspin::inline v0_2::io {
 /// Optional numbers of each sample, which follow its Scalars in this order.
 struct MoreScalars {
   std::int64_t regions = 0;             ///< magnetizations of all regions, then their energies
-  std::vector<std::string> terms = {};  ///< names of the terms; then come their energies
+  std::vector<std::string> terms = {};  ///< energies of the terms with these names
   bool shift = false;                   ///< cells by which the lattice has moved; also in frames
   bool stage = false;                   ///< only in frames
 
@@ -50,7 +50,7 @@ struct TrajectoryHeader {
   std::string precision = "double";  ///< of the run and of /spins: "single" or "double"
   int threads = 1;
   /// nx, ny, nz. For a crystal nz is cell_sites times the number of cells along z: plane k *
-  /// cell_sites + s has site s of the cells in plane k.
+  /// cell_sites + s has site s of the cells with number k along z.
   std::array<std::int64_t, 3> shape{1, 1, 1};
   std::int64_t cell_sites = 1;           ///< sites of a cell
   Units units;                           ///< of the times and energies in the file
@@ -63,7 +63,8 @@ struct TrajectoryHeader {
 struct TrajectoryStorage {
   int compression = 0;     ///< level of deflate with shuffle, 0 (none) to 9
   std::int64_t chunk = 0;  ///< planes along z in a chunk; 0: the frame, or as many as 256 MiB hold
-  /// Number of planned frames. A kill loses none of them, and none in the first 8180 chunks.
+  /// Number of planned frames. A kill loses no frame in the first 8180 chunks, so uncompressed
+  /// chunks hold several frames if the planned ones would need more chunks than that.
   std::int64_t frames = 0;
   bool sync = false;  ///< a power cut loses at most the frame being written
 };

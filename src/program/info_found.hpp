@@ -10,8 +10,8 @@
 namespace cayspin::program {
 
 /// Returns the unit of the prefactor in one direction of a path with rates, with a leading space;
-/// empty in reduced units. The rate is prefactor * T^(n / 2) * exp(-barrier / kT), where the state
-/// that is left has n more zero modes than the saddle.
+/// empty in reduced units. The rate is prefactor * T^(n / 2) * exp(-barrier / kT), where the
+/// initial state has n more zero modes than the saddle.
 std::string unit_of_prefactor(io::Path const& path, bool forward);
 
 /// Summarise the file of a path, or of modes or waves.

@@ -48,7 +48,7 @@ FileAge age_of(std::filesystem::path const& path) {
 /// that this one cannot read.
 struct PlannedSteps {
   std::int64_t steps = 0;    // 0 if unknown
-  bool equal_steps = false;  // the method takes no steps of its own
+  bool equal_steps = false;  // the method has no internal steps
 };
 
 PlannedSteps planned_steps(io::TrajectoryInfo const& info) {

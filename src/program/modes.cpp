@@ -93,8 +93,7 @@ std::string as_start(std::filesystem::path const& file) {
                      io::toml_string(std::filesystem::absolute(file).string()));
 }
 
-// Checks the files of a scene. Errors of a start from a trajectory file name that file as it was
-// typed.
+// Checks the files of a scene. If the start is a trajectory file, errors name it as it was typed.
 void check_files(io::Scene const& scene, std::filesystem::path const& file) {
   try {
     io::check_files(scene);

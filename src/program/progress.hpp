@@ -27,7 +27,7 @@ class Progress {
   Progress(std::int64_t sites, Listener listener);
 
   /// Call before a stage, or a run without stages, continues from step `first`. `end`: the last
-  /// step of the run. `equal_steps`: the method takes no steps of its own. `name`: of the stage, or
+  /// step of the run. `equal_steps`: the method has no internal steps. `name`: of the stage, or
   /// empty.
   void begin_stage(std::int64_t first, std::int64_t end, bool equal_steps, std::string name);
   /// Counts the steps of a stage.

@@ -13,8 +13,8 @@ namespace cayspin::program {
 /// io::set_trial().
 void try_in_child(std::filesystem::path const& path, std::function<void()> const& reading);
 
-/// Like the above, but with a time limit of `longest` for the child, instead of one by the size of
-/// the file.
+/// Like the above, but with a time limit of `longest` for the child, instead of one that depends on
+/// the size of the file.
 void try_in_child(std::filesystem::path const& path, std::function<void()> const& reading,
                   std::chrono::milliseconds longest);
 

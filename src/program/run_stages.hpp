@@ -118,8 +118,8 @@ class RunOfStages {
 
   std::vector<double> start() const {
     auto const own = own_sites(plan().lattice);
-    // Evaluates lattice.occupied and lattice.frozen already here, inside together(): an expression
-    // that fails at a site of one rank must end all ranks.
+    // Evaluates lattice.occupied and lattice.frozen inside together(), because an expression that
+    // fails at a site of one rank must end all ranks.
     io::occupied(scene(), own);
     io::frozen(scene(), own);
     if (!restart_) return io::initial_spins(scene(), own);

@@ -193,8 +193,8 @@ void add_bonds(std::vector<Coupling> const& more, std::vector<Coupling>& bonds) 
   }
 }
 
-// Returns the crystal with its vectors in the unit of the spacing; the lattice has them in
-// multiples of the spacing.
+// Returns the crystal with its vectors as lengths, in the unit of the spacing. The lattice has them
+// in multiples of the spacing.
 Crystal with_spacing(Lattice const& lattice) {
   auto made = crystal(lattice);
   for (auto& vector : made.cell)

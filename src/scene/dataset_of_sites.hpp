@@ -31,8 +31,8 @@ class DatasetOfSites {
     dataset_.refuse_extents(accepted);
   }
 
-  /// Reads a box in the order of the lattice: plane k * sites + s has site s of the cells in plane
-  /// k.
+  /// Reads a box in the order of the lattice: plane k * sites + s has site s of the cells with
+  /// number k along z.
   std::vector<double> in(SiteBox const& box) const {
     auto const at_once = sites_ == 1 ? box.extent[2] : 1;
     std::vector<double> numbers;

@@ -15,8 +15,8 @@ namespace {
 constexpr std::string_view axes[] = {"x", "y", "z"};
 constexpr Word<int> axis_words[] = {{axes[0], 0}, {axes[1], 1}, {axes[2], 2}};
 
-// Returns true if values change along the axis. read(box) returns numbers of the sites of a box,
-// equally many for each.
+// Returns true if values change along the axis. read(box) returns the numbers of a box's sites, the
+// same count for each site.
 template <class Read>
 bool differs_along(Lattice const& lattice, std::size_t axis, Read const& read) {
   auto const& shape = lattice.shape;

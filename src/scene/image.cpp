@@ -44,7 +44,7 @@ class PngFile {
   Image read() {
     Image image{image_.width, image_.height, std::vector<unsigned char>(pixels())};
     image_.format = PNG_FORMAT_GRAY;
-    image_.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // the colour space of files of 8 bits
+    image_.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // reads 16 bits as sRGB, like 8 bits
     png_color const white{255, 255, 255};
     if (png_image_finish_read(&image_, &white, image.grey.data(), 0, nullptr) == 0) refuse();
     return image;

@@ -111,8 +111,8 @@ void read_error(Table const& table, Integrator& integrator) {
     error.fail(fmt::format("{} is out of reach", *integrator.error), accepted);
 }
 
-// Default number of observations of a run with adaptive steps. Because it is a power of two, the
-// run ends exactly at `end`.
+// Default number of observations of a run with adaptive steps or method "auto". Because it is a
+// power of two, the run ends exactly at `end`.
 constexpr double usual_looks = 128;
 
 double read_dt(Table const& table, Integrator const& integrator) {

@@ -13,7 +13,7 @@ namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 constexpr double cells_of_core = 3, cells_of_wall = 3;
-constexpr double smallest_angle = 1e-6;  // its sine; smaller ones count as 0
+constexpr double smallest_angle = 1e-6;  // as a sine; smaller angles count as 0
 
 // Refuses unknown keys, and keys of other states or of other kinds of start.
 void accept_only_keys_of(std::string_view state, Table const& table,

@@ -17,8 +17,8 @@ namespace cayspin::inline v0_2::io::detail {
 std::vector<std::string> site_variables(Lattice const& lattice);
 
 /// Returns the values of these variables at a site (i, j, plane) of the lattice: plane k * sites +
-/// s has site s of the cells in plane k. If a cell has only one site, that counts as being in the
-/// middle.
+/// s has site s of the cells with number k along z. If a cell has only one site, the site counts as
+/// being in the middle.
 inline std::array<double, 7> site_values(Lattice const& lattice,
                                          std::array<std::int64_t, 3> const& site) {
   auto const sites = static_cast<std::int64_t>(lattice.basis.size());

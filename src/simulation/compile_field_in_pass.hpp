@@ -122,8 +122,8 @@ SceneLatticeTerms FieldInPass<Spins>::Terms::lattice_terms_at(Factors const& fac
 template <class Spins>
 auto FieldInPass<Spins>::Terms::in_stages(SceneFieldNow<Real> const& usual, double t) const
     -> std::optional<SceneFieldNow<Real>> {
-  // For terms that reach far, ranks compute the whole H in memory, and one rank has to sum the
-  // terms in the same order.
+  // For terms that reach far, ranks compute the whole H in memory, and a run on one rank has to sum
+  // the terms in the same order.
   if (lattice_.cell_sites > 1 || reaches_far() || per_moments_) return std::nullopt;
   auto const& site = cell_[0];
   double const seen = site.gyromagnetic * site.per_moment;

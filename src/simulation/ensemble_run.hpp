@@ -19,8 +19,8 @@
 namespace cayspin::simulation {
 
 /// The replicas of a scene with [ensemble], which advance together. If possible they are the
-/// columns of a few lattices (ReplicaColumns); otherwise each is a run of its own, and small ones
-/// run side by side on the threads of the host. Replica r is bit-identical to a run of
+/// columns of a few lattices (ReplicaColumns); otherwise each is a separate run, and small ones run
+/// side by side on the threads of the host. Replica r is bit-identical to a run of
 /// io::replica_of(scene, r). Calls from several threads take turns, as with SceneRun; steps() and
 /// time() do not wait for a turn.
 class EnsembleRun {

@@ -107,8 +107,7 @@ template <class Spins>
 Follower<Spins>::Follower(io::Scene const& scene, Lattice const& lattice)
     : follow_(*scene.lattice.follow),
       extent_(whole(lattice).shape[static_cast<std::size_t>(follow_.axis)]),
-      // Between two of the scene's steps, which may be far apart, an adaptive method takes many of
-      // its own: look after every step.
+      // With an adaptive method, the scene's steps may be far apart: look after every step.
       period_(scene.integrator.tolerance ? 1 : Guard::period_of(io::sites(scene))),
       moved_("Follower::moved", lattice),
       places_("Follower::places", lattice) {

@@ -40,8 +40,8 @@ template <class Space>
 int threads_of(Space const& exec) {
   return cayspin::detail::is_host_execution<Space> ? exec.concurrency() : 1;
 }
-/// Returns the number of threads of the default host space; before Kokkos starts, those that it
-/// would use by default.
+/// Returns the number of threads of the default host space; before Kokkos starts, the number that
+/// it would use by default.
 int expected_threads();
 
 /// Scope in which Kokkos is initialised.

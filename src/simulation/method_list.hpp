@@ -116,7 +116,7 @@ struct Group {
   template <class Spins>
   using Chart = StereographicRungeKutta<Spins, Tableau>;
 };
-/// Like Group, for a tableau whose stepper is a class of its own.
+/// Like Group, for a tableau whose stepper is a separate class.
 template <template <class, class, class> class Of, class Tableau>
 struct GroupBy : Group<Tableau> {
   template <class Spins, class Isotropy, class Rotation>
@@ -175,9 +175,9 @@ struct Row : io::Method {
   }
 };
 
-/// A method on the Lie group. By default it uses Cayley coordinates, and accepts the generators
-/// standard, orthogonal and, if the family has a chart, tangent, and the isotropies zero and, if
-/// the family takes a sigma, constant.
+/// A method on the Lie group. By default it uses Cayley coordinates. It accepts the generators
+/// standard and orthogonal, and tangent if the family has a chart. It accepts the isotropy zero,
+/// and constant if the family takes a sigma.
 template <class Family>
 constexpr Row<Family> row(io::Method method) {
   using namespace sets;

@@ -15,7 +15,7 @@ namespace cayspin::simulation {
 /// The replicas of a scene with [ensemble] as the columns of a few lattices: x counts replicas, y
 /// and z are the axes of the scene's lattice. A kernel then advances as many replicas at once as a
 /// register has lanes, and one launch serves all replicas of a lattice. The spacing along x is so
-/// large that exchange along x vanishes. Each replica is bit-identical to a run of its own.
+/// large that exchange along x vanishes. Each replica is bit-identical to a separate run.
 class ReplicaColumns {
  public:
   /// `one`: the scene of the first replica. Returns nothing if there are few replicas, if the

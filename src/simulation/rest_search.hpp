@@ -73,8 +73,8 @@ class RestSearch {
       trial_ = Spins("RestSearch::trial", spins.lattice());
     }
     // With site-dependent moments or gyromagnetic ratios, the search's own measure of the torque
-    // may exceed the bound. The search would then simply descend from here: it looks for a way off
-    // a saddle only below its bound. So the bound is raised until the search does so.
+    // may exceed the bound. The search would then only descend, because it looks for a way off a
+    // saddle only below its bound. So the bound is raised until it looks for one.
     double bound = bound_;
     for (int attempt = 0; attempt < 30; ++attempt, bound *= 4) {
       Kokkos::deep_copy(exec, trial_.allocation(), spins.allocation());

@@ -43,8 +43,7 @@ inline double largest_of_parts(Lattice const& lattice, std::vector<double> const
   return std::bit_cast<double>(words[0]);
 }
 
-// Returns which site of its cell site `number` of a part is: all sites with the same z are the same
-// site of their cells.
+// Returns the index in its cell of site `number` of a part. Sites with equal z have equal indices.
 inline std::size_t site_of_cell(Lattice const& lattice, std::size_t number) {
   auto const in_plane = static_cast<std::size_t>(lattice.own(0) * lattice.own(1));
   return number / in_plane % static_cast<std::size_t>(lattice.cell_sites);

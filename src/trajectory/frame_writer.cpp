@@ -191,7 +191,7 @@ void FrameWriter::add_raw(std::int64_t planes, std::byte* spins) {
   planes_ += planes;
 }
 
-// Plane k * cell_sites + s holds site s of the cells in plane k.
+// Plane k * cell_sites + s holds site s of the cells with number k along z.
 void FrameWriter::add_by_sites(std::byte const* spins) {
   if (raw_) grow(dataset_.get(), static_cast<hsize_t>(frame_) + 1, path_);
   auto const of_chunk = static_cast<std::int64_t>(chunk_[1]);

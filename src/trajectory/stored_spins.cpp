@@ -94,7 +94,7 @@ void StoredSpins::refuse_extents(std::int64_t cell_sites) const {
 std::vector<double> StoredSpins::last() const { return last(all()); }
 std::vector<double> StoredSpins::last(SiteBox const& box) const { return checked(begin_, box); }
 
-// Plane k * sites + s holds site s of the cells in plane k.
+// Plane k * sites + s holds site s of the cells with number k along z.
 template <class Read>
 std::vector<double> StoredSpins::by_planes(SiteBox const& box, Read const& read) const {
   auto const [nx, ny, nz] = box.extent;

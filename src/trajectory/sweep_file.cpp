@@ -131,8 +131,8 @@ void try_copies(std::vector<fs::path> const& files) {
   fs::remove(trial);
 }
 
-// All files share one trial, which may start a process. If it fails, each file gets a trial of its
-// own, to name the damaged one.
+// All files share one trial, which may start a process. If it fails, each file gets a separate
+// trial, to name the damaged one.
 void require_whole(std::vector<fs::path> const& files) {
   if (files.empty()) return;
   try {

@@ -96,8 +96,8 @@ std::vector<SweptRun> read_results(hid_t file, std::size_t count, fs::path const
   return runs;
 }
 
-// Returns true if the runs are in files of their own, to which this one links. All runs are alike,
-// so only the first is examined.
+// Returns true if the runs are in separate files, to which this one links. All runs are alike, so
+// only the first is examined.
 bool has_external_link(hid_t runs) {
   bool found = false;
   auto const look = [](hid_t, char const*, H5L_info_t const* info, void* data) -> herr_t {

@@ -28,8 +28,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr auto longest_wait = std::chrono::seconds(1);
 
-// Returns the most bytes that a frame, or all pending samples, can take besides the spins: index
-// nodes, and a new chunk in each of the scalar datasets.
+// Returns the most bytes that a frame, or all pending samples, can take in addition to the spins:
+// index nodes, and a new chunk in each of the scalar datasets.
 std::uint64_t overhead_of(MoreScalars const& more) {
   constexpr std::uint64_t bytes = 512 * 1024, chunks_and_nodes = 4;
   return bytes + chunks_and_nodes * most_pending * sizeof(double) * more.count();

@@ -294,7 +294,7 @@ TYPED_TEST(EveryAdaptive, WhatCannotBeIsRefused) {
                std::invalid_argument);
 }
 
-// For 1e30, t + dt rounds to t; for 1e200, the squares of the rates overflow, too.
+// In a field of 1e30, t + dt rounds to t; in one of 1e200, the squares of the rates overflow, too.
 TEST(AdaptiveFailure, FieldsTooStrongForTimeAreRefused) {
   for (double const field : {1e30, 1e200}) {
     auto spins = chain_start();
@@ -349,8 +349,8 @@ TEST(AdaptiveAtRest, NothingMovesAndStepsGrow) {
   Tsit5 stepper(spins, {.tolerance = 1e-6});
   stepper.step(Space(), LandauLifshitz(EffectiveField(Zeeman{{0, 0, 1}}), 0.1), spins, 0, 1e3);
   EXPECT_EQ(copy_to_host(spins), start);
-  // Devices fuse other products and sums than hosts, so there the estimated error is round-off
-  // instead of zero.
+  // Compilers for devices fuse other products and sums than those for hosts. On devices, the
+  // estimated error is therefore round-off instead of zero.
   EXPECT_LT(stepper.accepted_steps(), detail::is_host_execution<Space> ? 20 : 30);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Dense output, the spins within a step: its order, and that spins and their rates are continuous
+// The order of dense output (the spins within a step), and the continuity of spins and their rates
 // at both ends of the step. The spins form a coupled chain, in which the rotations of a step do not
 // commute.
 #include "../order/chain.hpp"

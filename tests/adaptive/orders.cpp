@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Orders of the embedded tableaux: that of the steps, from the convergence with constant steps;
-// those of the dense output and of the error estimate, from order conditions.
+// Orders of the embedded tableaux and of CommutatorFree4, from the convergence with constant steps.
+// Order conditions of the tableaux also give the orders of their dense output and of their embedded
+// solution.
 #include "../order/chain.hpp"
 #include "../support/order_conditions.hpp"
 

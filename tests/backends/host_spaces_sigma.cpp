@@ -32,7 +32,7 @@ TYPED_TEST(HostSpacesOfSigma, StepAlike) {
       natural);
 }
 
-// Red-black splitting needs a checkerboard, so an even number of sites along periodic axes.
+// Red-black splitting needs a checkerboard: along periodic axes, extents must be even or 1.
 TYPED_TEST(HostSpacesOfSigma, RedBlack) {
   auto checkerboards = odd_lattices();
   for (Lattice& lattice : checkerboards)

@@ -32,7 +32,8 @@ void allocate(Kokkos_Profiling_SpaceHandle, char const* label, void const*, std:
 }
 void begin_fence(char const* name, std::uint32_t, std::uint64_t*) {
   std::string const fence = name;
-  if (!fence.starts_with("Kokkos::Tools::")) events.fences.push_back(fence);  // not those by tools
+  // Profiling tools fence, too; their fences are left out.
+  if (!fence.starts_with("Kokkos::Tools::")) events.fences.push_back(fence);
 }
 void begin_copy(Kokkos_Profiling_SpaceHandle, char const* to, void const*,
                 Kokkos_Profiling_SpaceHandle, char const*, void const*, std::uint64_t) {

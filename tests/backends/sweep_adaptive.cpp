@@ -15,7 +15,7 @@ TYPED_TEST_SUITE(AdaptiveSweep, Precisions, PrecisionName);
 /// The first step is too long, and the last one ends with the run.
 StepOptions const options{.tolerance = 3e-3, .first_dt = 1.5, .end = 0.9};
 
-/// The counts and states of a stepper at several times.
+/// The spins at several times, and the stepper's counts and next dt at these times.
 template <class Real>
 struct Run {
   std::vector<std::vector<Real>> spins;

@@ -23,7 +23,7 @@ inline std::vector<Lattice> swept_lattices() {
   return lattices;
 }
 
-/// The lattices of swept_lattices() with at most 60000 sites, for methods with many stages.
+/// The lattices of swept_lattices() with at most 60000 sites, for slower tests.
 inline std::vector<Lattice> smaller_swept_lattices() {
   auto lattices = swept_lattices();
   std::erase_if(lattices, [](Lattice const& lattice) { return lattice.sites() > 60000; });

@@ -58,7 +58,7 @@ if [ ! -f "$kokkos/CMakeLists.txt" ]; then
 fi
 mkdir -p "$build"
 gcc=$(first_of g++) clang=$(first_of clang++ clang++-{22..14})
-# Vectors of Haswell and Skylake have 256 and 512 bits. g++ treats `on` as `off`.
+# Vectors of Haswell and Skylake have 256 and 512 bits. g++ before version 14 treats `on` as `off`.
 for pair in "HSW fma" "SKX avx512dq"; do
   read -r architecture flag <<<"$pair"
   combination "$gcc" g++ "$architecture" "$flag" fast

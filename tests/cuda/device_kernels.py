@@ -42,7 +42,7 @@ def output_of(command, directory):
 
 
 def device_command(words, output):
-    """Returns nvcc's command that makes the cubin, from nvcc_wrapper's that makes the object."""
+    """Returns nvcc's command for the cubin, made from nvcc_wrapper's command for the object."""
     words = list(words)
     words.remove("-c")
     at = words.index("-o")

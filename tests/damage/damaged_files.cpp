@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Random damage to HDF5 files: each reading ends with a one-line error or returns what was written.
-// Files without checksums may give other values. CAYSPIN_DAMAGED_FILES and CAYSPIN_SEED: number of
-// files, and the seed.
+// Files without checksums may give other values. CAYSPIN_DAMAGED_FILES is about the number of files
+// of a test, CAYSPIN_SEED the seed.
 #include "damaged_bytes.hpp"
 #include "inertia_file.hpp"
 #include "io/scene.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Files written with `sync`, after a power cut at a random moment: of the data written since the
-// last synchronisation, any part is there, in any order. CAYSPIN_POWER_CUTS and CAYSPIN_SEED:
-// number of cuts, and the seed.
+// Files written with `sync`, after a power cut at a random moment: any part of the data written
+// since the last synchronisation may be there. CAYSPIN_POWER_CUTS and CAYSPIN_SEED: number of cuts,
+// and the seed.
 #include "damaged_bytes.hpp"
 #include "hdf5/guarded_reading.hpp"
 #include "known_run.hpp"

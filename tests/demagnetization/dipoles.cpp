@@ -85,8 +85,8 @@ TYPED_TEST(DipolarFields, OfOpenCrystalsAreSumsOverPairs) {
   }
 }
 
-// Images less than periodic_images + 1/2 periods away are summed; those at just this distance count
-// half.
+// Images less than periodic_images + 1/2 periods away are summed; those at exactly this distance
+// count half.
 TYPED_TEST(DipolarFields, SumSomeImages) {
   using Real = TypeParam;
   for (auto const& sample : {open_crystals[2], open_crystals[4], open_crystals[6]})
@@ -130,7 +130,8 @@ TYPED_TEST(DipolarFields, SumSomeImages) {
     }
 }
 
-// The field does not change if the lattice consists of two periods, with repeated spins.
+// The field does not change if the lattice has two periods along each periodic axis, with repeated
+// spins.
 TYPED_TEST(DipolarFields, OfPeriodicCrystalsAreThoseOfLargerOnes) {
   using Real = TypeParam;
   for (auto const& sample : open_crystals)

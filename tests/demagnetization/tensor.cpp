@@ -72,7 +72,8 @@ double error_between(double begin, double end) {
 
 TEST(DemagnetizingTensor, IsThatOfTheTableNearby) { EXPECT_LE(error_between(0, 4), 1e-11); }
 
-// Each of these series would exceed the bound if its order were lower by 2.
+// Each of these ranges of distance has a separate series, which would exceed the bound if its order
+// were lower by 2.
 TEST(DemagnetizingTensor, IsThatOfTheTableFarAway) {
   EXPECT_LE(error_between(4, 8), 1e-12);
   EXPECT_LE(error_between(8, 50), 1e-12);

@@ -5,7 +5,7 @@
 Usage: check_docs.py [ROOT]              the pages: README and others beside it, .github/ and docs/
        check_docs.py --sources [ROOT]    files and commands in comments and texts of the sources, and
                                          in the workflows and forms of .github/
-       check_docs.py --sentences [ROOT]  lists the long sentences of the pages, which are no faults
+       check_docs.py --sentences [ROOT]  lists the long sentences of the pages, which are not faults
 Prints a line FILE:LINE: SENTENCE for each fault; the exit status is then 1.
 """
 import glob

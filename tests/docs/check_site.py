@@ -14,7 +14,7 @@ import urllib.parse
 
 
 class PageOfSite(html.parser.HTMLParser):
-    """Links, anchors, descriptions and main headings of a page, and images without a text."""
+    """Links, anchors, descriptions and main headings of a page, and images without alt text."""
 
     def __init__(self, path):
         super().__init__()

@@ -42,7 +42,7 @@ class Gallery(unittest.TestCase):
                 if scene:
                     (folder / f"{name}.toml").write_text(scene, encoding="utf-8")
                 for command in commands[:-1]:
-                    # Files that other commands would write are missing here, where none is run.
+                    # Only `check` is run, so files that earlier commands would write are missing.
                     words = [word for word in shlex.split(command) if "--output" != word]
                     words = [word for word in words if not word.endswith(".h5")]
                     while "--set" in words and "file" in words[words.index("--set") + 1]:

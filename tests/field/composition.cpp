@@ -39,7 +39,7 @@ TYPED_TEST(Fields, NoTermsNoField) {
   EXPECT_EQ(energy(this->exec, EffectiveField<>(), spins).value, 0);
 }
 
-/// A term with the field that is used by steppers that need only A x m.
+/// A term whose field is the one that steppers use if they need only A x m.
 template <class Prepared>
 struct TurningField {
   Prepared field_of;
@@ -73,7 +73,7 @@ TYPED_TEST(Fields, WhatTurnsSpinsDiffersByAMultipleOfThem) {
   }
 }
 
-// The shares of half a million sites: a sum in float would have large rounding errors.
+// Adds up the energies of half a million sites; a sum in float would have large rounding errors.
 TYPED_TEST(Fields, EnergiesAreSummedInDouble) {
   using Real = typename TypeParam::Real;
   auto const lattice = Lattice::square(8200, 64);

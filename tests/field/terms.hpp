@@ -20,7 +20,7 @@ struct ByHand {
   std::function<double(std::vector<double> const&)> energy;
 };
 
-/// A pair of neighbours along an axis; a periodic axis of extent 2 has its pair twice.
+/// A pair of neighbours along an axis; a periodic axis of extent 2 has each of its pairs twice.
 struct Bond {
   std::int64_t from, to;
   double spacing;

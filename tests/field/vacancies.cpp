@@ -22,7 +22,7 @@ auto every_term(Lattice const& lattice) {
                         TimeDependentZeeman(turning_field));
 }
 
-/// Includes terms without a derivative.
+/// Includes terms that isotropy::Analytic cannot differentiate.
 auto bonds_and_torques(Lattice const& lattice) {
   return EffectiveField(
       BiquadraticBonds{0.6}, BulkDmi(lattice, 0.4), ZhangLi(lattice, {0.5, -0.3, 0.2}, 0.3),

@@ -74,8 +74,8 @@ TYPED_TEST(GuardIn, SmallRisesDoNotAddUp) {
   EXPECT_TRUE(this->damped.judge(at(20), {energy, 0.5}, 0));
 }
 
-// Steps that are chosen by a tolerance have errors of its size, so that at equilibrium the energy
-// fluctuates by up to the tolerance times its magnitude.
+// Steps that are chosen by a tolerance have errors of that size, so that at equilibrium the energy
+// fluctuates by up to the tolerance times the energy's magnitude.
 TYPED_TEST(GuardIn, EnergiesMayRiseByTheToleranceOfTheSteps) {
   double const rise = 5 * 0.0078125;
   Guard guard(scene(0.5, "tsit5", "tolerance = 0.0078125\n"),
@@ -119,7 +119,7 @@ TEST(Guard, EnergiesAreHeldWhereDampingLetsThemOnlyFall) {
       "[system]\nkind = \"rigid_body\"\ninertia = [1, 2, 3]\n[lattice]\nshape = [4]\n[initial]\n"
       "uniform = [1, 0, 0]\n[integrator]\nmethod = \"rkmk4\"\ndt = 0.125\nsteps = 8\n",
       "scene.toml")));
-  // At a temperature the energy may rise.
+  // At a temperature above 0, the energy may rise.
   auto warm = scene(0.5);
   warm.thermal.emplace().temperature = 0.1;
   EXPECT_FALSE(energy_must_fall(warm));

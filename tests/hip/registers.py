@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Compiles the device code of a source with hipcc and prints the registers that its kernels take;
 fails if a kernel that does not match --may-spill spills vector registers to memory. Scalar
-registers may spill: into lanes of vector registers."""
+registers may spill, as they spill into lanes of vector registers."""
 
 import pathlib
 import re

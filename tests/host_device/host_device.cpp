@@ -285,7 +285,7 @@ void HostDevice::print_configuration(std::ostream& out, bool) const {
 }  // namespace cayspin::test
 
 namespace Kokkos::Impl {
-// After the host's spaces, whose threads it uses.
+// Initialised after the host's spaces, whose threads it uses.
 int const host_device_registered =
     initialize_space_factory<cayspin::test::HostDevice>("900_HostDevice");
 }  // namespace Kokkos::Impl

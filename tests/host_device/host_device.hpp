@@ -66,7 +66,7 @@ class HostDevice {
 
   void fence(std::string const& name = "HostDevice::fence: unnamed") const;
   /// Queues `task` after this instance's earlier work. It runs at the next fence, or earlier if the
-  /// queue is full.
+  /// queue is full or much memory is freed.
   void enqueue(std::function<void()> task) const;
   int concurrency() const;
   std::uint32_t impl_instance_id() const noexcept;

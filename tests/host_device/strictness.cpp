@@ -67,7 +67,7 @@ TYPED_TEST(Strictness, NothingIsThereBeforeAFence) {
   EXPECT_NEAR(here(2, 2), 0.995, 1e-3);
 }
 
-// Reads on another instance, which does not wait for the work of this one.
+// Reads the spins through another instance, which does not wait for the work of `exec`.
 TYPED_TEST(Strictness, IntegrateWaitsForItsObserversAndItsEnd) {
   using Spins = typename TestFixture::Spins;
   HostDevice const exec;

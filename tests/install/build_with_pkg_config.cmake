@@ -48,7 +48,8 @@ if("-ffp-contract=off" IN_LIST flags OR NOT flags STREQUAL with_same_bits)
   message(FATAL_ERROR "cayspin.pc: ${flags}\ncayspin_same_bits.pc: ${with_same_bits}")
 endif()
 
-# Runs a scene from C and, if there is a compiler, from Fortran, where the C interface is built.
+# If the C interface is built, runs a scene from C and, if there is a Fortran compiler, from
+# Fortran.
 if(NOT EXISTS ${folder}/cayspin_c.pc)
   return()
 endif()

@@ -74,7 +74,7 @@ void for_each_task(instructions::Here const&, std::string const&, std::int64_t c
 
 }  // namespace cayspin::inline v0_2::detail
 
-// Profiling regions are the only library functions that a step calls.
+// Profiling regions are the only functions of Kokkos' library that a step calls.
 void Kokkos::Tools::pushRegion(std::string const&) {}
 void Kokkos::Tools::popRegion() {}
 

@@ -15,7 +15,7 @@ from callgrind import SITES, dumps_of
 
 LANES = {"f64": 4, "f32": 8}
 
-# The first kind whose pattern matches the instruction.
+# An instruction's kind is the first one whose pattern matches.
 KINDS = [
     ("prefetch", r"prefetch"),
     ("div, sqrt", r"v(div|sqrt|rcp|rsqrt)"),
@@ -80,7 +80,7 @@ def disassembly(program):
 
 
 def load_offset(counted, functions):
-    """Returns the address in memory minus that in the file, as most functions have it."""
+    """Returns the address in memory minus that in the file, on which most functions agree."""
     offsets = collections.Counter(entries[name] - functions[name] for _, entries in counted
                                   for name in entries if name in functions)
     if not offsets:

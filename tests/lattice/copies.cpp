@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Copies of numbers into and out of fields, and their memory layout.
+// Copies of numbers into and out of fields, and the memory layout of fields.
 #include "../support/backends.hpp"
 
 #include <cstdint>

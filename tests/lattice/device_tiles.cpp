@@ -158,7 +158,7 @@ RowLayout large_layout(std::int32_t nz) {
 }
 
 TEST(DeviceSites, LongIndicesWhereNumbersNeedThem) {
-  std::int32_t const most = (1 << 11) - 2;  // a step is one plane, and 2^11 planes would wrap
+  std::int32_t const most = (1 << 11) - 2;  // one more plane is counted, and 2^11 would wrap
   using Short = detail::DeviceLayout<std::int32_t>;
   auto const fits = large_layout(most), beyond = large_layout(most + 1);
   EXPECT_TRUE(Short::reaches(fits, 1));

@@ -7,7 +7,8 @@ import sys
 import tempfile
 
 # Lowest layer first. A header may include headers of its own layer and of the layers listed before
-# it. The first matching pattern decides, relative to include/cayspin; "folder/" is all below it.
+# it. Patterns are relative to include/cayspin, and "folder/" matches all files below it. The first
+# matching pattern decides.
 LIBRARY = [
     ("numbers", ["vec3.hpp", "units.hpp", "detail/backend.hpp", "detail/pack.hpp", "detail/unrolled.hpp"]),
     ("lattice", ["lattice.hpp", "lattice/", "part.hpp", "row_layout.hpp", "crystal.hpp", "coupling.hpp", "shells.hpp"]),
@@ -32,7 +33,7 @@ LIBRARY = [
     ("ranks", ["mpi/"]),
 ]
 
-# Layers of the code built on the library, relative to the repository.
+# Layers of the code built on the library. Patterns are relative to the repository.
 PROGRAMS = [
     ("list of methods", ["src/io/method.hpp", "src/io/words.hpp", "src/simulation/method_list.hpp"]),  # data that all others read
     ("the paper's steppers", ["paper/include/"]),  # headers that need only the library
@@ -54,8 +55,8 @@ BACKEND_MACRO = re.compile(r"\bKOKKOS_(?:ENABLE|ARCH)_\w+|"
 BACKEND_HEADERS = ("/detail/backend.hpp", "/detail/execution.hpp",
                    "/demagnetization/device_transforms.hpp")
 
-# Folders in which an "include" in quotes may lie, in addition to that of the file itself; and files
-# that the build writes.
+# Folders in which a file included in quotes may lie, in addition to the folder of the including
+# file; and files that the build writes.
 INCLUDE_FOLDERS = ["src", "src/io", "src/simulation", "paper", "tests"]
 GENERATED = {"cayspin_git_commit.hpp", "cayspin/version.hpp"}
 PUBLIC_FOLDERS = {"cayspin/": "include", "cayspin_paper/": "paper/include"}
@@ -160,7 +161,7 @@ class Tree:
                 self.problems.append(f"{name}: not all of it is in {expected}")
 
     def check_members_without_address(self):
-        """Without the macro, structs with such members have another size in device code: see
+        """Structs with [[no_unique_address]] members may have another size in device code: see
         detail/backend.hpp."""
         for name in self.includes:
             text = (self.root / name).read_text(encoding="utf-8")
@@ -169,7 +170,7 @@ class Tree:
 
 
     def check_backends(self):
-        """Checks that only BACKEND_HEADERS test such macros: a port has to edit only these."""
+        """Checks that only BACKEND_HEADERS test macros of backends: a port edits only these."""
         for name in self.includes:
             if not name.startswith("include/") or name.endswith(BACKEND_HEADERS):
                 continue

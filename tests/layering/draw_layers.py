@@ -14,7 +14,7 @@ from check_layers import LIBRARY, PROGRAMS, Tree, layer_of
 
 PICTURE = "docs/images/architecture.svg"
 
-# Where a layer stands from left to right, in widths of a box, and what it holds.
+# Where a layer stands from left to right, in widths of a box and its gap, and what it holds.
 PLACES = {
     "numbers": (1, "vectors, SIMD packs, SI units"),
     "lattice": (2, "sites, boundaries, bonds, parts"),

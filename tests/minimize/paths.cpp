@@ -82,8 +82,8 @@ TYPED_TEST(Paths, OfAMacrospinAlongAField) {
               this->exact());
 }
 
-// The path leaves a state against a strong field. Its barrier is about a thirtieth of the
-// difference in energy between the ends.
+// The path leaves a state that points against a strong field. The barrier is about a thirtieth of
+// the difference in energy between the ends.
 TYPED_TEST(Paths, OfAMacrospinWithALowBarrier) {
   double const easy = 1.3, applied = 0.9;
   auto const found = this->find(macrospin(easy, 0.7, {0, 0, applied}), Lattice::chain(1), down, up,
@@ -114,7 +114,8 @@ TYPED_TEST(Paths, OfAMacrospinAtAnAngleToAField) {
   }
 }
 
-// The initial great circle is the worst path here.
+// Except for a small disturbance, the path starts as the great circle through the hard axis, which
+// has the highest barrier of all paths.
 TYPED_TEST(Paths, LeaveAHardAxis) {
   EffectiveField const field(UniaxialAnisotropy(1, {0, 0, 1}), UniaxialAnisotropy(-0.7, {1, 0, 0}));
   auto const found = this->find(field, Lattice::chain(1), up, down, this->options());
@@ -218,7 +219,7 @@ TYPED_TEST(Paths, OfASkyrmionThatCollapses) {
                                   state.uniform, {.torque = this->is_double ? 1e-6 : 1e-3});
     ASSERT_EQ(found.end, PathEnd::converged);
     double const tolerance = this->is_double ? 1e-6 : 1e-2;
-    // Unlike in the reference, the exchange energy of parallel spins is zero here.
+    // In the other programs, unlike here, parallel spins have the exchange energy -2 * 256 * 10.
     EXPECT_NEAR(found.saddle().energy, -5811.52452552 + 2 * 256 * 10, tolerance);
     EXPECT_NEAR(found.barrier_forward(), 38.16697354, tolerance);
     EXPECT_NEAR(found.barrier_backward(), 49.38834616, tolerance);

@@ -80,7 +80,7 @@ TYPED_TEST(MacrospinModes, HaveShapesOfLengthOne) {
     double const along_x = std::hypot(x[i], y[i]), along_y = std::hypot(x[i + 1], y[i + 1]);
     EXPECT_NEAR(along_x / along_y, std::sqrt(0.4 / 1.1), 1e3 * this->accurate);
     EXPECT_EQ(x[i + 2], 0);
-    // Spins turn about the field right-handed.
+    // Spins turn about the field in the right-handed sense.
     EXPECT_LT(x[i] * y[i + 1] - y[i] * x[i + 1], 0);
     longest = std::max(longest, std::hypot(along_x, along_y));
   }
@@ -98,8 +98,9 @@ TYPED_TEST(MacrospinModes, RefuseWhatCannotBe) {
                std::invalid_argument);
 }
 
-// An isotropic open chain has w = 2 A sin(pi p / n), equal for p and n - p, and zero modes that
-// drift: the chain turns freely, and the angle of a turn may grow in proportion to time.
+// An isotropic open chain with the exchange -A has w = 2 A sin(pi p / n), equal for p and n - p,
+// and zero modes that drift: the chain turns freely, and the angle of a turn may grow in proportion
+// to time.
 TYPED_TEST(MacrospinModes, AreWavesInAnIsotropicAntiferromagnet) {
   for (std::int64_t const n : {6, 8, 16}) {
     auto const lattice = Lattice::chain(n);

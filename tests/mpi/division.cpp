@@ -107,8 +107,8 @@ TEST(Division, CouplingsNeedGhostsAsFarAsTheyReach) {
   mpi::Domain const thin(MPI_COMM_WORLD, lattice, 1, {1, ranks}),
       thick(MPI_COMM_WORLD, lattice, {1, 2}, {1, ranks});
   EXPECT_THROW(PairCouplings(thin.local(), bonds), std::invalid_argument);
-  // Evaluations are refused, because between the stages of a step no ghosts are updated as deep as
-  // bonds reach.
+  // Evaluations are refused, because between the stages of a step, ghosts are not updated as deep
+  // as the bonds reach.
   PairCouplings const field(thick.local(), bonds);
   SpinField<double> const spins("spins", thick.local());
   EXPECT_THROW(energy(Kokkos::DefaultExecutionSpace(), field, spins), std::invalid_argument);

@@ -69,7 +69,7 @@ TEST(Messages, AreOnePerFaceAndStep) {
       expect_messages<LieEuler<Spins>>(small, division, 1);
     }
     // Large faces are sent in place on hosts, packed on devices. A face between planes has no gaps
-    // in each component, so that its components are sent one by one.
+    // within a component, so its components are sent one by one.
     bool const on_host = cayspin::detail::is_host_execution<Kokkos::DefaultExecutionSpace>;
     expect_messages<Rkmk4<Spins>>(large, {1, ranks}, on_host ? 3 : 1);
     expect_messages<Rkmk4<Spins>>(large, {ranks, 1}, 1);

@@ -21,7 +21,7 @@ Real number_of(Lattice const& whole, std::array<std::int64_t, 3> site, int c) {
 template <class Real, int Components>
 using HostField = SiteField<Real, Components, Kokkos::HostSpace>;
 
-/// Calls work(site, component, number) for all sites here, including ghosts.
+/// Calls work(site, component, number) for all sites of this rank, including ghosts.
 template <class Real, int Components, class Work>
 void for_all(HostField<Real, Components> const& field, Work const& work) {
   auto const& layout = field.layout();
@@ -33,7 +33,7 @@ void for_all(HostField<Real, Components> const& field, Work const& work) {
           work({x, y, z}, c, array.data[c * array.stride + layout.row_offset(y, z) + x]);
 }
 
-/// Fills the part's own sites with number_of() their place and component, and the ghosts with -1.
+/// Fills the part's own sites with number_of() of their place and component, and ghosts with -1.
 template <class Real, int Components>
 void fill(Domain const& domain, HostField<Real, Components> const& field) {
   auto const& local = domain.local();

@@ -28,7 +28,7 @@ struct LongRange {
       return Vector{double(m.x), 0.6 * double(m.y), 0.2 * double(m.z)};
     };
     // Sums over the sites before a site, and over those after it: each sum follows from that of the
-    // next site.
+    // neighbouring site.
     std::vector<Vector> before(static_cast<std::size_t>(sites), Vector{0, 0, 0});
     for (std::int64_t i = 1; i < sites; ++i) before[i] = decay * (before[i - 1] + at(i - 1));
     Vector after{0, 0, 0};

@@ -14,7 +14,7 @@ using namespace cayspin::test;
 
 namespace {
 
-/// A row of uncoupled spins, in fields along x that grow from spin to spin.
+/// Fields along x that grow from spin to spin in a row. The spins are not coupled.
 struct RowOfFields {
   static constexpr int degree = 1;
   double first = 0, step = 0;
@@ -115,8 +115,8 @@ TEST(MultirateModes, KeepTheirLinewidths) {
 }
 
 /// Returns the largest factor by which the angle of a spin grows over the second half of the steps,
-/// among spins whose frequency times dt is 0.05 to 12. By then, what depends on the start has
-/// decayed.
+/// among spins whose frequency times dt is 0.05 to 12. In the first half, what depends on the start
+/// decays.
 template <int Order>
 double growth(double damping, double dt_times_d, Elliptical const& shape, int steps) {
   constexpr std::int64_t count = 241;
@@ -153,7 +153,8 @@ double growth(double damping, double dt_times_d, Elliptical const& shape, int st
   return worst;
 }
 
-// At each damping: dt times the expensive field's largest eigenvalue up to which no mode grows.
+// A Case gives, for its damping, dt times the expensive field's largest eigenvalue up to which no
+// mode grows.
 TEST(MultirateModes, DoNotGrow) {
   struct Case {
     double damping, stable, of_order_3;

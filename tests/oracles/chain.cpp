@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Single steps of coupled Landau-Lifshitz chains against 70-digit arithmetic. The chain lies along
-// each axis of a lattice in turn, by itself or repeated along the other axes. Neighbours along
-// these are equal, so they contribute nothing.
+// each axis of a lattice in turn, by itself or repeated along the other axes. Neighbours along the
+// other axes are equal, so they contribute nothing.
 #include "../support/evaluate.hpp"
 #include "steps.hpp"
 
@@ -33,7 +33,7 @@ struct Placement {
 };
 
 // Rows along x of 5 and 19 sites end inside packs of every width, and those of 16 fill packs. Along
-// axes of 1 or 2 sites, all neighbours are equal.
+// axes of 1 or 2 sites, both neighbours of a site are the same site.
 std::vector<Placement> const placements{{0, {1, 1, 1}},  {0, {1, 3, 2}},  {1, {1, 1, 1}},
                                         {1, {5, 1, 3}},  {1, {16, 1, 1}}, {2, {1, 1, 1}},
                                         {2, {19, 2, 1}}, {2, {2, 1, 1}}};

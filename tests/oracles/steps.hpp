@@ -27,7 +27,7 @@ inline void expect_same(std::vector<double> const& a, std::vector<double> const&
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], bound) << where;
 }
 
-/// Both precisions on the default space: the spaces agree bit for bit (tests/backends).
+/// Both precisions, only on the default space: host spaces agree bit for bit (tests/backends).
 using OracleBackends = ::testing::Types<Backend<float, Kokkos::DefaultExecutionSpace>,
                                         Backend<double, Kokkos::DefaultExecutionSpace>>;
 

@@ -25,7 +25,7 @@ Field chain_start() {
   return random_spins<Field>(Lattice::chain(8), 3);
 }
 
-/// Orders on a coupled chain whose torques do not commute; the parameter is the damping.
+/// Orders on a coupled chain whose rotations do not commute; the parameter is the damping.
 class ChainOrder : public ::testing::TestWithParam<double> {
  protected:
   Slab const slab = coupled_chain(GetParam());

@@ -48,7 +48,7 @@ TEST_P(HighOrder, EightStagesOfOrder6) {
   expect_6(tableau::Damped86());
 }
 
-// It takes longer steps per evaluation than Dormand-Prince 5 up to a damping of 0.2.
+// Oscillatory86 takes longer steps per evaluation than Dormand-Prince 5 up to a damping of 0.2.
 TEST(Oscillatory86, IsStableOnTheImaginaryAxis) {
   expect_stable_per_stage<ProjectedRungeKutta<Spins, tableau::Oscillatory86>>(
       {{0, 0.4602}, {0.02, 0.4766}, {0.1, 0.5056}, {0.3, 0.4772}}, 0.0005);

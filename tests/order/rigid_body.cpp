@@ -80,8 +80,8 @@ struct Orders {
 
 constexpr double tolerance = 0.15, scattered = 0.4;
 /// Returns four numbers of steps, a factor sqrt(2) apart. Methods of higher order take fewer, to
-/// stay above round-off. From order 2 on, A_o takes half as many as A, since it turns less in a
-/// step.
+/// stay above round-off. From order 2 on, the orthogonal generator takes half as many as the
+/// natural one, since its rotations are smaller.
 std::vector<int> ladder(int order, bool orthogonal) {
   int const first = order == 1 ? 512 : (order == 2 ? 256 : 64) / (orthogonal ? 2 : 1);
   std::vector<int> steps;

@@ -87,8 +87,8 @@ TEST_F(OvfTest, CommentsMayFollowANumberAndTheSegment) {
   EXPECT_EQ(read_ovf(write(replaced(text, "# End: Segment", "#"))).values, small_values());
 }
 
-// Labels that are not read and descriptions may be repeated; other labels may if the value is
-// equal.
+// Descriptions, and labels that are not read, may be repeated; other labels may be repeated with
+// equal values.
 TEST_F(OvfTest, OtherLabelsMayBeRepeated) {
   auto const text = replaced(small_text(), "# Desc: made by hand\n",
                              "# Desc: made\n# Desc: by hand\n# Note: 1\n# Note: 2\n# xnodes: 2\n");

@@ -33,8 +33,8 @@ SEARCHED = ("README.md", "docs/**/*.md", "examples/**/CMakeLists.txt", "tests/in
 
 
 def other_versions(root, version):
-    """Yields the files that do not state `version`, or that ask CMake for other than its first two
-    numbers."""
+    """Yields the files that do not state `version`, and those that ask CMake for anything but its
+    first two numbers."""
     minor = version.rpartition(".")[0]
     for name, statement in STATEMENTS.items():
         expected = statement.replace("V", version)

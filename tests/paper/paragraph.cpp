@@ -13,7 +13,7 @@ std::string printed(std::string const& text) {
   return ::testing::internal::GetCapturedStdout();
 }
 
-// After an indent of two, lines have at most 116 columns; a longer word gets a line of its own.
+// After an indent of two columns, lines have at most 116; a longer word stands on a separate line.
 TEST(Paragraph, BreaksAtSpaces) {
   EXPECT_EQ(printed("a b"), "\n  a b\n");
   std::string const word(117, 'w'), line(116, 'x');

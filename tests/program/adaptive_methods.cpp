@@ -58,7 +58,7 @@ TEST_F(AdaptiveMethods, WriteFramesAtTheTimesAskedFor) {
   EXPECT_LT(distance(second, exact), 30e-7);
 }
 
-// How often a run is observed changes no bit of its end and costs no evaluation.
+// Observing a run more often changes no bit of its end and costs no evaluation.
 TEST_F(AdaptiveMethods, TakeTheSameStepsHoweverOftenTheyAreLookedAt) {
   std::vector<double> ends[3];
   std::int64_t evaluations[3];
@@ -80,7 +80,7 @@ TEST_F(AdaptiveMethods, TakeTheSameStepsHoweverOftenTheyAreLookedAt) {
   }
 }
 
-// Near equilibrium the energy may rise within the tolerance, which energy_guard accepts.
+// Near equilibrium the energy may rise within the tolerance; energy_guard accepts that.
 TEST_F(AdaptiveMethods, ComeToRestUnderTheGuard) {
   for (std::string const method : {"tsit5", "bs3", "dp5"})
     for (std::string const tolerance : {"1e-1", "1e-3"})

@@ -108,7 +108,7 @@ TEST_F(AllMethods, OnRigidBodiesHaveTheirOrder) {
 }
 
 // In a field that depends on time, the analytic sigma needs dH/dt. With it, runs with the analytic
-// and the finite-difference sigma differ in second order of dt; without it, in first order.
+// and the finite-difference sigma differ at second order in dt; without it, at first order.
 TEST_F(AllMethods, AnalyticSigmaSeesAFieldInTime) {
   auto const with = [&](std::string const& isotropy, char const* dt) {
     return end(spins_scene(),

@@ -129,8 +129,8 @@ TEST_F(Checking, CountsBytesOfFilesThatNoDiskHolds) {
   EXPECT_TRUE(contains(text, "1000000000001 frames, 24 EB, to"));
 }
 
-// Fields for rkmk4: the state, two levels, an increment and their sum. For euler: the state and one
-// level.
+// Fields for rkmk4: the state, two levels, an increment and the sum of the increments. For euler:
+// the state and one level.
 TEST_F(Checking, CountsMemory) {
   auto const bytes = [&](std::string const& method, std::string const& precision) {
     return check(chain_scene(), {"--set", "lattice.shape=[64,64,64]", "--set",

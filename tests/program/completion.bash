@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Usage: bash completion.bash PROGRAM FOLDER: what bash and zsh offer after the start of a command.
+# Usage: bash completion.bash PROGRAM SOURCE. Checks what bash and zsh offer after the start of a
+# command.
 set -euo pipefail
 program=$1 source=$2
 folder=$(mktemp -d)
@@ -20,7 +21,8 @@ offered_by_bash() {
   bash -c 'source "$1"; COMP_WORDS=("${@:2}"); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _cayspin
            printf "%s\n" "${COMPREPLY[@]}"' - "$source/cayspin.bash" "$program" "$@"
 }
-# zsh has its own functions while a user types; these say what they are called with.
+# zsh defines compadd, _files and _describe only while a user types. These stand-ins print the
+# completions.
 offered_by_zsh() {
   zsh -fc 'compadd() { shift; print -l -- $@ }; _files() { print -l -- *.(toml|h5) }
            _describe() { print -l -- ${${(P)2}%%:*} }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The interfacial Dzyaloshinskii-Moriya interaction in scenes: a free spiral, the energy bond by
-// bond, and H = -dE/dm, which the conservation laws of an undamped run show.
+// bond, and H = -dE/dm, shown by the energy that an undamped run conserves.
 #include "program_test.hpp"
 
 #include <array>
@@ -24,8 +24,7 @@ class InterfacialDmi : public ProgramTest {
 };
 
 TEST_F(InterfacialDmi, AFreeSpiralTurnsByItsAngle) {
-  // With open ends the spins turn about n x e by tan(turn) = D spacing / A per site, in both
-  // precisions.
+  // With open ends the spins turn about e x n by the angle atan(D spacing / A) per bond along e.
   auto const spiral = scene(1, "shape = [24]\nspacing = [0.5]\n",
                             "exchange = 0.75\ndmi = { interfacial = 0.6, normal = [0, 0, 1] }\n",
                             "method = \"rkmk4\"\ndt = 0.05\nsteps = 20000\n",

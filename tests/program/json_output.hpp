@@ -15,7 +15,7 @@ namespace cayspin::program::test {
 
 using nlohmann::json;
 
-/// Compares what commands print with --json with the values in their files.
+/// Compares the output of commands with --json to the values in their files.
 struct JsonOutput : ProgramTest {
   std::string const film = R"toml([system]
 kind = "llg"

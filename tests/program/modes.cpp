@@ -226,8 +226,8 @@ TEST_F(Modes, RefuseWhatHasNone) {
   EXPECT_FALSE(exists("modes.h5"));
 }
 
-// The eighth and the ninth mode have equal frequencies, so the eight modes searched contain only
-// part of that multiplet.
+// The eighth and the ninth mode have equal frequencies, so the eight modes sought contain only part
+// of that multiplet.
 TEST_F(Modes, ConvergeWhereALastMultipletIsCut) {
   for (int const seed : {3, 8, 13, 38}) {
     auto const outcome = modes(fmt::format(R"toml([system]

@@ -36,7 +36,8 @@ inline std::string const default_space = "host_device", another_space = "host_de
 inline std::string const default_space = "openmp", another_space = "serial";
 #endif
 
-/// True if cayspin-reproduce is built. It computes on hosts, so not with the emulated device.
+/// True if cayspin-reproduce is built. It computes on hosts, so it is not built with the emulated
+/// device.
 #if defined(CAYSPIN_HOST_DEVICE)
 inline constexpr bool has_reproduce = false;
 #else

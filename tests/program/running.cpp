@@ -102,8 +102,9 @@ TEST_F(Running, DtAboveTheStableOneIsWarnedOf) {
   EXPECT_TRUE(contains(outcome.errors, "warning: spin.toml:12: integrator.dt"));
 }
 
-// projected_rk8 is stable up to dt = 6 for this spin, but shorter steps already turn it too far and
-// are warned of. On a chain the exchange limits dt, and no turn below the stable dt is warned of.
+// projected_rk8 is stable up to dt = 6 for this spin, but shorter steps already turn it too far,
+// and the program warns of them. On a chain the exchange limits dt, and there is no warning below
+// the stable dt.
 TEST_F(Running, TurnsBelowTheStableDtAreWarnedOfUnlessTheyAreThoseOfExchange) {
   auto const warning = [&](char const* dt, Arguments const& more) {
     auto const method = std::string("integrator={method='projected_rk8',steps=4,dt=") + dt + "}";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Commands and messages on scenes in SI.
+// Commands and messages for scenes in SI.
 #include "si_scene.hpp"
 
 #include <nlohmann/json.hpp>
@@ -145,8 +145,8 @@ TEST_F(SiScene, UntilTorqueIsInTesla) {
   auto const m = last_spins("out.h5");
   double const torque = std::hypot(m[0], m[1]) * 1.0;
   EXPECT_LT(torque, 1e-4);
-  // A step multiplies the torque by this factor, so the run ended at the first step whose torque
-  // was small enough.
+  // A step multiplies the torque by this exponential, so the run ended at the first step whose
+  // torque was small enough.
   EXPECT_GT(torque, 1e-4 * std::exp(-0.1 * gamma_e * 1.05e-12 / 1.01));
 }
 

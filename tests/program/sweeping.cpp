@@ -68,7 +68,7 @@ TEST_F(Sweeping, GivesTheSameBitsSideBySide) {
 }
 
 TEST_F(Sweeping, GoesOnAfterAKill) {
-  // The runs with 200000 steps take long enough to be killed in one of them.
+  // The runs with 200000 and 200001 steps take so long that the kill comes during one of them.
   auto const all = [](char const* file) {
     return sweep_into(
         file, {"--jobs", "2", "--over", "integrator.steps=20,30,200000,200001", "--threads", "1",

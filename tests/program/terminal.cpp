@@ -95,7 +95,7 @@ TEST_F(Terminal, CheckDrawsTheStartWhereColoursAreThere) {
     ::setenv("NO_COLOR", no_color, 1);
     return on_terminal(joined({"check", "spin.toml"}, film));
   };
-  // Spins along +x are red, those along +z light grey; each takes 16 of 32 columns.
+  // Spins along +x are red, those along +z light grey; each colour takes 16 of 32 columns.
   auto const all = check("xterm", "truecolor", "");
   std::string const red = "\x1b[38;2;255;0;0m\x1b[48;2;255;0;0m▀",
                     grey = "\x1b[38;2;230;230;230m\x1b[48;2;230;230;230m▀";

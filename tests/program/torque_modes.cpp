@@ -45,9 +45,11 @@ TEST_F(TorqueModes, OfAParticleWithAPolarizationAlongItsAxis) {
     }
 }
 
-// In a ring with the spins along z, x + i y = e^(i k j) at site j is a mode, with the eigenvalue
+// In a ring with the spins along z, m_x + i m_y = e^(i k j) at site j is a mode, with the
+// eigenvalue
 //   (i - damping) W - i u sin k (1 + damping xi) + (damping - xi) u sin k, W = H + 2 A (1 - cos k).
-// H is the sum of the anisotropy and the applied field, and u the velocity.
+// H is the sum of the anisotropy and the applied field, A the exchange, u the velocity and xi the
+// nonadiabaticity.
 TEST_F(TorqueModes, AreWavesWithADopplerShiftInACurrent) {
   double const damping = 0.1, u = 0.4, xi = 0.25;
   int const sites = 12;

@@ -57,7 +57,7 @@ end = 4.0
   std::string advise(std::string const& error, Arguments const& more = {}) const {
     return output_of(joined({"advise", "scene.toml", "--error", error, "--threads", "1"}, more));
   }
-  // Expects a dataset of out.h5 to have `count` times, `apart` from each other, from 0 on.
+  // Expects a dataset of out.h5 to have `count` times, `apart` from each other, starting at 0.
   void expect_equal_times(char const* dataset, double apart, std::size_t count) const {
     auto const times = read_dataset("out.h5", dataset).values;
     ASSERT_EQ(times.size(), count) << dataset;
@@ -90,8 +90,7 @@ TEST_F(Trading, ErrorsFallAndParetoFrontHasNoDominatedPoint) {
     for (auto const& [other, others] : front) EXPECT_FALSE(other <= error && others < seconds);
 }
 
-/// Returns the lines from the one that starts with the heading (not included) to the next empty
-/// one.
+/// Returns the lines after the one that starts with the heading, up to the next empty one.
 std::vector<std::string> table_below(std::string const& text, std::string const& heading) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
@@ -152,7 +151,7 @@ TEST_F(Trading, ARungIsARunOfTheScene) {
     exactly << "integrator={method='rkmk4',dt=" << dt << ",steps=" << steps << "}";
     auto const numbers = end(set(exactly.str()));
     EXPECT_EQ(rung["evaluations"], 4 * steps);
-    // The error of a rung is the largest at a dozen times, not only at the end.
+    // The error of a rung is the largest at a dozen points in time, not only at the end.
     EXPECT_GE(rung["error"].get<double>(), 0.9 * distance(numbers, reference));
     EXPECT_LE(rung["error"].get<double>(), 100 * distance(numbers, reference));
   }
@@ -307,7 +306,7 @@ TEST_F(Trading, AdviseReportsBudgetExceeded) {
   EXPECT_TRUE(contains(outcome.errors, "beyond the budget"));
 }
 
-// Without --precision, both are tried; single precision is among the fastest here.
+// Without --precision, both precisions are tried; single precision is among the fastest here.
 TEST_F(Trading, TriesTheOnePrecisionThatIsAskedFor) {
   for (std::string const precision : {"double", "single"}) {
     auto const methods = trade({"--seconds", "0.1", "--precision", precision})["methods"];

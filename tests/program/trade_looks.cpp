@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// `cayspin trade` and `cayspin advise`: which errors they report, their costs, and their duration.
+// `cayspin trade` and `cayspin advise`: which errors they report, at which costs, and how long they
+// take.
 #include "early_rest.hpp"
 #include "program_test.hpp"
 

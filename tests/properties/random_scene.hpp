@@ -42,7 +42,7 @@ struct RandomScene {
   Method method;
   bool single, orthogonal;
   Slab slab;
-  double share;  // dt over the stable dt, or over 1 / rate if there is none
+  double share;  // dt over the stable dt, or over 1 / rate if that is 0 or unknown
   int steps;
   unsigned start;
 

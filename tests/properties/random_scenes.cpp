@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Properties of every scene, tested on new random scenes in each run: |m| = 1, a falling energy,
-// equal bits on every host space, and reversibility of symmetric methods.
+// equal bits in a second run (on a host, in all threads), and reversibility of symmetric methods.
 #include "../support/backends.hpp"
 #include "random_scene.hpp"
 
@@ -12,7 +12,7 @@
 namespace cayspin::test {
 namespace {
 
-/// Both generators in one type, selected at run time.
+/// The natural and the orthogonal generator in one type, selected at run time.
 template <class Llg>
 struct EitherGenerator {
   Llg llg;
@@ -57,7 +57,7 @@ using Again =
 
 struct Properties {
   Property norm, energy, bits, reversal, red_black;
-  std::int64_t not_reversed = 0;  // runs of methods that are not symmetric
+  std::int64_t not_reversed = 0;  // runs of non-symmetric methods that do not return to the start
 };
 
 template <class Stepper>
@@ -108,7 +108,7 @@ class Check {
     return scene_.share < 0.25 && std::pow(turn, 4) < 5 * damping;
   }
 
-  /// Checks the spins at the end, and |m| and E after each step.
+  /// Checks |m| and E after each step, and returns the spins at the end.
   Field check_steps(Field const& start) {
     auto const source = generator();
     Field spins = copy_of(start);

@@ -104,7 +104,7 @@ class Observers(PackageTest):
 
 
 class Calls(PackageTest):
-    """Passes values of each kind to each argument of each function."""
+    """Passes values of each kind to the arguments of functions."""
 
     def accepted(self, call, things):
         for thing in things:

@@ -39,8 +39,8 @@ class Dispersions(PackageTest):
         np.testing.assert_allclose(found.intensity, expected.intensity, rtol=1e-12)
         np.testing.assert_allclose(edges, run_of.cell[0] + run_of.cell[1], atol=1e-15)
         self.assertAlmostEqual(found.corners[1], 4 * np.pi / 3 / 0.5)
-        # Peaks are on both bands, 0.5 (3 -+ |f|), except at Gamma, where the mode involves all
-        # spins.
+        # Each peak is on one of the bands, 0.5 (3 -+ |f|), except near Gamma, where the mode
+        # involves all spins.
         h, k, _ = 2 * np.pi * found.wave_vectors.T
         f = np.abs(1 + np.exp(-1j * h) + np.exp(-1j * k))
         off = np.minimum(np.abs(found.peak() - 0.5 * (3 - f)), np.abs(found.peak() - 0.5 * (3 + f)))

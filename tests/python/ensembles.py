@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Reading and drawing files of ensembles with the package."""
+"""Ensembles in the package: their files, pictures and simulations."""
 
 import os
 import pathlib

@@ -96,7 +96,8 @@ class OfModes(PackageTest):
         self.assertLess(np.abs(peaks - expected).max(), 0.006)
 
     def test_moments_of_a_crystal(self):
-        # The energy, and so what modes add up to, does not depend on the moments; rates do.
+        # The energy, and hence the integrated intensity, does not depend on the moments; the rates
+        # do.
         for moments, ratios in (([1.0, 0.4], [1.0, 1.0]), ([1.0, 0.4], [1.0, 1.7])):
             made = chain(
                 lattice={"shape": [6], "boundary": "periodic", "moments": moments,

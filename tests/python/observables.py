@@ -81,8 +81,9 @@ class TopologicalCharge(PackageTest):
 
 
 def wave(shape, frames, dt, numbers, turns, amplitude=0.01, positions=((0, 0, 0),)):
-    """Returns a spin wave of wave vector numbers / shape, (frame, site, nz, ny, nx, 3). It turns
-    about z `turns` times in all, right-handed if that is positive, and runs along its vector."""
+    """Returns a spin wave of wave vector numbers / shape, (frame, site, nz, ny, nx, 3), and its
+    angular frequency. It turns about z `turns` times in all, right-handed if that is positive, and
+    runs along its vector."""
     nx, ny, nz = shape
     z, y, x = np.meshgrid(np.arange(nz), np.arange(ny), np.arange(nx), indexing="ij")
     time = np.arange(frames) * dt
@@ -100,7 +101,8 @@ class Dispersions(PackageTest):
     FULL = [(-0.5, 0, 0), (0, 0, 0), (0.5, 0, 0)]
 
     def peak(self, found):
-        """Returns wave vector and frequency of the largest intensity; expects no other near it."""
+        """Returns the wave vector and the frequency of the peak. Expects less than 1e-3 of its
+        intensity elsewhere."""
         place = np.unravel_index(found.intensity.argmax(), found.intensity.shape)
         there = np.abs(found.frequency - found.frequency[place[1]]) < 2.5 * found.resolution
         rest = found.intensity.copy()
@@ -145,7 +147,7 @@ class Dispersions(PackageTest):
         np.testing.assert_allclose(twice.intensity, 2 * found.intensity, rtol=1e-12)
 
     def test_sites_of_a_cell(self):
-        # bcc: (1, 1, 0) is a vector of its reciprocal lattice, (1, 0, 0) none.
+        # bcc: (1, 1, 0) is a vector of its reciprocal lattice, (1, 0, 0) is not.
         positions = [(0, 0, 0), (0.5, 0.5, 0.5)]
         m, w = wave((8, 4, 2), 96, 0.2, (2, 0, 0), 15, positions=positions)
         path = [(0, 0, 0), (2.5, 0, 0)]

@@ -68,7 +68,8 @@ class UppasdEnergies(Files):
                                -(8 * 1.3 + 6 * 0.7) - 2.15 * MU_B * 10 / MRY, delta=1e-11)
 
     def test_spirals_of_all_ways_to_write_bonds(self):
-        """The E of a site is -sum over all r of J(r) cos(q.r) + n.D(r) sin(q.r), q in radians."""
+        """With dm_sign = -1, the E of a site is minus the sum over all r of (J(r) cos(q.r) +
+        n.D(r) sin(q.r)), q in radians."""
         random = np.random.default_rng(5)
         cell, shape = HEXAGONAL, (4, 6, 3)
         basis = np.array([[0, 0, 0], [1 / 3, 1 / 3, 0.25]])  # of two types
@@ -102,7 +103,8 @@ class UppasdEnergies(Files):
                     self.assertLess(abs(found - expected), 1e-12 * abs(expected))
 
     def test_the_handedness_of_one_bond(self):
-        """A chain that turns from x to y has 2 D less energy per site, as both orders count."""
+        """With dm_sign = -1, a chain that turns from x to y has 2 D less energy per site, as both
+        orders count."""
         along, back = "1 1 1 0 0 0 0 0.3\n", "1 1 -1 0 0 0 0 -0.3\n"
         for sign, expected in ((-1, -0.6), (1, 0.6)):
             tables = cayspin.read_uppasd(
@@ -236,7 +238,8 @@ class Spirit(Files):
                                            "D": [0, 0, 1.5]}])
 
     def test_the_energy_of_a_spiral(self):
-        """The E of a cell is -sum over pairs of J cos(q.r) + n.D sin(q.r); it has two sites."""
+        """The E of a cell is minus the sum over pairs of (J cos(q.r) + n.D sin(q.r)). A cell has
+        two sites."""
         basis = [[0, 0, 0], [0.25, 0.5, 0.125]]
         tables = {"lattice": {"cell": HEXAGONAL.tolist(), "basis": basis},
                   "field": {"couplings": self.read(PAIRS, unit=1)}}

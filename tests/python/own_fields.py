@@ -92,7 +92,8 @@ class OwnFields(PackageTest):
                     self.assertAlmostEqual(both.energy(), without.energy() + of_own,
                                            delta=200 * limit)
 
-    # A slab in the scene with the demagnetising field as own field, and the other way round.
+    # Yields a simulation with the field `whole` in the scene and a slab as own field, and one with
+    # the two exchanged.
     def exchanged(self, whole, lattice, precision="double", **tables):
         more = {"exchange": 0.5, "applied": [0.1, 0, 0.2]}
         strength = {"normal": NORMAL.tolist(), "strength": 0.7}

@@ -65,7 +65,8 @@ class PackageTest(unittest.TestCase):
         return file
 
     def run_program(self, of_scene, *options, command="run"):
-        """Returns the open file that `cayspin run` writes for a scene."""
+        """Returns the open file that a command of the program, by default `run`, writes for a
+        scene."""
         self.programs += 1
         text = self.written(of_scene, f"program{self.programs}.toml")
         output = text.with_suffix(".h5")

@@ -84,8 +84,8 @@ class Relaxing(PackageTest):
                                 lambda count=count: sim.modes(count))
         self.assert_refused(cayspin.CayspinError, "tolerance", lambda: sim.modes(tolerance=2.0))
 
-    # With the polarization along the spins, the torque adds a to the decay and -damping a to both
-    # stiffnesses.
+    # With the polarization along the spins, the torque adds a = damping_like to the decay and
+    # -damping a to both stiffnesses.
     def test_a_torque_makes_modes_grow(self):
         torque = {"slonczewski": {"damping_like": -0.2, "polarization": [1, 0, 0]}}
         film = {"torque": torque, "lattice": {"shape": [4, 3]}}

@@ -23,8 +23,8 @@ class Course:
         self.tables = {"initial": initial, "output": {"every": 1}, **tables}
 
     def round(self):
-        """Returns the last spins, those that h5py reads, those that a scene reads, and the energies
-        of the scenes that an observer opened."""
+        """Returns the last spins of the run, of its file, of its restart and of an observed run,
+        and the energies of the scenes that the observer opened."""
         seen = []
 
         def look(sim):

@@ -93,8 +93,8 @@ TYPED_TEST(ExponentialMap, ThroughMultiplesOfPi) {
     this->expect_rotated(narrow<Real>((i * 0.01L) * direction(i)), i + 1);
 }
 
-// If the square of |f| overflows, f is scaled first. The angle then has no meaning, but the axis
-// and the length of the spin are kept.
+// If the square of |f| overflows, f is scaled first. The angle then has no meaning, but the
+// rotation's axis and the spin's length are kept.
 TYPED_TEST(ExponentialMap, LargeCoordinatesKeepTheAxisAndTheSphere) {
   using Real = TypeParam;
   auto sizes = this->around(this->is_double ? Real(0x1p500) : Real(0x1p60));

@@ -28,7 +28,7 @@ class Laws : public ::testing::Test {
     sweep(largest_size, [](auto const& f, auto const& x, auto const&) {
       auto const there = Rotation::rotate(f, x);
       EXPECT_NEAR(norm(widen(there)), norm(widen(x)), 6 * eps) << norm(widen(f));
-      // Each rotation adds a vector of at most 2 to m, with a relative error of 3 eps.
+      // Each rotation adds a vector of length at most 2 to x, with a relative error of 3 eps.
       EXPECT_LE(largest(widen(Rotation::rotate(opposite(f), there)) - widen(x)), 12 * eps)
           << norm(widen(f));
     });

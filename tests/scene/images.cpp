@@ -184,7 +184,7 @@ TEST(Images, FilesThatAreWrongAreRefusedInOneLine) {
     file << "????";
   }
   folder.write("no picture at all", "text.png");
-  // The header promises 1000000 x 1000000 pixels, but the file ends after it.
+  // The header promises 1000000 x 1000000 pixels, but the file has none.
   folder.write(std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\x0f\x42\x40\0\x0f\x42\x40"
                            "\x08\0\0\0\0\x79\x06\x67\xa1\0\0\0\x0aIDAT",
                            41),

@@ -131,7 +131,8 @@ TEST(InitialStates, TakeLengthsInMetresInSi) {
     }
 }
 
-// Overrides read the scene's text again. The state stays the same unless they change it.
+// with_overrides() reads the scene's text again. The state stays the same unless an override
+// changes it.
 TEST(InitialStates, SurviveOverrides) {
   auto const scene = scene_of(permalloy_film, {"initial={state='vortex', radius=9e-9}"});
   EXPECT_EQ(initial_spins(with_overrides(scene, {"integrator.dt=1e-15"})), initial_spins(scene));

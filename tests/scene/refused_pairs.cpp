@@ -88,7 +88,7 @@ std::vector<std::pair<std::string, Overrides>> methods_and_keys() {
 }
 
 /// Returns the table's entry for a scene with the terms of `scene` and the integrator of `other`;
-/// nullptr if it has none.
+/// nullptr if there is none.
 RefusedPair const* expected_of(Scene scene, Scene const& other) {
   scene.integrator = other.integrator;
   for (auto const& pair : refused_pairs())

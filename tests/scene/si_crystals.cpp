@@ -66,8 +66,8 @@ void expect_near(std::vector<double> const& values, std::vector<double> const& e
 TEST(SiCrystals, IronHasItsUnits) {
   auto const scene = iron_with({"thermal={temperature=300}", "material.alpha=0.1",
                                 "material.damping_form='landau_lifshitz'"});
-  // By hand: the unit of the field is 7.05e-21 J over 2.22 Bohr magnetons, and the temperature is k
-  // 300 K over 7.05e-21 J.
+  // By hand: the unit of the field is 7.05e-21 J over 2.22 Bohr magnetons, and the temperature is
+  // k_B times 300 K, over 7.05e-21 J.
   EXPECT_NEAR(scene.units.field, 342.427, 1e-3);
   EXPECT_NEAR(scene.units.time, 1.65846e-14, 1e-19);
   EXPECT_NEAR(scene.thermal->temperature, 0.587510, 1e-6);
@@ -161,7 +161,8 @@ TEST(SiCrystals, AnisotropiesAreEnergies) {
   expect_near(film.field.anisotropies.at(0).constant, 1000 / pressure);
 }
 
-// The strength is mu0 mu^2 / (a^3 J), where mu is the moment of the first site.
+// The typed strength is multiplied by mu0 mu^2 / (a^3 J), where mu is the moment of the first site,
+// a the lattice constant and J the exchange.
 TEST(SiCrystals, DipolesAreOfTheMoments) {
   auto const scene =
       iron_with({"field.dipoles={strength=0.5}", "material.mu_s={bohr_magnetons=[2.22,1.11]}"});

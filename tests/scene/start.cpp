@@ -89,8 +89,8 @@ TEST(Start, RandomStartsFromThePublishedSequence) {
 }
 
 // On the sphere a component c has <c> = 0, <c^2> = 1/3, <c^4> = 1/5, and <c d> = 0, <c^2 d^2> =
-// 1/15 with another component d. Means over n sites then scatter by sqrt(1/3n), sqrt((1/5 - 1/9)/n)
-// and sqrt(1/15n); the bound is five times these.
+// 1/15 with another component d. Means over n sites then scatter by sqrt(1/(3n)),
+// sqrt((1/5 - 1/9)/n) and sqrt(1/(15n)); the bound is five times these.
 TEST(Start, RandomIsUniformOnTheSphere) {
   constexpr std::size_t n = 100000;
   for (std::string const seed : {"1", "2", "3"}) {

@@ -123,7 +123,8 @@ TEST(UnitCellFile, MayHaveBiquadraticBonds) {
   EXPECT_EQ(couplings(scene), expected);
 }
 
-/// Returns the message of check_files or the reader, after the scene's place and the file's name.
+/// Returns the part of a refusal that follows the place in the scene and the name of the file;
+/// "accepted" if there is none.
 std::string refusal_of_cell(Folder const& folder, std::string const& unit_cell,
                             std::string const& lattice = {}) {
   auto const message = refusal([&] { check_files(read_with(folder, unit_cell, lattice)); });

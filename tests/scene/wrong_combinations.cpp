@@ -96,8 +96,8 @@ TEST(Combinations, OfRigidBodiesWithEnergyAreAccepted) {
               "accepted");
 }
 
-// A uniform field of the program replaces field.applied; any other field can be added to the
-// scene's.
+// A uniform field of the program excludes field.applied; any other field adds to those of the
+// scene.
 TEST(Combinations, OfAProgramsOwnFieldWithThoseOfTheScene) {
   OwnField uniform, nonlocal;
   uniform.uniform = [](double) { return Triple{0, 0, 1}; };

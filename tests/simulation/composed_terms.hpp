@@ -60,8 +60,8 @@ struct SiteDependentApplied {
   }
 };
 
-/// Slonczewski's field with a site-dependent strength times cos(2 t), and p along (along_x, 0.6,
-/// 0.8).
+/// Slonczewski's field with a site-dependent damping-like strength times cos(2 t), a constant
+/// field-like strength, and p along (along_x, 0.6, 0.8).
 struct SiteDependentSlonczewski {
   ScalarField<double, Memory> damping_like, along_x;
   double field_like, lambda;

@@ -80,7 +80,8 @@ void expect_same(unsigned seed, std::map<std::string, int>& refused) {
         largest =
             std::max(largest, std::abs(numbers.gyromagnetic * found[i] - moves * expected[i]));
     }
-    EXPECT_LT(largest, 64 * epsilon(precision) * numbers.scale);  // `expected` includes that ratio
+    // `expected` includes the gyromagnetic ratio.
+    EXPECT_LT(largest, 64 * epsilon(precision) * numbers.scale);
   }
   if (!scene->field.torque.zhang_li && !scene->field.torque.slonczewski) {
     SpinField<double, Memory> spins("spins", numbers.lattice);

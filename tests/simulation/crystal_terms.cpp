@@ -107,13 +107,13 @@ TEST(CrystalTerms, D2dTurnsSpinsToTheLeftAlongXAndToTheRightAlongY) {
   EXPECT_NEAR(energy("[1, 16, 1]", "[0, -1, 0]", "[0, 1, 0]"), 16 * of_bond, 1e-13);
   for (std::string const normal : {"[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"})
     EXPECT_NEAR(energy("[1, 1, 16]", normal, "[0, 0, 1]"), 0, 1e-13);
-  // Cycloids have no energy of D2d.
+  // Cycloids have no D2d energy.
   EXPECT_NEAR(energy("[16, 1, 1]", "[0, 1, 0]", "[1, 0, 0]"), 0, 1e-13);
   EXPECT_NEAR(energy("[16, 1, 1]", "[0, 0, 1]", "[1, 0, 0]"), 0, 1e-13);
 }
 
-// On a chain along an axis, D2d acts like bulk DMI of one sign or the other, also at free
-// boundaries.
+// On a chain along x or y, D2d acts like bulk DMI of one sign or the other, also at free
+// boundaries. On a chain along z it has no effect.
 TEST(CrystalTerms, D2dIsThatOfTheBulkAlongAnAxis) {
   auto const end = [](std::string const& shape, std::string const& dmi, Precision precision) {
     return end_of(llg_scene("0.1", "rkmk4", 100,
@@ -171,7 +171,7 @@ TEST(CrystalTerms, HaveTheEnergiesOfTheirDirections) {
     double const phi = degrees * pi / 180, theta = 0.9;
     double const a = std::sin(theta) * std::cos(phi), b = std::sin(theta) * std::sin(phi),
                  half = std::sqrt(0.5);
-    // The component b is along axis x in_plane, which is (0, -1, 1).
+    // The component b is along the cross product of `axis` and `in_plane`, (0, -1, 1).
     EXPECT_NEAR(
         energy_of_spin(hexagonal, fmt::format("[{:.17g}, {:.17g}, {:.17g}]", std::cos(theta),
                                               (a - b) * half, (a + b) * half)),

@@ -73,9 +73,9 @@ TEST(CrystalScenes, ConesTurnAtTheFrequencyOfTheirMagnon) {
     }
 }
 
-// In Neel's state of a simple cubic lattice, spins in narrow cones turn at omega = sqrt((h + K)^2 -
-// (h gamma)^2): spins that point up turn to the right about their axis, those that point down to
-// the left.
+// A wave in Neel's state of a simple cubic lattice: the spins of one sublattice open more than
+// those of the other, and all turn rigidly about z, right-handed about the spins that open more. At
+// small openings the frequency is sqrt((h + K)^2 - (h gamma)^2).
 TEST(CrystalScenes, ConesOfAnAntiferromagnetTurnAtTheFrequencyOfTheirMagnon) {
   constexpr double h = 6 * 0.6, K = 0.3, opening = 0.7, end = 2;
   double const gamma = (std::cos(2 * pi / 8) + std::cos(2 * pi / 6) + std::cos(2 * pi / 4)) / 3;
@@ -279,7 +279,7 @@ random = { seed = 1 }
   for (auto const precision : precisions) expect_same_bits_after_a_break(scene, 17, precision);
 }
 
-// A bcc antiferromagnet in a field below its flop relaxes to Neel's state.
+// A bcc antiferromagnet in a field below its spin-flop field relaxes to Neel's state.
 TEST(CrystalScenes, Relax) {
   auto const scene = llg_scene("0.5", "heun", 1, R"toml(
 [lattice]

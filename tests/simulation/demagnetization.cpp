@@ -103,7 +103,7 @@ std::vector<double> sum_over_pairs(Lattice const& lattice, std::array<int, 3> co
   return field;
 }
 
-// A quarter of the random moments is 0.
+// About a quarter of the random moments are 0.
 TEST(Demagnetization, OfMomentsIsTheSumOverAllPairsOfCells) {
   struct Box {
     std::array<std::int64_t, 3> shape;

@@ -129,7 +129,7 @@ TEST(Dipoles, AreTheDemagOfCrystalsAndNotOfCells) {
             1e-3);
 }
 
-// The field of one iron atom on another at 0.25 nm along the moment: mu0 mu / (2 pi r^3) in T.
+// The field of an atom at a distance r = 0.25 nm along its moment mu is mu0 mu / (2 pi r^3), in T.
 TEST(Dipoles, AreInTeslaAndJoules) {
   auto const scene = scene_of(R"toml(
 units = "SI"
@@ -213,7 +213,7 @@ TEST(Dipoles, GoOnAfterABreak) {
         7, precision);
 }
 
-// Moments of 4 make four times the field, and a quarter of the largest stable step.
+// Moments of 4 have four times the field and a quarter of the largest stable step.
 TEST(Dipoles, BoundTheStableStep) {
   auto const stable = [](std::string const& rest) {
     auto const scene = with_dipoles("shape = [4, 4, 4]\ncrystal = 'bcc'\n" + rest,

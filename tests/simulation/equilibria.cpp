@@ -193,7 +193,7 @@ class Reference {
   }
 
   /// Returns the error of H: the energy's derivative as all mobile spins turn at random, by finite
-  /// differences, minus the derivative by H.
+  /// differences, minus the derivative that follows from H.
   double error_of_derivative(unsigned seed) const {
     std::mt19937 engine(seed);
     auto v = std::vector<double>(m_.size());
@@ -291,7 +291,7 @@ void expect_right_equilibria(unsigned seed) {
   auto const field = field_of<Spins>(scene, lattice, false).made_for(FieldFor::energy);
   SceneMinimizer<Real, Space> minimizer(spins);
 
-  // Any torque is small enough for this search, so it ends at the start.
+  // The first search below accepts any torque, so it ends at the start.
   Reference const start(scene, lattice, numbers());
   if (start.mobile() == 0) return;
   auto const eigenvalues = start.curvatures();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// One physical system in two forms, with every method that accepts both: terms in kernels or in a
-// separate pass, fewer sites or vacant sites, constants or expressions.
+// One physical system in two forms: terms in kernels or in a separate pass, and fewer sites or
+// vacant sites (with every method that accepts both forms); constants or expressions.
 #include "io/method.hpp"
 #include "scenes_of_text.hpp"
 
@@ -13,8 +13,8 @@
 namespace cayspin::simulation::test {
 namespace {
 
-// Every term of plain scenes, also evaluated in a separate pass. Moments of 1 cause the pass and
-// change nothing.
+// The terms of a plain scene, in kernels and in a separate pass. Moments of 1 cause the pass and
+// change nothing else.
 TEST(FieldInPass, APassIsTheFieldThatKernelsEvaluate) {
   constexpr auto plain = R"toml(
 [system]
@@ -70,7 +70,7 @@ steps = 40
   EXPECT_LT(refused, 20);
 }
 
-// A film of which one half is vacant acts like half a film, and frozen spins do not move.
+// A film with vacant sites acts like a film of only its occupied sites.
 TEST(FieldInPass, SitesWithoutSpinsAreNone) {
   auto const film = [](std::string const& lattice, std::string const& method) {
     return scene_of(fmt::format(R"toml(

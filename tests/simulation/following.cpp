@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Lattices that follow a wall or a skyrmion, compared with lattices that are long enough not to
-// need it.
+// Lattices that follow a wall, a skyrmion or a vortex. The wall's velocity is compared with that on
+// a lattice long enough not to follow it.
 #include "scenes_of_text.hpp"
 #include "simulation/plan.hpp"
 
@@ -126,7 +126,7 @@ integrator = {{ method = "rkmk4", dt = 0.02, steps = 3 }}
   }
 }
 
-// The energy of a damped run falls, except where cells enter. This must not stop the run.
+// The energy of a damped run falls, except when cells enter. Such a rise must not stop the run.
 TEST(Following, IsNotTakenForAnEnergyThatRises) {
   auto const scene = scene_of(wall(160, "method = \"heun\"", 1500), following);
   auto const run = SceneRun::open(scene, {});

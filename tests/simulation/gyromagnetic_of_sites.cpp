@@ -14,7 +14,7 @@ namespace {
 
 constexpr double ratios[] = {1, 0.5, 2.5};
 
-// A spin turns about z by g H t; the tangent of half its angle to z falls by exp(-damping g H t).
+// A spin turns about z by g H t; the tangent of half its angle to z falls as exp(-damping g H t).
 TEST(GyromagneticOfSites, TurnsSpinsByTheirOwn) {
   constexpr double H = 0.7, damping = 0.2, t = 60 * 0.02;
   auto const scene = llg_scene("0.2", "rkmk4", 60,
@@ -140,7 +140,7 @@ struct MeanOfRegion {
   double error() const { return std::sqrt((of_squares / count - value() * value()) / count); }
 };
 
-// The mean of free spins decays as exp(-2 damping g T t).
+// The mean of free spins decays as exp(-2 damping g T t), where T is the temperature.
 TEST(GyromagneticOfSites, TakesPartInTheNoise) {
   auto const end = end_of(llg_scene(
       "0.5", "heun", 100,
@@ -154,8 +154,8 @@ TEST(GyromagneticOfSites, TakesPartInTheNoise) {
                 5 * means[kind].error());
 }
 
-// The mean at equilibrium depends neither on damping nor on the gyromagnetic ratio; nor does it in
-// Gilbert's form.
+// In Gilbert's form, too, the mean at equilibrium depends on neither the damping nor the
+// gyromagnetic ratio.
 TEST(GyromagneticOfSites, KeepsLangevinsMean) {
   auto const end = end_of(scene_of(R"toml(
 units = "SI"

@@ -75,7 +75,7 @@ TEST_F(InteractionsFiles, AreNotWrittenWhereTheyWereSoonFound) {
   EXPECT_FALSE(fs::exists(path));
 }
 
-// Damages each byte in turn, and cuts the file off at each of them.
+// Damages each byte in turn, and cuts the file off before each byte.
 TEST_F(InteractionsFiles, AreComputedAgainWhereDamaged) {
   of("cells 2");
   auto const whole = text();

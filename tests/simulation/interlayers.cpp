@@ -21,7 +21,7 @@ steps = 1
 )toml";
 
 // Compares H with differences of the energy, whose error is of order angle^4: the energy has
-// harmonics of any order.
+// harmonics of all orders.
 void expect_gradient(io::Scene const& scene, std::vector<std::size_t> const& sites) {
   auto const run = SceneRun::open(scene, {});
   auto const spins = spins_of(*run);
@@ -71,7 +71,8 @@ interlayer = [ {{ between = [0, 1], J = -0.15, biquadratic = 0.025 }}, {{ betwee
   }
 }
 
-// The spacer is one vacant plane along x, and one or two vacant rows along y, which is periodic.
+// The spacer is one vacant plane across x, and one or two vacant rows across y. Both axes are
+// periodic.
 TEST(Interlayers, AcrossSpacersSeeTheGradientOfTheEnergy) {
   for (std::string const exchange : {"exchange = { regions = [0.5, 0.7, 0.9] }", ""}) {
     auto const scene = scene_of(fmt::format(R"toml(
@@ -153,7 +154,7 @@ steps = 1
         << name;
   }
   // Stiff exchange holds the spins at the interface near those of the cells: the energy falls by
-  // the torque squared over k = 2 A / d^2, the stiffness of two half cells.
+  // the torque squared over k = 2 A / d^2, the stiffness of a half cell.
   double const torque = 0.04 * 0.8 + 2 * 0.02 * 0.6 * 0.8, k = 2 * 1e3 / 0.25;
   EXPECT_NEAR(energy("exchange = 1e3", turned), -0.04 * 0.6 - 0.02 * 0.36 - torque * torque / k,
               1e-10);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Site-dependent moments, sources and temperatures, compared with closed forms. Seeds are fixed,
 // and statistical limits are three standard errors. Both precisions have the same noise, so about
-// one seed in 46 would put any of the 8 values beyond its limit.
+// one seed in 46 would put at least one of the 8 values beyond its limit.
 #include "scenes_of_text.hpp"
 
 #if defined(CAYSPIN_HAS_FFTW)
@@ -18,7 +18,8 @@
 namespace cayspin::simulation::test {
 namespace {
 
-// Each moment turns by gamma H t in its own field H = B + 2 K/Ms (m.e) e, and keeps its m_z.
+// Each moment turns by gamma H t in its own field along z, H = B + (2 K / Ms - mu0 Ms) m_z, and
+// keeps its m_z.
 TEST(MomentsOfSites, PrecessInTheFieldOfTheirOwnMagnetization) {
   auto const scene = scene_of(R"toml(
 units = "SI"
@@ -219,7 +220,7 @@ struct Mean {
 };
 
 // Independent moments of three kinds, each with its own damping and temperature: the means of m_z
-// and of its square. One sample is a site's mean over six times; sites are independent.
+// and of its square. One sample is a site's mean over six points in time; sites are independent.
 TEST(MomentsOfSites, HaveLangevinsMeansAtTheirTemperature) {
   auto const scene = scene_of(R"toml(
 [system]
@@ -313,8 +314,8 @@ TEST(MomentsOfSites, ATemperatureInTimeThatIsOneNumberIsThatNumber) {
   expect_refused([&] { return chain("'0.5-t'", ""); }, "thermal.temperature: is negative");
 }
 
-// A spin turns by the integral of a time-dependent field along z. Sources with one time dependence
-// add up, and mu0 multiplies all.
+// A spin turns by the integral of a time-dependent field along z. Sources with the same time
+// dependence add up, and mu0 multiplies all.
 TEST(Sources, TurnSpinsByTheirIntegral) {
   auto const scene = scene_of(R"toml(
 [system]

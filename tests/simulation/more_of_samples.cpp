@@ -97,7 +97,8 @@ TEST(MoreOfSamples, EnergiesOfRegionsAndOfTermsAddUpToTheWhole) {
   }
 }
 
-// A site has half of the energy of each of its bonds, and all of its anisotropy and field.
+// A site has half of the energy of each of its bonds, and all of its energies of anisotropy and of
+// the applied field.
 TEST(MoreOfSamples, ASitesEnergyIsItsOwn) {
   auto const scene = scene_of(R"toml(
 system = { kind = "llg", damping = 0.1 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A constant acts the same whether it is a number or an expression, in everything that is computed
-// from a scene. Other tests are of results that depend on several terms.
+// from a scene. The other tests here check results that depend on several terms.
 #include "scenes_of_text.hpp"
 
 #include <random>
@@ -105,7 +105,8 @@ TEST_F(NumbersOrExpressions, TermsAddUpWithFreeBoundaries) {
       }
 }
 
-// With free boundaries, each end of a chain has a hard axis of energy D^2/(2A) (m.d)^2.
+// With free boundaries, each end of a chain along x has x as a hard axis, with the energy
+// D^2 / (2 A) m_x^2.
 TEST_F(NumbersOrExpressions, TheEndsOfAChainWithBulkDmiHaveAnAnisotropy) {
   auto const run =
       SceneRun::open(llg_scene("0.1", "rkmk4", 1,
@@ -121,7 +122,7 @@ TEST_F(NumbersOrExpressions, TheEndsOfAChainWithBulkDmiHaveAnAnisotropy) {
   EXPECT_NEAR(found, exact, 1e-15);
 }
 
-// m_z = tanh(gamma a t) for a spin that starts perpendicular to p.
+// m_z = tanh(gamma damping_like t) for a spin that starts perpendicular to the polarization.
 TEST_F(NumbersOrExpressions, ATorqueInTeslaTurnsSpinsByTheirOwnGamma) {
   for (std::string const gamma : {"2.5e11", "'2.5e11 + 0*x'"}) {
     auto const run =

@@ -18,8 +18,8 @@
 
 namespace cayspin::simulation::test {
 
-/// The constants of a composition's terms, 0 for terms that are missing. Vectors have an element
-/// for each site, or are empty.
+/// The constants of a composition's terms, 0 for terms that are missing. Vectors of numbers have an
+/// element for each site, or are empty.
 struct CompositionNumbers {
   Lattice lattice;
   double exchange = 0, interfacial = 0, bulk = 0, cubic = 0, moment = 1, gyromagnetic = 1;

@@ -121,7 +121,7 @@ TEST_F(Rates, FindARotationOfAllSpins) {
 // Brown's diffusion: the cosine z of the angle to the axis diffuses with damping kT (1 - z^2) in
 // the potential -K z^2 / 2 - h z. The flux of probability over the top at z = -h / K gives the rate
 // of one spin,
-//   damping (1 - z^2) sqrt(K / 2 pi kT) (K +- h).
+//   damping (1 - z^2) sqrt(K / (2 pi kT)) (K +- h).
 // In a chain, each exchange mode multiplies this by a ratio of its curvatures in the well and at
 // the top. At the top, a mode has one curvature along the ring of saddles and one across it.
 TEST_F(Rates, InAFieldAlongTheEasyAxis) {
@@ -196,7 +196,7 @@ TEST_F(Rates, OfASkyrmionOfPdFeIr) {
   EXPECT_NEAR(found.path.saddle().curvature, -2.45602087, 1e-7);
   EXPECT_EQ(found.rates.zero_modes, (std::array<std::int64_t, 3>{2, 0, 0}));
   EXPECT_NEAR(found.rates.volumes[0], 15.1529267, 0.02);
-  // Converts to 1/s and 1/(s K), for moments of 3 Bohr magnetons.
+  // Factors that convert the prefactors to 1/s and 1/(s K), for moments of 3 Bohr magnetons.
   double const time = 2.00231930 / 4.837769e-14 / 3, kelvin = 6.333623e-6 * 1e3;
   EXPECT_NEAR(found.rates.prefactor_forward * time * kelvin / 4.19766298e12, 1, 2e-3);
   EXPECT_NEAR(found.rates.prefactor_backward * time / 8.71839224e14, 1, 2e-3);

@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Runs a scene without and with an interruption after `cut` steps. Returns false for an invalid
-/// scene.
+/// Runs a scene without and with an interruption after `cut` steps. Returns false if the scene is
+/// invalid or the run fails with numbers that are not finite.
 bool gives_the_bits_of_one_run(std::string const& text, Precision precision, std::int64_t cut) {
   std::optional<io::Scene> scene;
   try {

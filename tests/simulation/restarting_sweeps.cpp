@@ -84,7 +84,7 @@ TEST(RestartingSweeps, GivesTheBitsOfARunWithoutABreak) {
     for (std::int64_t draw = 0; done < asked && draw < 50 * asked && !HasFailure(); ++draw) {
       RandomRun random(random_seed() + 77, draw);
       auto const& variant = *suitable[static_cast<std::size_t>(random.below(std::ssize(suitable)))];
-      // Half of the runs are with methods that store a residual.
+      // Half of the draws accept only methods that store a residual.
       if (draw % 2 == 0 && !variant.compensated) continue;
       auto const& field = fields[random.below(std::ssize(fields))];
       done += gives_the_bits_of_passes(variant, field, precisions[random.below(2)], random);

@@ -106,8 +106,8 @@ TEST(StandardProblems, FourCrossesZero) {
   EXPECT_LT(run->sample().magnetization.x, 0);
 }
 
-// Values of mumax3's test standardproblem5.mx3. Its tensor differs, and its u is smaller by a
-// factor of 1 + xi^2.
+// Values of mumax3's test standardproblem5.mx3. mumax3's demagnetising tensor differs, and its u is
+// smaller by a factor of 1 + xi^2.
 TEST(StandardProblems, FiveIsAsInMumax3) {
   std::vector<std::string> const size{"lattice.shape=[32, 32, 4]",
                                       "lattice.spacing=[3.125e-9, 3.125e-9, 2.5e-9]"};

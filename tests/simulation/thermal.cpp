@@ -113,7 +113,7 @@ TEST_F(ThermalRuns, WaitForNoiseOnlyAtLooks) {
   EXPECT_EQ(fences_of_noise, 10);
 }
 
-// A field of the program throws once; the step is then repeated with its noise.
+// A field of the program throws once; the step is then repeated with the same noise.
 TEST_F(ThermalRuns, GoOnAfterAFieldThatFailed) {
   auto const run_of = [&](int failing_call) {
     auto scene = thermal_chain();

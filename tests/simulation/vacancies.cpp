@@ -21,7 +21,7 @@ bool divides_by_length(Variant const& variant) {
   return method.stiff || variant.in_chart || (method.is_baseline() && method.keeps_length);
 }
 
-/// `lattice`: the keys of its table.
+/// `lattice` has the keys of [lattice].
 io::Scene scene_with(Variant const& variant, std::string const& lattice, std::string const& field,
                      Precision precision) {
   MethodChoice choice{.method = variant.method};

@@ -89,8 +89,9 @@ class Helmholtz : public ::testing::Test {
     return vectors;
   }
 
-  /// Applies 1 + b K in the planes normal to the spins m; there, the imaginary unit of b stands for
-  /// m x. K acts on d = v x m, and m x turns the result back.
+  /// Applies 1 + b K in the planes normal to the spins m, where the imaginary unit of b stands for
+  /// the cross product m x v. K acts on d = v x m, and a cross product with m turns the result
+  /// back.
   static Numbers applied_about(Problem const& problem, Numbers const& spins, Number b,
                                Numbers const& v) {
     Numbers d(v.size());

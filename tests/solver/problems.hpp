@@ -42,7 +42,7 @@ inline std::vector<Problem> grids() {
           {"weak", Lattice::square(12, 11), {1e-3, 1e-3, 0}}};
 }
 
-/// Lattices where only one axis couples.
+/// Lattices where at most one axis couples.
 inline std::vector<Problem> lines() {
   std::vector<Problem> problems;
   for (std::int64_t const n : {2, 3, 4, 5, 100})

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Finds the true limit by bisection, for the stiffest mode of chains, planes and blocks of spins
-// along a field, and compares it with the prediction, which is exact in these cases.
+// Finds the true limit of dt by bisection, for the stiffest mode of chains, planes and blocks of
+// spins along a field, and compares it with the prediction, which is exact in these cases.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 

@@ -18,7 +18,8 @@ class AtRest : public ::testing::Test {
  protected:
   using Field = SpinField<Real, Space::memory_space>;
 
-  /// Calls check(name, stepper) for LieEuler with each kind of sigma, and for ImplicitLieEuler.
+  /// Calls check(name, stepper) for LieEuler with each sigma that comes from a derivative or a
+  /// difference, and for ImplicitLieEuler.
   template <class Check>
   static void for_each(Field const& like, Check const& check) {
     using namespace isotropy;

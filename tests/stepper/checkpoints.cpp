@@ -51,8 +51,8 @@ std::tuple<std::int64_t, std::int64_t> counts(Stepper const& stepper) {
     return {0, 0};
 }
 
-// The run is interrupted after various steps, among them the first ones of multistep methods and
-// steps within an adaptive one.
+// The run is interrupted after various steps, among them the first ones of multistep methods, and
+// at times within a step of adaptive ones.
 TYPED_TEST(Checkpoints, GoOnAsTheRunWouldHave) {
   static_assert(remembers_steps<TypeParam>);
   using Spins = typename TypeParam::spins_type;

@@ -18,7 +18,7 @@ struct Compensation : ::testing::Test {
 };
 TYPED_TEST_SUITE(Compensation, Precisions, PrecisionName);
 
-// By Knuth's theorem, sum and residual add up exactly to the two numbers.
+// By Knuth's theorem, sum + residual equals a + b exactly.
 TYPED_TEST(Compensation, SumAndResidualAreTheTwoNumbers) {
   using Real = TypeParam;
   std::mt19937_64 engine(7);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The equation of an implicit step: roots by fixed-point iteration and by Newton's method; steps
-// that have no root.
+// for which no root is found.
 #include "../support/backends.hpp"
 #include "../support/evaluate.hpp"
 #include "../support/landau_lifshitz.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Bits are equal on every host space and with any number of threads.
+// Bits are equal on Serial and OpenMP.
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>

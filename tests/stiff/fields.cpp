@@ -27,7 +27,7 @@ auto numbers(double every_fifth, double others) {
 }
 
 /// Expects small errors with steps four times as long as those of an explicit reference run.
-/// Halving the steps reduces the errors by 4 (StiffGauss2) and by 16 (StiffGauss4).
+/// Expects halving the steps to divide the errors by about 4 (StiffGauss2) and 16 (StiffGauss4).
 template <class Generator>
 void expect_converges(Generator const& generator, double rate = 200) {
   auto const start = wavy(film());

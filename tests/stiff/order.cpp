@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Orders of stiff steps, on a coupled chain whose torques do not commute.
+// Orders of stiff steps, on a coupled chain whose rotations do not commute.
 #include "../order/chain.hpp"
 
 #include <cayspin/stepper/stiff_gauss.hpp>

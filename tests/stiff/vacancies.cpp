@@ -39,8 +39,8 @@ struct Shape {
     return spins;
   }
 
-  /// Returns a generator with vacancies, whose field has exchange, an anisotropy, a demag and an
-  /// applied field.
+  /// Returns a generator with vacancies, whose field has exchange, an anisotropy, a local
+  /// demagnetising field and an applied field.
   template <class Real>
   auto generator(double exchange, double damping) const {
     return LandauLifshitz(
@@ -79,8 +79,7 @@ void expect_vacant_spins_are_zero(Field const& spins, Shape const& shape) {
   }
 }
 
-/// Compares steps of a film in a box, with vacant sites around it, with steps of the film by
-/// itself.
+/// Compares steps of a film among the vacant sites of a box with steps of the film by itself.
 template <class Stepper>
 void expect_that_of_the_film_alone(char const* name, double tolerance) {
   using Field = typename Stepper::spins_type;

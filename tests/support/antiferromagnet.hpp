@@ -13,7 +13,7 @@ struct AntiferromagneticCone {
   double frequency;  ///< right-handed about the spins that open more
 
   /// Returns the wave in which the sublattice that opens more has the angle `opening`. At
-  /// equilibrium each sublattice has the field `exchange` on the other. The wave multiplies the
+  /// equilibrium each sublattice exerts the field `exchange` on the other. The wave multiplies the
   /// part of this field that is normal to the axis by gamma in (0, 1]. `anisotropy` is on-site.
   static AntiferromagneticCone of(double exchange, double anisotropy, double gamma,
                                   double opening) {

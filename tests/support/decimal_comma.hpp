@@ -10,8 +10,8 @@
 
 namespace cayspin::test {
 
-/// While an object exists, C++ writes 1234.5 as 1.234,5. C writes 1234,5 if localedef can make a
-/// locale.
+/// While a DecimalComma exists, C++ writes 1234.5 as 1.234,5. C writes 1234,5 if localedef can make
+/// a locale.
 class DecimalComma {
  public:
   explicit DecimalComma(std::filesystem::path const& folder)

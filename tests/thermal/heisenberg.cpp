@@ -31,8 +31,8 @@ class Averages {
       sums_[block][i] += values[i] / static_cast<double>(per_block_);
   }
 
-  /// Returns a function of the means, and its standard error, found by leaving out each block in
-  /// turn.
+  /// Returns the value of a function of the means, and its standard error, found by leaving out
+  /// each block in turn.
   template <class Of>
   std::pair<double, double> estimate(Of const& of) const {
     std::array<double, 4> all{};

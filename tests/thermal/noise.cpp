@@ -156,7 +156,8 @@ TYPED_TEST(Thermal, LengthsDoNotDrift) {
   EXPECT_LT(norm_defect(this->exec, spins), 8 * epsilon<typename TypeParam::Real>);
 }
 
-// Noise depends only on the number of the step, so a run in pieces gives the bits of an uncut run.
+// Noise depends on the number of the step and not on earlier steps, so a run in pieces gives the
+// bits of an uncut run.
 TYPED_TEST(Thermal, BitsDoNotDependOnWhereARunIsCut) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::cubic(21, 6, 5);

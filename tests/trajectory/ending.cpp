@@ -34,7 +34,7 @@ TEST_F(TrajectoryTest, ReservedRoomIsGivenBack) {
   EXPECT_LT(std::filesystem::file_size(path), 300000u);
 }
 
-// With 100 frames, HDF5 has split a node of its index.
+// The spins of 100 frames are in 15 chunks.
 TEST_F(TrajectoryTest, KilledRunLeavesWholeFrames) {
   auto const path = folder_ / "a.h5";
   auto const die = [&] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Values that samples have beside their scalars: those of regions and terms, and the shift.
+// Values that samples have in addition to their scalars: those of regions and terms, and the shift.
 #include "hdf5/attribute.hpp"
 #include "hdf5/dataset.hpp"
 #include "hdf5/handle.hpp"

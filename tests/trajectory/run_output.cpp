@@ -72,8 +72,8 @@ TEST_F(TrajectoryTest, OutputIsTheSameWithAndWithoutChunks) {
   }
 }
 
-// Checksums of frames of zeros, with all bits set, and of other numbers. A frame has more words
-// than are added between folds.
+// Frames of zeros, of numbers with all bits set and of other numbers pass their checksums when they
+// are read. A frame has more words than are added between folds.
 TEST_F(TrajectoryTest, ChecksumsAreThoseThatHdf5Expects) {
   auto header = small_header("single");
   header.shape = {100, 100, 100};

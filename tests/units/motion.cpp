@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Spins stepped in reduced units are compared with motion in SI: all expected values are from
-// formulas that do not use the library's units.
+// formulas that do not use the library's conversions.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -34,7 +34,7 @@ class UnitsInMotion : public ::testing::Test {
   /// Tolerance of angles after all steps.
   static constexpr double tolerance = steps_taken * double(std::numeric_limits<Real>::epsilon());
 
-  /// Returns the spins at this time, in seconds.
+  /// Returns the spins after `seconds`.
   template <class Generator>
   static Field after(double seconds, units::ReducedUnits const& units, Generator const& generator,
                      Field const& start, int steps = steps_taken) {

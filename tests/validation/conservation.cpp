@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Undamped runs: drift of the energy and of the magnetization along a symmetry axis, and lengths of
-// spins over a million steps.
+// Drift of the energy and of the magnetization along a symmetry axis in undamped runs, and lengths
+// of spins after a million steps.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The switching slab of Lewis and Nigam 2002: the path of one spin compared with a converged one,
-// lengths of spins, and steady states.
+// and lengths of spins.
 #include "../support/figures.hpp"
 #include "../support/unit_slab.hpp"
 

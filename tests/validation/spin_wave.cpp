@@ -52,7 +52,7 @@ double shape(Wave const& wave, std::array<std::int64_t, 3> const& site) {
   return v;
 }
 
-/// Returns the relative error of the frequency, found from the phase after 10.25 periods.
+/// Returns the relative error of the frequency, found from the phase after about 10.25 periods.
 double frequency_error(Wave const& wave, int steps_per_period) {
   double const s = stiffness(wave), omega = std::sqrt(s * (s + wave.demag));
   double const dt = 2 * pi / omega / steps_per_period;

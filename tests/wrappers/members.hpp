@@ -20,7 +20,8 @@ namespace cayspin::test {
 
 using Vectors = std::vector<Vec3<double>>;
 
-/// Spins and other vectors on a lattice, with moments and gyromagnetic ratios of its sites.
+/// Spins and other vectors on a lattice, with moments and gyromagnetic ratios of the sites of a
+/// cell.
 template <class Real>
 struct Setting {
   using Field = SpinField<Real, Kokkos::HostSpace>;
@@ -128,7 +129,8 @@ double energy_of(Term const& term, Field const& spins, double t) {
   return sum;
 }
 
-/// Answers that a wrapper must share with the term inside it.
+/// Answers that a wrapper must share with the term inside it, except those that expect_answers()
+/// leaves out.
 struct Answers {
   bool linear, derivative, affine, conservative, depends_on_time, stationary, by_time;
   int energy_terms;
@@ -229,8 +231,8 @@ void expect_members(std::string const& name, Term const& term, Setting<Real> con
   is.expect_turns(here.turning, field, m, "turning_field");
   is.expect_turns(here.added_turning, with_added, m, "add_turning_field");
 
-  // The neighbour field and the local field add up to the field, and the neighbour field does not
-  // depend on the site's own spin.
+  // The neighbour field and the local field add up to the field, except for a multiple of the
+  // spin, and the neighbour field does not depend on the site's own spin.
   if constexpr (detail::comes_in_parts<Prepared, Stencil>()) {
     is.expect_turns(here.neighbor - (-1.0 * here.local), field, m,
                     "neighbor_field and local_field");

@@ -16,7 +16,7 @@ struct NoField {
 
 std::vector<Coupling> const one_bond{Coupling::of({0, 0}, {1, 0, 0}, 1)};
 
-/// Returns a call of each function that takes the energy of a term or generator.
+/// Returns a call of each function that computes the energy of a term or generator.
 template <class Source>
 std::vector<WrongCall> sums_of(Source const& source, Spins const& spins) {
   return {{"energy", [=] { energy(Exec(), source, spins); }},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// All functions of steppers refuse fields and generators of other lattices, and the stepper's own
-// memory as spins.
+// All functions of steppers refuse fields and generators of other lattices. Spins in the stepper's
+// own memory are refused or moved correctly.
 #include "wrong_calls.hpp"
 
 #include <cayspin_paper/analytic_sigma.hpp>
@@ -116,9 +116,9 @@ TEST(WrongCallsOfSteppers, BatchesOfNoSteps) {
   }
 }
 
-// A step swaps the memory of the spins with the stepper's own, so a second handle on the original
-// memory is then a handle on the stepper's. It is refused, or steps with it are as correct as with
-// the first handle.
+// A step may swap the memory of the spins with the stepper's own. A second handle on the original
+// memory is then a handle on the stepper's. This handle is refused, or steps with it are as correct
+// as with the first handle.
 TEST(WrongCallsOfSteppers, ASecondHandleOnTheSpins) {
   for_each_stepper([](std::string const& name, auto const& make) {
     Lattice const own = own_lattices[0];

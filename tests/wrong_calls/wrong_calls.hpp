@@ -46,7 +46,8 @@ std::vector<std::pair<std::string, Field>> fields_of_others(Lattice const& own) 
   return fields;
 }
 
-/// A default-constructed Lattice is a single site, and thus equals the lattice of an empty field.
+/// A rectangle, and the default-constructed Lattice: a single site, unlike the lattice of an empty
+/// field, which has none.
 inline std::vector<Lattice> const own_lattices{Lattice::square(6, 4), Lattice()};
 
 /// Expects each call to be refused, because `who` was made for another lattice than the spins.

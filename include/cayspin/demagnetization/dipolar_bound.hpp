@@ -17,13 +17,13 @@
 
 namespace cayspin::inline v0_2 {
 
-/// Returns an upper bound of the magnitudes of the eigenvalues of the matrix that turns the spins
-/// into H, for a DipolarField with strength 1 on an open or periodic lattice of any size. Stable
-/// steps depend on these eigenvalues; |H| at a site can be larger. `moments`: one for each site of
-/// a cell, by which its spin is multiplied. `periodic_images`: those of the field, needed only
-/// along axes with a single cell. The two parts of Ewald's sum are bounded separately, for several
-/// ways to split it, and the smallest result is returned. For large sc, bcc and fcc lattices it is
-/// about twice the largest eigenvalue.
+/// Returns an upper bound on the absolute eigenvalues of the matrix that turns the spins into H,
+/// for a DipolarField with strength 1 on an open or periodic lattice of any size. Stable steps
+/// depend on these eigenvalues; |H| at a site can be larger. `moments`: one for each site of a
+/// cell, by which its spin is multiplied. `periodic_images`: those of the field, needed only along
+/// axes with a single cell. The two parts of Ewald's sum are bounded separately, for several ways
+/// to split it, and the smallest result is returned. For large sc, bcc and fcc lattices it is about
+/// twice the largest eigenvalue.
 inline double dipolar_bound(Lattice const& lattice, Crystal crystal,
                             std::vector<double> const& moments,
                             std::array<int, 3> const& periodic_images = {}) {
@@ -37,8 +37,8 @@ inline double dipolar_bound(Lattice const& lattice, Crystal crystal,
     auto const extent = whole(lattice).shape[axis];
     auto const cells = axis == 2 ? extent / lattice.cell_sites : extent;
     auto const& vector = crystal.cell[axis];
-    // The bound is that of an infinite lattice. A single layer without images belongs to infinite
-    // lattices with any distance between layers.
+    // The bound is that of an infinite lattice. For a single layer without images, any distance
+    // between the layers of that lattice gives a bound.
     bool const repeats = cells > 1 || periodic_images[axis] != 0;
     cell.push_back(add_scaled(repeats ? 1 : longest / length(vector), vector, {}));
   }

@@ -16,7 +16,7 @@ namespace cayspin::inline v0_2 {
 
 /// The field of point dipoles at the sites of a crystal, by FFTs: H_i = strength V sum_j (3 r
 /// (r.m_j) - m_j r^2) / (4 pi r^5), with the vector r from site j to site i. V is the product of
-/// the lattice's spacings, so that a dipole of 1 corresponds to a box of these edges with
+/// the lattice's spacings, so that a dipole of 1 corresponds to a cell with these edges and
 /// magnetization 1. Far away, the dipole's field is that of such a cell in a DemagnetizingField.
 /// The energy per site is -m.H/2. DipolarField is a solver for HostField, and the HostField can be
 /// put into a SlowField. The spins passed in are taken as dipole moments: multiply them by the
@@ -35,8 +35,9 @@ class DipolarField {
   /// Sites are at the positions of `crystal`, times the lattice's spacings. Throws
   /// std::invalid_argument for an invalid lattice or crystal, if they have different numbers of
   /// sites in a cell, for several replicas, a non-finite strength or demagnetising factor, a
-  /// negative number of images, and infinitely_many_images with another number of images that is
-  /// not 0. Throws std::runtime_error if FFTW fails.
+  /// negative number of images, and infinitely_many_images along vectors whose periods have a ratio
+  /// above 1e4, or together with another number of images that is not 0. Throws std::runtime_error
+  /// if FFTW fails.
   DipolarField(Lattice const& lattice, Crystal const& crystal, DipolarOptions const& options = {})
       : lattice_(lattice),
         convolution_(std::make_shared<Convolution const>(

@@ -19,9 +19,9 @@ namespace cayspin::inline v0_2::detail {
 /// are more), lines of dipoles replace the images along the axis of the shorter period. Likewise,
 /// sheets replace the lines beyond 16 periods along the other axis. The fields of lines and sheets
 /// are integrals in closed form. Corrections by differences over a period, up to the sixth, turn
-/// the integrals into sums over images and average over the cells' edges along that axis;
-/// quadrature averages over the other edges. The error is below 1e-10, where 1 is the trace of a
-/// cell's own tensor.
+/// the integrals into sums over images and average over the cells' edges along the axis of that
+/// period; quadrature averages over the other edges. The error is below 1e-10, where 1 is the trace
+/// of a cell's own tensor.
 class FarImages {
  public:
   /// `period`: 0 along non-periodic axes. `nearest`: images on each side to leave out.

@@ -59,7 +59,7 @@ class KernelOfCells {
  private:
   std::size_t octant_plane() const { return std::size_t(octant_[1]) * std::size_t(octant_[2]); }
 
-  /// `Sign` is -1 where the stored wave number is the mirrored one along y, and `sign_of_z` along
+  /// `Sign` is -1 where the stored wave number is the mirror image along y, and `sign_of_z` along
   /// z.
   template <int Sign>
   void multiply_row(Real const* kernel, Real sign_of_z, Complex* row, std::size_t plane, int begin,

@@ -195,8 +195,9 @@ inline DemagnetizingTensor cheapest_demagnetizing_tensor(Lengths const& position
   return near_demagnetizing_tensor(position, cell);
 }
 
-/// Divides both cells into pieces whose edges are at most a fifth of the distance. Returns the sum
-/// over the pieces of one cell of the mean over the pieces of the other.
+/// Divides both cells into pieces whose edges are at most a fifth of the distance. Returns the
+/// tensors between the pieces, summed over the pieces of one cell and averaged over those of the
+/// other.
 inline DemagnetizingTensor divided_demagnetizing_tensor(Lengths const& position,
                                                         Lengths const& cell) {
   std::array<int, 3> pieces{};
@@ -268,13 +269,13 @@ inline DemagnetizingTensor slender_demagnetizing_tensor(Lengths const& position,
 /// At distances below 4 times the longest edge, N comes from second differences of the functions of
 /// Newell, Williams and Dunlop, J. Geophys. Res. 98, 9551 (1993), eqs. 27 and 32. Farther away it
 /// comes from the Taylor series of these differences in edge / distance, of order 22, 12 (from 8
-/// edges) and 6 (from 50 edges). Where the differences would cancel too many digits, long or flat
+/// edges) and 6 (from 50 edges). Where the differences would lose too many digits, long or flat
 /// cells are divided into pieces.
 ///
 /// For ratios of edges up to 1e6, the error is at most 3e-11 of the largest entry of N at this
 /// position, and at most 1e-12 of it from a distance of 4 longest edges on. For ratios from 1e6 to
-/// 1e9, it is at most 1e-8 of that entry, and also at most 1e-15. This needs a long double with a
-/// mantissa of 64 bits or more.
+/// 1e9, it is at most 1e-8 of that entry, and also at most 1e-15 in absolute value. This needs a
+/// long double with a mantissa of 64 bits or more.
 inline DemagnetizingTensor demagnetizing_tensor(std::array<double, 3> const& position,
                                                 std::array<double, 3> const& cell) {
   auto const [x, y, z] = position;

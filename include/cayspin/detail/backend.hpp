@@ -64,7 +64,7 @@
 #define CAYSPIN_DETAIL_NOINLINE
 #endif
 
-// Marks a member that needs no address of its own. nvcc 13.0 lays out a class with such a member
+// Marks a member that needs no unique address. nvcc 13.0 lays out a class with such a member
 // differently in device and host code, so that device code reads the wrong place. With CUDA the
 // attribute is therefore left out.
 #if defined(KOKKOS_ENABLE_CUDA)
@@ -103,7 +103,7 @@ inline constexpr std::uint32_t threads_of_tile = 128;
 #define CAYSPIN_DETAIL_ROUGH_INVERSE
 __device__ __forceinline__ double rough_inverse(double number) {
   double inverse;
-  asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(inverse) : "d"(number));  // to 20 bits
+  asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(inverse) : "d"(number));  // to 18 bits
   return inverse;
 }
 __device__ __forceinline__ float rough_inverse(float number) {

@@ -62,7 +62,7 @@ struct DeviceLayout {
   }
 };
 
-/// A site of a device thread, with the members of Site.
+/// A site of a device thread, with the members of Site that device kernels use.
 template <class Value, class Index>
 class DeviceSite {
  public:

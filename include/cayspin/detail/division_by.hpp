@@ -8,8 +8,9 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Divides whole numbers from 0 to 2^31 - 1 by a fixed one with a multiplication and a shift, which
-/// takes a few device instructions; an integer division takes forty (Granlund and Montgomery 1994).
+/// Divides whole numbers from 0 to 2^31 - 1 by a fixed one with a multiplication and a shift
+/// (Granlund and Montgomery 1994). On devices this takes a few instructions; an integer division
+/// takes about forty.
 struct DivisionBy {
   std::uint32_t multiplier = 0;
   std::int32_t shift = 31;

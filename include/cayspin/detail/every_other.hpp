@@ -72,8 +72,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value load_every_other_of(Real const* from, std::int
 }
 
 /// Writes the first `count` lanes to to[0], to[2], ... and nothing else. The masked stores begin
-/// one number before `to` so that they end with the last lane: if they reached further, they would
-/// delay later loads of the memory there.
+/// one number before `to` so that they end with the last lane. Stores that reached further would
+/// delay later loads of the memory after that lane.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION void store_every_other(Value const& value, scalar_t<Value>* to,
                                                    std::int32_t count) {

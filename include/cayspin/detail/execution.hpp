@@ -19,8 +19,8 @@ template <class Exec>
 inline constexpr bool is_host_execution =
     std::is_same_v<typename Exec::memory_space, Kokkos::HostSpace>;
 
-/// Host kernels over at most this many sites run on the calling thread, since waking other threads
-/// would take longer.
+/// On synchronous host spaces (is_synchronous), kernels over at most this many sites run on the
+/// calling thread, since waking other threads would take longer.
 inline constexpr std::int64_t calling_thread_sites = 2048;
 
 /// True for host spaces that finish a kernel before the launch returns.

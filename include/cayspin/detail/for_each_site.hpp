@@ -38,8 +38,9 @@ struct RowBlock {
   std::int32_t z, y_begin, y_end, pack_begin, pack_end;
 };
 
-/// The blocks that host tasks work on: one or more rows of a plane, or part of a long row. Each is
-/// large enough to hide its launch cost; on large lattices there are enough for many threads.
+/// The blocks that host tasks work on: one or more rows of a plane, or part of a long row. Unless
+/// planes are small, each is large enough to hide the cost of its launch; on large lattices there
+/// are enough for many threads.
 class RowBlocks {
  public:
   RowBlocks(RowLayout const& layout, std::int32_t packs, RowRange const& rows)

@@ -129,8 +129,7 @@ inline std::size_t last_level_cache_bytes() {
 #endif
 }
 
-/// Returns the bytes of the level-2 cache, of which each core has its own; 1 MiB if the system does
-/// not report them.
+/// Returns the size of a core's level-2 cache in bytes; 1 MiB if the system does not report it.
 inline std::size_t core_cache_bytes() {
   static constexpr std::size_t usual = std::size_t(1) << 20;
 #if defined(__linux__) && defined(_SC_LEVEL2_CACHE_SIZE)

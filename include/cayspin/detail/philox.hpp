@@ -72,7 +72,8 @@ struct Philox {
     return equal;
   }
 
-  /// Performs one round. `key`: two numbers for all lanes, or two Words with a key for each lane.
+  /// Performs one round. `key`: two numbers that all lanes share, or two Words with one number per
+  /// lane.
   template <class Key>
   KOKKOS_FORCEINLINE_FUNCTION void round(Key const (&key)[2]) {
     Words const a = product(word[0], 0xD2511F53), b = product(word[2], 0xCD9E8D57);
@@ -83,7 +84,8 @@ struct Philox {
   }
 
  private:
-  // These use intrinsics, because g++ does not find the single instructions that they stand for.
+  // Where they can, product and mixed use intrinsics, because g++ does not find the single
+  // instructions by itself.
 
   /// Multiplies the lower half of each number of a by b.
   KOKKOS_FORCEINLINE_FUNCTION static Words product(Words const& a, std::uint64_t b) {

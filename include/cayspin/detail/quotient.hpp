@@ -17,8 +17,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value refined_quotient(Value const& a, Value const& 
   return Kokkos::fma(Kokkos::fma(-b, quotient, a), inverse, quotient);
 }
 
-/// Returns a / b for a normal b. On CUDA this is faster than an ordinary division, which tests for
-/// operands near the ends of their range and calls a function for those.
+/// Returns a / b if b and 1 / b are normal numbers. On CUDA this is faster than an ordinary
+/// division, which tests for operands near the ends of their range and calls a function for those.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value quotient(Value const& a, Value const& b) {
 #if defined(CAYSPIN_DETAIL_ROUGH_INVERSE)

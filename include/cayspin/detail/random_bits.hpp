@@ -12,9 +12,9 @@ namespace cayspin::inline v0_2::detail {
 
 class RandomBitsOfColumns;
 
-/// 16 random bits for each place, which is a number, by Philox: eight counters serve 64 places. A
-/// place gets the same bits whether it is drawn by itself or with others in a register. Devices
-/// draw for one place at a time.
+/// 16 random bits for each place (a number), by Philox: eight counters serve 64 places. A place
+/// gets the same bits whether it is drawn by itself or with others in a register. Devices draw for
+/// one place at a time.
 template <bool OnHost>
 class RandomBits {
   friend class RandomBitsOfColumns;
@@ -60,8 +60,8 @@ class RandomBits {
   KOKKOS_FORCEINLINE_FUNCTION static typename Philox<Lanes>::Words bits_of(
       std::uint64_t place, Philox<Lanes> const& random) {
     using Words = typename Philox<Lanes>::Words;
-    // All indices are constants. For others a device would keep the array on its stack, which is
-    // slow.
+    // All indices are constants: with variable ones, a device would keep the array on its stack,
+    // which is slow.
     auto const& word = random.word;
     Words const even = place % 32 < 16 ? word[0] : word[2];
     Words const odd = place % 32 < 16 ? word[1] : word[3];

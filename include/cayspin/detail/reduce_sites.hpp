@@ -16,10 +16,10 @@
 #include <string>
 
 // Sums and maxima over sites, in double. On host spaces each row, or piece of a long row, is summed
-// in a fixed order: first the packs at its ends, then those between them, and finally the lanes of
-// the sum in a fixed tree. The sums of rows are added without round-off. So the bits do not depend
-// on the host space, the number of threads or the division of a lattice into parts. Devices sum
-// with twice the digits, in their own order.
+// in a fixed order: first the packs at the ends of the row, then those between them, and finally
+// the lanes of the sum in a fixed tree. The sums of rows are added without round-off. So the bits
+// do not depend on the host space, the number of threads or the division of a lattice into parts.
+// Devices sum with twice the digits, in their own order.
 namespace cayspin::inline v0_2::detail {
 
 // `sums`: how many of the `Count` values are summed, from the first on. The others are reduced to

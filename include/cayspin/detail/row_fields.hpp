@@ -8,7 +8,7 @@
 #include <cstdint>
 
 // H of a term with many neighbours is faster to compute for all sites of a row together than site
-// by site. Before the host loop of a stage works on a piece of a row, it therefore lets these terms
+// by site. Before the host loop of a stage works on a piece of a row, it therefore lets such terms
 // compute H of that piece. The object that such a term's prepare_for_rows returns, or a sum of such
 // objects, has
 //   static constexpr int row_fields                       how many fields it keeps
@@ -50,7 +50,7 @@ struct RowFields {
     detail::store(v.z, data + 2 * stride + i);
   }
 
-  /// Returns the memory behind the first `fields` fields.
+  /// Returns the memory after the first `fields` fields.
   RowFields after(int fields) const { return {data + fields * 3 * stride}; }
 };
 

@@ -50,8 +50,8 @@ struct StripCrew {
   }
 
  private:
-  /// Number of pauses before a thread helps others; they take a few microseconds in all. Helping
-  /// moves a strip into another core's cache.
+  /// Number of pauses, a few microseconds in all, before a thread helps others. Helping moves a
+  /// strip into another core's cache.
   static constexpr int patience = 256;
 
   std::int64_t done(std::int32_t strip) const {

@@ -39,8 +39,8 @@ struct SweepBuffer {
 };
 
 /// The division of a lattice into independent parts, along z and y. A part may be cut into strips
-/// along y, one for each of several threads. These pass through the planes together, and read rows
-/// of the strips beside their own.
+/// along y, one for each of several threads. These threads pass through the planes together, and
+/// each reads rows of the strips beside its own.
 struct SweepPlan {
   static constexpr int most_stages = 13;
 
@@ -269,7 +269,7 @@ struct SweepPart {
     return block_ + 1 == blocks ? y.high(stage) : bounds_[2] - stage;
   }
 
-  /// Returns plane z of a buffer.
+  /// Returns plane at_z of a buffer.
   CAYSPIN_DETAIL_NOINLINE PlaneRows<Real> rows(int number, std::int32_t at_z) const {
     SweepBuffer const& buffer = plan.buffer[number];
     int const stage = buffer.producer;

@@ -18,8 +18,8 @@ class CubicAnisotropy {
   static constexpr double most_skew = 1e-4;
 
   /// Normalises the axes and makes the second orthogonal to the first. Throws std::invalid_argument
-  /// when the constant is not finite, an axis is zero or not finite, or |e1.e2| > 1e-4, which
-  /// rounding the axes to a few digits does not exceed.
+  /// when the constant is not finite, an axis is zero or not finite, or |e1.e2| > 1e-4. Unit axes
+  /// that are rounded to five decimals stay below this bound.
   CubicAnisotropy(double constant, Vec3<double> const& axis1, Vec3<double> const& axis2)
       : constant_(detail::finite(constant, "cayspin::CubicAnisotropy: the constant")),
         axes_{normalized(axis1, "cayspin::CubicAnisotropy: the first axis"),

@@ -136,7 +136,7 @@ class UniformExchange {
 
   double coefficient_[3];
   bool couples_[3];  // true if the axis has a nonzero coefficient
-  bool is_cubic_;    // equal coefficients along all axes
+  bool is_cubic_;    // equal, nonzero coefficients along all axes
 };
 
 }  // namespace detail

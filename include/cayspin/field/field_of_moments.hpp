@@ -81,7 +81,7 @@ struct AppliedToMoments {
 /// The field of spins whose moment mu and gyromagnetic ratio g depend on the site of a crystal's
 /// cell: H = -(g / mu) dE/dm, with the energy E of the terms inside. All terms must be inside; for
 /// an applied field use ZeemanOfMoments. Sites without a spin have H = 0. Their spins must be zero
-/// vectors, so that PairCouplings sees none there. Terms like Exchange, which use the lattice's
+/// vectors, which contribute nothing to PairCouplings. Terms like Exchange, which use the lattice's
 /// nearest neighbours, must be in a FieldWithVacancies to leave these sites out. Without damping, E
 /// is conserved as usual. But H is not -dE/dm. So EnergyControl, and all other code that needs H =
 /// -dE/dm, refuses this field; it accepts the field inside.

@@ -67,7 +67,7 @@ class StencilAmongVacancies {
   template <int Axis, int Direction>
   KOKKOS_FORCEINLINE_FUNCTION vector_type unless_vacant(vector_type const& neighbor,
                                                         vector_type const& missing) const {
-    value_type const zero(0);  // also the occupation past an open end
+    value_type const zero(0);  // along x, also the occupation past an open end
     auto const vacant = site().template neighbor<Axis, Direction>(occupation_, zero) == zero;
     return select<value_type>(vacant, missing, neighbor);
   }

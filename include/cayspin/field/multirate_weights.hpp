@@ -36,8 +36,8 @@ inline double with_mean(double mean, double slope, double curvature, double x) {
 // 1 (predictor) or 2 (corrector), and the factor of the next difference (`second` or `third`) has
 // the right mean. Their other 10 numbers come from a search over linear modes
 // m' = (i - damping) (w + D) m, where D is the expensive field and w the rest. D may differ between
-// the two directions across the spin. Up to the longest step no such mode grows, and linewidths
-// change least.
+// the two directions across the spin. The search was for long steps at which no such mode grows,
+// and for small changes of linewidths.
 
 /// Returns the predictor's weights of the values at x = 0, -1, -2, -3.
 inline MultirateWeights damping_predictor(double x, std::span<double const> /*nodes*/) {

@@ -16,10 +16,10 @@
 namespace cayspin::inline v0_2 {
 
 /// Bonds between any sites of a crystal: E = -m.T m' - B (m.m')^2 of each Coupling, so that H = T
-/// m' + 2 B (m.m') m' at m, and with T transposed at m'. Bonds past an open end are omitted. A bond
-/// that is longer than a periodic axis wraps around it repeatedly. On a part of a lattice
-/// (mpi::Domain) every evaluation throws std::invalid_argument, because between the stages of a
-/// step the ghosts are not updated as far out as bonds may reach.
+/// m' + 2 B (m.m') m' at m, and H = T^T m + 2 B (m.m') m at m', where T^T is the transpose of T.
+/// Bonds past an open end are omitted. A bond may be longer than a periodic axis, and then wraps
+/// around it. On a part of a lattice (mpi::Domain) every evaluation throws std::invalid_argument,
+/// because between the stages of a step the ghosts are not updated as far out as bonds may reach.
 template <class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class PairCouplings {
  public:

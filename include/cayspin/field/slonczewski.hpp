@@ -6,9 +6,9 @@
 namespace cayspin::inline v0_2 {
 
 /// The torque of a current polarised along the unit vector p, t = a m x (p x m) - b m x p. It is
-/// written as a field that precesses the spin accordingly: H = a m x p + b p, which equals m x t up
-/// to a multiple of m. With damping, LandauLifshitz turns it into t + damping m x t. The strengths
-/// a (damping-like, turns m towards p) and b (field-like) are fields in reduced units. There is no
+/// written as a field in which precession gives t: H = a m x p + b p, which equals m x t up to a
+/// multiple of m. With damping, LandauLifshitz turns it into t + damping m x t. The strengths a
+/// (damping-like, turns m towards p) and b (field-like) are fields in reduced units. There is no
 /// energy: energy_density is 0, and code that needs an energy refuses the term. Slonczewski 1996.
 class Slonczewski {
  public:

@@ -54,12 +54,12 @@ class UniformZhangLi {
 }  // namespace detail
 
 /// The torque of a current that flows through a magnetic texture, t = -(u.grad) m + xi m x (u.grad)
-/// m. It is written as a field that precesses the spin accordingly: H = (u.grad) m x m - xi
-/// (u.grad) m, which equals m x t up to a multiple of m. With damping, LandauLifshitz turns it into
-/// t + damping m x t. (u.grad) m is the central difference over 2 spacings, where the spin itself
-/// replaces a missing neighbour. The velocity u is in units of length over units of time; xi has no
-/// unit. There is no energy: energy_density is 0, and code that needs an energy refuses the term.
-/// Zhang and Li 2004.
+/// m. It is written as a field in which precession gives t: H = (u.grad) m x m - xi (u.grad) m,
+/// which equals m x t up to a multiple of m. With damping, LandauLifshitz turns it into t + damping
+/// m x t. (u.grad) m is the central difference over 2 spacings, where the spin itself replaces a
+/// missing neighbour. The velocity u is in units of length over units of time; xi has no unit.
+/// There is no energy: energy_density is 0, and code that needs an energy refuses the term. Zhang
+/// and Li 2004.
 class ZhangLi : public detail::TermOnLattice<detail::UniformZhangLi> {
  public:
   /// Throws std::invalid_argument when a number is not finite or the lattice is invalid.

@@ -24,8 +24,7 @@ template <class Field, class Damping = double>
 class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
                        public detail::ForwardingEnergy<LandauLifshitz<Field, Damping>, Field> {
  public:
-  /// Throws std::invalid_argument when the damping is negative or not finite, at any site of a
-  /// damping field.
+  /// Throws std::invalid_argument when the damping, or that of any site, is negative or not finite.
   LandauLifshitz(Field field, std::type_identity_t<Damping> damping, bool precession = true)
       : field_(std::move(field)), damping_(std::move(damping)), precession_(precession) {
     check(damping_);

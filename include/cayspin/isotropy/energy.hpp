@@ -9,8 +9,8 @@ namespace cayspin::inline v0_2::isotropy {
 
 /// Correction for rigid bodies that adds dt^p s m to the coordinates F of a step; p is 3 for
 /// LieHeun, and 4 for Rkmk4 and Series4. The number s is chosen so that the leading energy error of
-/// the step cancels. On a body in steady rotation the correction has no effect. Lewis and Nigam
-/// 2002, Sec. 5.2, here coordinate free and for any symmetric inertia.
+/// the step cancels. On a body in steady rotation the correction has no effect. The formulas are
+/// those of Lewis and Nigam 2002, Sec. 5.2, in coordinate-free form for any symmetric inertia.
 struct Energy {};
 
 }  // namespace cayspin::inline v0_2::isotropy

@@ -111,8 +111,8 @@ class Descent {
     return std::nullopt;
   }
 
-  /// Makes the next iterations Newton steps, for at most 250 evaluations. If many modes are soft,
-  /// these do not suffice, and L-BFGS resumes.
+  /// Makes the next iterations Newton steps, until they have taken more than 250 evaluations. If
+  /// many modes are soft, these do not suffice, and L-BFGS resumes.
   void begin_newton() {
     takes_newton_ = true;
     newton_until_ = so_far.evaluations + 250;
@@ -129,10 +129,10 @@ class Descent {
   /// Turns the spins along search.direction, and then corrects them by Newton steps that do not
   /// move along soft modes. Along a curved valley the energy rises in the first turn and falls in
   /// the corrections (the watchdog of Chamberlain, Powell, Lemarechal and Pedersen 1982). Returns
-  /// true once the energy is lower than before, or the torque where round-off hides the difference
-  /// of energies. Otherwise tries up to two shorter turns, then restores the spins and returns
-  /// false. `slope`: the derivative of the energy along search.direction. `longest`: the length of
-  /// its longest vector.
+  /// true once the energy is lower than before or, where round-off hides the difference of
+  /// energies, the torque is lower. Otherwise tries up to two shorter turns, then restores the
+  /// spins and returns false. `slope`: the derivative of the energy along search.direction.
+  /// `longest`: the length of its longest vector.
   template <class Exec, class Field>
   bool move_and_correct(Exec const& exec, Field const& field, Spins& spins, double slope,
                         double longest, MinimizeOptions const& options) {

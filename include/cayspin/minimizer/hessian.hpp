@@ -13,9 +13,9 @@
 #include <utility>
 
 // Hessian of the energy on the tangent planes of mobile spins, P (-dH/dm) P + (H.m), where P
-// projects to these planes. Its products with a tangent vector come from the field at the spins
-// plus a multiple of the vector. Tangent vectors are 0 at immobile spins, which include the zero
-// vectors of vacant sites. So immobile spins never change.
+// projects onto these planes. Its product with a tangent vector comes from the field at shifted
+// spins: the spins plus a multiple of the vector. Tangent vectors are 0 at immobile spins, which
+// include the zero vectors of vacant sites. So immobile spins never change.
 namespace cayspin::inline v0_2::detail {
 
 /// Functor that computes the tangent part of v on mobile sites, and sets 0 on the others.
@@ -93,7 +93,7 @@ class Hessian {
 
  public:
   struct Product {
-    double along, square;  // v.Hv and v.v
+    double along, square;  // v.hv and v.v
   };
 
   /// Linearises at `spins`, which must not change afterwards. A field that is not affine in the
@@ -113,13 +113,13 @@ class Hessian {
 
   std::int64_t evaluations() const { return evaluations_; }
 
-  /// Returns a bound on the round-off of v.Hv / v.v, for fields up to `strongest`.
+  /// Returns a bound on the round-off of v.hv / v.v, for fields up to `strongest`.
   double round_off(double strongest) const {
     constexpr double epsilon = std::numeric_limits<Real>::epsilon();
     return (is_affine_ ? 64 : std::max(64.0, 2 / longest_shift())) * epsilon * strongest;
   }
 
-  /// Computes hv = H v for a tangent v.
+  /// Computes hv, the Hessian times a tangent v.
   Product multiply(Spins const& v, Spins const& hv) {
     auto const& [shifted, at_rest, before] = arrays_;
     combine(exec_, 0, v, 0, v, shifted);

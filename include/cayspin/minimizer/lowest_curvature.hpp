@@ -61,7 +61,7 @@ struct LowestCurvature {
 struct CurvatureSearch {
   double scale;      // strength of fields other than exchange
   double tolerance;  // curvatures above -tolerance count as not negative
-  /// Bound on the error of the curvature, unless it is below -tolerance. Infinity: only its sign is
+  /// Bound on the error of a curvature that is not below -tolerance. Infinity: only its sign is
   /// found.
   double error;
   std::int64_t stream;     // of the random start vector
@@ -70,9 +70,9 @@ struct CurvatureSearch {
 
 /// Returns the lowest curvature found. Stops once the Rayleigh quotient is below -tolerance.
 /// Otherwise stops once its error is below search.error; if that is infinite, once the quotient is
-/// unlikely to fall below zero. It takes at most 1000 steps, or 40 if search.error is infinite.
-/// Each saddle needs a new random stream: a start that led out of one saddle can be orthogonal to
-/// the descent from the next. Calls `precondition(from, to)`. Leaves the vector in arrays.vector.
+/// unlikely to fall below zero. Takes at most 1000 steps, or 40 if search.error is infinite. Each
+/// saddle needs a new random stream: a start that led out of one saddle can be orthogonal to the
+/// descent from the next. Calls `precondition(from, to)`. Leaves the vector in arrays.vector.
 template <class AnyHessian, class Exec, class Spins, class Precondition>
 LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
                                       CurvatureArrays<Spins> const& arrays,

@@ -15,9 +15,9 @@ namespace cayspin::inline v0_2 {
 /// Why a minimisation ended.
 enum class MinimizeEnd {
   converged,  ///< max |m x H| is below the bound, at a minimum (with keep_saddles also at a saddle)
-  stagnated,  ///< max |m x H| stays above the bound, mostly because of round-off
+  stagnated,  ///< max |m x H| stays above the bound, or a saddle cannot be left; mostly round-off
   evaluation_limit,  ///< the largest number of evaluations was reached
-  interrupted        ///< the observer said Next::stop
+  interrupted        ///< the observer returned Next::stop
 };
 
 constexpr std::string_view to_string(MinimizeEnd end) {
@@ -46,18 +46,18 @@ struct Minimum {
   double torque = std::numeric_limits<double>::infinity();  ///< max |m x H|
   Energy energy = {};
   std::int64_t iterations = 0, evaluations = 0;  ///< evaluations of the field over all sites
-  std::int64_t saddles = 0;                      ///< saddles left on the way
+  std::int64_t saddles = 0;                      ///< saddles met on the way
   /// For a converged state, an upper bound of the least eigenvalue of the energy's Hessian on the
   /// tangent planes of mobile spins; with lowest_curvature, the eigenvalue. With keep_saddles and
-  /// without lowest_curvature it is not computed, and infinity.
+  /// without lowest_curvature it is not computed and stays infinite.
   double curvature = std::numeric_limits<double>::infinity();
 };
 
 /// Options of minimize.
 struct MinimizeOptions {
   double torque = 1e-6;  ///< bound on max |m x H|, in the units of H
-  /// Limit of the evaluations of the field. One more iteration and one search for a way out of a
-  /// saddle may exceed it.
+  /// Limit on the number of evaluations of the field. One more iteration and one search for a way
+  /// out of a saddle may exceed it.
   std::int64_t evaluations = 10000;
   double time = 0;             ///< time at which H is evaluated
   bool preconditioned = true;  ///< by the exchange measured on the field

@@ -10,9 +10,9 @@
 #include <string>
 
 // The last steps s and gradient changes y, from which L-BFGS approximates the inverse Hessian
-// (Nocedal and Wright 2006, Sec. 7.2). Both are tangent where they were made, and are projected to
-// the current tangent planes where they are used. Three passes give all inner products of an
-// iteration; the recursion then needs only numbers.
+// (Nocedal and Wright 2006, Sec. 7.2). Both are tangent where they were made, and are projected
+// onto the current tangent planes where they are used. Three passes give all inner products that
+// the recursion needs.
 namespace cayspin::inline v0_2::detail {
 
 inline constexpr std::size_t pairs_kept = 6;
@@ -87,7 +87,7 @@ struct WithoutChanges {
   }
 };
 
-/// Functor that computes y_i.z for the tangent part of z, from `vectors`.
+/// Functor that computes y_i.z, where z is the tangent part of `vectors`.
 template <class Real>
 struct ProductsWithChanges {
   static constexpr int pairs = static_cast<int>(pairs_kept);

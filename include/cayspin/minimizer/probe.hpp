@@ -157,9 +157,10 @@ inline double rest_of_parallel(double square, double along_square, double along,
   return std::max(0.0, square - 2 * j * along + j * j * sites) / sites;
 }
 
-/// Evaluates the field for parallel spins and for spins that alternate along each axis, on occupied
-/// sites: where `spins` is not the zero vector. Overwrites `pattern`. If some spins see no field so
-/// far, also evaluates it for random spins. Sets `is_mobile` to 1 where a spin sees a field. Waits.
+/// Evaluates the field for parallel spins and for spins that alternate along each axis in turn, on
+/// occupied sites: where `spins` is not the zero vector. Overwrites `pattern`. If some spins see no
+/// field so far, also evaluates it for random spins. Sets `is_mobile` to 1 where a spin sees a
+/// field. Waits.
 template <class Exec, class Field, class Spins>
 FieldStrengths probe(
     Exec const& exec, Field const& field, double time, Spins const& spins, Spins const& pattern,

@@ -17,7 +17,7 @@ enum class ModesEnd {
   converged,         ///< the modes are as accurate as requested
   stagnated,         ///< round-off prevents that accuracy
   evaluation_limit,  ///< the largest number of evaluations was reached
-  interrupted        ///< poll said Next::stop
+  interrupted        ///< poll returned Next::stop
 };
 
 constexpr std::string_view to_string(ModesEnd end) {
@@ -50,7 +50,7 @@ struct NormalModes {
   std::int64_t evaluations = 0;          ///< evaluations of the field over all sites
 };
 
-/// An eigenvalue of the Hessian of the energy on the tangent planes, and its eigenvector.
+/// An eigenvalue of the energy's Hessian on the tangent planes, and its eigenvector.
 template <class Spins>
 struct Curvature {
   double value = 0;

@@ -51,7 +51,7 @@ inline std::string to_text(Depth const& depth) {
 }
 
 /// Returns the division into this many parts that repeats the least work on ghosts, estimated as if
-/// the depths along y and z were equal; of equal ones, the one with most parts along z. Throws
+/// the depths along y and z were equal; of equal ones, the one with the most parts along z. Throws
 /// std::invalid_argument when there is none.
 inline Division divide(Lattice const& lattice, Depth const& depth, int parts) {
   Division best{0, 0};

@@ -28,7 +28,8 @@ namespace cayspin::inline v0_2::mpi {
 class Domain final : public Part {
  public:
   /// Collective on `comm`. Throws std::invalid_argument on every rank when the lattices or depths
-  /// of the ranks differ, the lattice is invalid or has replicas, or it cannot be divided.
+  /// of the ranks differ, a depth is below 1, or the lattice is invalid, has replicas or cannot be
+  /// divided.
   Domain(MPI_Comm comm, Lattice const& lattice, Depth const& depth)
       : Domain(comm, lattice, depth, divide(agreed(comm, lattice, depth), depth, size_of(comm))) {}
 
@@ -68,16 +69,17 @@ class Domain final : public Part {
   void sum(std::span<std::int64_t> words) const override { combine(words, MPI_SUM); }
   void maximum(std::span<std::int64_t> words) const override { combine(words, MPI_MAX); }
 
-  /// Sends one message to each neighbour or, if the faces are large, one for each component of each
-  /// field. Planes along z are exchanged first, then rows along y, including the ghosts just
-  /// received along z.
+  /// Sends one message to each neighbour or, for large contiguous faces in host memory, one for
+  /// each component of each field. Planes along z are exchanged first, then rows along y, including
+  /// the ghosts just received along z.
   void update_ghosts(std::span<FieldNumbers const> fields) const override {
     Kokkos::Profiling::ScopedRegion const region("cayspin::mpi::update_ghosts");
     for_each_axis([&](std::size_t axis, detail::GhostMessages& messages) {
       messages.exchange(comm_, fields, faces(axis), neighbor_[axis]);
     });
   }
-  /// Updates ghosts through buffers, as for fields on a device; works for host fields, too.
+  /// Updates ghosts through buffers, as for fields on a device. Works for all fields that Kokkos'
+  /// default execution space can access.
   void update_ghosts_packed(std::span<FieldNumbers const> fields) const {
     for_each_axis([&](std::size_t axis, detail::GhostMessages& messages) {
       messages.exchange_packed(comm_, fields, faces(axis), neighbor_[axis]);
@@ -90,8 +92,8 @@ class Domain final : public Part {
   }
 
  private:
-  /// Returns `lattice` if all ranks were given equal lattices, depths and divisions; otherwise
-  /// throws std::invalid_argument.
+  /// Returns `lattice` if it is valid and all ranks were given equal lattices, depths and
+  /// divisions; otherwise throws std::invalid_argument.
   static Lattice const& agreed(MPI_Comm comm, Lattice const& lattice, Depth const& depth,
                                Division const& division = {}) {
     constexpr std::size_t count = 15;

@@ -73,7 +73,7 @@ Sample sample(Exec const& exec, Source const& source, Step const& step,
 }
 
 /// An observer that stores a Sample for each call; wrap it in Every to call it less often. `source`
-/// gives the energy (an EffectiveField or a generator).
+/// gives the energy, as for sample().
 template <class Source>
 class Record {
  public:

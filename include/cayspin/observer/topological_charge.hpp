@@ -42,7 +42,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value half_solid_angle(SpinAndLength<Value> const& a
                        Value(Kokkos::atan2(volume, rest)));
 }
 
-/// Functor that adds up half the solid angles of two triangles at a site: one with the next
+/// Functor that adds the halves of the solid angles of two triangles at a site: one with the next
 /// neighbours along x and y, and one with the previous neighbours. All sites together cover each
 /// plaquette with one triangle of either kind.
 template <class Real>
@@ -78,15 +78,16 @@ double charge_of(Exec const& exec, SpinField<Real, MemorySpace> const& spins,
 
 }  // namespace detail
 
-/// Returns the topological charge of the planes (x, y), Q = sum m.(d_x m x d_y m) / (4 pi), summed
-/// over all z: the solid angles of the triangles of neighbouring spins, two in each plaquette, over
-/// 4 pi (Berg and Luescher 1981). Axes and planes are those of the lattice, also for a crystal.
-/// Lengths of spins do not matter; a spin of length 0 encloses no angle.
+/// Returns the topological charge of the planes (x, y), Q = sum m.(d_x m x d_y m) / (4 pi), where
+/// the sum is over all sites of all planes. Q is computed from the solid angles of triangles of
+/// neighbouring spins, two in each plaquette, as their sum over 4 pi (Berg and Luescher 1981). Axes
+/// and planes are those of the lattice, also for a crystal. Lengths of spins do not matter; a spin
+/// of length 0 encloses no angle.
 ///
-/// A skyrmion with its core down among spins up has Q = -1, of Neel or Bloch type; an antiskyrmion
+/// A skyrmion of Neel or Bloch type with its core down among spins up has Q = -1; an antiskyrmion
 /// with that core has +1. The charge of a periodic plane is an integer, to round-off. There are no
 /// plaquettes beyond open ends: a vortex in a film has about +-1/2. Three spins that lie in a plane
-/// and point all around it enclose half the sphere, but of either sign; they count as 0.
+/// and point all around it enclose half the sphere, but the sign is undetermined; they count as 0.
 ///
 /// Sums are in double. On host spaces their bits do not depend on the number of threads. Throws
 /// std::invalid_argument for spins without sites.

@@ -64,8 +64,8 @@ struct TurnOrNone {
   bool is_none;
 };
 
-/// One turn for each site of a crystal's cell, or for each site of a cell of each replica; no turn
-/// where a spin does not move.
+/// One turn for each site of a crystal's cell; replicas may have different turns. No turn where a
+/// spin does not move.
 template <class Real, bool OnHost>
 struct TurnOfCellSite {
   TurnOrNone<Real, OnHost> const* turns;

@@ -21,7 +21,7 @@ enum class PathEnd {
   unsettled,         ///< the saddles are found, but the path between them does not converge
   not_finite,        ///< the field or its energy is not finite
   evaluation_limit,  ///< the largest number of evaluations was reached
-  interrupted        ///< the observer said Next::stop
+  interrupted        ///< the observer returned Next::stop
 };
 
 constexpr std::string_view to_string(PathEnd end) {

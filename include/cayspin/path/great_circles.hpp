@@ -17,7 +17,7 @@ namespace cayspin::inline v0_2::detail {
 
 /// Returns the tangent vector at m that leads to p along the shorter arc of the great circle; its
 /// length is the angle. Between opposite spins all great circles are equally long. The one through
-/// x is taken, or through y if m is nearly parallel to x.
+/// x is taken, or through y if |m_x| > 0.9.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> way_to(Vec3<Value> const& m, Vec3<Value> const& p) {
   using Scalar = scalar_t<Value>;
@@ -106,8 +106,8 @@ void point_between(Exec const& exec, Spins const& from, Spins const& to, double 
                                          output.output(false)});
 }
 
-/// Returns the distance of two states along the great circles of all spins, the root of the summed
-/// squares of the angles; waits.
+/// Returns the distance between two states along the great circles of all spins: the root of the
+/// sum of the squared angles. Waits.
 template <class Exec, class Spins>
 double distance_between(Exec const& exec, Spins const& from, Spins const& to) {
   using Real = typename Spins::value_type;

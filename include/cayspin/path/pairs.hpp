@@ -11,7 +11,7 @@
 
 // The last steps s of all images of a path, and the changes y of their gradients across the path.
 // From these, L-BFGS makes the next steps of all images together. Where s and y are used, they are
-// projected to the current tangent planes and across the current path. Passes over the sites
+// projected onto the current tangent planes and across the current path. Passes over the sites
 // compute inner products; the recursion then needs only numbers.
 namespace cayspin::inline v0_2::detail {
 
@@ -98,7 +98,7 @@ struct SumOfPath {
   }
 };
 
-/// Functor that computes y_i.z for the tangent part of z; then t.z.
+/// Functor that computes y_i.z, and then t.z, where z is the tangent part of `vectors`.
 template <class Real>
 struct ChangesAlong {
   static constexpr int pairs = static_cast<int>(path_pairs), values = pairs + 1;

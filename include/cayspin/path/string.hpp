@@ -32,7 +32,7 @@ class PathString {
   using Products = ProductsOfPath<Real>;
 
  public:
-  /// Fields per image, besides its spins.
+  /// Fields per image, in addition to its spins.
   static constexpr int fields_per_image = 3 + 2 * (static_cast<int>(pairs) + 1);
 
   explicit PathString(std::vector<Spins> const& images) {
@@ -104,7 +104,7 @@ class PathString {
     return largest;
   }
 
-  /// Moves all images that are not fixed by a step. Call it after look().
+  /// Takes one step with all images that are not fixed. Call it after look().
   template <class Exec>
   void step(Exec const& exec, Preconditioner<Spins>& preconditioner, Mobile const& is_mobile,
             double longest_turn) {

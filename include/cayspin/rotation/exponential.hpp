@@ -23,7 +23,7 @@ struct Exponential {
   KOKKOS_FORCEINLINE_FUNCTION static Displacement<Value> displacement(Vec3<Value> const& f,
                                                                       Vec3<Value> const& m) {
     auto const half = detail::half_angle(f);
-    // The unit quaternion (cosine, v) turns m by m + 2 (cosine v x m + v x (v x m)).
+    // The unit quaternion (cosine, v) turns m into m + 2 (cosine v x m + v x (v x m)).
     Vec3<Value> const v = half.sine * half.direction;
     Vec3<Value> const c = cross(v, m);
     return {Value(2), multiply_add(half.cosine, c, cross(v, c))};

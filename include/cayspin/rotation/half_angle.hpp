@@ -7,9 +7,9 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Returns the Taylor polynomial 1 + x/c1 (1 + x/c2 (1 + ...)) with ck = -(2k + Odd)(2k - 1 + Odd),
-/// the series of sin(a)/a (Odd = 1) and cos(a) (Odd = 0) in x = a^2. For |a| <= 1.62 the first
-/// omitted term is below a quarter of the epsilon of the precision.
+/// Returns the Taylor polynomial of sin(a)/a (Odd = 1) or cos(a) (Odd = 0) in x = a^2, which is 1 +
+/// x/c1 (1 + x/c2 (1 + ...)) with ck = -(2k + Odd)(2k - 1 + Odd). For |a| <= 1.62 the first omitted
+/// term is below a quarter of the epsilon of the precision.
 template <int Odd, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value trigonometric_series(Value const& x) {
   constexpr int terms = sizeof(scalar_t<Value>) == sizeof(double) ? 10 : 6;
@@ -54,8 +54,8 @@ KOKKOS_FORCEINLINE_FUNCTION ScaledNorm<Value> scaled_norm(Vec3<Value> const& f) 
   return {scaled, norm, norm * select<Value>(too_large, Value(up), Value(Scalar(1)))};
 }
 
-/// The sine, sine_over_r * r, and the cosine of half an angle; both may have the opposite sign. r
-/// is half the angle minus a multiple of pi.
+/// The sine and the cosine of half an angle; both may have the opposite sign. The sine is r *
+/// sine_over_r, where r is half the angle minus a multiple of pi.
 template <class Value>
 struct HalfTurn {
   Value r, sine_over_r, cosine;

@@ -37,14 +37,15 @@ struct TurnByTangent {
   }
 };
 
-/// Selects one of the 32 turns by five bits. `Numbers` is a word of Bits for each lane.
+/// Selects one of the 32 turns by five bits. `Numbers` has one word, of type Bits, for each lane.
 template <class Real>
 struct ChoiceOfTurn {
   using Bits = std::conditional_t<sizeof(Real) == 8, std::uint64_t, std::uint32_t>;
 
   /// If bits 2 and 3 are 0, the turn is about a diagonal, with signs from bits 0, 1 and 4.
-  /// Otherwise they choose an axis; there is a turn about it if bit 0 is set, with a sign from bits
-  /// 1 and 4. The tangents and factors are Reals, passed as words with the same bits.
+  /// Otherwise bits 2 and 3 choose an axis, and there is a turn about it only if bit 0 is set. Its
+  /// sign comes from bit 4 or, about z, from bits 1 and 4. The tangents and factors are Reals,
+  /// passed as words with the same bits.
   template <class Value, class Numbers, class Words>
   KOKKOS_FORCEINLINE_FUNCTION static TurnByTangent<Value> of(Numbers const& code,
                                                              Words const& axial,
@@ -112,7 +113,7 @@ class RandomTurn {
   using Bits = typename Choice::Bits;
 
   RandomTurn() = default;
-  /// `variance`: s^2, of each component of v.
+  /// `variance`: s^2, the variance of each component of v.
   explicit RandomTurn(double variance) {
     double const half_axial = std::sqrt(variance), half_diagonal = std::sqrt(1.5 * variance);
     axial_ = static_cast<Real>(std::tan(half_axial));
@@ -187,9 +188,9 @@ struct RandomTurnOfNumbers {
 };
 
 /// RandomTurn for sites with different variances, each at most 1. Tangents are computed as
-/// quotients of polynomials. At variance 1 they are too small by up to 3e-6 of their value, below
-/// 0.01 by less than round-off. This shortens v by O(s^11); the moments of v still suffice for weak
-/// order 2.
+/// quotients of polynomials. They are too small, by up to 3e-6 of their value at variance 1, and by
+/// less than round-off at variances below 0.01. This shortens v by O(s^11); the moments of v still
+/// suffice for weak order 2.
 template <class Real, class Value>
 class RandomTurnOfSites {
   using Choice = ChoiceOfTurn<Real>;

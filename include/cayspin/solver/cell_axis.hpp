@@ -41,7 +41,7 @@ class CellAxis {
     if (cells() == 1 || (!periodic_ && i == 0)) return 0;
     return 2 / (widths_[i] * (widths_[i] + widths_[(i + cells() - 1) % cells()]));
   }
-  /// Returns the largest to_previous + to_next. Twice this is an upper bound of the eigenvalues of
+  /// Returns the largest to_previous + to_next. Twice this is an upper bound on the eigenvalues of
   /// minus the second difference.
   double largest_sum() const {
     double largest = 0;

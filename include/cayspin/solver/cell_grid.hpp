@@ -126,7 +126,7 @@ struct OneCell {
 /// cells.
 inline std::int64_t sites_worth(RowLayout const& layout) { return layout.sites() / 4; }
 
-/// Launcher that calls a functor for all cells of a grid, in a kernel of its own.
+/// Launcher that calls a functor for all cells of a grid, in a separate kernel.
 template <class Exec>
 struct LaunchEach {
   Exec const& exec;

@@ -28,8 +28,8 @@ inline std::optional<int> only_coupled_axis(Lattice const& lattice,
   return count <= 1 ? std::optional(only) : std::nullopt;
 }
 
-/// Solver of z = (c + b K)^-1 r, with K as in Helmholtz, where at most one axis couples. There is a
-/// tridiagonal system for each line along it. The formula of Sherman and Morrison adds the bond
+/// Solver for z = (c + b K)^-1 r, with K as in Helmholtz, where at most one axis couples. There is
+/// a tridiagonal system for each line along it. The formula of Sherman and Morrison adds the bond
 /// that closes a periodic line. Keeps the factors of the last four pairs (c, b).
 template <class Scalar, class MemorySpace>
 class LineSolver {

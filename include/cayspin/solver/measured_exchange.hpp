@@ -35,7 +35,7 @@ struct FillWaves {
 };
 
 /// Functor that counts a site's bonds along each axis to sites where the wave has the opposite
-/// sign. Each bond is thus counted at both of its ends.
+/// sign. So each bond is counted at both ends.
 template <class Real>
 struct OpposedBonds {
   SiteArray<Real, 3> waves;

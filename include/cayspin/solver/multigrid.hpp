@@ -17,7 +17,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// One multigrid cycle on cell-centred grids for an Operation, ShiftedExchange or ShiftedSpinWaves,
+/// One multigrid cycle on cell-centred grids for an Operation (ShiftedExchange or ShiftedSpinWaves)
 /// in precision Real. It relaxes after the coarse-grid correction and, if IsSymmetric, equally
 /// often before it, which makes the cycle a symmetric map. On hosts, the small grids share one
 /// kernel on the calling thread. Results have the same bits for any number of threads and in any

@@ -163,7 +163,7 @@ struct KeepAcross {
   }
 };
 
-/// Functor that writes u after a relaxation from u = 0 to out.
+/// Functor that writes to `out` the u after a relaxation that starts from u = 0.
 template <class Operation, class Real, class OutReal>
 struct RelaxZero {
   std::int32_t nx;
@@ -206,8 +206,8 @@ struct ScaleCells {
 
 /// Functor that writes (r x m, m), with m of length 1, or 0 where there is no spin: a right side of
 /// ShiftedSpinWaves. If d is the solution for this right side, m x d is the solution for r. Six
-/// components of r stand for r' + sign m x r''. `same_directions`: m is there already, and is not
-/// written.
+/// components of r stand for r' + sign m x r''. `same_directions`: `to` holds m already, and m is
+/// not written.
 template <int Components, class FromReal, class Real>
 struct TurnRightSide {
   std::int32_t nx;

@@ -38,7 +38,7 @@ struct MultigridLevel {
     }
     double const strongest = *std::max_element(strengths.begin(), strengths.end());
     least = largest;
-    // Coarsens x last, where it costs most.
+    // Coarsens x last, because it costs most.
     for (int const number : {2, 1, 0}) {
       auto const axis = static_cast<std::size_t>(number);
       if (strengths[axis] == 0 || strengths[axis] < 0.5 * strongest) continue;

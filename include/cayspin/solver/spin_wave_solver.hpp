@@ -15,14 +15,14 @@ namespace cayspin::inline v0_2::detail {
 
 struct SpinWaveOptions {
   bool conjugated = false;       ///< a right side (r', r'') stands for (r', -r'')
-  bool same_directions = false;  ///< m is about that of the previous call, whose copy is reused
+  bool same_directions = false;  ///< m is close to that of the previous call, whose copy is reused
 };
 
 /// Solver that approximates v in v + b K v = r, for vectors normal to the directions m. The i of
 /// the complex b stands for m x, and K = -J Lap over the neighbours of a lattice. If at most one
 /// axis couples, it solves lines, which is exact for parallel m. Otherwise it runs one multigrid
-/// cycle in single precision, which takes m of each site into account and leaves 0.1 to 0.3 of the
-/// residual.
+/// cycle in single precision, which takes the m of each site into account and leaves 0.1 to 0.3 of
+/// the residual.
 template <class Real, class MemorySpace>
 class SpinWaveSolver {
   using Vectors = SiteField<Real, 3, MemorySpace>;

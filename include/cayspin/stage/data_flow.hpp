@@ -7,8 +7,8 @@
 // explicit Runge-Kutta step read and write.
 namespace cayspin::inline v0_2::detail {
 
-/// Returns true for a chain: every stage uses only the increment of the stage before it, as in the
-/// classical Runge-Kutta methods.
+/// Returns true for a chain: every stage uses only the increment of the stage before it, as in
+/// tableau::Heun and tableau::Classical4.
 template <class Tableau>
 constexpr bool is_chain() {
   for (int i = 0; i < Tableau::stages; ++i)
@@ -29,8 +29,8 @@ constexpr bool estimates_with(int source) {
   return false;
 }
 
-/// Returns a weight of the second rotation; 0 if the tableau has none. Row Tableau::stages is that
-/// of the end of the step.
+/// Returns a weight of the second rotation; 0 if the tableau has none. Row Tableau::stages has the
+/// weights for the end of the step.
 template <class Tableau>
 constexpr double second_weight(int row, int column) {
   if constexpr (requires { Tableau::second_a; })
@@ -51,8 +51,8 @@ template <class Tableau, class Update>
 inline constexpr bool keeps_sum = Tableau::stages > 2 &&
                                   is_chain<Tableau>() && Update::increment_needs_argument;
 
-/// Returns true for chains that store only spins. Their last stage recomputes each increment from
-/// the spins of the stage after it.
+/// Returns true for chains that store only spins. Their last stage recomputes the increment of each
+/// stage from the spins of the next stage.
 template <class Tableau, class Update>
 constexpr bool recovers_increments() {
   if constexpr (requires { Update::recovers_increments(Tableau::stages); })

@@ -53,9 +53,9 @@ struct SecondWeights {
   KOKKOS_FUNCTION static constexpr double at(int j) { return second_weight<Tableau>(Row, j); }
 };
 
-/// Weights with which the sum of b[j] increment[j] of a chain becomes a sum of the coordinates of
-/// spins: increment j is the coordinates of the spin of stage j + 1, divided by a[j + 1][j]. No
-/// stage follows the last increment; it enters the sum itself, with the weight `last`.
+/// Weights that turn a chain's sum of b[j] increment[j] into a sum over the coordinates of spins:
+/// increment j equals the coordinates of the spin of stage j + 1, divided by a[j + 1][j]. Since no
+/// stage follows the last increment, that increment stays in the sum, with the weight `last`.
 template <class Tableau>
 struct ChartWeights {
   static constexpr double last = Tableau::b[Tableau::stages - 1];
@@ -222,7 +222,7 @@ struct RungeKuttaStage {
   }
 
   // Returns the spin of the next stage. In the last stage it returns the spin at the end of the
-  // step, with each earlier increment recovered from the spin of the stage after it.
+  // step, where the increment of each earlier stage is recovered from the spin of the stage after.
   template <class Site, class Arrays, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> on_chart(Site const& site, Arrays const& rows,
                                                    Vec3<Value> const& a, Vec3<Value> const& m,

@@ -217,7 +217,7 @@ struct Stereographic {
     Vec3<Value> d[std::size_t{Count}];
     // |d|^2 and 4 - |d|^2: f_j = (2 d + |d|^2 m0) / rest
     Value square[std::size_t{Count}], rest[std::size_t{Count}];
-    Value others(1);  // product of all rests but that of m
+    Value others(1);  // product of the computed rests, except that of m
     detail::unrolled<Count>([&](auto j) {
       if constexpr (j() < own && Weights::spin(j()) == 0) return;
       d[j()] = spins[j()] - m0;

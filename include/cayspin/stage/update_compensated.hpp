@@ -44,7 +44,7 @@ struct RoundedSum {
   Vec3<Value> sum, residual;
 };
 
-/// Returns a + b and its rounding error, whichever of the two is larger (Knuth 1969).
+/// Returns a + b and its rounding error. Either of a and b may be the larger (Knuth 1969).
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION RoundedSum<Value> rounded_sum(Vec3<Value> const& a,
                                                           Vec3<Value> const& b) {

@@ -105,8 +105,8 @@ struct EndStage {
     f[stages - 1] = Update::increment(total, Vec3<Value>(Value(dt) * xi), m, m0);
     Vec3<Value> const error = weighted_sum<ErrorWeights<Tableau>, stages>(f);
     Vec3<Value> const difference = m - Update::finish(Vec3<Value>(total - error), m0);
-    // Large coordinates may differ although their rotations hardly do. The larger of both errors
-    // then counts.
+    // Large coordinates may differ although their rotations hardly do. The larger of two errors
+    // then counts: that of the spin and that of the coordinates.
     Vec3<Value> const unbounded = cross(error, m0);
     Value const apart = dot(difference, difference), of_error = dot(unbounded, unbounded);
     site.store(xi, to.last);

@@ -14,12 +14,13 @@
 namespace cayspin::inline v0_2 {
 
 /// StiffGauss2 with adaptive steps, which become long as spins approach equilibrium. The error of a
-/// step is the largest angle of any spin: dt^3 / 12 times the third derivative of the spin, which
-/// is the error for a spin that precesses. It is found from a divided difference of the changes of
-/// the spins over three steps. The difference is multiplied by (1 + b K)^-1 (see StiffGauss), so
-/// that residual short spin waves do not count. If the generator is not stationary, the rate at the
-/// end of the step replaces the earliest of the three changes. Corrections use K + c in place of K,
-/// where c is the mean of A.m over the sites, but at least 0, and 0 without precession.
+/// step is an angle, the largest over all spins: dt^3 / 12 times the third derivative of a spin,
+/// which is the error for a spin that precesses. It is found from a divided difference of the
+/// changes of the spins over three steps. The difference is multiplied by (1 + b K)^-1 (see
+/// StiffGauss), so that residual short spin waves do not count. If the generator is not stationary,
+/// the rate at the end of the step replaces the earliest of the three changes. Corrections use K +
+/// c in place of K, where c is the mean of A.m over the sites, but at least 0, and 0 without
+/// precession.
 ///
 /// `step(.., t, dt)` leaves the spins at t + dt; within an internal step A is interpolated
 /// linearly. The internal steps do not depend on dt, unless no spin turns at the start: the default

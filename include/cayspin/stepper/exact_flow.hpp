@@ -142,9 +142,10 @@ struct ExactFlow {
     return multiply_add(Value(Scalar(2)), multiply_add(half.cosine, c, cross(v, c)), q);
   }
 
-  /// Relaxes q: with c = q.e, p = exp(-damping angle), a = 1 + c and b = 1 - c, to q + (1 - p) (a
-  /// (e - q) + p b (e + q)) / (a + p^2 b). The smaller of a and b comes from the part of q normal
-  /// to e, so that a spin nearly opposite to the field leaves that direction at the right time.
+  /// Relaxes q to q + (1 - p) (a (e - q) + p b (e + q)) / (a + p^2 b), where c = q.e, p =
+  /// exp(-damping angle), a = 1 + c and b = 1 - c. The smaller of a and b comes from the part of q
+  /// normal to e, so that a spin nearly opposite to the field leaves that direction at the right
+  /// time.
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> relax(Value const& angle, Vec3<Value> const& e,
                                                 Vec3<Value> const& q) const {
     constexpr Scalar longest = sizeof(Scalar) == sizeof(double) ? Scalar(340) : Scalar(40);
@@ -165,8 +166,8 @@ struct ExactFlow {
   }
 
   /// Takes one Newton step towards length 1. For a spin nearly opposite to the field, an error in
-  /// the length would grow as fast as the angle to that direction does. Spins that `rests` marks
-  /// (no field or no damping) keep their bits.
+  /// the length would grow as fast as the angle between the spin and the direction opposite to the
+  /// field. Spins that `rests` marks (no field or no damping) keep their bits.
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> kept_on_sphere(Vec3<Value> const& q,
                                                                 Mask const& rests) {
     Value const factor = multiply_add(Value(Scalar(-0.5)), dot(q, q), Value(Scalar(1.5)));

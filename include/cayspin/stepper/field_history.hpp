@@ -48,7 +48,7 @@ class FieldHistory {
     }
   }
 
-  /// Returns the times, in multiples of `unit`, of the end of the last step, which is 0, and of the
+  /// Returns times in multiples of `unit`: first 0, for the end of the last step, then those of the
   /// last Count - 1 fields.
   std::array<double, Count> times(double unit) const {
     std::array<double, Count> times{};

@@ -45,7 +45,7 @@ struct ImplicitStage {
   Generator generator;
   Isotropy isotropy;
   SiteArray<Real, 3> start, level;
-  SiteArray<Real, 1> sigma;  // added to A along start, unless data is null
+  SiteArray<Real, 1> sigma;  // sigma m0 is added to A, unless data is null
   OutputArray<Real, 3> next;
   Real dt;
   bool to_middle;

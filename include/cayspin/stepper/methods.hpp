@@ -16,7 +16,8 @@ namespace cayspin::inline v0_2 {
 
 /// Geometric Euler, order 1: m <- cay(dt xi) m, xi = A(m) + sigma m.
 /// Lewis and Nigam 2002, Sec. 4.2. <cayspin/stepper/corrected_euler.hpp> adds the isotropies
-/// FiniteDifference, FiniteDifferenceBackward, Analytic and Connection.
+/// FiniteDifference and FiniteDifferenceBackward, and <cayspin_paper/analytic_sigma.hpp> adds
+/// Analytic and Connection.
 template <class Spins, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class LieEuler : public RungeKutta<Spins, tableau::Euler, update::Lie<Rotation>, Isotropy> {
  public:
@@ -45,9 +46,10 @@ class Rkmk4 : public RungeKutta<Spins, tableau::Classical4, update::Lie<Rotation
       : Rkmk4::RungeKutta("Rkmk4", like, isotropy) {}
 };
 
-/// Runge-Kutta-Munthe-Kaas with any explicit tableau, of the tableau's order. To add a method,
-/// write a struct like those in cayspin::tableau. F_i = D(sum_j a_ij F_j), D(f) = dcay_f^-1 (dt
-/// xi(cay(f) m)), m <- cay(sum_i b_i F_i) m, xi = A + sigma m. Lewis and Nigam 2002, Sec. 2.
+/// Runge-Kutta-Munthe-Kaas with any explicit tableau; the order is that of the tableau. To add a
+/// method, write a struct like those in cayspin::tableau. F_i = D(sum_j a_ij F_j), D(f) =
+/// dcay_f^-1 (dt xi(cay(f) m)), m <- cay(sum_i b_i F_i) m, xi = A + sigma m. Lewis and Nigam 2002,
+/// Sec. 2.
 template <class Spins, class Tableau, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class Rkmk : public RungeKutta<Spins, Tableau, update::Lie<Rotation>, Isotropy> {
  public:
@@ -139,8 +141,9 @@ class ProjectedRk4 : public ProjectedRungeKutta<Spins, tableau::Classical4> {
 
 /// A Runge-Kutta method with compensated sums, for example Compensated<Rkmk4<Spins>>. It stores the
 /// rounding error of the spins at the end of a step and adds it to the next step (Kahan 1965), so
-/// that round-off does not grow with the number of steps. In float it gives most digits of double,
-/// at nearly the cost of float. It needs one more field of work memory, and always stores
+/// that round-off does not grow with the number of steps. In float, an error of about 1e-6 remains,
+/// because fields are evaluated at rounded spins; a step takes up to a third more time
+/// (docs/reference/methods.md). The method needs one more field of work memory, and always stores
 /// increments. Do not compile it with -ffast-math. It remembers the previous step: `spins` must be
 /// what the previous step left. Otherwise call `reset`.
 template <class Stepper>

@@ -30,16 +30,17 @@ struct MultirateOptions {
 /// interpolated in time, so that it is evaluated once a step. The order is Order, or that of the
 /// method if it is lower.
 ///
-/// A step predicts the expensive field from its last values, takes its substeps, and evaluates the
+/// A step predicts the expensive field from its last values, takes the substeps, and evaluates the
 /// expensive field at their end. It then repeats the substeps from the start with the field
 /// interpolated between that value and the last ones. That value is kept for the next step. Without
 /// the second pass, feedback through the field amplifies short waves at any dt.
 ///
 /// Orders 2 and 3 interpolate by the polynomials through the last Order - 1 values (first pass) and
-/// Order values (second pass). A mode of frequency w in the expensive field is damped by about (w
-/// dt)^4 / 3 more per step. Order 4 uses polynomials chosen for stability (multirate_weights.hpp),
-/// from 4 and 5 values, or interpolates 3 and 4 values after unequal steps. With order 4 the
-/// damping of such a mode changes by about (w dt)^6 per step.
+/// Order values (second pass). Order 4 uses polynomials chosen for stability
+/// (multirate_weights.hpp), from 4 and 5 values, or interpolates 3 and 4 values after unequal
+/// steps. If the expensive field alone makes a mode precess on a circle, with the frequency w, the
+/// amplitude grows by about 1/4 (w dt)^4 per step at order 2. It falls by about 3/8 (w dt)^4 at
+/// order 3, and by about (w dt)^6 at order 4.
 ///
 /// With D the largest eigenvalue of the expensive field, no linear mode grew up to dt D = .05, .24,
 /// .35, .5 at damping .002, .008, .02, .1 (order 4; .02, .08, .14, .4 at order 3). Without damping,
@@ -47,9 +48,9 @@ struct MultirateOptions {
 ///
 /// The first step evaluates the expensive field in each stage of its substeps. Steps may change
 /// their length, but a step that is more than twice as long as the last one, or goes the other way,
-/// is a first step again. Work memory in addition to the method's: past_fields + 1
-/// fields, and one of SlowField. A predictor-corrector form of the multirate methods of Gear and
-/// Wells (BIT 24, 1984).
+/// is a first step again. Work memory in addition to the method's: past_fields + 1 fields, and one
+/// of SlowField. This is a predictor-corrector form of the multirate methods of Gear and Wells (BIT
+/// 24, 1984).
 template <class Stepper, class SlowTerm, int Order = 4>
 class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   using Base = detail::StepperBase<typename Stepper::spins_type>;

@@ -24,7 +24,7 @@ class NewtonKrylov {
  public:
   /// `g(v, to)` writes g(v) to `to`. `v` is the first guess and becomes the solution; `image`
   /// becomes g(v). Returns true if, within `iterations`, all components of g(v) - v fell to
-  /// `tolerance`, or to somewhat more if round-off prevents further progress.
+  /// `tolerance` or, if round-off prevents further progress, to at most 512 times that.
   template <class Exec, class Map>
   bool solve(Exec const& exec, Map const& g, Spins const& v, Spins const& image, double tolerance,
              int iterations) {

@@ -154,8 +154,8 @@ class RedBlack : public detail::StepperBase<Spins> {
   std::int64_t passes_done_ = 0;
 };
 
-/// Red-black splitting of order 2 (RedBlack): three passes over half of the spins per step, of
-/// which consecutive steps of a batch share one.
+/// Red-black splitting of order 2 (RedBlack): three passes per step, each over half of the spins.
+/// Consecutive steps of a batch share one of them.
 template <class Spins>
 class RedBlack2 : public RedBlack<Spins, 2> {
  public:

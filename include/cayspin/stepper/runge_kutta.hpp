@@ -89,8 +89,8 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
            detail::is_stationary(generator, exec, spins);
   }
 
-  /// Takes `count` steps in one launch, with the bits of single steps. Throws std::invalid_argument
-  /// like `step`, when `count` is below 1, and when takes_batches is false.
+  /// Takes `count` steps in one or two launches, with the bits of single steps. Throws
+  /// std::invalid_argument like `step`, when `count` is below 1, and when takes_batches is false.
   template <class Exec, class Generator>
     requires detail::is_host_execution<Exec>
   void batch(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,

@@ -37,8 +37,9 @@ class StagedStepper : public StepperBase<Spins> {
   static constexpr int work_fields = Memory::fields_of_passes;
 
   /// Uses this path from now on instead of the automatic choice, and allocates its memory. Keeps
-  /// what a step leaves for the next one. Throws std::invalid_argument when the fields cannot be
-  /// swept.
+  /// what a step leaves for the next one. A step that cannot sweep, because its generator needs the
+  /// spins of each stage, goes back to passes. Throws std::invalid_argument when the fields cannot
+  /// be swept.
   void use(Path path) {
     if (path == Path::sweep) Sweeps::require(plan_.layout, this->label("::use"));
     path_ = path;

@@ -10,10 +10,10 @@
 
 namespace cayspin::inline v0_2 {
 
-/// A time interval in which steps are at most max_dt long; a longer step that would reach
-/// the interval ends at the start of it. max_dt = 0 stands for a jump of the field between `begin`
-/// and `end`, which are a few roundings of t apart: steps end at `begin`, and a new run starts at
-/// `end` with the same spins.
+/// A time interval in which steps are at most max_dt long; a longer step that would reach the
+/// interval ends at its start. max_dt = 0 stands for a jump of the field between `begin` and `end`,
+/// which are a few ulp of t apart: steps end at `begin`, and a new run starts at `end` with the
+/// same spins.
 struct StepBound {
   double begin = 0, end = 0, max_dt = 0;
 };

@@ -16,8 +16,8 @@ namespace cayspin::inline v0_2 {
 
 /// Thrown when an adaptive step would have to be shorter than min_dt or than the resolution of t:
 /// the values are not finite, or the field is not smooth. The spins are those before the step;
-/// under integrate() they are those of the last time due for observers, or later ones. The next
-/// step starts a run from them.
+/// under integrate() they are those of the last time at which an observer was due, or of a later
+/// time. The next step starts a run from them.
 class StepTooSmall : public std::runtime_error {
  public:
   StepTooSmall(std::string const& message, double start, double length, double least)
@@ -36,13 +36,14 @@ class StepTooSmall : public std::runtime_error {
 /// Options for the steps of an adaptive method.
 struct StepOptions {
   double tolerance =
-      1e-6;             ///< bound on the error of a run: the largest angle of any spin, in radians
+      1e-6;             ///< bound on the error of a run: the largest angle between a spin and its
+                        ///< exact direction, in radians
   double first_dt = 0;  ///< 0: chosen from the largest rate and the tolerance
   double min_dt = 0;    ///< a step that would be shorter throws StepTooSmall
   double max_dt = std::numeric_limits<double>::infinity();
   double end = std::numeric_limits<double>::infinity();  ///< no stage is evaluated after this time
-  /// Intervals in which the field jumps, or changes so fast that steps may miss it between their
-  /// stages. Ascending and disjoint.
+  /// Intervals in which the field jumps, or changes so fast that steps may miss the change between
+  /// their stages. Ascending and disjoint.
   std::vector<StepBound> bounds = {};
 
   /// The smallest tolerance: below it, round-off hides the error of a step.
@@ -73,7 +74,8 @@ class StepController {
 
   /// Returns the largest allowed error of one step, in radians. It is smaller than the tolerance of
   /// the run, because errors add up, and smallest for low orders, which take more steps. The
-  /// factors were calibrated on switching, films and Heisenberg lattices (docs/reports/trade.md).
+  /// factors were calibrated on switching spins, films and Heisenberg lattices
+  /// (docs/reference/methods.md).
   double step_tolerance() const {
     return options_.tolerance * (exponent_ < 0.25 ? 1.0 / 12 : 1.0 / 160);
   }

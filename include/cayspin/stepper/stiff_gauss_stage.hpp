@@ -190,9 +190,9 @@ struct SecondDifferenceWithEnd {
   }
 };
 
-/// Functor that computes the spins within a step: those at the start of the step, turned by f,
-/// which is `whole` times A at its stage plus `slope` times the change of A since the stage of the
-/// step before.
+/// Functor that computes the spins within a step: those at the start of the step, turned by f. f is
+/// `whole` times A at the stage of the step, plus `slope` times the change of A since the stage of
+/// the step before.
 template <class Real>
 struct StiffDenseOutput {
   SiteArray<Real, 3> begin, last, before;

@@ -16,10 +16,10 @@ namespace cayspin::inline v0_2 {
 
 /// Options of StiffGauss.
 struct StiffOptions {
-  /// Bound on the largest remaining error of any site's rotation vector. 0: round-off if the
-  /// generator conserves the energy; otherwise 1/200 of the usual first correction, for order 4
-  /// down to 1/1000 if that correction is small, and at most 1/1000 of the correction in the first
-  /// steps.
+  /// Bound on the largest remaining error of any site's rotation vector. 0 stands for round-off if
+  /// the generator conserves the energy. Otherwise it stands for 1/200 of the usual first
+  /// correction (for order 4 down to 1/1000, if that correction is small) and, in the first steps,
+  /// for at most 1/1000 of the first correction.
   double tolerance = 0;
   int iterations = 30;  ///< corrections before the step is halved
   int halvings = 12;    ///< how often a step is halved before it throws NotConverged
@@ -101,8 +101,8 @@ class StiffHistory {
             1 / ((other - now) * (other - before) * (has_end ? 1 : one_before))};
   }
 
-  /// Returns the kernel for the spins at this share of the last step. It takes A as linear in time,
-  /// through its values at the stages of the last two steps.
+  /// Returns the kernel for the spins within the last step, after the fraction `share` of it. A is
+  /// taken as linear in time, through its values at the stages of the last two steps.
   StiffDenseOutput<Real> dense_output(double dt, double share) const
     requires(Stages == 1)
   {

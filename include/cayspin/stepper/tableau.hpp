@@ -103,8 +103,8 @@ struct Oscillatory74 {
 };
 
 /// Five stages of order 4 for strong damping: small errors, and stable up to dt times decay rate =
-/// 0.70 per stage, as RK4. The last coefficient of the stability polynomial is 0.85 / 5!. Found by
-/// a search for a small leading error, which is a tenth of RK4's.
+/// 0.70 per stage, like RK4. The last coefficient of the stability polynomial is 0.85 / 5!. Found
+/// by a search for a small leading error, which is a tenth of RK4's.
 struct Damped54 {
   static constexpr int stages = 5, order = 4;
   static constexpr double c[5] = {0, 0.14114715574092904, 0.5948055915144558, 0.1966650853743125,
@@ -119,9 +119,10 @@ struct Damped54 {
                                   -0.24045170335125277, 0.13500507499234043};
 };
 
-/// Commutator-free, order 4 (Celledoni, Marthinsen and Owren 2003): stages and end are reached by
-/// two rotations by sums of the generators themselves: stages with the weights a, then second_a,
-/// and the end with b, then second_b.
+/// Commutator-free, order 4 (Celledoni, Marthinsen and Owren 2003). The coordinates of rotations
+/// are weighted sums of the generators themselves. Each stage is reached by a rotation with the
+/// weights a, which for the last stage is followed by one with second_a. The end of the step is
+/// reached by two rotations: with b, then with second_b.
 struct CommutatorFree4 {
   static constexpr int stages = 4, order = 4;
   static constexpr double a[4][4] = {{0, 0, 0, 0}, {0.5, 0, 0, 0}, {0, 0.5, 0, 0}, {0.5, 0, 0, 0}};

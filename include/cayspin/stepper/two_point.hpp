@@ -38,8 +38,8 @@ struct PredictOrthogonal {
   }
 };
 
-/// F = dt (w + sigma m0), where w is the stored A_o, and sigma comes from the difference of A_o at
-/// m and w.
+/// F = dt (w + sigma m0), where w is the stored A_o, and sigma comes from the difference between w
+/// and A_o at m.
 struct ForwardDifference {
   static constexpr bool reads = true, writes = false;
   double cap;
@@ -52,8 +52,8 @@ struct ForwardDifference {
   }
 };
 
-/// F = dt (w + sigma m); stores w. Here w is A_o at m, sigma comes from the difference of w and the
-/// stored A_o, and `ratio` is dt / (previous dt).
+/// F = dt (w + sigma m); stores w. Here w is A_o at m, sigma comes from the difference between w
+/// and the stored A_o, and `ratio` is dt / (previous dt).
 struct BackwardDifference {
   static constexpr bool reads = true, writes = true;
   double cap, ratio;
@@ -149,8 +149,8 @@ struct TwoPointStage {
 }  // namespace detail
 
 /// A stepper that stores A, or A_o, between the two evaluations of a step, or from one step to the
-/// next. Method defines how a step uses the stored and the new one, for example
-/// detail::ForwardDifferenceMethod. Work memory: two fields.
+/// next. Method, for example detail::ForwardDifferenceMethod, defines how a step uses the stored
+/// and the new value. Work memory: two fields.
 template <class Spins, class Method, class Isotropy, class Rotation>
 class TwoPoint : public detail::StepperBase<Spins> {
   using Base = detail::StepperBase<Spins>;
@@ -268,8 +268,8 @@ class TwoPoint : public detail::StepperBase<Spins> {
 };
 
 /// The two-step method of Adams and Bashforth, order 2 with one evaluation: m <- cay(dt (3 xi_n -
-/// xi_(n-1)) / 2) m, xi = A + sigma m. In general the argument of cay is dt (xi_n + (dt / previous
-/// dt) (xi_n - xi_(n-1)) / 2). The first step is one of LieHeun.
+/// xi_(n-1)) / 2) m, xi = A + sigma m. If dt changes, the argument of cay is dt (xi_n + (dt /
+/// previous dt) (xi_n - xi_(n-1)) / 2). The first step is one of LieHeun.
 template <class Spins, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class LieAdamsBashforth2
     : public TwoPoint<Spins, detail::AdamsBashforthMethod, Isotropy, Rotation> {

@@ -43,8 +43,8 @@ struct AsPrintedStage {
     f[Stage] = Value(dt) * isotropy(stencil.center(), evaluate(generator, stencil));
     if constexpr (last) {
       unrolled<3>([&](auto j) { f[j()] = site.load(generators[j()]); });
-      // The last increment comes first, because each overwrites a of its stage, and the increment
-      // of the next stage needs that a.
+      // The last increment comes first: each increment overwrites its stage's `a`, which the
+      // increment of the next stage needs.
       unrolled<3>([&](auto j) {
         constexpr int stage = 3 - j();
         f[stage] = Cayley::inverse_differential(

@@ -86,7 +86,7 @@ struct PaperSeries : DirectSeries {
   }
 };
 
-/// Returns the derivative K + 1 of m, d^K/dt^K (A x m).
+/// Returns derivative K + 1 of m, d^K/dt^K (A x m).
 template <int K, class Generator, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> next_derivative(Generator const& generator,
                                                         Vec3<Value> const* m,

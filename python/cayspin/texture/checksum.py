@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The checksums of frames in a trajectory file, as docs/reference/file_format.md has them."""
+"""The checksums of frames in a trajectory file, as docs/reference/file_format.md describes them."""
 
 import numpy as np
 

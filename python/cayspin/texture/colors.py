@@ -59,8 +59,8 @@ def wheel_colors(pixels: int) -> np.ndarray:
 
 
 def _beside(axes, width, height, below=0.0):
-    """New axes to the right of others: `width` and `height` in inches or, as text, in percent of
-    these, `below` inches below their top."""
+    """New axes to the right of `axes`. `width` and `height` are in inches or, as text, in percent
+    of those of `axes`; the new axes begin `below` inches below the top of `axes`."""
     from matplotlib.transforms import ScaledTranslation
     from mpl_toolkits.axes_grid1.inset_locator import inset_axes
 

@@ -30,7 +30,7 @@ class View:
             self._server = subprocess.Popen(
                 command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=messages, text=True,
                 env={**os.environ, "CAYSPIN_PROGRAM": program()}, start_new_session=True)
-            self.address: str = ""  #: for any browser of this machine
+            self.address: str = ""  #: for any browser on this machine
             if select.select([self._server.stdout], [], [], LONGEST_START)[0]:
                 self.address = self._server.stdout.readline().strip()
             if not self.address:

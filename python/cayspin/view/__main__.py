@@ -31,7 +31,8 @@ def parse_arguments():
 
 
 def find_program():
-    """Returns the program named by CAYSPIN_PROGRAM, the one next to this file, or that on PATH."""
+    """Returns the program that CAYSPIN_PROGRAM names, the one beside the script that runs, or the
+    one on PATH."""
     beside = pathlib.Path(sys.argv[0]).parent / "cayspin"
     found = os.environ.get("CAYSPIN_PROGRAM") or shutil.which(beside) or shutil.which("cayspin")
     if not found:

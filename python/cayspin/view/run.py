@@ -34,8 +34,8 @@ class Run:
         was_there = self.output is None or self.output.exists()
         self._messages = tempfile.TemporaryFile()
         try:
-            # The program has a session of its own, so that an interrupt from the terminal reaches
-            # it only through stop().
+            # The program has its own session, so that an interrupt from the terminal reaches it
+            # only through stop().
             self._process = subprocess.Popen(
                 [program, "run", scene, "--quiet"], stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL, stderr=self._messages, start_new_session=True)

@@ -173,7 +173,7 @@ class MpiRanks final : public Ranks {
       try {
         auto const [y, z] = mpi::divide(lattice, depth, parts);
         return {y, z};
-      } catch (std::invalid_argument const&) {  // the lattice cannot be divided into so many
+      } catch (std::invalid_argument const&) {  // the lattice has no such division
       }
     }
     return {1, 1};

@@ -42,7 +42,7 @@ Pipe open_pipe() {
   return ends;
 }
 
-// Makes a forked child a worker. Nothing here may allocate memory after the fork.
+// Makes a forked child a worker. Must not allocate memory, because it runs between fork and exec.
 [[noreturn]] void become(char* const* words, Pipe const& requests, Pipe const& output,
                          Pipe const& errors, pid_t parent) {
   // Leaves the terminal's process group, so that an interrupt comes only once, from the parent.

@@ -46,8 +46,8 @@ struct Try {
 /// once a step, others in each stage.
 std::vector<Candidate> candidates(io::Scene const& scene, std::optional<Precision> precision = {});
 
-/// Returns the scene up to `horizon` with a candidate. Adaptive methods are observed after equal
-/// intervals, of which there are `intervals`.
+/// Returns the scene up to `horizon` with a candidate. An adaptive method is observed at the ends
+/// of `intervals` equal intervals.
 io::Scene with(io::Scene scene, Candidate const& candidate, double horizon, std::int64_t intervals,
                Steps const& steps);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A spin turns about a field: compiled only with the flags of cayspin.pc.
+// Spins turn about a field. Compiled with the flags that cayspin.pc gives.
 #include <cayspin/cayspin.hpp>
 #include <cayspin/version.hpp>
 

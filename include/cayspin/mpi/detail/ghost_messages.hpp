@@ -19,8 +19,8 @@
 
 namespace cayspin::inline v0_2::mpi::detail {
 
-/// Functor that copies a box of a field on a device to consecutive numbers, or back. A task is one
-/// row of one component.
+/// Functor that copies a box of a field to consecutive numbers, or back. A task is one row of one
+/// component.
 template <class Word, bool Packs>
 struct CopyRows {
   Word* field;
@@ -44,9 +44,9 @@ struct CopyRows {
   }
 };
 
-/// Messages to and from the two neighbours along an axis, each with one box of every field. If a
-/// periodic axis has only two ranks, they are neighbours on both sides, so the tag tells the
-/// direction.
+/// Messages to and from the two neighbours along an axis, with one box of every field in each
+/// direction. If a periodic axis has only two ranks, they are neighbours on both sides, so the tag
+/// tells the direction.
 class GhostMessages {
  public:
   void exchange(MPI_Comm comm, std::span<FieldNumbers const> fields, Faces const& faces,

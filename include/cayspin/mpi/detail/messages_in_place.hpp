@@ -110,8 +110,9 @@ class MessagesInPlace {
  private:
   MPI_Request* next() { return &requests_.emplace_back(MPI_REQUEST_NULL); }
 
-  // Makes one message for all fields or, if the parts of components are long and contiguous, one
-  // for each component of each field, because MPICH copies these faster.
+  // Makes one message for all fields. If each component of every field has one long block of bytes
+  // in the box, makes one for each component of each field instead, because MPICH copies these
+  // faster.
   template <class Make>
   void add(Box const& box, Make const& make) const {
     constexpr int long_bytes = 32 * 1024;
