@@ -7,6 +7,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -52,7 +53,10 @@ class ExchangeMemory {
         numbers.assign(held.begin(), held.end());
     }
     with_.field(prefix_ + name, numbers);
-    if (with_.restores()) copy_from_host(numbers, field);
+    if (!with_.restores()) return;
+    // The numbers of one replica would be copied to all.
+    if (static_cast<std::int64_t>(numbers.size()) != field.sites() * Components) refuse(name);
+    copy_from_host(numbers, field);
   }
 
  private:

@@ -38,3 +38,5 @@ class Modes:
     shape: np.ndarray  #: complex dm, (mode, nz, ny, nx, 3) or (mode, site, ..); max |dm| is 1
     converged: bool  #: whether all residuals are below `tolerance`
     evaluations: int  #: of the field of all sites
+    time_unit: float = 1.0  #: unit of reduced times in SI, in s
+    energy_unit: float | None = None  #: unit of reduced energies in SI, in J; otherwise None

@@ -180,7 +180,9 @@ class Simulation:
         shape = parts[..., 0] + 1j * parts[..., 1]
         if cell_sites > 1 and len(shapes):
             shape = np.stack([sites.by_site(one, cell_sites) for one in shape])
-        return Modes(*(np.array(each) for each in numbers), shape, converged, cost)
+        is_si, time_unit, energy_unit = self._scene._scene.units
+        return Modes(*(np.array(each) for each in numbers), shape, converged, cost, time_unit,
+                     energy_unit if is_si else None)
 
     def set(self, keys: str | dict[str, Any], value: Any = None) -> None:
         """Changes keys of the scene. Spins, time and steps are kept. `keys` is one

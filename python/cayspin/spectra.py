@@ -189,7 +189,7 @@ def structure_factor(spins: Any, dt: float, *, components: str | Sequence[str] =
 
 
 class _FileOfModes:
-    """Modes from a file of `cayspin modes`, in reduced units."""
+    """Modes from a file of `cayspin modes`, in its units."""
 
     def __init__(self, name, path, moments):
         import h5py
@@ -215,8 +215,6 @@ class _FileOfModes:
             if file.attrs["units"] == "SI":
                 self.time_unit = float(file.attrs["time_unit"])
                 self.energy_unit = float(file.attrs["energy_unit"])
-                self.frequency = 2 * np.pi * self.frequency * self.time_unit
-                self.decay = self.decay * self.time_unit
         read = frames.tables(path, self.scene, "the tables", "Modes with their spins")
         if "torque" in read:
             raise CayspinError(f"{path}: its scene has a torque, and no thermal equilibrium; "
@@ -252,7 +250,7 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
 
     `modes`: the file of `cayspin modes`, or the Modes of Simulation.modes() with `spins`, the state
     (nz, ny, nx, 3) that they belong to. Only these modes contribute: compute all of them if S is to
-    be compared with a run. `temperature` is that of thermal.temperature, in K for files in SI.
+    be compared with a run. `temperature` is that of thermal.temperature, in K in SI.
     `frequency`: the frequencies of S, (w,), angular and rising, as those of structure_factor().
 
     Each mode has the mean energy k T, which for a deviation Re(c v exp(i w_n t)) is
@@ -293,9 +291,7 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
             raise CayspinError(f"{name}: spins beside a file that has them; accepted: Modes with "
                                "spins, or a file")
         modes = _FileOfModes(name, modes, moments)
-        spins, time_unit, moments = modes.spins, modes.time_unit, modes.moments
-        if modes.energy_unit:
-            temperature *= _BOLTZMANN / modes.energy_unit
+        spins, moments = modes.spins, modes.moments
         given = {key: value for key, value in lattice.items() if value is not None}
         lattice = frames.with_lattice(modes.path, modes.scene, given)
     elif not all(hasattr(modes, part) for part in ("frequency", "decay", "shape")):
@@ -303,6 +299,11 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
                            "name of a file of cayspin modes")
     elif spins is None:
         raise CayspinError(f"{name}: Modes without spins; accepted: spins=sim.spins")
+    rates, decay = np.asarray(modes.frequency), np.asarray(modes.decay)
+    if energy_unit := getattr(modes, "energy_unit", None):
+        time_unit = modes.time_unit
+        temperature *= _BOLTZMANN / energy_unit
+        rates, decay = 2 * np.pi * rates * time_unit, decay * time_unit
     if lattice["periodic"] is None:
         lattice["periodic"] = (True, True, True)
     spins = arguments.numbers(spins, f"{name}: spins").astype(np.float64, copy=False)
@@ -316,12 +317,12 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
     except ValueError:
         raise CayspinError(f"{name}: moments of shape {weights.shape}; accepted: one that "
                            f"broadcasts to {spins.shape[:-1]}") from None
-    decay = modes.decay + width * time_unit
+    decay = decay + width * time_unit
     # The energies of modes of amplitude 1, divided by their frequencies.
     turning = spins * np.cross(modes.shape.real, modes.shape.imag)
     actions = -(weights[..., None] * turning).reshape(len(turning), -1).sum(1) / 2
-    fastest = modes.frequency.max()
-    for number, (rate, half, action) in enumerate(zip(modes.frequency, decay, actions)):
+    fastest = rates.max()
+    for number, (rate, half, action) in enumerate(zip(rates, decay, actions)):
         if not rate > 1e-7 * fastest:
             raise CayspinError(f"{name}: mode {number} does not oscillate; accepted: modes with "
                                "frequencies > 0")
@@ -337,7 +338,7 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
             for word in waves.components}
     areas = {word: np.zeros(len(waves.along), complex) for word in waves.components}
     reduced = frequency * time_unit
-    for rate, half, action, shape in zip(modes.frequency, decay, actions, modes.shape):
+    for rate, half, action, shape in zip(rates, decay, actions, modes.shape):
         scale = temperature / (4 * action * rate * norm)
         for sign, wave in ((1, shape.conj()), (-1, shape)):
             line = half / np.pi / ((reduced - sign * rate)**2 + half**2) * time_unit

@@ -101,6 +101,17 @@ NumbersOut array_of(simulation::LentVectors const& lent) {
                     vectors.is_double ? nb::dtype<double>() : nb::dtype<float>());
 }
 
+io::Given given(std::optional<NumbersIn> const& spins, ArraysIn const& numbers) {
+  io::Given given;
+  if (spins)
+    given.spins = std::make_shared<std::vector<double> const>(
+        simulation::packed<double>(vectors_of(*spins)));
+  for (auto const& [key, array] : numbers)
+    given.numbers[key] =
+        std::make_shared<std::vector<double> const>(array.data(), array.data() + array.size());
+  return given;
+}
+
 io::OwnField own_field(nb::object uniform, nb::object nonlocal) {
   io::OwnField own;
   if (!uniform.is_none())

@@ -8,6 +8,9 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace cayspin::python {
@@ -30,6 +33,11 @@ NumbersOut array_of(simulation::LentVectors const& lent);
 
 /// Returns an array of this shape that owns the numbers.
 SiteNumbersOut array_of(std::vector<double> numbers, std::array<std::int64_t, 3> const& shape);
+
+using ArraysIn = std::map<std::string, SiteNumbersIn>;  // by key
+
+/// Returns copies of an array of spins and of values per site, for a scene.
+io::Given given(std::optional<NumbersIn> const& spins, ArraysIn const& numbers);
 
 /// Makes a program's own field from callables or None. uniform(t) returns three numbers;
 /// nonlocal(spins, t) gets a copy of the spins and returns an array (nz, ny, nx, 3).

@@ -24,7 +24,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 #include <stdexcept>
 #include <variant>
 
@@ -52,18 +51,6 @@ using namespace simulation;
 using namespace nb::literals;
 
 using Overrides = std::vector<std::string>;
-
-using ArraysIn = std::map<std::string, SiteNumbersIn>;
-
-io::Given given(std::optional<NumbersIn> const& spins, ArraysIn const& numbers) {
-  io::Given given;
-  if (spins)
-    given.spins = std::make_shared<std::vector<double> const>(packed<double>(vectors_of(*spins)));
-  for (auto const& [key, array] : numbers)
-    given.numbers[key] =
-        std::make_shared<std::vector<double> const>(array.data(), array.data() + array.size());
-  return given;
-}
 
 SiteNumbersOut at_sites(io::Scene const& scene, std::string const& expression) {
   auto const& [nx, ny, nz] = scene.lattice.shape;
@@ -235,6 +222,11 @@ void define_scene(nb::module_& module) {
                      return cell;
                    })
       .def_prop_ro("basis", [](io::Scene const& scene) { return scene.lattice.basis; })
+      .def_prop_ro("units",
+                   [](io::Scene const& scene) {
+                     auto const& units = scene.units;
+                     return nb::make_tuple(units.si, units.time, units.energy);
+                   })
       .def_prop_ro("has_integrator", io::has_integrator)
       .def_prop_ro(
           "method",

@@ -262,7 +262,7 @@ io::Scene first_replica(CheckOptions const& options, io::Scene const& scene) {
   for (auto const& varied : ensemble.vary) keys.push_back(varied.key);
   if (!options.json)
     print("ensemble",
-          fmt::format("{}{}; what follows is the first, and its memory that of one",
+          fmt::format("{}{}; the lines below describe the first replica, and the memory of one",
                       counted(ensemble.replicas, "replica"),
                       keys.empty() ? std::string()
                                    : fmt::format(", which vary in {}", fmt::join(keys, ", "))));

@@ -302,7 +302,7 @@ std::string demag_text(io::Scene const& scene) {
       "{}, {} by FFTs{}{}{}",
       demag.dipoles ? fmt::format("H = {:.6g} sum V (3 r (r.m) - m r^2) / (4 pi r^5)", strength)
                     : fmt::format("H = -{:.6g} N m", strength),
-      demag.dipoles ? "of all dipoles on all dipoles" : "of all cells on all cells",
+      demag.dipoles ? "of all dipoles," : "of all cells,",
       images_text(demag.periodic_images),
       x != 0 || y != 0 || z != 0
           ? fmt::format(", demagnetizing factors {:.6g} {:.6g} {:.6g}", x, y, z)

@@ -70,7 +70,7 @@ void print_table() {
   }
   fmt::print(
       "\nevaluations: evaluations of the generator per step; adaptive methods choose their steps\n"
-      "by integrator.tolerance. work fields: the largest memory besides that of the spins, in\n"
+      "by integrator.tolerance. work fields: the largest memory in addition to the spins, in\n"
       "fields of three numbers per site. A constant isotropy is typed {{ constant = SIGMA }},\n"
       "compensated as integrator.compensated = true. The baselines, at the end, take neither\n"
       "generator, isotropy nor rotation.\n");

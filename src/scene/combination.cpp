@@ -29,8 +29,8 @@ void check_energy_control(Scene const& scene) {
            "damping = 0 with precession, or no such key");
   if (!integrator.method->has_equal_steps())
     refuse(scene, key,
-           fmt::format("method \"{}\" chooses its steps and continues from a state of its own, not "
-                       "from the spins that energy_control changes",
+           fmt::format("method \"{}\" chooses its steps and continues from its own copy of the "
+                       "spins, so it would ignore what energy_control changes",
                        integrator.method->word),
            "a method with steps of dt, or no such key");
 }
@@ -91,7 +91,7 @@ void check_two_colours(Scene const& scene) {
     if (scene.lattice.boundary[axis] == BoundaryKind::periodic && extent > 1 && extent % 2 != 0)
       refuse(scene, "lattice.shape",
              fmt::format("method \"{}\" colours the lattice like a checkerboard, which does not "
-                         "close on itself over the {} sites of the periodic {}",
+                         "close on itself over the {} sites along the periodic axis {}",
                          method, extent, "xyz"[axis]),
              "an even extent, an open boundary, or another method");
   }

@@ -116,7 +116,7 @@ void read_bonds_between(Item const& item, Scene& scene, std::vector<std::string_
       return std::ranges::is_permutation(other.regions, one.regions);
     };
     if (std::ranges::count_if(all, is_pair) > 1)
-      entry.fail("says once more what is between these regions", "each pair once");
+      entry.fail("repeats a pair of regions", "each pair once");
   }
 }
 
@@ -180,7 +180,7 @@ SlabDemagnetization read_slab_demag(Item const& item, Scene& scene) {
   slab.on_host = is_on_host(table);
   if (slab.multirate && !slab.on_host)
     table.find("multirate")
-        ->fail("the field of a slab depends only on the spin itself, and is cheap",
+        ->fail("a slab's field is cheap, because it depends only on the site's own spin",
                "where = \"host\" beside it, or no such key");
   return slab;
 }

@@ -37,8 +37,8 @@ RandomStart read_random(Item const& item, Scene& scene) {
 
 GivenStart read_given(Item const& item, Scene const& scene) {
   constexpr std::string_view accepted =
-      "uniform, expression, random, file or state; the first frame of such a run's file is that "
-      "start";
+      "uniform, expression, random, file or state (the first frame of the run's file holds these "
+      "spins)";
   if (!boolean(item)) item.fail("false has no meaning", "true, or another key");
   if (!scene.given.spins)
     item.fail("stands for spins that a program gives, and none did", accepted);

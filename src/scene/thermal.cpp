@@ -144,12 +144,13 @@ void require_moderate_noise(Scene const& scene, double heat) {
   auto const& [lattice, integrator] = std::tie(scene.lattice, scene.integrator);
   double const half = heat * integrator.dt;
   if (half <= 1) return;
-  bool const has_moments = !lattice.moments.empty() || lattice.moments_of_sites.there();
+  bool const has_factors = !lattice.moments.empty() || lattice.moments_of_sites.there() ||
+                           !lattice.gyromagnetic.empty() || lattice.gyromagnetic_of_sites.there();
   detail::refuse(
       scene, "integrator.dt",
       fmt::format("damping times temperature times dt{} is {:.3g}: the noise of one step would "
                   "erase all memory of a spin's direction",
-                  has_moments ? " over the least moment" : "", half),
+                  has_factors ? ", times gyromagnetic ratio over moment," : "", half),
       fmt::format("a dt up to {:.6g}{}, better a tenth of it",
                   integrator.dt / half * scene.units.time, scene.units.si ? " s" : ""));
 }

@@ -91,7 +91,7 @@ constexpr std::array foreign_words{
     ForeignWord{"ext_scaleexchange", "field.exchange_between = [{ between = [a, b], factor = f }]"},
     ForeignWord{"epsilonprime", "torque.slonczewski.epsilon_prime"},
     ForeignWord{"geom", "lattice.occupied"},
-    ForeignWord{"edgesmooth", "lattice.occupied, where a cell is in or out"},
+    ForeignWord{"edgesmooth", "lattice.occupied (a cell is either in or out)"},
     ForeignWord{"bmagnoisescale", "thermal.temperature"},
     ForeignWord{"setgridsize", "lattice.shape"},
     ForeignWord{"setcellsize", "lattice.spacing"},

@@ -89,7 +89,7 @@ class RunOutput::Implementation {
 
   std::byte* frame(bool single) {
     if (single != single_)
-      throw std::logic_error(path().string() + ": a frame in another precision than the file's");
+      throw std::logic_error(path().string() + ": the frame's precision is not the file's");
     require_open();
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return !free_.empty() || error_; });

@@ -98,7 +98,7 @@ ScalarSeries ScalarSeries::open(hid_t group, std::filesystem::path const& path,
     auto const cannot_be = [](hsize_t extent) { return extent == 0 || extent > most_more; };
     if (std::ranges::any_of(extents, cannot_be) || elements(extents) > most_more)
       throw_failure(path, std::string("cannot read dataset ") + name,
-                    "its inner extents cannot be");
+                    "its inner extents are out of range");
     series.more_.push_back({name, extents, std::move(dataset)});
     return extents;
   };

@@ -9,6 +9,8 @@
 #include "stored_spins.hpp"
 #include "sweep_format.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cstdint>
 #include <exception>
@@ -79,9 +81,8 @@ void require_whole(SweepInfo const& sweep) {
   for (auto const& key : sweep.header.keys) {
     if (key.values.empty()) throw std::invalid_argument("sweep key " + key.key + " has no values");
     if (!key.numbers.empty() && key.numbers.size() != key.values.size())
-      throw std::invalid_argument("sweep key " + key.key +
-                                  " has another number of numbers than of "
-                                  "values");
+      throw std::invalid_argument(fmt::format("sweep key {} has {} numbers for {} values", key.key,
+                                              key.numbers.size(), key.values.size()));
   }
   if (static_cast<std::int64_t>(sweep.runs.size()) != sweep.header.runs())
     throw std::invalid_argument("a sweep of " + std::to_string(sweep.header.runs()) + " runs has " +

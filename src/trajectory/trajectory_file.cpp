@@ -121,7 +121,7 @@ class TrajectoryFile::Implementation {
 
   void write_frame(Sample const& sample, void const* spins, bool single) {
     if (single != single_)
-      throw std::logic_error(path_.string() + ": spins given in another precision than the file's");
+      throw std::logic_error(path_.string() + ": the precision of the spins is not the file's");
     require_spins(spins);
     begin_frame();
     spins_.add(planes_, spins);

@@ -2,6 +2,7 @@
 // The order of dense output (the spins within a step), and the continuity of spins and their rates
 // at both ends of the step. The spins form a coupled chain, in which the rotations of a step do not
 // commute.
+#include "../support/larger.hpp"
 #include "../order/chain.hpp"
 #include "../support/backends.hpp"
 
@@ -74,7 +75,7 @@ class WithinAStep {
   }
   static double apart(std::vector<double> const& a, std::vector<double> const& b) {
     double largest = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+    for (std::size_t i = 0; i < a.size(); ++i) largest = larger(largest, std::abs(a[i] - b[i]));
     return largest;
   }
 

@@ -18,7 +18,10 @@ def warnings(doxygen, root, settings):
         text = file.read() + "\n" + "\n".join(settings) + "\n"
     run = subprocess.run([doxygen, "-"], input=text, cwd=root, text=True, capture_output=True,
                          check=False)
-    return [line for line in (run.stdout + run.stderr).splitlines() if line.strip()]
+    lines = [line for line in (run.stdout + run.stderr).splitlines() if line.strip()]
+    if run.returncode != 0 and not lines:
+        lines.append(f"{doxygen} ended with status {run.returncode}")
+    return lines
 
 
 def main(arguments):

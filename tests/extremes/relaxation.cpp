@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "../support/larger.hpp"
 #include "setting_scene.hpp"
 #include "simulation/scene_field.hpp"
 #include "trial.hpp"
@@ -43,8 +44,8 @@ Outcome relax(Setting const& setting, Against against, io::Scene const& scene, P
   double off = 0, error = 0;
   for (std::size_t i = 0; i < end.size(); i += 3) {
     double const x = end[i], y = end[i + 1], z = end[i + 2], length = std::hypot(x, y, z);
-    off = std::max(off, std::abs(length - 1));
-    error = std::max(error, std::hypot(x / length, y / length, z / length - 1));
+    off = cayspin::test::larger(off, std::abs(length - 1));
+    error = cayspin::test::larger(error, std::hypot(x / length, y / length, z / length - 1));
   }
   // A torque below the bound leaves each spin within about torque / field (radians) of the field.
   bool const rests = against == Against::solution && error <= 2 * setting.torque / setting.field;

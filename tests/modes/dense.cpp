@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Modes against the eigenvalues of the whole matrix, at equilibria of random fields.
+#include "../support/larger.hpp"
 #include "modes.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -64,7 +65,7 @@ struct Dense {
     Eigen::VectorXcd const found = (turning * hessian).eigenvalues();
     std::vector<std::complex<double>> rates;
     for (auto const& rate : found) {
-      largest = std::max(largest, std::abs(rate));
+      largest = larger(largest, std::abs(rate));
       if (rate.imag() >= 0) rates.push_back(rate);
     }
     std::ranges::sort(rates, {}, [](auto const& rate) { return std::abs(rate); });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Known modes: those of one spin, with damping of any strength and at a saddle, and of a chain.
+#include "../support/larger.hpp"
 #include "modes.hpp"
 
 #include <complex>
@@ -82,7 +83,7 @@ TYPED_TEST(MacrospinModes, HaveShapesOfLengthOne) {
     EXPECT_EQ(x[i + 2], 0);
     // Spins turn about the field in the right-handed sense.
     EXPECT_LT(x[i] * y[i + 1] - y[i] * x[i + 1], 0);
-    longest = std::max(longest, std::hypot(along_x, along_y));
+    longest = larger(longest, std::hypot(along_x, along_y));
   }
   EXPECT_NEAR(longest, 1, 8 * this->epsilon);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Linear modes with an expensive field: their linewidths, and that none grows.
+#include "../support/larger.hpp"
 #include "long_range.hpp"
 
 #include <algorithm>
@@ -96,7 +97,7 @@ double error_of_linewidths(double damping, double dt) {
       stepper.step(Space{}, generator, spins, static_cast<double>(n) * dt, dt);
     double const t = static_cast<double>(steps) * dt;
     double const exact = mode.energy_after(start, t), found = mode.energy(spin(spins, 0));
-    worst = std::max(worst, std::abs(std::log(found / exact)) / (2 * t / lifetime));
+    worst = larger(worst, std::abs(std::log(found / exact)) / (2 * t / lifetime));
   }
   return worst;
 }
@@ -148,7 +149,7 @@ double growth(double damping, double dt_times_d, Elliptical const& shape, int st
     // The angle of an elliptical mode oscillates by up to this factor.
     double const w = fields.at(static_cast<std::int64_t>(i));
     double const ellipse = std::sqrt((w + dt_times_d) / w);
-    worst = std::max(worst, end[i] / (half[i] * ellipse));
+    worst = larger(worst, end[i] / (half[i] * ellipse));
   }
   return worst;
 }

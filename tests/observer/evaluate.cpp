@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The public functions that evaluate H, A and the energy of each term.
+#include "../support/larger.hpp"
 #include "../support/coefficients.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -48,7 +49,7 @@ TYPED_TEST(Evaluations, FieldAndGeneratorByHand) {
   double largest = 0;
   for (std::int64_t site = 0; site < this->lattice.sites(); ++site) {
     auto const torque = cross(at(a, site), at(this->m, site));
-    largest = std::max(largest, std::sqrt(dot(torque, torque)));
+    largest = larger(largest, std::sqrt(dot(torque, torque)));
   }
   EXPECT_NEAR(largest_rate(this->exec, generator, this->spins, 2.5), largest, this->bound);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Sums and maxima over sites against plain loops, and NaN detected at every site.
+#include "../support/larger.hpp"
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -34,8 +35,8 @@ TYPED_TEST(Scalars, AgainstPlainLoops) {
     for (std::int64_t site = 0; site < lattice.sites(); ++site) {
       auto const spin = at(m, site), torque = cross(applied, spin);
       sum = sum + spin;
-      defect = std::max(defect, std::abs(std::sqrt(dot(spin, spin)) - 1));
-      rate = std::max(rate, std::sqrt(dot(torque, torque)));
+      defect = larger(defect, std::abs(std::sqrt(dot(spin, spin)) - 1));
+      rate = larger(rate, std::sqrt(dot(torque, torque)));
     }
     auto const sites = static_cast<double>(lattice.sites());
     expect_near(magnetization(this->exec, spins), (1 / sites) * sum, 1e-14);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Orders of the energy of an undamped coupled chain, over a time of 10 and for fixed step sizes.
 // They differ from those on a single sphere (rigid_body.cpp).
+#include "../support/larger.hpp"
 #include "chain.hpp"
 
 #include <cayspin_paper/analytic_sigma.hpp>
@@ -25,7 +26,7 @@ void expect_energy(char const* what, Generator const& generator, std::vector<int
     integrate(Space{}, stepper, generator, spins, Times{0, dt, steps}, Record(generator, samples));
     double largest = 0;
     for (auto const& sample : samples)
-      largest = std::max(largest, std::abs(sample.energy.value - samples[0].energy.value));
+      largest = larger(largest, std::abs(sample.energy.value - samples[0].energy.value));
     return largest;
   });
 }

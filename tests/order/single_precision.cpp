@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Orders with a field that depends on time: in double, and in single precision for step sizes whose
 // errors are above round-off.
+#include "../support/larger.hpp"
 #include "../support/evaluate.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
@@ -73,7 +74,7 @@ double local_error_along_generator(double dt) {
   double largest = 0;
   for (std::int64_t site = 0; site < 8; ++site) {
     Vector const error = spin(coarse, site) - spin(fine, site);
-    largest = std::max(largest, std::abs(dot(error, at(w, site))) / length(at(w, site)));
+    largest = larger(largest, std::abs(dot(error, at(w, site))) / length(at(w, site)));
   }
   return largest / (dt * dt);
 }

@@ -329,8 +329,8 @@ TEST_F(Ensembles, AreNoStartOfACrystal) {
 TEST_F(Ensembles, AreChecked) {
   write("all.toml", chain_scene() + vary("\"field.exchange\" = [1, 2, 3]\n"));
   EXPECT_TRUE(contains(output_of({"check", "all.toml"}),
-                       "3 replicas, which vary in field.exchange; what follows is the first, and "
-                       "its memory that of one\n"));
+                       "3 replicas, which vary in field.exchange; the lines below describe the "
+                       "first replica, and the memory of one\n"));
 }
 
 TEST_F(Ensembles, AreRefusedInOneLine) {

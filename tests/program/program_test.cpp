@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "../support/larger.hpp"
 #include "program_test.hpp"
 
 #include <fcntl.h>
@@ -190,7 +191,7 @@ double distance(std::vector<double> const& a, std::vector<double> const& b) {
   for (std::size_t i = 0; i + 2 < a.size(); i += 3) {
     double const apart = std::hypot(a[i] - b[i], a[i + 1] - b[i + 1], a[i + 2] - b[i + 2]);
     if (!std::isfinite(apart)) return INFINITY;
-    largest = std::max(largest, apart);
+    largest = cayspin::test::larger(largest, apart);
   }
   return largest;
 }

@@ -127,6 +127,22 @@ TEST_F(Restarting, NamesWhatElseDiffers) {
   output_of(to_second(set("field.exchange=1", "output.every=3", "initial={uniform=[0,0,1]}")));
 }
 
+// After 5000002 steps of .3, the time is not that of 15000006 steps of .1, by the last bit.
+TEST_F(Restarting, AllowsForTheRoundOffOfALongRun) {
+  auto const step = [](std::string const& dt, std::string const& steps) {
+    return joined(set("integrator={method='euler',dt=" + dt + ",steps=" + steps + "}",
+                      "output={every=100000000,scalars_every=100000000}"),
+                  {"--quiet", "--overwrite"});
+  };
+  output_of(joined({"run", "spin.toml", "--output", "first.h5"}, step("0.3", "5000002")));
+  auto const outcome = start(joined(
+      {"run", "spin.toml", "--output", "second.h5", "--restart", "first.h5"},
+      step("0.1", "15000016")));
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_EQ(info_of("second.h5").frame_steps,
+            (std::vector<std::int64_t>{15000006, 15000016}));
+}
+
 TEST_F(Restarting, NamesASeedThatWouldBeEqualAsDouble) {
   run_to("12", "first.h5", set("thermal={temperature=0.01,seed=9007199254740993}"));
   expect_named(set("thermal={temperature=0.01,seed=9007199254740992}"), "thermal.seed");

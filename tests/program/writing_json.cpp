@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // --json of relax, modes and path prints the values in their files; methods --json prints its
 // table.
+#include "../support/larger.hpp"
 #include "json_output.hpp"
 
 #include <algorithm>
@@ -56,7 +57,7 @@ TEST_F(JsonOutput, MatchesTheFileOfRelax) {
   for (auto const& search : searches) {
     EXPECT_EQ(search.at("converged"), true);
     EXPECT_EQ(search.at("end"), "converged");
-    torque = std::max(torque, search.at("torque").get<double>());
+    torque = cayspin::test::larger(torque, search.at("torque").get<double>());
     evaluations += search.at("evaluations").get<double>();
   }
   EXPECT_EQ(found.at("torque"), torque);

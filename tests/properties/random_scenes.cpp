@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Properties of every scene, tested on new random scenes in each run: |m| = 1, a falling energy,
 // equal bits in a second run (on a host, in all threads), and reversibility of symmetric methods.
+#include "../support/larger.hpp"
 #include "../support/backends.hpp"
 #include "random_scene.hpp"
 
@@ -43,7 +44,7 @@ struct Property {
   void saw(double value, RandomScene const& scene, char const* what) {
     ++scenes;
     EXPECT_LE(value, 1) << what << ", in units of what is allowed; " << scene;
-    largest = std::max(largest, value);
+    largest = larger(largest, value);
   }
   void print(char const* name) const {
     std::printf("    %-15s %6lld scenes, at most %.3f of what is allowed\n", name,
@@ -122,7 +123,7 @@ class Check {
       defect = detail::Maximum::combine(defect, now.norm_defect / bound);
       if (i == 0) continue;
       double const rose = now.energy.value - samples[i - 1].energy.value;
-      if (rose > 0) rise = std::max(rise, rose / (64 * eps * now.energy.magnitude));
+      if (rose > 0) rise = larger(rise, rose / (64 * eps * now.energy.magnitude));
     }
     if (scene_.share < share_of_norm()) all_.norm.saw(defect, scene_, "| |m| - 1 |");
     if (scene_.slab.damping > 0 && energy_falls())

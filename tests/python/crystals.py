@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Crystals, shapes by arrays, and grains."""
 
+import subprocess
 import unittest
 
 import cayspin
 import numpy as np
-from package_test import PackageTest, stepped
+from package_test import PROGRAM, PackageTest, stepped
 
 TABLES = {
     "system": {"kind": "llg", "damping": 0.0},
@@ -72,6 +73,20 @@ class Arrays(PackageTest):
         np.testing.assert_array_equal(vacant, (i == 2) & (site == 1) & (k == 1))
         part = "an array as system.damping"
         self.assert_refused(cayspin.CayspinError, part, cayspin.advise, given, error=1e-3)
+
+    def test_are_not_needed_for_an_export(self):
+        mask = np.ones((1, 1, 4))
+        mask[0, 0, 1] = 0
+        of_sites = cayspin.Scene(
+            system={"kind": "llg", "damping": 0.1}, lattice={"shape": [4], "occupied": mask},
+            field={"anisotropy": [{"constant": np.full((1, 1, 4), 0.3), "axis": [0, 0, 1]}]},
+            initial={"uniform": [1, 0, 0]}, integrator={"method": "heun", "dt": 0.1, "steps": 1})
+        file = self.folder / "run.h5"
+        cayspin.Simulation(of_sites).run(output=file)
+        folder = self.folder / "ovf"
+        subprocess.run([PROGRAM, "export", file, "--ovf", folder], check=True,
+                       stdout=subprocess.DEVNULL)
+        self.assertEqual([one.name for one in folder.iterdir()], ["run_000001.ovf"])
 
     def test_in_place_of_the_keys_of_a_file(self):
         file = self.written(scene())

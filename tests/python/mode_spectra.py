@@ -190,6 +190,10 @@ class OfModes(PackageTest):
         file = self.run_program(si, "--count", "8", command="modes")
         seconds = np.linspace(-9e14, 9e14, 90001)
         found = cayspin.linear_structure_factor(file.filename, kelvin, seconds)
+        sim = cayspin.Simulation(si)
+        other = cayspin.linear_structure_factor(sim.modes(8), kelvin, seconds, spins=sim.spins,
+                                                cell=si.cell)
+        np.testing.assert_allclose(other.intensity["xx"], found.intensity["xx"], rtol=1e-7)
         k = 2 * np.pi * found.wave_vectors[0, 0, :, 0]
         stiffness = 2 * joule * (1 - np.cos(k)) + 0.6 * joule
         np.testing.assert_allclose(found.integrated["yy"][0, 0], 1.380649e-23 * kelvin / stiffness,

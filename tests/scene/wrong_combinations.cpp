@@ -33,7 +33,7 @@ integrator.method = 'cf4'; integrator.rotation = 'cayley' | : | accepted: "expon
 integrator = {method='cf4',generator='tangent',dt=0.1,end=1.0} | .generator:
   | accepted: "default", "orthogonal"
 integrator.method = 'red_black2'; lattice = {shape=[7],boundary='periodic'} | .shape:
-  | does not close on itself over the 7 sites of the periodic x
+  | does not close on itself over the 7 sites along the periodic axis x
 integrator.method = 'red_black4'; lattice.boundary = 'open';
  field.slab_demag = {normal=[1,0,0],where='host'} | : | a field of the neighbours only
 integrator.method = 'red_black2'; integrator.generator = 'orthogonal' | : | accepted: "default"
@@ -49,7 +49,7 @@ integrator.method = 'bs3'; integrator.tolerance = 1e-3; integrator.min_dt = 0.2;
 integrator.energy_control = true | : | needs a system that conserves its energy
 system.damping = 0.0; field.applied = [0,0,1];
  integrator = {method='tsit5',tolerance=1e-3,end=1.0,energy_control=true}
-  | .energy_control: | continues from a state of its own, not from the spins
+  | .energy_control: | continues from its own copy of the spins
 integrator.method = 'euler'; integrator.compensated = true | :
   | accepted: "rkmk4", "rkmk5", "projected_rk4", "projected_rk5"
 integrator.method = 'rkmk4'; integrator.compensated = true; integrator.rotation = 'exponential' | :

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Fields that change within a small part of a run: adaptive steps resolve them, and constant steps
 // that may miss them cause a warning.
+#include "../support/larger.hpp"
 #include "../support/random_pulses.hpp"
 #include "random_run.hpp"
 #include "scenes_of_text.hpp"
@@ -70,7 +71,7 @@ TEST(Pulses, RandomOnesAreFollowedToTheTolerance) {
         method, tolerance, pulses.end, number % 15 == 0 ? ", generator = 'orthogonal'" : ""));
     auto const exact = pulses.exact();
     double const error = largest_distance(end_of(scene), {exact[0], exact[1], exact[2]});
-    worst = std::max(worst, error / tolerance);
+    worst = cayspin::test::larger(worst, error / tolerance);
     EXPECT_LT(error, 30 * tolerance) << number << '\n' << scene.text;
   }
   std::printf("    error over tolerance, of %ld fields: at most %.3g\n", static_cast<long>(count),

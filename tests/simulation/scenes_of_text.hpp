@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "../support/larger.hpp"
 #include "simulation/scene_run.hpp"
 
 #include <fmt/format.h>
@@ -55,7 +56,7 @@ inline double largest_distance(std::vector<double> const& a, std::vector<double>
   EXPECT_EQ(a.size(), b.size());
   double largest = 0;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-    largest = std::max(largest, std::abs(a[i] - b[i]));
+    largest = cayspin::test::larger(largest, std::abs(a[i] - b[i]));
   return largest;
 }
 

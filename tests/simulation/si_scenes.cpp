@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Scenes in SI, compared with equal physics in reduced units and with numbers computed by hand.
+#include "../support/larger.hpp"
 #include "scenes_of_text.hpp"
 
 #include <cmath>
@@ -34,7 +35,7 @@ void expect_same_physics(std::string const& si_text, std::string const& reduced_
     auto const tesla = field_of(*in_si);
     auto expected = field_of(*in_reduced);
     double largest = 0;
-    for (double& h : expected) largest = std::max(largest, std::abs(h *= unit.field));
+    for (double& h : expected) largest = cayspin::test::larger(largest, std::abs(h *= unit.field));
     EXPECT_GT(largest, 0);
     EXPECT_LT(largest_distance(tesla, expected), 16 * eps * largest);
     auto const energy = in_si->sample().energy, other = in_reduced->sample().energy;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The a-priori bound: the largest eigenvalue of the exchange, and the step limits of methods.
+#include "../support/larger.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -162,7 +163,7 @@ double amplification(double largest, double damping, double sigma, double dt) {
       copy_to_host(run<Stepper>(generator, start, dt, 1, isotropy::Constant{sigma}));
   double amplitude = 0;
   for (int mode = 0; mode < modes; ++mode)
-    amplitude = std::max(amplitude, std::hypot(numbers[3 * mode], numbers[3 * mode + 1]));
+    amplitude = larger(amplitude, std::hypot(numbers[3 * mode], numbers[3 * mode + 1]));
   return amplitude / 1e-6;
 }
 

@@ -151,6 +151,9 @@ TEST(Checkpoint, HoldsNothingOfAnotherLattice) {
   serialize(stepper, checkpoint);
   checkpoint.close();
   EXPECT_THROW(serialize(other, checkpoint), std::invalid_argument);
+  // Two replicas of the same lattice need twice the numbers.
+  Stepper two(Field<double>("spins", Lattice::chain(8).with_replicas(2)));
+  EXPECT_THROW(serialize(two, checkpoint), std::invalid_argument);
   CheckpointInMemory empty;
   empty.close();
   EXPECT_THROW(serialize(stepper, empty), std::out_of_range);

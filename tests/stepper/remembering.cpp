@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Steppers that store a field from one step to the next, and the cap on finite-difference sigmas.
+#include "../support/larger.hpp"
 #include "../support/evaluate.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
@@ -133,7 +134,7 @@ TEST(FiniteDifference, CapOfTheTurn) {
     for (std::int64_t site = 0; site < 8; ++site) {
       Vector const m = spin(start, site), a = at(w, site);
       double const turn = -dot(at(predicted, site) - a, cross(a, m)) / dot(a, a);
-      largest = std::max(largest, std::abs(turn));
+      largest = larger(largest, std::abs(turn));
       Vector const f = dt * a + std::clamp(turn, -cap, cap) * m;
       EXPECT_LT(length(spin(end, site) - Cayley::rotate(f, m)), 1e-14) << cap << ' ' << site;
     }

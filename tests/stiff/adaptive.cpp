@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Stiff steps that follow a tolerance.
+#include "../support/larger.hpp"
 #include "../support/field_that_jumps.hpp"
 #include "../support/figures.hpp"
 #include "../support/unit_slab.hpp"
@@ -20,7 +21,7 @@ double error_of(Stepper& stepper, Slab const& slab, std::vector<Spins> const& ex
     double const next = end_time / std::exp2(static_cast<double>(exact.size() - 1 - i));
     stepper.step(Space(), slab.natural(), spins, t, next - t);
     t = next;
-    largest = std::max(largest, largest_distance(spins, exact[i]));
+    largest = larger(largest, largest_distance(spins, exact[i]));
   }
   return largest;
 }
@@ -90,7 +91,7 @@ TEST(AdaptiveStiff, LooksWithinStepsAreAsGood) {
     double const dt = end_time / looks;
     stepper.step(Space(), slab.natural(), spins, i * dt, dt);
     fine.step(Space(), slab.natural(), exact, i * dt, dt);
-    largest = std::max(largest, largest_distance(spins, exact));
+    largest = larger(largest, largest_distance(spins, exact));
   }
   EXPECT_LT(stepper.accepted_steps(), looks / 2);
   expect_below("at any look", largest, 1e-3);  // if steps took A as constant: 1.4e-3

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "larger.hpp"
+
 #include <cayspin/cayspin.hpp>
 
 #include <cmath>
@@ -96,7 +98,7 @@ double largest_distance(A const& a, B const& b) {
   auto const second = copy_to_host(b);
   double largest = 0;
   for (std::size_t i = 0; i < first.size(); i += 3)
-    largest = std::max(largest, length({double(first[i]) - double(second[i]),
+    largest = larger(largest, length({double(first[i]) - double(second[i]),
                                         double(first[i + 1]) - double(second[i + 1]),
                                         double(first[i + 2]) - double(second[i + 2])}));
   return largest;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "larger.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -69,7 +71,7 @@ double defect(int of_order, double s, Weight const& w) {
   for (auto const& [column, density] : conditions) {
     double sum = 0;
     for (int i = 0; i < n; ++i) sum += w(i) * column[i];
-    largest = std::max(largest, std::abs(sum - std::pow(s, of_order) / density));
+    largest = larger(largest, std::abs(sum - std::pow(s, of_order) / density));
   }
   return largest;
 }

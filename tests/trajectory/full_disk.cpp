@@ -103,9 +103,10 @@ TEST_F(SmallDisk, FullDiskAtTheEndKeepsTheFrames) {
     EnsembleFile file(path, small_header(), {.replicas = replicas},
                       {.storage = {.frames = 1000000}});
     std::vector<std::byte> all;
-    for (int replica = 0; replica < replicas; ++replica)
-      std::ranges::copy(std::as_bytes(std::span(numbered_spins<double>(small_header(), replica))),
-                        std::back_inserter(all));
+    for (int replica = 0; replica < replicas; ++replica) {
+      auto const spins = numbered_spins<double>(small_header(), replica);
+      std::ranges::copy(std::as_bytes(std::span(spins)), std::back_inserter(all));
+    }
     for (int frame = 0; frame < 1000000; ++frame)
       file.write_frame(frame, frame, std::vector<Scalars>(replicas), all);
   });
@@ -120,7 +121,9 @@ TEST_F(SmallDisk, FullDiskLeavesTheFramesOfAnEnsemble) {
     auto const info = read_ensemble_info(path);
     EXPECT_FALSE(info.complete);
     EXPECT_EQ(info.frames > 0, room > 4000000) << room;
-    if (info.frames > 0) EXPECT_EQ(read_ensemble_spins(path, info).size(), 20 * 3 * 24U);
+    if (info.frames > 0) {
+      EXPECT_EQ(read_ensemble_spins(path, info).size(), 20 * 3 * 24U);
+    }
     fs::remove(path);
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Drift of the energy and of the magnetization along a symmetry axis in undamped runs, and lengths
 // of spins after a million steps.
+#include "../support/larger.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -98,7 +99,7 @@ void expect_unit_length(std::string const& method, double damping) {
     long double const x = numbers[3 * i], y = numbers[3 * i + 1], z = numbers[3 * i + 2];
     long double const excess = std::sqrt(x * x + y * y + z * z) - 1;
     bias += excess / sites;
-    largest = std::max(largest, std::abs(excess));
+    largest = larger(largest, std::abs(excess));
   }
   std::string const name = method + ", damping " + std::to_string(damping).substr(0, 4);
   expect_below(name + ", max ||m| - 1|", static_cast<double>(largest), 1e-12);

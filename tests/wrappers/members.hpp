@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "../support/larger.hpp"
 #include "../support/backends.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -163,14 +164,14 @@ class Members {
     ASSERT_EQ(found.size(), expected.size());
     double off = 0;
     for (std::size_t i = 0; i < found.size(); ++i)
-      off = std::max(off, length(found[i] - expected[i]));
+      off = larger(off, length(found[i] - expected[i]));
     EXPECT_LE(off, factor * bound_) << what_ << ": " << member;
   }
   void expect_same(std::vector<double> const& found, std::vector<double> const& expected,
                    char const* member) const {
     double off = 0;
     for (std::size_t i = 0; i < found.size(); ++i)
-      off = std::max(off, std::abs(found[i] - expected[i]));
+      off = larger(off, std::abs(found[i] - expected[i]));
     EXPECT_LE(off, bound_) << what_ << ": " << member;
   }
   /// Compares vectors up to a multiple of the spin.
