@@ -104,8 +104,8 @@ NumbersOut array_of(simulation::LentVectors const& lent) {
 io::Given given(std::optional<NumbersIn> const& spins, ArraysIn const& numbers) {
   io::Given given;
   if (spins)
-    given.spins = std::make_shared<std::vector<double> const>(
-        simulation::packed<double>(vectors_of(*spins)));
+    given.spins =
+        std::make_shared<std::vector<double> const>(simulation::packed<double>(vectors_of(*spins)));
   for (auto const& [key, array] : numbers)
     given.numbers[key] =
         std::make_shared<std::vector<double> const>(array.data(), array.data() + array.size());

@@ -302,8 +302,7 @@ std::string demag_text(io::Scene const& scene) {
       "{}, {} by FFTs{}{}{}",
       demag.dipoles ? fmt::format("H = {:.6g} sum V (3 r (r.m) - m r^2) / (4 pi r^5)", strength)
                     : fmt::format("H = -{:.6g} N m", strength),
-      demag.dipoles ? "of all dipoles," : "of all cells,",
-      images_text(demag.periodic_images),
+      demag.dipoles ? "of all dipoles," : "of all cells,", images_text(demag.periodic_images),
       x != 0 || y != 0 || z != 0
           ? fmt::format(", demagnetizing factors {:.6g} {:.6g} {:.6g}", x, y, z)
           : "",
@@ -358,7 +357,7 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
       lines.emplace_back("interlayer",
                          fmt::format("E = {:.6g} m.m' + {:.6g} (m.m')^2, regions {} and {}{}{}",
                                      -bilinear, 0 - biquadratic, regions[0], regions[1],
-                                     range > 0 ? fmt::format(", {} without a spin between", counted(range, "cell")) : "",
+                                     range > 0 ? ", over " + counted(range, "vacant cell") : "",
                                      field.exchange_at_faces.there() ? ", at the faces" : ""));
     for (auto const& [name, factor] : {std::pair{"exchange", field.in_time.exchange},
                                        {"anisotropy", field.in_time.anisotropy},

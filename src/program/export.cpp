@@ -58,8 +58,8 @@ bool is_rectangular(io::Lattice const& lattice) {
   return true;
 }
 
-// Returns a mesh with nodes in the middle of the lattice's cells. Ignores the start of the scene and
-// its values per site, which may have been in the memory of the program that ran it.
+// Returns a mesh with nodes in the middle of the lattice's cells. Ignores the start of the scene
+// and its values per site, which may have been in the memory of the program that ran it.
 io::OvfMesh mesh_of(io::TrajectoryInfo const& info) {
   auto const scene = io::parse_scene_to_run_or_relax(info.header.scene_text, info.path,
                                                      {"initial={uniform=[0,0,1]}"},

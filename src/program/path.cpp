@@ -79,11 +79,11 @@ void require_same_vacancies(PathCommandOptions const& options, std::vector<doubl
   };
   for (std::size_t at = 0; at < from.size(); at += 3)
     if (is_vacant(from, at) != is_vacant(to, at))
-      throw UsageError(
-          fmt::format("--to {}: has {} spin on site {} (counted from 0, x fastest), where --from {} "
-                      "has {}; accepted: spins on the same sites",
-                      options.to.string(), is_vacant(to, at) ? "no" : "a", at / 3,
-                      options.from.string(), is_vacant(from, at) ? "none" : "one"));
+      throw UsageError(fmt::format(
+          "--to {}: has {} spin on site {} (counted from 0, x fastest), where --from {} "
+          "has {}; accepted: spins on the same sites",
+          options.to.string(), is_vacant(to, at) ? "no" : "a", at / 3, options.from.string(),
+          is_vacant(from, at) ? "none" : "one"));
 }
 
 std::string barrier_text(io::Scene const& scene, io::Path const& path) {

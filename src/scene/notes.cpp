@@ -64,8 +64,7 @@ class Notes {
       add("system.precession", "false with damping = 0: no spin moves");
     if (field.mu0 != 1 && !field.applied && field.applied_in_turn.empty() &&
         field.sources.empty() && !field.slab_demag && !field.demag)
-      add("field.mu0",
-          "acts nowhere: there is no applied, sources, slab_demag, demag or dipoles");
+      add("field.mu0", "acts nowhere: there is no applied, sources, slab_demag, demag or dipoles");
   }
 
   void of_neighbours() {

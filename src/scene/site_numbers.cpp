@@ -67,10 +67,11 @@ std::vector<double> numbers_of_regions(Scene const& scene, std::vector<double> c
   for (std::size_t site = 0; site < values.size(); ++site) {
     auto const region = static_cast<std::size_t>(of_sites[site]);
     if (region >= numbers.size())
-      throw scene_error(scene, key,
-                        fmt::format("has no number for region {}, to which {} belongs; accepted: one "
-                                    "for each region, from 0",
-                                    region, detail::site_text(box, site)));
+      throw scene_error(
+          scene, key,
+          fmt::format("has no number for region {}, to which {} belongs; accepted: one "
+                      "for each region, from 0",
+                      region, detail::site_text(box, site)));
     values[site] = numbers[region];
   }
   return values;

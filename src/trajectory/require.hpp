@@ -32,7 +32,8 @@ inline void require_shape(std::array<std::int64_t, 3> const& shape) {
 /// Returns the implementation of a writer. Throws std::logic_error if the writer was moved from.
 template <class Implementation>
 Implementation& not_moved(std::unique_ptr<Implementation> const& writer) {
-  if (!writer) throw std::logic_error("the writer was moved from; use the object that it was moved to");
+  if (!writer)
+    throw std::logic_error("the writer was moved from; use the object that it was moved to");
   return *writer;
 }
 

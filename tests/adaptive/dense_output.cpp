@@ -2,9 +2,9 @@
 // The order of dense output (the spins within a step), and the continuity of spins and their rates
 // at both ends of the step. The spins form a coupled chain, in which the rotations of a step do not
 // commute.
-#include "../support/larger.hpp"
 #include "../order/chain.hpp"
 #include "../support/backends.hpp"
+#include "../support/larger.hpp"
 
 #include <cayspin/stepper/tableau_dormand_prince8.hpp>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Lagged energy control: its effect on one state; it removes drift and keeps orders and lengths;
 // equal bits on host spaces; what it refuses.
-#include "../support/larger.hpp"
 #include "../backends/equal_bits.hpp"
 #include "../support/backends.hpp"
 #include "../support/evaluate.hpp"
 #include "../support/figures.hpp"
+#include "../support/larger.hpp"
 
 #include <fstream>
 #include <sstream>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A of the Landau-Lifshitz equation, its orthogonal part, and sigma added to it.
-#include "../support/larger.hpp"
 #include "../support/evaluate.hpp"
+#include "../support/larger.hpp"
 
 #include <cayspin/cayspin.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The public functions that evaluate H, A and the energy of each term.
-#include "../support/larger.hpp"
 #include "../support/coefficients.hpp"
+#include "../support/larger.hpp"
 
 #include <cayspin/cayspin.hpp>
 

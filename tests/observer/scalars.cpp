@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Sums and maxima over sites against plain loops, and NaN detected at every site.
-#include "../support/larger.hpp"
 #include "../support/backends.hpp"
+#include "../support/larger.hpp"
 
 #include <cayspin/cayspin.hpp>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Orders with a field that depends on time: in double, and in single precision for step sizes whose
 // errors are above round-off.
-#include "../support/larger.hpp"
 #include "../support/evaluate.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
+#include "../support/larger.hpp"
 
 #include <cayspin_paper/analytic_sigma.hpp>
 #include <cayspin_paper/rkmk4_as_printed.hpp>

@@ -76,8 +76,9 @@ TEST_F(PathCommand, RefusesEndsWithOtherVacancies) {
   write_ends(scene);
   expect_status(0, {"relax", in_folder("scene.toml"), "--output", "b.h5", "--quiet", "--overwrite",
                     "--set", "lattice.occupied='i!=1'"});
-  expect_refused(arguments(), "--to b.h5: has no spin on site 1 (counted from 0, x fastest), where "
-                              "--from a.h5 has one");
+  expect_refused(arguments(),
+                 "--to b.h5: has no spin on site 1 (counted from 0, x fastest), where "
+                 "--from a.h5 has one");
   EXPECT_FALSE(exists("path.h5"));
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "../support/larger.hpp"
 #include "program_test.hpp"
+
+#include "../support/larger.hpp"
 
 #include <fcntl.h>
 #include <hdf5.h>

@@ -135,12 +135,11 @@ TEST_F(Restarting, AllowsForTheRoundOffOfALongRun) {
                   {"--quiet", "--overwrite"});
   };
   output_of(joined({"run", "spin.toml", "--output", "first.h5"}, step("0.3", "5000002")));
-  auto const outcome = start(joined(
-      {"run", "spin.toml", "--output", "second.h5", "--restart", "first.h5"},
-      step("0.1", "15000016")));
+  auto const outcome =
+      start(joined({"run", "spin.toml", "--output", "second.h5", "--restart", "first.h5"},
+                   step("0.1", "15000016")));
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
-  EXPECT_EQ(info_of("second.h5").frame_steps,
-            (std::vector<std::int64_t>{15000006, 15000016}));
+  EXPECT_EQ(info_of("second.h5").frame_steps, (std::vector<std::int64_t>{15000006, 15000016}));
 }
 
 TEST_F(Restarting, NamesASeedThatWouldBeEqualAsDouble) {

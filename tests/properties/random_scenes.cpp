@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Properties of every scene, tested on new random scenes in each run: |m| = 1, a falling energy,
 // equal bits in a second run (on a host, in all threads), and reversibility of symmetric methods.
-#include "../support/larger.hpp"
 #include "../support/backends.hpp"
+#include "../support/larger.hpp"
 #include "random_scene.hpp"
 
 #include <gtest/gtest.h>

@@ -92,7 +92,6 @@ TEST(Notes, SayWhatActsNowhere) {
           {{chain, "lattice.boundary='periodic'",
             "field.couplings={shells=[1],pairs=[{offset=[8,0,0],J=1}]}"},
            "field.couplings.pairs: couples each site to itself"},
-          {{chain, "field.couplings={shells=[1],pairs=[{offset=[8,0,0],J=1}]}"}, ""},
           {{chain, "field.couplings={shells=[1,0,0,0,0,0,0,1],pairs=[{offset=[7,0,0],J=1}]}"},
            "field.couplings.shells: entry 7, for pairs 8 apart"},
       }) {

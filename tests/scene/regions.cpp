@@ -199,7 +199,7 @@ TEST(Regions, SayWhatIsWrongInOneLine) {
            {"lattice.regions", "'0.5'", "accepted: whole numbers from 0"},
            {"lattice.regions", "3", "is an integer"},
            {"field.exchange", "{regions=[1,2]}",
-            "field.exchange: has no number for region 2, that"},
+            "field.exchange: has no number for region 2, to which"},
            {"field.exchange", "{regions=[]}", "has 0 entries"},
            {"field.exchange", "{regions=[1,2,'a']}", "field.exchange.regions[2]: "},
            {"field.exchange", "{regions=[1,2,3],file='x.h5'}", "stands beside file"},

@@ -147,7 +147,8 @@ TEST(SiteNumbers, ATemperatureIsHeldAgainstTheLeastMoment) {
                           "[thermal]\ntemperature = 1\n");
   };
   EXPECT_EQ(hot("moments = 0.01").find(": integrator.dt:"), std::string::npos);
-  EXPECT_NE(hot("moments = 0.0001").find("times gyromagnetic ratio over moment, is 10"), std::string::npos);
+  EXPECT_NE(hot("moments = 0.0001").find("times gyromagnetic ratio over moment, is 10"),
+            std::string::npos);
 }
 
 TEST(SiteNumbers, SitesWithoutASpinHaveNoNoise) {

@@ -148,7 +148,8 @@ steps = 1
       for (std::size_t i = 0; i < found.size(); ++i) {
         largest = cayspin::test::larger(largest, std::abs(expected[i]));
         energy -= sources[i] / 1.7 * expected[i] / 2;
-        if (moments[i / 3] != 0) error = cayspin::test::larger(error, std::abs(found[i] - expected[i]));
+        if (moments[i / 3] != 0)
+          error = cayspin::test::larger(error, std::abs(found[i] - expected[i]));
       }
       SCOPED_TRACE(fmt::format("{}", fmt::join(shape, ", ")));
       EXPECT_LT(error, 450 * epsilon(precision) * largest);  // 1e-13 in double

@@ -116,7 +116,8 @@ steps = 50
       for (std::size_t i = 0; i < 19; ++i)
         for (std::size_t c = 0; c < 3; ++c) {
           double const there = large[3 * (19 * j + i) + c];
-          largest = cayspin::test::larger(largest, std::abs(there - (i < 9 ? small[3 * (9 * j + i) + c] : 0)));
+          largest = cayspin::test::larger(
+              largest, std::abs(there - (i < 9 ? small[3 * (9 * j + i) + c] : 0)));
         }
     // Stiff methods solve a step only to a fraction of its error, and differently on the two
     // lattices.

@@ -216,7 +216,8 @@ steps = 1
       run->relax({.torque = 1e-9});
       auto const end = spins_of(*run);
       double largest = 0;
-      for (std::size_t i = 1; i < end.size(); i += 3) largest = cayspin::test::larger(largest, std::abs(end[i]));
+      for (std::size_t i = 1; i < end.size(); i += 3)
+        largest = cayspin::test::larger(largest, std::abs(end[i]));
       if (side > 0)
         EXPECT_LT(largest, 1e-3) << cell << ' ' << spacer;
       else
@@ -270,7 +271,8 @@ steps = 10
             auto const place = axis == "j" ? at % ny : at / ny;
             if (place >= 4 && place < 4 + spacer) continue;
             for (std::size_t c = 0; c < 3; ++c, ++next)
-              largest = cayspin::test::larger(largest, std::abs(apart[3 * site + c] - touching[next]));
+              largest =
+                  cayspin::test::larger(largest, std::abs(apart[3 * site + c] - touching[next]));
           }
           EXPECT_EQ(next, touching.size());
           EXPECT_LT(largest, 10 * 64 * epsilon(precision)) << axis << spacer << method;

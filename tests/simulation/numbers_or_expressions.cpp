@@ -157,8 +157,8 @@ TEST_F(NumbersOrExpressions, RelaxedSpinsHaveTheTorqueThatWasAskedFor) {
     double largest = 0;
     for (std::size_t i = 0; i < m.size(); i += 3)
       largest = cayspin::test::larger(largest, std::hypot(m[i + 1] * H[i + 2] - m[i + 2] * H[i + 1],
-                                             m[i + 2] * H[i] - m[i] * H[i + 2],
-                                             m[i] * H[i + 1] - m[i + 1] * H[i]));
+                                                          m[i + 2] * H[i] - m[i] * H[i + 2],
+                                                          m[i] * H[i + 1] - m[i + 1] * H[i]));
     EXPECT_LE(largest, 1e-3) << moments;
     EXPECT_NEAR(found.torque, largest, 1e-12 + 1e-9 * largest) << moments;
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The a-priori bound: the largest eigenvalue of the exchange, and the step limits of methods.
-#include "../support/larger.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
+#include "../support/larger.hpp"
 
 #include <Eigen/Dense>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Steppers that store a field from one step to the next, and the cap on finite-difference sigmas.
-#include "../support/larger.hpp"
 #include "../support/evaluate.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
+#include "../support/larger.hpp"
 
 using namespace cayspin;
 using namespace cayspin::test;

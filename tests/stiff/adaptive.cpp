@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Stiff steps that follow a tolerance.
-#include "../support/larger.hpp"
 #include "../support/field_that_jumps.hpp"
 #include "../support/figures.hpp"
+#include "../support/larger.hpp"
 #include "../support/unit_slab.hpp"
 
 #include <cayspin/stepper/adaptive_stiff_gauss.hpp>

@@ -99,8 +99,8 @@ double largest_distance(A const& a, B const& b) {
   double largest = 0;
   for (std::size_t i = 0; i < first.size(); i += 3)
     largest = larger(largest, length({double(first[i]) - double(second[i]),
-                                        double(first[i + 1]) - double(second[i + 1]),
-                                        double(first[i + 2]) - double(second[i + 2])}));
+                                      double(first[i + 1]) - double(second[i + 1]),
+                                      double(first[i + 2]) - double(second[i + 2])}));
   return largest;
 }
 

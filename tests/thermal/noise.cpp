@@ -2,8 +2,8 @@
 // Thermal noise: diffusion on the sphere, Langevin's function, Boltzmann's law of single spins, and
 // bits that depend neither on the host space nor on interruptions. Seeds are fixed; statistical
 // limits are five standard errors.
-#include "../support/larger.hpp"
 #include "../support/backends.hpp"
+#include "../support/larger.hpp"
 #include "kept_of_direction.hpp"
 
 #include <cayspin/cayspin.hpp>

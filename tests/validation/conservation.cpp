@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Drift of the energy and of the magnetization along a symmetry axis in undamped runs, and lengths
 // of spins after a million steps.
-#include "../support/larger.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
+#include "../support/larger.hpp"
 
 #include <numbers>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The switching slab of Lewis and Nigam 2002: the path of one spin compared with a converged one,
 // and lengths of spins.
-#include "../support/larger.hpp"
 #include "../support/figures.hpp"
+#include "../support/larger.hpp"
 #include "../support/unit_slab.hpp"
 
 using namespace cayspin;
@@ -38,8 +38,7 @@ Path path(Generator const& generator, double end_time, double dt, Options const&
 
 double distance(Path const& a, Path const& b) {
   double largest = 0;
-  for (int n = 0; n < samples; ++n)
-    largest = larger(largest, length(a.samples[n] - b.samples[n]));
+  for (int n = 0; n < samples; ++n) largest = larger(largest, length(a.samples[n] - b.samples[n]));
   return largest;
 }
 

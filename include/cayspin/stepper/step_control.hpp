@@ -35,11 +35,10 @@ class StepTooSmall : public std::runtime_error {
 
 /// Options for the steps of an adaptive method.
 struct StepOptions {
-  double tolerance =
-      1e-6;             ///< bound on the error of a run: the largest angle between a spin and its
-                        ///< exact direction, in radians
-  double first_dt = 0;  ///< 0: chosen from the largest rate and the tolerance
-  double min_dt = 0;    ///< a step that would be shorter throws StepTooSmall
+  double tolerance = 1e-6;  ///< bound on the error of a run: the largest angle between a spin and
+                            ///< its exact direction, in radians
+  double first_dt = 0;      ///< 0: chosen from the largest rate and the tolerance
+  double min_dt = 0;        ///< a step that would be shorter throws StepTooSmall
   double max_dt = std::numeric_limits<double>::infinity();
   double end = std::numeric_limits<double>::infinity();  ///< no stage is evaluated after this time
   /// Intervals in which the field jumps, or changes so fast that steps may miss the change between
