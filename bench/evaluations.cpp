@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Nanoseconds per spin and evaluation of methods of high order and of adaptive methods, next to
-// RKMK4. Cases are named evaluations/PRECISION/METHOD/SIZE.
+// Nanoseconds per spin per evaluation, for high-order and adaptive methods, with RKMK4 for
+// comparison. Cases are named evaluations/PRECISION/METHOD/SIZE.
 #include "main.hpp"
 #include "scene.hpp"
 

@@ -8,8 +8,8 @@
 
 namespace cayspin::paper {
 
-/// Prints what each erratum changes, and writes it to a CSV file: quantities that are computed with
-/// the printed formula and with the corrected one.
+/// Prints what each erratum changes: quantities computed with the printed formula and with the
+/// corrected one. Also writes them to a CSV file.
 class Comparison {
  public:
   explicit Comparison(Context const& context)

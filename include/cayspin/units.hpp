@@ -97,9 +97,9 @@ class ReducedUnits {
   double length_unit() const { return length_; }  ///< m
   double field_unit() const { return field_; }    ///< T, of B = mu0 H
   double energy_unit() const { return energy_; }  ///< J
-  /// m/s, for ZhangLi: length_unit() over time_unit(), but without the factor 1 + alpha^2 of
-  /// Gilbert's form. The unit of time applies that factor to the torque, as to all terms of the
-  /// equation.
+  /// m/s, for ZhangLi: length_unit() over what time_unit() would be without the factor 1 + alpha^2
+  /// of Gilbert's form. The unit of time already applies that factor to the torque, as to all terms
+  /// of the equation.
   double velocity_unit() const { return velocity_; }
   double damping() const { return damping_; }  ///< of LandauLifshitz
 

@@ -47,8 +47,8 @@ class CheckpointWriter final : public Checkpoint {
   bool restores() const override { return false; }
   void number(std::string const& name, double& value) override;
   void field(std::string const& name, std::vector<double>& numbers) override;
-  /// Stores a field of `components` numbers per site in several calls, some planes along z at a
-  /// time.
+  /// Stores the next planes along z of a field of `components` numbers per site. Call it until the
+  /// field is whole.
   void planes(std::string const& name, std::int64_t components, std::vector<double> const& numbers);
 
   /// Waits until the file is on the disk, then renames it. The field "spins" must have been stored.

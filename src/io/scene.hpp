@@ -195,8 +195,9 @@ std::vector<std::array<std::int64_t, 2>> regions_of_bonds(Scene const& scene, Si
 std::vector<std::array<std::int64_t, 2>> regions_across(Scene const& scene, SiteBox const& box,
                                                         std::size_t axis, std::int64_t reach);
 
-/// For each site of a box, returns the number of the site `reach` further along an axis, or back if
-/// `reach` is negative; 0 past an open end. |reach| must be below the lattice's extent.
+/// For each site of a box, returns the value that `numbers` has at the site `reach` further along an
+/// axis, or back if `reach` is negative; 0 past an open end. |reach| must be below the extent of the
+/// lattice along that axis.
 std::vector<double> numbers_across(Scene const& scene, SiteNumbers const& numbers,
                                    std::string_view key, SiteBox const& box, std::size_t axis,
                                    std::int64_t reach);

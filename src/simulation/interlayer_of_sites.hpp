@@ -21,13 +21,13 @@ struct DistantBonds {
   double per_square = 0;                      // 2 over the spacing squared
 };
 
-/// Bonds to the next and the previous site along each axis, E = -J s.s' - B (s.s')^2, where s and
-/// s' are the spins on the two sides of the face between the cells. The arrays have the bonds to
-/// next sites; without data, there are none along that axis. In the half cell between the centre
-/// and the face, exchange A adds the energy k (1 - m.s), where k = 2 A over the spacing squared; s
-/// and s' minimise the total energy. This is the boundary condition of exchange at the face. It
-/// makes thick layers accurate to second order in the spacing (as in Suess et al., PRB 107, 104424,
-/// 2023). Without A, s is m.
+/// Bonds to the next and the previous site along each axis, and the `distant` ones,
+/// E = -J s.s' - B (s.s')^2, where s and s' are the spins on the two sides of the face between the
+/// cells. `bilinear` and `biquadratic` hold the bonds to next sites; without data, there are none
+/// along that axis. In the half cell between the centre and the face, exchange A adds the energy
+/// k (1 - m.s), where k = 2 A over the spacing squared; s and s' minimise the total energy. This
+/// boundary condition of exchange at the face makes thick layers accurate to second order in the
+/// spacing (as in Suess et al., PRB 107, 104424, 2023). Where A is 0, s is m.
 template <class Real>
 struct InterlayerOfSites {
   cayspin::detail::DistantSites<Real> spins;

@@ -56,8 +56,8 @@ struct RelaxSettings {
   std::function<bool()> interrupted = {};  // called about twenty times a second
 };
 
-/// A type-erased run of a scene, for other languages. Calls from several threads, also on several
-/// runs, take turns; the counters of steps and time do not wait. Kokkos starts with the first run
+/// A type-erased run of a scene, for other languages. Calls from several threads take turns, even if
+/// they are for different runs; steps() and time() never wait. Kokkos starts with the first run
 /// of a process, unless the program has started it, and ends with the process.
 ///
 /// N calls of advance(1) give the same bits as advance(N), and as `cayspin run`.

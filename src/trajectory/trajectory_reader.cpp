@@ -76,7 +76,7 @@ std::string_view kind_of_other(RootAttributes const& attributes) {
   return {};
 }
 
-// Reads everything but the scalars. `frames` counts the frames that have spins.
+// Reads the root attributes and the extents of /spins. `frames` is the number of frames in /spins.
 TrajectoryInfo read_header(hid_t file, std::filesystem::path const& path) {
   RootAttributes const attributes(file, path);
   TrajectoryInfo info;

@@ -45,7 +45,8 @@ std::vector<double> spins_of(cayspin_simulation* simulation) {
   return numbers;
 }
 
-/// The file of a thread, the scene that writes it, and the scene that starts from it.
+/// What one thread of the test does: it runs `scene`, which writes `file`, and opens `from_file`, a
+/// scene that starts from that file.
 struct Course {
   cayspin_precision precision;
   std::string file, scene, from_file;

@@ -13,8 +13,8 @@ namespace cayspin::test {
 
 inline Vec3<double> unit(Vec3<double> const& v) { return normalized(v, "a test's vector"); }
 
-/// Field and energy of a term, computed on the host by simple formulas: H of a site, and E, from
-/// the spins (sites, 3).
+/// A term's field H at a site and its energy E, computed on the host by simple formulas. The spins
+/// are an array (sites, 3).
 struct ByHand {
   std::function<Vec3<double>(std::vector<double> const&, std::int64_t site)> field;
   std::function<double(std::vector<double> const&)> energy;

@@ -118,12 +118,13 @@ TEST_F(Rates, FindARotationOfAllSpins) {
   }
 }
 
-// Brown's diffusion: the cosine z of the angle to the axis diffuses with damping kT (1 - z^2) in
-// the potential -K z^2 / 2 - h z. The flux of probability over the top at z = -h / K gives the rate
-// of one spin,
+// Brown's diffusion: the cosine z of the angle to the axis diffuses in the potential
+// -K z^2 / 2 - h z; the diffusion coefficient is damping * kT * (1 - z^2). The flux of probability
+// over the top at z = -h / K gives the rate of one spin: exp(-barrier / kT) times the prefactor
 //   damping (1 - z^2) sqrt(K / (2 pi kT)) (K +- h).
-// In a chain, each exchange mode multiplies this by a ratio of its curvatures in the well and at
-// the top. At the top, a mode has one curvature along the ring of saddles and one across it.
+// In a chain of N spins the prefactor is multiplied by sqrt(N) and, for each exchange mode, by the
+// ratio of its curvatures in the well and at the top. At the top, a mode has one curvature along
+// the ring of saddles and one across it.
 TEST_F(Rates, InAFieldAlongTheEasyAxis) {
   double const k = 1.3, damping = 0.4, exchange = 8;
   for (double const h : {0.0, -0.2, 0.6, 1.1})

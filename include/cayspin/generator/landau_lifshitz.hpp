@@ -34,8 +34,8 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
 
   KOKKOS_FORCEINLINE_FUNCTION Field const& field() const { return field_; }
   KOKKOS_FORCEINLINE_FUNCTION bool has_precession() const { return precession_; }
-  /// Returns false only if the damping is the number 0; a damping field counts as damped, whatever
-  /// its values are.
+  /// Returns false only if the damping is the number 0. With a field of dampings, returns true
+  /// whatever its values are.
   KOKKOS_FORCEINLINE_FUNCTION bool is_damped() const {
     if constexpr (uniform)
       return damping_ != 0;

@@ -274,8 +274,8 @@ class ModeSearch {
   }
 
   /// Orthonormalises the appended vectors and returns how many are left. Repeats once, since the
-  /// first pass leaves round-off of the components that it removes. Repeats again if nearly all of
-  /// a vector was removed.
+  /// first pass leaves round-off of the components that it removes. Repeats again if less than 1e6
+  /// epsilon of the square of a vector is left.
   std::size_t make_orthonormal(std::size_t added) {
     constexpr double epsilon = std::numeric_limits<Real>::epsilon();
     int rounds = 2;

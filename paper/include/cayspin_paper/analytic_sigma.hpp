@@ -96,8 +96,9 @@ Generator bare(Orthogonal<Generator> const& prepared) {
   return prepared.part();
 }
 
-/// Returns A' at the spin m, along the rates of the stencil's array. For LandauLifshitz it omits
-/// damping X x H, which is normal to X and does not contribute to sigma.
+/// Returns A' at the spin m, the derivative along `rates`, a stencil of the rates X. For
+/// LandauLifshitz the term damping * (X x H) is left out: it is normal to X and does not contribute
+/// to sigma.
 template <class Generator, class Value, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> rate_of(Generator const& generator, Vec3<Value> const& m,
                                                 Stencil const& rates) {

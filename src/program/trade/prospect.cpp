@@ -31,8 +31,8 @@ void Prospect::add(Try one, double unknown) {
   double const now = resolution(one.steps);
   auto const finer = std::ranges::upper_bound(
       tries_, now, {}, [this](Try const& other) { return resolution(other.steps); });
-  // If the error is near the uncertainty of the solution, replaces it by an extrapolation from the
-  // next coarser trial, within that uncertainty.
+  // An error below five times the uncertainty of the reference is replaced by one extrapolated from
+  // the next coarser trial, but moved by at most that uncertainty.
   if (finer != tries_.begin() && one.error < 5 * unknown) {
     auto const& coarser = *std::prev(finer);
     double const by_order = coarser.error * std::pow(now / resolution(coarser.steps), -order_);
