@@ -122,6 +122,14 @@ std::string RootAttributes::read_text(char const* name) const {
   return value;
 }
 
+bool RootAttributes::read_word(char const* name, char const* yes, char const* no) const {
+  auto const text = read_text(name);
+  if (text != yes && text != no)
+    throw_failure(path_, std::string("cannot read attribute ") + name,
+                  std::string("it is neither ") + yes + " nor " + no);
+  return text == yes;
+}
+
 std::int64_t RootAttributes::read_integer(char const* name) const {
   std::int64_t value = 0;
   read(name, H5T_NATIVE_INT64, &value);

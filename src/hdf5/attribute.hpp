@@ -35,6 +35,9 @@ class RootAttributes {
 
   bool has(char const* name) const;
   std::string read_text(char const* name) const;
+  /// Returns true if the text of an attribute is `yes`, and false if it is `no`. Another text
+  /// throws.
+  bool read_word(char const* name, char const* yes, char const* no) const;
   std::int64_t read_integer(char const* name) const;
   double read_real(char const* name) const;
   /// Throws std::runtime_error("PATH: ACTION: REASON") unless the attribute `name`, which is a

@@ -150,6 +150,17 @@ class RunOfStages {
     writer_.write(exec, scene(), sample_scene(exec, generator, step, spins), spins, shift_, true,
                   more);
     keep(spins);
+    if (goes_on()) return;
+    finish_file();
+    if (stores_checkpoints()) remove_checkpoint();
+  }
+
+  bool stores_checkpoints() {
+    bool const has_file = ranks_.any({writer_.file().has_value(), false})[0];
+    return has_file && !scene().output.checkpoint_every.is_never();
+  }
+  void remove_checkpoint() const {
+    if (ranks_.is_first()) std::filesystem::remove(io::checkpoint_beside(path_));
   }
 
   bool relax(Space const& exec, Spins& spins) {
@@ -209,14 +220,13 @@ class RunOfStages {
     if (goes_on()) return;
     finish_file();
     if (failure_) return;
-    bool const has_file = ranks_.any({writer_.file().has_value(), false})[0];
-    if (!has_file || scene().output.checkpoint_every.is_never()) return;
+    if (!stores_checkpoints()) return;
     // A method without a memory of steps can continue from the last frame, and needs no checkpoint.
     auto const step = writer_.last_frame()->step;
     if (remembers(scene(), plan()))
       store({step, plan().times.at(step), plan().times.dt, true});
-    else if (ranks_.is_first())
-      std::filesystem::remove(io::checkpoint_beside(path_));
+    else
+      remove_checkpoint();
   }
 
   // If the stage has ended early, plans the later stages again, and stores a checkpoint, because no

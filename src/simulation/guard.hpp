@@ -14,8 +14,9 @@
 namespace cayspin::simulation {
 
 inline bool energy_must_fall(io::Scene const& scene) {
-  return scene.system.kind == io::SystemKind::llg && scene.system.damping > 0 &&
-         !is_thermal(scene) && !io::has_torque(scene.field) && !io::depends_on_time(scene.field) &&
+  bool const is_damped = scene.system.damping > 0 || scene.system.dampings.there();
+  return scene.system.kind == io::SystemKind::llg && is_damped && !is_thermal(scene) &&
+         !io::has_torque(scene.field) && !io::depends_on_time(scene.field) &&
          scene.integrator.energy_guard && scene.integrator.method->keeps_length;
 }
 

@@ -243,7 +243,7 @@ class CheckpointReader::Implementation {
     if (attributes.has("cell_sites")) header_.cell_sites = attributes.read_integer("cell_sites");
     header_.step = attributes.read_integer("step");
     header_.time = attributes.read_real("time");
-    header_.si = attributes.read_text("units") == si_units;
+    header_.si = attributes.read_word("units", si_units, reduced_units);
     auto const extents = dataset_extents(open_dataset(file_.get(), "spins", 4, path_).get(), path_);
     for (int axis = 0; axis < 3; ++axis)
       header_.shape[axis] = static_cast<std::int64_t>(extents[2 - axis]);

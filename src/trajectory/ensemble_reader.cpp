@@ -56,7 +56,7 @@ EnsembleInfo read_whole_info(std::filesystem::path const& path) {
   header.space = attributes.read_text("space");
   header.threads = static_cast<int>(attributes.read_integer("threads"));
   header.precision = attributes.read_text("precision");
-  header.units.si = attributes.read_text("units") == si_units;
+  header.units.si = attributes.read_word("units", si_units, reduced_units);
   if (header.units.si)
     for (auto const& [name, member] : unit_attributes)
       header.units.*member = attributes.read_real(name);

@@ -112,6 +112,9 @@ TYPED_TEST(GuardIn, LengthsOfBaselinesAreNotLookedAt) {
 TEST(Guard, EnergiesAreHeldWhereDampingLetsThemOnlyFall) {
   EXPECT_TRUE(energy_must_fall(scene(0.5)));
   EXPECT_FALSE(energy_must_fall(scene(0)));
+  auto of_sites = scene(0);
+  of_sites.system.dampings.expression = "0.1";
+  EXPECT_TRUE(energy_must_fall(of_sites));
   EXPECT_FALSE(energy_must_fall(scene(0.5, "classical_rk4")));
   EXPECT_FALSE(energy_must_fall(scene(0.5, "rkmk4", "energy_guard = false\n")));
   EXPECT_FALSE(energy_must_fall(scene(0.5, "rkmk4", "", "[0, 0, \"cos(t)\"]")));

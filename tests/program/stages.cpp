@@ -210,6 +210,12 @@ integrator = { method = "rkmk4", dt = 0.1, end = 5.0 }
   EXPECT_NEAR(info.frame_scalars[2].magnetization[0], std::tanh(0.5 * 5), 1e-4);
 }
 
+// A checkpoint is stored between stages. A run that ends in rest needs none.
+TEST_F(Stages, LeaveNoCheckpointAfterALastRest) {
+  EXPECT_TRUE(run(chain_scene() + "[[stage]]\nrelax.torque = 1e-4\n").complete);
+  EXPECT_FALSE(exists("out.checkpoint.h5"));
+}
+
 TEST_F(Stages, KeepTheFramesBeforeAFailure) {
   write("scene.toml", chain_scene() + "[[stage]]\nintegrator.dt = 50.0\n");
   auto const outcome = start({"run", "scene.toml", "--quiet", "--output", "out.h5"});

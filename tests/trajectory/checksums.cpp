@@ -67,6 +67,22 @@ TEST_F(TrajectoryTest, ChangedSceneIsNoticed) {
   EXPECT_TRUE(contains(error_line(path, [&] { read_info(path); }), "its attributes are damaged"));
 }
 
+// No checksum includes the units.
+TEST_F(TrajectoryTest, ChangedUnitsAreNoticed) {
+  auto const path = folder_ / "a.h5";
+  auto header = small_header();
+  header.units = {.si = true, .time = 1e-12, .length = 1e-9, .field = 1, .energy = 1e-20};
+  TrajectoryFile(path, header, false).finish({});
+  ASSERT_TRUE(read_info(path).header.units.si);
+  {
+    FileHandle const file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+    ASSERT_GE(H5Adelete(file.get(), "units"), 0);
+    RootAttributes(file.get(), path).create("units", std::string("SX"));
+  }
+  EXPECT_TRUE(contains(error_line(path, [&] { read_info(path); }),
+                       "cannot read attribute units: it is neither SI nor reduced"));
+}
+
 TEST_F(TrajectoryTest, FilesWithoutChecksumsAreRead) {
   auto const path = folder_ / "a.h5";
   write_frames(path, 3).finish({});
