@@ -7,22 +7,22 @@ namespace {
 constexpr char const* head = R"(# Tables of extreme inputs
 
 How each method handles inputs that are tiny, huge or wrong; [the report](extremes.md) has a
-summary. The test `extremes` computes these tables, compares them with this page, and checks that
-every run does what the text above its table says. `extremes_long` does so for the last table. After
-a change, `build/release/bin/test_extremes --write` writes the page, in a few minutes.
+summary. The test `extremes` computes these tables and compares them with this page. It also checks
+most of the statements above each table. `extremes_long` does the same for the last table. After a
+change, `build/release/bin/test_extremes --write` writes this page again, in a few minutes.
 
 | word | meaning |
 |---|---|
-| exact | the exact solution to round-off: 8 epsilon a step, and 4 epsilon of the angle |
+| exact | the exact solution to round-off: 8 epsilon a step, plus 4 epsilon times the angle in radians |
 | bounded | \| \|m\| - 1 \| is below 4 epsilon a step; the error is that of the method |
-| warned | a warning says that dt is too large; \|m\| is kept, or the run stops with status 3 |
+| warned | a warning says that dt is too large; except with `classical_*`, \|m\| is kept, or the run stops with status 3 |
 | drifts | \|m\| is not kept, as documented for `classical_*` |
 | refused | one line before the first step |
 | detected | the run stops with status 3 |
 
-Runs take six steps of 1/128 unless the table says otherwise. Two words in a cell are for double and
-single precision. Brackets hold generators and rotations where not all behave alike. Constant sigmas
-behave as zero does.
+Runs take six steps of 1/128, unless the table or its text says otherwise. Two words in a cell are
+for double and single precision. Square brackets hold generators and rotations where not all behave
+alike. Constant sigmas are not in the tables.
 )";
 
 // Methods that take 1e8 steps in minutes.

@@ -72,8 +72,9 @@ Section equilibria() {
   using enum Fate;
   Section section{"Equilibria",
                   R"(
-`cayspin relax` of random spins in a field of 1 with exchange 1, to a bound of 1e-6 on the torque.
-Exact means that all spins keep their bits; bounded, that all end along the field.)",
+The search of `cayspin relax` from random spins, in a field of 1 with exchange 1, to a bound of 1e-6
+on the torque, unless the table says otherwise. The first two columns have no exchange. Exact means
+that all spins keep their bits; bounded, that all end along the field.)",
                   {exact, bounded, refused, detected}};
   auto const add = [&](char const* name, Setting setting, Against against) {
     setting.steps = 1;

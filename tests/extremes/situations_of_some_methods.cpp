@@ -11,11 +11,13 @@ using enum Against;
 Section adaptive_steps() {
   Section section{"Adaptive steps",
                   R"(
-Tolerance 1e-4 and field 1, unless the table says otherwise. dt is from one sample to the next,
-and t runs from 0 to 6 or 6/128. The error stays below 30 times the tolerance, also where the
-field is switched on within a step. A run stops when a step would have to be below min_dt, when
-numbers are too large for the precision, and when the start is wrong. With a damping of 1e12,
-steps are 1e-12 long, and only min_dt limits their number.)",
+Field 1, damping 0.1, tolerance 1e-4 (1e-5 with the field that is switched on), unless the table
+says otherwise. dt is the time between samples, of which a run has six after the start: 1/128 up to
+the column of the field that is switched on, and 1 after it, unless the table says otherwise. The
+error stays below 30 times the tolerance, also where the field is switched on within a step. A run
+stops if a step would have to be below min_dt, if numbers are too large for the precision, or if the
+start is wrong. With a damping of 1e12, steps are some 1e-12 long, and only min_dt limits their
+number.)",
                   {exact, bounded, refused, detected}};
   section.add("A = 0", {.field = 0, .damping = 0.1}, solution);
   section.add("A along m", {.damping = 0.1, .along_field = true}, solution);
@@ -37,8 +39,9 @@ steps are 1e-12 long, and only min_dt limits their number.)",
 Section temperatures() {
   Section section{"Temperatures",
                   R"(
-Methods that take a temperature; damping 0.1, field 1. T = 0 has the bits of a run without
-[thermal]. `run` warns where noise turns spins by half a radian a step.)",
+Methods with constant steps that take a temperature; damping 0.1, field 1. dt is 1e-12 at T 1e-300,
+and 1e-3 with NaN. A run at T = 0 is bit-identical to one without `[thermal]`. `run` warns where
+noise turns spins by more than half a radian a step.)",
                   {exact, bounded, warned, refused, detected}};
   auto const add = [&](char const* name, Setting setting, double temperature,
                        Against against = nothing, std::int64_t detected_by = 6) {
@@ -60,7 +63,8 @@ Methods that take a temperature; damping 0.1, field 1. T = 0 has the bits of a r
 Section expensive_fields() {
   Section section{"Expensive fields",
                   R"(
-Methods that accept an expensive field, here a slab's of 0.5. Damping 0.1, field 1.)",
+Methods that accept an expensive field, here the demagnetising field of a slab, of strength 0.5.
+Damping 0.1, field 1. dt is 1e-12 at strength 1e-300, and 1e-3 with NaN.)",
                   {exact, bounded, warned, detected},
                   {exact, drifts, warned, detected}};
   auto const add = [&](char const* name, Setting setting, double strength,
