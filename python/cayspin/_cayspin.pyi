@@ -12,7 +12,7 @@ git_commit: str
 complete_file: Callable[[str | os.PathLike], None]
 
 class CayspinError(Exception):
-    """Every error of the package: one line with what is wrong, and what is accepted."""
+    """An error of the package: one line with what is wrong, and what is accepted."""
 
 class SceneError(CayspinError):
     """A scene that is refused: its file and line, the key, what is wrong and what is accepted."""

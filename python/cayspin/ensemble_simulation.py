@@ -16,8 +16,8 @@ from cayspin.scene import Scene
 
 class EnsembleSimulation:
     """The replicas of a `scene` with [ensemble], which run together. Replica r is bit-identical to
-    a run of the scene with its values and seeds. Small replicas run at the same time, one on each
-    thread.
+    a run of the scene with its values and seeds. On several threads, small replicas run at the same
+    time.
 
         sim = cayspin.EnsembleSimulation(scene)
         sim.run()
@@ -25,8 +25,8 @@ class EnsembleSimulation:
 
     `precision` is "double" or "single", `space` an execution space that was compiled in (default:
     that of Kokkos), `threads` the number of its threads, which the first simulation of a process
-    decides. `restart` names the file of an ensemble: the simulation continues from its last frame,
-    unless the method remembers more than the spins.
+    decides. `restart` names the file of an ensemble: the simulation continues from its last frame.
+    It is refused if the method remembers more than the spins.
 
     Ctrl-C stops it between two steps with KeyboardInterrupt; some replicas may then be further than
     others. Lengths, times, fields and energies are in the units of the scene: reduced ones, or with
@@ -90,10 +90,11 @@ class EnsembleSimulation:
               keep_saddles: bool = False) -> list[Minimum]:
         """Moves each replica to a minimum of the energy, as Simulation.relax() does, and returns
         the result of each search. A search ends where max |m x H| is below `torque`, in the unit of
-        H, T in SI, or after `evaluations` of the field. With `keep_saddles` it may end at a saddle.
+        H, T in SI, or after about `evaluations` of the field. With `keep_saddles` it may end at a
+        saddle.
 
-        Raises NumbersFailed for a field that is not finite, SceneError for rigid bodies and
-        temperatures, CayspinError for other arguments.
+        Raises NumbersFailed for a field that is not finite, SceneError for rigid bodies,
+        temperatures and torques of currents, CayspinError for other arguments.
         """
         found = self._run.relax(arguments.real(torque, "relax: torque"),
                                 arguments.whole(evaluations, "relax: evaluations"),

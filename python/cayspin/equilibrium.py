@@ -17,7 +17,7 @@ class Minimum:
     energy: float  #: summed over sites, in the scene's unit, J in SI
     iterations: int  #: steps of the search
     evaluations: int  #: of the field of all sites
-    saddles: int  #: saddles left during the search
+    saddles: int  #: saddles met during the search
     #: upper bound of the lowest curvature, energy / rad^2, if converged; inf with `keep_saddles`
     curvature: float
 

@@ -26,10 +26,10 @@ class MinimumEnergyPath:
     saddle_energy: float | None  #: energy of the highest saddle, in the unit of `energy`
     barrier_forward: float | None  #: saddle_energy minus the energy of the first image, in its unit
     barrier_backward: float | None  #: saddle_energy minus the energy of the last image, in its unit
-    saddle_curvature: float | None  #: lowest curvature of that saddle, negative, energy / rad^2
+    saddle_curvature: float | None  #: lowest curvature of the saddle, about 0 or less, energy / rad^2
     saddles: np.ndarray  #: (saddle,), highest first: energy, curvature, next_curvature, image
     end: str  #: "converged", or why not
-    converged: bool  #: whether the path and its saddle meet `torque`
+    converged: bool  #: whether the path and all of its saddles have converged
     evaluations: int  #: of the field of all sites
     prefactor_forward: float | None  #: with `rates`; in SI in 1/s with T in K
     prefactor_backward: float | None  #: the same for the way back, in the same unit
@@ -70,9 +70,10 @@ def path(scene: Scene, start: np.ndarray | str | os.PathLike, end: np.ndarray | 
     Simulation.
 
     If the search ends early, `converged` is False, and the result has what was found so far. Raises
-    NumbersFailed if there is no path: an end cannot be relaxed, or both ends relax to the same
-    state. Raises SceneError for rigid bodies, temperatures, torques of currents and fields that
-    depend on t, CayspinError for wrong options and ends. Ctrl-C raises KeyboardInterrupt.
+    NumbersFailed if there is no path (an end cannot be relaxed, or both ends relax to the same
+    state), and for rates that cannot be computed. Raises SceneError for rigid bodies, temperatures,
+    torques of currents and fields that depend on t, CayspinError for wrong options and ends. Ctrl-C
+    raises KeyboardInterrupt.
     """
     if not isinstance(scene, Scene):
         raise _cayspin.CayspinError(f"path: a {type(scene).__name__}; accepted: a Scene")

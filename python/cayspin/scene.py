@@ -112,9 +112,9 @@ class Scene:
 
     `field["applied"]` may be a function of t that returns three numbers: the uniform field, in T in
     SI. `field["nonlocal"]` may be a function of (spins, t) that returns H of all sites in the shape
-    of the spins, in SI also in T. It is called before each stage with a copy of the spins, and H
-    has to be linear in them and symmetric: its energy is -sum mu m.H / 2 with the
-    moments mu.
+    of the spins, in SI also in T. It is called with a copy of the spins whenever a step or an
+    energy needs the field. H has to be linear in the spins, with a symmetric matrix, so that its
+    energy is -sum mu m.H / 2 with the moments mu.
 
     Raises SceneError with one line that names the key, what is wrong and what is accepted.
     """
@@ -216,8 +216,8 @@ class Scene:
 
     @property
     def text(self) -> str:
-        """The TOML text. The program `cayspin` can run it, unless the scene has functions or
-        arrays."""
+        """The TOML text. It is a scene file for the program `cayspin`, unless the scene has
+        functions or arrays."""
         return self._scene.text
 
     @property
@@ -242,8 +242,8 @@ class Scene:
 
     @property
     def dt(self) -> float | None:
-        """The time step, in s in SI; for adaptive methods the time between guards, samples and
-        frames. None without an integrator."""
+        """The time step, in s in SI; for adaptive methods the shortest time between checks, samples
+        and frames. None without an integrator."""
         return self._scene.dt if self._scene.has_integrator else None
 
     @property

@@ -64,7 +64,8 @@ class Simulation:
         Raises NumbersFailed when spins are not finite, leave the sphere or gain energy without a
         source, SceneError for a dt that integrator.refuse_unstable refuses, CayspinError without an
         integrator or beyond the last possible step. An exception of an observer or of your own
-        field reaches you; the spins are then those of the last complete step.
+        field reaches you; the spins are then those of the last complete step or, if your field
+        fails in a step of an adaptive method, those of up to 100 steps before.
         """
         n = arguments.whole(n, "step")
         if not self._scene._scene.has_integrator:
@@ -133,8 +134,8 @@ class Simulation:
               applied: Sequence[float] | None = None,
               keep_saddles: bool = False) -> Minimum:
         """Moves the spins to a minimum of the energy, without steps in time, as `cayspin relax`
-        does. The search ends where max |m x H| is below `torque`, in the unit of H, T in SI. It
-        takes at most `evaluations` of the field of all sites.
+        does. The search ends where max |m x H| is below `torque`, in the unit of H, T in SI, or
+        after about `evaluations` of the field of all sites.
 
         `applied`, three numbers in the unit of H, replaces the scene's field.applied. A hysteresis
         loop is [sim.relax(applied=h) and sim.magnetization() for h in fields]: each search starts
@@ -143,8 +144,8 @@ class Simulation:
 
         The scene needs no integrator. After Ctrl-C the spins hold the last state of the search.
 
-        Raises NumbersFailed for a field that is not finite, SceneError for rigid bodies and
-        temperatures, CayspinError for other arguments.
+        Raises NumbersFailed for a field that is not finite, SceneError for rigid bodies,
+        temperatures and torques of currents, CayspinError for other arguments.
         """
         if applied is not None:
             applied = arguments.numbers(applied, "relax: applied")
@@ -167,7 +168,7 @@ class Simulation:
         rest under the current. A mode with a negative decay grows.
 
         `tolerance` is the relative error of the shapes; frequencies are more accurate. The search
-        takes at most `evaluations` of the field of all sites.
+        ends after about `evaluations` of the field of all sites.
 
         Raises CayspinError for other arguments, SceneError for rigid bodies, temperatures and spins
         that neither precess nor are damped, NumbersFailed for spins that a current keeps moving.
@@ -194,12 +195,13 @@ class Simulation:
 
         Units are the scene's, and values per site may be arrays (nz, ny, nx).
 
-        Keys are changed as by a table [[stage]] of a scene, with the same rules. A value or a dict
-        takes the place of the old one as a whole: {"field.dmi": {"bulk": 0.1}} leaves no other key
-        of the old DMI, while "field.dmi.bulk" changes only that key. integrator.method starts a new
-        [integrator], and its end or steps are counted from now. If the keys do not include an
-        integrator, run() takes the scene's duration again. Methods that remember earlier steps
-        start afresh.
+        Keys are changed as by a table [[stage]] of a scene, with the same rules. The value of a
+        key, also if it is a dict, takes the place of the old one as a whole:
+        {"field.dmi": {"bulk": 0.1}} leaves no other key of the old DMI, while "field.dmi.bulk"
+        changes only that key. A table such as "integrator" keeps the keys that are not given, but
+        integrator.method starts a new [integrator]. Its end or steps are counted from now. If the
+        keys do not include an integrator, run() takes the scene's duration again. Methods that
+        remember earlier steps start afresh.
 
         Raises SceneError for keys that cannot change, such as those of lattice, and for wrong
         values, CayspinError for other arguments; nothing is changed then.
@@ -282,7 +284,8 @@ class Simulation:
     @property
     def spins(self) -> np.ndarray:
         """The spins now, (nz, ny, nx, 3), for a crystal with several sites in a cell
-        (site, nz, ny, nx, 3): a read-only view of the library's memory, no copy.
+        (site, nz, ny, nx, 3): on a host a read-only view of the library's memory, on a device a
+        copy.
 
         A view never changes: while you hold one, the next step moves the spins to other memory.
         Assigning to `spins` copies and normalises any array that broadcasts to the shape, and

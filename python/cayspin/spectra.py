@@ -265,10 +265,11 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
     small damping. The elastic line of the state itself and longitudinal fluctuations are not
     included.
 
-    `moments`: mu / g of each site, from lattice.moments and lattice.gyromagnetic, an array that
-    broadcasts to the spins without their last axis. Without it, mu / g is 1, or the number of the
-    scene if `modes` is a file. `components`, `cell`, `positions`, `periodic` and `zones` are those
-    of structure_factor(); if `modes` is a file, the lattice is the scene's by default.
+    `moments`: mu / g of each site in reduced units, from lattice.moments and lattice.gyromagnetic,
+    an array that broadcasts to the spins without their last axis. Without it, mu / g is 1, or the
+    number of the scene if `modes` is a file. `components`, `cell`, `positions`, `periodic` and
+    `zones` are those of structure_factor(); if `modes` is a file, the lattice is the scene's by
+    default.
 
     Raises CayspinError for a mode that does not oscillate or lowers the energy, a file of bands or
     with [torque], Modes without spins, and arrays, words and numbers that do not fit.

@@ -203,8 +203,9 @@ def read_uppasd(jfile: str | os.PathLike, *, posfile: str | os.PathLike | None =
             initial={"uniform": [0, 0, 1]})
 
     `jfile` has lines of site, site, x, y, z and J in mRy, `dmfile` of D_x, D_y, D_z in place of J.
-    `posfile` has the atoms of the cell (default: one at 0), `momfile` their moments, and `cell` its
-    three vectors (default: unit vectors), all in units of alat. The others are keys of inpsd.dat:
+    `posfile` has the atoms of the cell (default: one at 0) and `momfile` their moments in Bohr
+    magnetons. `cell` has the three vectors of the cell (default: unit vectors). Lengths are in
+    units of alat. The others are keys of inpsd.dat:
 
     - `posfiletype`: "C" for Cartesian numbers, "D" for multiples of the cell's vectors
     - `maptype`: 1 for vectors between atoms, 2 for the cells between them

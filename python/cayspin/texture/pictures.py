@@ -254,12 +254,12 @@ def draw(texture: Texture, axes: Any = None, *, plane: str | None = None,
     axis of fewest cells). A plane that is one site wide is drawn as a chain: components along it,
     and a strip of colours.
     `colors` "hue": the angle in the plane, lighter along its normal and darker against it; "safe":
-    the component along the normal, from blue to red. Both have arrows, at most about 24 across.
+    the component along the normal, from blue to red. Except for chains, both have arrows, at most
+    about 24 across.
     `quantity` "charge": the topological charge of each cell of a film, seen against the normal.
     `before`: other spins of the same shape; |difference| is drawn. `limit`: the end of the colour
     scale for "charge" and for a difference. `key`: whether the wheel or the scale is drawn to the
-    right of the axes
-    (default: where the figure is new).
+    right of the axes (default: where the figure is new).
 
     Raises ValueError for other words, planes and shapes.
     """
