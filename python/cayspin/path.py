@@ -26,7 +26,8 @@ class MinimumEnergyPath:
     saddle_energy: float | None  #: energy of the highest saddle, in the unit of `energy`
     barrier_forward: float | None  #: saddle_energy minus the energy of the first image, in its unit
     barrier_backward: float | None  #: saddle_energy minus the energy of the last image, in its unit
-    saddle_curvature: float | None  #: lowest curvature of the saddle, about 0 or less, energy / rad^2
+    #: lowest curvature of that saddle, about 0 or less, energy / rad^2
+    saddle_curvature: float | None
     saddles: np.ndarray  #: (saddle,), highest first: energy, curvature, next_curvature, image
     end: str  #: "converged", or why not
     converged: bool  #: whether the path and all of its saddles have converged
