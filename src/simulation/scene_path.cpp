@@ -3,6 +3,7 @@
 
 #include "failure.hpp"
 #include "kokkos_settings.hpp"
+#include "ranks.hpp"
 #include "run_files.hpp"
 #include "scene_field.hpp"
 #include "scene_minimizer.hpp"
@@ -15,10 +16,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace cayspin::simulation {
 namespace {
+
+// Torques of the search are |m x dE/dm|, and those of a scene are |m x H| with H = -dE/dm over the
+// moment. Over the least moment they are upper bounds.
+double least_moment(io::Scene const& scene, Lattice const& lattice) {
+  double least = std::numeric_limits<double>::infinity();
+  for (double const moment : io::all_moments(scene, own_sites(lattice)))
+    if (moment > 0) least = std::min(least, moment);
+  return std::isfinite(least) ? least : 1;
+}
 
 template <class Real, class Space>
 class PathOfScene {
@@ -29,7 +40,8 @@ class PathOfScene {
       : scene_(scene),
         options_(options),
         saddle_("path::highest_saddle", lattice),
-        field_(field_of<Spins>(scene, lattice, false).made_for(FieldFor::energy)) {
+        field_(field_of<Spins>(scene, lattice, false).made_for(FieldFor::energy)),
+        moment_(least_moment(scene, lattice)) {
     for (std::int64_t k = 0; k < options.images; ++k) images_.emplace_back("path::image", lattice);
   }
 
@@ -49,7 +61,7 @@ class PathOfScene {
   MinimumEnergyPath search() {
     try {
       return minimum_energy_path(exec_, field_, images_, saddle_,
-                                 {.torque = options_.torque / scene_.units.field,
+                                 {.torque = moment_ * options_.torque / scene_.units.field,
                                   .evaluations = options_.evaluations,
                                   .observer = options_.observer});
     } catch (FieldNotFinite const&) {
@@ -64,14 +76,14 @@ class PathOfScene {
     path.end = to_string(found.end);
     path.converged = found.end == PathEnd::converged;
     path.evaluations = found.evaluations;
-    path.across = found.across * units.field;
+    path.across = found.across * units.field / moment_;
     path.distance = found.distance;
     for (double const energy : found.energy) path.energy.push_back(energy * units.energy);
     for (auto const& saddle : found.saddles) {
       path.saddles.push_back({saddle.energy * units.energy, saddle.curvature * units.energy,
                               saddle.next_curvature * units.energy,
                               static_cast<std::int64_t>(saddle.image)});
-      path.torque = std::max(path.torque, saddle.torque * units.field);
+      path.torque = std::max(path.torque, saddle.torque * units.field / moment_);
     }
     for (auto const& image : images_) {
       auto const numbers = copy_to_host(image);
@@ -88,6 +100,7 @@ class PathOfScene {
   std::vector<Spins> images_;
   Spins saddle_;
   SceneField<Spins> field_;
+  double moment_;
 };
 
 void require_same_frozen_spins(io::Scene const& scene, std::vector<double> const& from,

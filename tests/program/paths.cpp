@@ -72,6 +72,28 @@ uniform = [1, 0, 0]
     EXPECT_EQ(energy.at(static_cast<std::size_t>(image[i])), of_saddles[i]);
 }
 
+// With moments and constants of a thousandth, H and the path are the same, and energies are a
+// thousandth.
+TEST_F(PathCommand, BoundsTheTorqueOfSmallMoments) {
+  auto const chain = [](std::string const& moments, std::string const& scale) {
+    return "[system]\nkind = \"llg\"\n[lattice]\nshape = [12]\n" + moments +
+           "[field]\napplied = [0.1, 0, 0]\ncouplings = [{ offset = [1, 0, 0], J = 2" + scale +
+           " }]\nanisotropy = { constant = 1" + scale +
+           ", axis = [0, 0, 1] }\n[initial]\nuniform = [0, 0, 1]\n";
+  };
+  std::vector<double> barriers;
+  for (auto const& scene : {chain("", ""), chain("moments = 0.001\n", "e-3")}) {
+    auto const file = write("scene.toml", scene);
+    for (std::string const z : {"1", "-1"})
+      expect_status(0, {"relax", file, "--output", z == "1" ? "a.h5" : "b.h5", "--quiet",
+                        "--overwrite", "--set", "initial={ uniform = [0, 0, " + z + "] }"});
+    expect_status(0, arguments({"--torque", "1e-6", "--quiet", "--overwrite"}));
+    EXPECT_LE(attribute("torque"), 1e-6);
+    barriers.push_back(attribute("barrier_forward"));
+  }
+  EXPECT_NEAR(1e3 * barriers[1] / barriers[0], 1, 1e-9);
+}
+
 TEST_F(PathCommand, RefusesEndsWithOtherVacancies) {
   write_ends(scene);
   expect_status(0, {"relax", in_folder("scene.toml"), "--output", "b.h5", "--quiet", "--overwrite",
