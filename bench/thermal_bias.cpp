@@ -2,7 +2,7 @@
 // Bias of thermal averages due to steps of length dt: cayspin's noise before and after its steps,
 // next to three schemes of other programs, reimplemented here. Prints one line per scheme, damping
 // and dt: the error of <m_z> in a field of twice the temperature (Langevin), of <m_z^2> of a
-// uniaxial spin with K of three times the temperature, and of <m.m'> of neighbours on a chain with
+// uniaxial spin with K of six times the temperature, and of <m.m'> of neighbours on a chain with
 // J of three times the temperature (Fisher 1964). Each error is printed with its standard error.
 //   bench_thermal_bias [sites] [time]
 #include <cayspin/cayspin.hpp>
