@@ -177,8 +177,9 @@ class Advice:
 def trade(scene: Scene, seconds: float = 10, precision: str | None = None,
           space: str | None = None, threads: int | None = None) -> Trade:
     """Tries the methods that can run the `scene`, except a few that only show a formula, in runs of
-    at most `seconds` each, as `cayspin trade` does. This takes minutes. `precision`, `space` and `threads` are those of Simulation; by
-    default both precisions and the program's space and threads.
+    at most `seconds` each, as `cayspin trade` does. This takes minutes. `precision`, `space` and
+    `threads` are those of Simulation; by default both precisions and the program's space and
+    threads.
 
     Raises CayspinError for a scene that the program cannot run, such as one with functions or
     arrays.
