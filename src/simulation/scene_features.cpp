@@ -8,10 +8,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <deque>
 #include <mutex>
 #include <regex>
+#include <system_error>
 #include <utility>
 
 namespace cayspin::simulation {
@@ -28,8 +30,12 @@ std::vector<double> events_of(Components const& components, double time_unit) {
   for (auto const& component : components)
     if (auto const* const text = std::get_if<std::string>(&component))
       for (auto at = std::sregex_iterator(text->begin(), text->end(), number);
-           at != std::sregex_iterator(); ++at)
-        numbers.push_back(std::strtod(at->str().c_str(), nullptr) / time_unit);
+           at != std::sregex_iterator(); ++at) {
+        double value = 0;
+        auto const typed = at->str();  // read with a decimal point, whatever the locale
+        if (std::from_chars(typed.data(), typed.data() + typed.size(), value).ec == std::errc())
+          numbers.push_back(value / time_unit);
+      }
   auto events = numbers;
   auto const paired = std::min(numbers.size(), most_paired);
   for (std::size_t i = 0; i < paired; ++i)
