@@ -46,6 +46,26 @@ std::string film(std::string const& start) {
          "[output]\nevery = 5\nscalars_every = 1\ntable = true\nxdmf = true\n";
 }
 
+/// A pulse that an adaptive method finds only by its time in the text.
+std::string const pulse = R"([system]
+kind = "llg"
+damping = 0.5
+[lattice]
+shape = [1]
+[field]
+applied = ["t > 5.375 && t < 5.3750001 ? 1e7 : 0", "0", "1.0"]
+[initial]
+uniform = [0, 0, 1]
+[integrator]
+method = "tsit5"
+tolerance = 1e-6
+dt = 0.5
+steps = 12
+[output]
+table = true
+xdmf = true
+)";
+
 /// Results of functions that read or write numbers as text, by name.
 using Results = std::map<std::string, std::string>;
 
@@ -93,6 +113,7 @@ class Locales : public cayspin::program::test::ProgramTest {
     EXPECT_TRUE(std::isinf(limits[1]));
     EXPECT_EQ(limits[2], 4.9e-324);
     run(results, "film", film("expression = [\"sin(1.5*x)\", \"0.25\", \"1.5 - 0.125*y\"]"));
+    run(results, "pulse", pulse);
     run(results, "from_ovf", film("file = \"" + ovf.string() + "\""));
     write_bytes(in_folder("cell.ucf"), crystal);
   }
