@@ -76,7 +76,7 @@ uniform = [1, 0, 0]
 // thousandth.
 TEST_F(PathCommand, BoundsTheTorqueOfSmallMoments) {
   auto const chain = [](std::string const& moments, std::string const& scale) {
-    return "[system]\nkind = \"llg\"\n[lattice]\nshape = [12]\n" + moments +
+    return "[system]\nkind = \"llg\"\ndamping = 0.1\n[lattice]\nshape = [12]\n" + moments +
            "[field]\napplied = [0.1, 0, 0]\ncouplings = [{ offset = [1, 0, 0], J = 2" + scale +
            " }]\nanisotropy = { constant = 1" + scale +
            ", axis = [0, 0, 1] }\n[initial]\nuniform = [0, 0, 1]\n";
