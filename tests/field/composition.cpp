@@ -114,6 +114,21 @@ TYPED_TEST(Fields, WhatTermsRefuse) {
   EXPECT_THROW(Moments(lattice, {-1}, {-1}), std::invalid_argument);
 }
 
+// The second axis is turned to be at right angles with the first.
+TEST(CubicAxes, OfFewDigitsAreMadeOrthogonal) {
+  Vec3<double> const first{1, 2, 2}, second{2, 1, -2};
+  CubicAnisotropy const exact(1.3, first, second);
+  for (double const skew : {-9e-5, 3e-7, 9e-5}) {
+    CubicAnisotropy const typed(1.3, first, second + skew * first);
+    for (Vec3<double> const& m : {Vec3<double>{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) {
+      auto const found = typed.parts(m), expected = exact.parts(m);
+      EXPECT_NEAR(found.x, expected.x, 4e-15) << skew;
+      EXPECT_NEAR(found.y, expected.y, 4e-15) << skew;
+      EXPECT_NEAR(found.z, expected.z, 4e-15) << skew;
+    }
+  }
+}
+
 TYPED_TEST(Fields, NumbersThatAreNotFiniteAreRefused) {
   using Spins = typename TypeParam::Spins;
   using Memory = typename TypeParam::MemorySpace;

@@ -61,6 +61,22 @@ TEST(RoundedDigits, OfCubicAxesAreTaken) {
   EXPECT_NE(said.find("to 1e-4"), said.npos) << said;
 }
 
+TEST(RoundedDigits, OfAxesAreMadeOrthogonal) {
+  Triple const first{0, 0.6, 0.8}, second{0, 0.8, -0.6};
+  for (auto const* const in_plane :
+       {"[0,0.80003,-0.59996]", "['0','0.8 + 2e-5*i','3e-5*i - 0.6']"}) {
+    auto const scene = scene_of(
+        single,
+        {std::string("field.anisotropy={hexagonal=1,axis=[0,0.6,0.8],in_plane=") + in_plane + "}"});
+    auto const axes = crystal_axes(scene, scene.field.crystal_anisotropies.at(0), whole(scene));
+    ASSERT_EQ(axes[0].size(), axes[1].size()) << in_plane;
+    for (std::size_t i = 0; i < axes[0].size(); ++i) {
+      EXPECT_NEAR(axes[0][i], first[i % 3], 4e-15) << in_plane;
+      EXPECT_NEAR(axes[1][i], second[i % 3], 4e-15) << in_plane;
+    }
+  }
+}
+
 // Rounded vectors of a cell give the same bonds as exact ones.
 TEST(RoundedDigits, OfACellKeepItsShells) {
   double const s = std::sqrt(0.75);

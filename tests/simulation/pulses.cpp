@@ -8,6 +8,7 @@
 #include "simulation/time_features.hpp"
 
 #include <cmath>
+#include <numbers>
 
 namespace cayspin::simulation::test {
 namespace {
@@ -46,6 +47,26 @@ TEST(Pulses, OfAnySmallPartOfARunAreFound) {
     auto const end = end_of(scene);
     EXPECT_GT(std::hypot(end[0], end[1]), 0.1) << width;
   }
+}
+
+// The text holds neither the time of the pulse nor numbers whose sum or difference it is.
+TEST(Pulses, AreFoundWhereTheTextDoesNotNameTheirTimes) {
+  for (double const width : {0.02, 0.2})
+    for (double const at : {17.3, 250.123, 500.3}) {
+      SCOPED_TRACE(fmt::format("width {} at {}", width, at));
+      auto const scene = scene_of(
+          pulse_scene(fmt::format("method = 'tsit5', tolerance = 1e-6, end = {}", at + 1.5),
+                      fmt::format("exp(0-((7*t-{})/{})^2)", 7 * at, 7 * width)));
+      auto const features = make_plan(scene, Precision::double_precision).features;
+      EXPECT_EQ(features->jumps, 0);
+      ASSERT_TRUE(features->shortest);
+      EXPECT_NEAR(features->shortest->length, 2 * std::sqrt(std::log(2.0)) * width, 0.01 * width);
+      EXPECT_NEAR(features->shortest->time, at, 0.1 * width);
+      // The pulse turns the spin by its area, and the turn decays for a time of 1.5.
+      auto const end = end_of(scene);
+      double const turn = std::sqrt(1.25 * std::numbers::pi) * width;
+      EXPECT_NEAR(std::hypot(end[0], end[1]) / turn, std::exp(-0.5 * 1.5), 0.01);
+    }
 }
 
 TEST(Pulses, AreLookedForWhereTheFieldDependsOnTime) {
