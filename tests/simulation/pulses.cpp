@@ -69,6 +69,21 @@ TEST(Pulses, AreFoundWhereTheTextDoesNotNameTheirTimes) {
     }
 }
 
+// Along a constant field, m_z = tanh(damping t). The error of steps of this length shows that none
+// was longer.
+TEST(AdaptiveSteps, AreNoLongerThanTheScenesLongest) {
+  auto const error = [](std::string const& keys) {
+    auto const end =
+        end_of(scene_of("system = { kind = 'llg', damping = 0.5 }\nlattice = { shape = [1] }\n"
+                        "field = { applied = [0, 0, 1] }\ninitial = { uniform = [1, 0, 0] }\n"
+                        "integrator = { method = 'bs3', tolerance = 1e-2, end = 5" +
+                        keys + " }\n"));
+    return std::abs(end[2] - std::tanh(0.5 * 5));
+  };
+  EXPECT_GT(error(""), 1e-6);
+  EXPECT_LT(error(", max_dt = 0.01"), 2e-8);
+}
+
 TEST(Pulses, AreLookedForWhereTheFieldDependsOnTime) {
   auto const plan =
       make_plan(scene_of(pulse_scene("method = 'tsit5', tolerance = 1e-6, end = 502", "0.5")),
