@@ -14,7 +14,7 @@
 
 namespace cayspin::simulation {
 
-/// The uniform field mu0 applied(t) of a scene, or another vector given by expressions.
+/// The uniform field mu0 applied(t) of a scene, or another vector of numbers and expressions in t.
 class AppliedField {
  public:
   /// `units`: of the scene, for messages.

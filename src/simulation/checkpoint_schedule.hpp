@@ -37,7 +37,7 @@ class CheckpointSchedule {
   using Clock = std::chrono::steady_clock;
   io::CheckpointPeriod period_;
   std::int64_t first_;
-  mutable std::optional<InterruptPoll> elapsed_;  // asked at most about twenty times a second
+  mutable std::optional<InterruptPoll> elapsed_;  // asked at most twenty times a second
 };
 
 }  // namespace cayspin::simulation

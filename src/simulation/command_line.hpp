@@ -34,9 +34,8 @@ inline std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   return std::nullopt;
 }
 
-/// Prints an error as one line on standard error, unless another rank reports it. Messages about a
-/// file start with the name of the file, and those about the command line with "cayspin". Returns
-/// the exit status.
+/// Prints an error as one line on standard error, unless another rank reports it. The line starts
+/// with "cayspin" for a UsageError and for a lack of memory. Returns the exit status.
 inline int report(std::exception_ptr const& thrown) {
   auto const say = [](std::string const& message) {
     std::fflush(stdout);

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <functional>
 
-// A scene's field.demag. Only demagnetization.cpp includes FFTW.
+// A scene's field.demag or field.dipoles. In src, only demagnetization.cpp includes FFTW.
 namespace cayspin::simulation {
 
 /// Function that writes H of the spins into a field.

@@ -9,13 +9,14 @@ namespace cayspin::simulation {
 /// Exit statuses of the program.
 enum Status { done = 0, wrong_usage = 2, numbers_failed = 3, interrupted = 130 };
 
-/// The numbers of a run became invalid: exit status 3. what() is one line.
+/// The numbers of a run or of a search became invalid: exit status 3. what() is one line.
 class NumbersFailed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The command line, or a file that it names, is invalid: exit status 2. what() is one line.
+/// The command line, a file that it names, or an argument of a call is invalid: exit status 2.
+/// what() is one line.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

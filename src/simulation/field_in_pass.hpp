@@ -15,16 +15,17 @@ struct Scene;
 
 namespace cayspin::simulation {
 
-/// The purpose of a field. generator: H times the gyromagnetic ratio, for the generator that turns
-/// the spins; itself: H, for output; energy: -dE/dm, for searches that lower the energy. The last
-/// two are zero at frozen spins.
+/// The purpose of a field. generator: H times the gyromagnetic ratio of the site of the cell, for
+/// the generator that turns the spins; itself: H, for output; energy: -dE/dm, for searches that
+/// lower the energy, and for modes. The last two are zero at frozen spins.
 enum class FieldFor { generator, itself, energy };
 
 /// The field of a scene with rarely used terms, such as couplings, sublattices, currents and
-/// vacancies. A separate pass evaluates all terms into memory before each stage (on a host, row by
-/// row as a Runge-Kutta stage reaches each row), and the kernels of the methods load the result. So
-/// the terms need not be compiled again for each method. Compiled by field_in_pass_double.cpp and
-/// field_in_pass_single.cpp for the spaces of space.hpp. A handle: copies share their data.
+/// vacancies. A separate pass evaluates all terms into memory before each stage, and the kernels of
+/// the methods load the result. On a host, a Runge-Kutta stage instead evaluates them, or only the
+/// rare ones, row by row (along_rows). So the rare terms need not be compiled again for each
+/// method. Compiled by field_in_pass_double.cpp and field_in_pass_single.cpp for the spaces of
+/// space.hpp. A handle: copies share their data.
 template <class Spins>
 class FieldInPass {
   using Real = typename Spins::value_type;
@@ -67,7 +68,7 @@ class FieldInPass {
   template <class Exec>
   double norm_defect(Exec const& exec, Spins const& spins) const;
 
-  /// Returns the moments; empty if a moment depends only on the site of the cell.
+  /// Returns the moments; empty unless io::has_moments_of_sites.
   std::optional<ScalarField<Real, Memory>> moments_of_sites() const;
 
   /// Returns 0 where a spin is frozen and 1 elsewhere; empty if none is frozen.

@@ -23,9 +23,8 @@ inline bool energy_must_fall(io::Scene const& scene) {
 /// Check of the state of a run. All numbers must be finite. If the method conserves lengths, they
 /// must be 1 within 64 epsilon at step 0, and later within 64 epsilon times the number of steps (at
 /// least a million), but at most 0.01. An energy that can only fall must not rise by more than
-/// round-off: 64 epsilon times the sum of its terms' absolute values. If the tolerance of an
-/// adaptive method (an angle of the spins) exceeds 64 epsilon, it replaces that factor in the bound
-/// on the energy.
+/// round-off: 64 epsilon times Energy::magnitude. If the tolerance of an adaptive method (an angle
+/// of the spins) exceeds 64 epsilon, it replaces that factor in the bound on the energy.
 class Guard {
  public:
   /// `epsilon`: of the run's precision. A check is due after every step for up to 4096 sites, and

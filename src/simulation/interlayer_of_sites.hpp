@@ -27,7 +27,7 @@ struct DistantBonds {
 /// along that axis. In the half cell between the centre and the face, exchange A adds the energy
 /// k (1 - m.s), where k = 2 A over the spacing squared; s and s' minimise the total energy. This
 /// boundary condition of exchange at the face makes thick layers accurate to second order in the
-/// spacing (as in Suess et al., PRB 107, 104424, 2023). Where A is 0, s is m.
+/// spacing (as in Suess et al., PRB 107, 104424, 2023). Where A is 0, or without A, s is m.
 template <class Real>
 struct InterlayerOfSites {
   cayspin::detail::DistantSites<Real> spins;

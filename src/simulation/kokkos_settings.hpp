@@ -41,7 +41,7 @@ int threads_of(Space const& exec) {
   return cayspin::detail::is_host_execution<Space> ? exec.concurrency() : 1;
 }
 /// Returns the number of threads of the default host space; before Kokkos starts, the number that
-/// it would use by default.
+/// it is likely to use by default.
 int expected_threads();
 
 /// Scope in which Kokkos is initialised.

@@ -83,8 +83,8 @@ double least_moment(io::Scene const& scene) {
   return scene.lattice.moments_of_sites.there() ? range_of_moments(scene).least : 1;
 }
 
-// Returns the largest of_bonds(|number|, largest |number|) over the occupied sites, divided by the
-// site's moment if each site has its own.
+// If each site has its own moment, returns the largest of_bonds(|number|, `largest`) / moment over
+// the occupied sites; otherwise of_bonds(`largest`, `largest`). `largest`: the largest |number|.
 template <class OfBonds>
 double largest_over_moments(io::Scene const& scene, io::SiteNumbers const& numbers,
                             std::string_view key, double largest, OfBonds const& of_bonds) {
@@ -171,7 +171,7 @@ LargestFactors largest_factors(io::Scene const& scene, Times const& times,
           of(dmi, "field.in_time.dmi")};
 }
 
-// Returns a bound of |H| for the terms with site-dependent constants.
+// Returns a bound of |H| for the terms with site-dependent constants, and for interlayers.
 double bound_of_numbers(io::Scene const& scene, Lattice const& lattice,
                         LargestFactors const& factors) {
   auto const& field = scene.field;
@@ -265,7 +265,7 @@ double bound_of_sources(io::Scene const& scene, Times const& times, TimeFeatures
   return bound;
 }
 
-// The damping-like term is largest where the spin is opposite to p: by a factor of lambda^2.
+// The damping-like term has its largest factor, lambda^2, where the spin is opposite to p.
 double slonczewski_bound(io::Scene const& scene, io::Slonczewski const& torque, Times const& times,
                          TimeFeatures const& features) {
   constexpr auto key = "torque.slonczewski";

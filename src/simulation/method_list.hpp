@@ -175,9 +175,9 @@ struct Row : io::Method {
   }
 };
 
-/// A method on the Lie group. By default it uses Cayley coordinates. It accepts the generators
-/// standard and orthogonal, and tangent if the family has a chart. It accepts the isotropy zero,
-/// and constant if the family takes a sigma.
+/// A method on the Lie group. Unless its row says otherwise, it uses Cayley coordinates, accepts
+/// the generators standard and orthogonal, and tangent if the family has a chart, and accepts the
+/// isotropy zero, and constant if the family takes a sigma.
 template <class Family>
 constexpr Row<Family> row(io::Method method) {
   using namespace sets;

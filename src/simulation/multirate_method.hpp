@@ -17,10 +17,10 @@ namespace cayspin::simulation {
 /// support it, and a program's own nonlocal field if there are substeps.
 bool has_slow_field(io::Scene const& scene);
 
-/// Throws io::SceneError for substeps without an expensive field, and for an expensive field with a
-/// method or a feature that cannot be combined with it: a method that needs the field at each
-/// stage, remembers earlier steps, iterates or chooses its steps, energy control, and a
-/// temperature.
+/// Throws io::SceneError for substeps without an expensive field; for demag.multirate = false with
+/// substeps and a program's own nonlocal field; and for an expensive field with energy control, a
+/// temperature, or a method that needs the field at each stage, remembers earlier steps, iterates
+/// or chooses its steps.
 void require_slow_field_fits(io::Scene const& scene, Variant const& variant);
 
 /// Returns an override of a key with which no term of the scene is multirate.
