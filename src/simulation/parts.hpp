@@ -16,7 +16,7 @@ namespace cayspin::simulation {
 struct Plan;
 
 /// Returns how many rows and planes a part needs from its neighbours: for the stages of a step, and
-/// for the range of couplings.
+/// for the range of couplings and interlayers.
 mpi::Depth depth_of_parts(io::Scene const& scene, Plan const& plan);
 
 /// Reads the numbers of parts along y and z from text such as "1,4". Throws UsageError for invalid

@@ -33,15 +33,15 @@ struct Plan {
   MethodOptions options;
   Times times;
   double stable_dt;  // infinity without a limit, 0 when every dt amplifies
-  // Bound on a spin's turn in `substep`, in radians; without exchange if stable_dt is finite or the
-  // method is stiff.
+  // Bound on a spin's turn in `substep`, in radians; without exchange and couplings if stable_dt is
+  // finite or the method is stiff.
   double turn;
   Memory memory;
   std::int64_t frames;
   double file_bytes;                             // may exceed the range of an integer
   std::shared_ptr<TimeFeatures const> features;  // of fields and torques that depend on t
   double substep = 0;     // interval between evaluations of the cheap terms: dt or shorter
-  double noise_turn = 0;  // root mean square angle by which noise turns a spin in a step
+  double noise_turn = 0;  // largest root mean square angle by which noise turns a spin in a step
 
   static constexpr double most_noise = 0.5;  // radians per step
 };
@@ -52,8 +52,8 @@ Plan make_plan(io::Scene const& scene, Precision precision,
                std::shared_ptr<TimeFeatures const> features = nullptr);
 
 /// Returns why dt is too large, if it is: it is above the stable dt, turns spins by more than 2
-/// radians a step (3 if a stable dt is known), is longer than a feature of a field, or lets noise
-/// turn spins by more than most_noise.
+/// radians in a substep (3 if a stable dt is known), has substeps longer than a feature of a field,
+/// or lets noise turn spins by more than most_noise. Returns nothing for adaptive methods.
 std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units);
 /// Returns the same as a line that names the scene's key; throws it as io::SceneError if the scene
 /// sets refuse_unstable.

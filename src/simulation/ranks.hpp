@@ -96,7 +96,7 @@ class Ranks {
   /// Ends all ranks. Call it on a rank with an exception that the others do not know of, after
   /// reporting it.
   virtual void leave_by(int status) = 0;
-  /// Returns true if together() has thrown, so that all ranks know of the failure.
+  /// Returns true if together() has thrown on several ranks, which then all know of the failure.
   bool agreed() const { return agreed_; }
 
  protected:

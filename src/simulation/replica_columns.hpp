@@ -18,10 +18,11 @@ namespace cayspin::simulation {
 /// large that exchange along x vanishes. Each replica is bit-identical to a separate run.
 class ReplicaColumns {
  public:
-  /// `one`: the scene of the first replica. Returns nothing if there are few replicas, if the
-  /// lattice has three axes or many sites, if constants are site-dependent, if the method or a term
-  /// other than exchange couples sites, if the replicas differ in more than seeds and temperatures,
-  /// or if separate runs would be faster.
+  /// `one`: the scene of the first replica. Returns nothing if separate runs would be faster, or if
+  /// columns do not support the scene: for example, if there are few replicas; if the lattice has
+  /// three axes, many sites, or moments other than 1; if constants are site-dependent; if the
+  /// method or a term other than exchange couples sites; or if the replicas differ in more than
+  /// seeds and temperatures.
   static std::optional<ReplicaColumns> open(io::Scene const& scene, io::Scene const& one,
                                             RunSettings const& settings);
 
@@ -39,8 +40,8 @@ class ReplicaColumns {
     std::vector<std::int64_t> failed;  // replicas of the lattices that failed
     std::exception_ptr error = {};     // of the first of these
   };
-  /// Advances to step `target`. A lattice in which a replica fails stays before the step that
-  /// failed.
+  /// Advances to step `target`. A lattice in which a replica fails stays where SceneRun::advance
+  /// leaves it.
   Ended advance(std::int64_t target, Looks const& looks);
 
   /// Continues after step `step` from `spins`: those of all replicas, one after the other.

@@ -15,8 +15,9 @@ namespace cayspin::simulation {
 
 /// Detects when a run with integrator.until_torque has reached a minimum of the energy. A small
 /// torque is not enough, since maxima and saddles have none either, and spins leave them slowly. So
-/// the torque must not have grown since the previous check, and the search of `cayspin relax`, on a
-/// copy of the spins, must find no descent direction.
+/// the torque must not have grown since the previous check, the energy must have fallen (or the
+/// last change of the field must be over), and the search of `cayspin relax`, on a copy of the
+/// spins, must find no descent direction. On several ranks there is no such search.
 template <class Real, class Space>
 class RestSearch {
   using Spins = SpinField<Real, typename Space::memory_space>;

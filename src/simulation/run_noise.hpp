@@ -18,7 +18,7 @@ namespace cayspin::simulation {
 
 /// The thermal noise of a run: half before each step and half after it. Between two steps, the
 /// halves of both are applied in one pass, unless the spins are observed in between. Both halves
-/// then use the temperature at the time between the steps.
+/// use the temperature at the time between the steps.
 template <class Spins>
 class RunNoise {
  public:

@@ -27,10 +27,11 @@ class RunRecorder {
   /// Returns the next step at which to call look(): for a frame, a sample or a checkpoint; at the
   /// end, the current step.
   std::int64_t next() const;
-  /// Writes what is due at the current step; with `last`, always a frame.
+  /// Writes what is due at the current step, once; with `last`, always a frame.
   void look(bool last = false);
-  /// Closes the file, marks in it whether the run went as planned, and stores or removes the
-  /// checkpoint.
+  /// Closes the file, and marks in it whether the run went as planned. If the scene has
+  /// output.checkpoint_every, and the last frame is of the current step, also stores the checkpoint
+  /// or, if a restart needs none, removes it.
   void finish(bool as_planned = true);
 
  private:

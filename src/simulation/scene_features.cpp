@@ -21,8 +21,8 @@ namespace {
 
 using Components = std::array<io::AppliedComponent, 3>;
 
-// Returns the numbers in the expressions, with their sums and differences: they may be times at
-// which something switches. In SI they are typed in s.
+// Returns the numbers in the expressions, with the sums and differences of the first 16: they may
+// be times at which something switches. In SI they are typed in s.
 std::vector<double> events_of(Components const& components, double time_unit) {
   static std::regex const number(R"((\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)");
   constexpr std::size_t most_paired = 16;

@@ -29,8 +29,8 @@ class SceneMinimizer {
   Minimum minimize(Space const& exec, io::Scene const& scene, SceneField<Spins> const& field,
                    Spins& spins, MinimizeOptions const& options);
 
-  /// Like minimize, but options.torque and Minimum::torque are max |m x H|. If not all moments are
-  /// 1, it repeats the search with other bounds, up to 20 times, until max |m x H| is below
+  /// Like minimize, but options.torque and Minimum::torque are max |m x H|. If the scene has
+  /// moments, it searches with other bounds, up to 20 times in all, until max |m x H| is at most
   /// options.torque.
   Minimum relax(Space const& exec, io::Scene const& scene, SceneField<Spins> const& field,
                 Spins& spins, MinimizeOptions const& options);

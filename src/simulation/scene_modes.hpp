@@ -47,8 +47,9 @@ FoundCurvatures find_curvatures(
 constexpr std::int64_t most_sites_of_a_cell = 1024;
 
 /// Throws io::SceneError if a scene has no precession and no damping, no periodic axis, more than
-/// most_sites_of_a_cell sites in a cell, or bonds that are too long for its lattice; UsageError for
-/// wave vectors with a component along an open axis. Wave vectors are in cycles per cell.
+/// most_sites_of_a_cell sites in a cell (which extends over the whole lattice along open axes), or
+/// bonds that are too long for its lattice; UsageError for wave vectors with a component along an
+/// open axis. Wave vectors are in cycles per cell.
 void require_bands(io::Scene const& scene, std::vector<std::array<double, 3>> const& wave_vectors);
 
 /// Returns the bytes that find_bands takes in addition to those of a search for an equilibrium.

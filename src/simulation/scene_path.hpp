@@ -41,7 +41,7 @@ struct ScenePath {
 };
 /// Finds a path between two states, sites x 3 as from io::initial_spins. Fills all members of the
 /// path except `from` and `to`. Throws io::SceneError if a frozen spin differs between the states,
-/// and NumbersFailed for a field that is not finite.
+/// NumbersFailed for a field that is not finite and, with rates, what rates_between throws.
 ScenePath find_scene_path(io::Scene const& scene, std::vector<double> const& from,
                           std::vector<double> const& to, std::string const& space,
                           Precision precision, ScenePathOptions const& options,

@@ -87,7 +87,8 @@ class SceneRun {
   double time_at(std::int64_t step) const { return plan().times.at(step) * scene_.units.time; }
   /// Returns the last step of the scene, if it has an end.
   std::int64_t last_step() const { return scene_.begin.step + scene_.integrator.steps; }
-  std::int64_t evaluations() const { return evaluations_; }  // of the generator over all sites
+  /// Returns how often the generator, or in searches the field, was evaluated at all sites.
+  std::int64_t evaluations() const { return evaluations_; }
   /// Return the accepted and the rejected steps of an adaptive method.
   std::int64_t own_steps() const { return own_steps_; }
   std::int64_t rejected_steps() const { return rejected_; }
@@ -109,10 +110,11 @@ class SceneRun {
   void require_reachable(std::int64_t count) const;
 
   /// Takes `count` more steps, or fewer if the run ends early. Throws UsageError for a negative
-  /// `count`, for a scene without [integrator], and when an adaptive method would go beyond the
-  /// scene's end, NumbersFailed when the numbers become invalid, and any exception of a field of
-  /// the program. If a step fails, steps() and the spins are those before it (of an adaptive
-  /// method, up to 1000 steps before); if a check by the guard fails, those that it checked.
+  /// `count`, for a scene without [integrator], for steps beyond number 2^53, and when an adaptive
+  /// method would go beyond the scene's end; NumbersFailed when the numbers become invalid; and any
+  /// exception of a field of the program. If a step fails, steps() and the spins are those before
+  /// it (of an adaptive method, up to 1000 steps before); if a check by the guard fails, those that
+  /// it checked.
   Advanced advance(std::int64_t count, Looks const& looks = {});
 
   /// Result of advance_all for one run.
@@ -121,8 +123,8 @@ class SceneRun {
     std::exception_ptr error = {};  // what advance would have thrown
   };
   /// Advances runs in the same space to step `target`, except those that are already there. On
-  /// hosts, small runs go side by side, one to a thread. If one is interrupted, those that have not
-  /// begun do not begin.
+  /// hosts, small runs go side by side, one to a thread. If one is interrupted, or throws anything
+  /// but NumbersFailed, the others are interrupted too, and those that have not begun do not begin.
   static std::vector<Outcome> advance_all(std::span<SceneRun* const> runs, std::int64_t target,
                                           Looks const& looks);
 
@@ -131,8 +133,8 @@ class SceneRun {
     Minimum minimum = {};
     std::exception_ptr error = {};  // what relax would have thrown
   };
-  /// Calls relax of each of these runs, side by side like advance_all. If one is interrupted, those
-  /// that have not begun end as interrupted.
+  /// Calls relax of each of these runs, side by side like advance_all, and interrupts them alike:
+  /// those that have not begun end as interrupted, too.
   static std::vector<Relaxed> relax_all(std::span<SceneRun* const> runs,
                                         RelaxSettings const& settings);
 
@@ -163,8 +165,8 @@ class SceneRun {
   Minimum relax(RelaxSettings const& settings = {});
 
   /// Returns the normal modes about the spins, which must be at equilibrium, in the current field.
-  /// Throws UsageError for invalid options, and what relax() throws, except that torques are
-  /// accepted.
+  /// Throws UsageError for invalid options, io::SceneError also for spins with neither precession
+  /// nor damping, and what relax() throws, except that torques are accepted.
   FoundModes modes(ModesOptions const& options = {});
 
   /// Returns the spins, on hosts without a copy. If the memory is still lent when the run

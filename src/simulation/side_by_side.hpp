@@ -19,8 +19,8 @@ struct WorkByNumber {
   void operator()(std::int64_t number) const { work(static_cast<std::size_t>(number)); }
 };
 
-/// Calls work(0) .. work(count - 1), each of which advances a run of at most `sites` sites in
-/// `space`. If the kernels of such runs stay on the calling thread, the calls are spread over the
+/// Calls work(0) .. work(count - 1), each of which uses a run of at most `sites` sites in `space`.
+/// If the kernels of such runs stay on the calling thread, the calls are spread over the
 /// threads of the host; otherwise they follow one another.
 template <class Work>
 void for_each_small_run(std::string const& space, std::int64_t sites, std::size_t count,

@@ -29,7 +29,8 @@ std::string time_text(io::Units const& units, double time, int digits = 9);
 std::string energy_text(io::Units const& units, double energy, int digits = 9);
 /// Returns one word of a command line, quoted if a shell would change it.
 std::string shell_word(std::string const& text);
-/// Returns the text with spaces in place of line breaks and other control characters.
+/// Returns the text without line breaks at its end, and with spaces in place of other control
+/// characters.
 std::string one_line(std::string text);
 
 }  // namespace cayspin::simulation

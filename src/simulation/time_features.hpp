@@ -40,7 +40,8 @@ struct TimeFeatures {
 struct TimeDependent {
   std::string key;
   std::function<void(double t, double* three)> value;  // NaN where not finite
-  std::vector<double> events;  // candidate times of events: numbers in an expression
+  // Candidate times of events: numbers in its expressions, and their sums and differences.
+  std::vector<double> events;
 };
 
 struct FeatureSearch {
@@ -56,7 +57,8 @@ TimeFeatures find_features(std::span<TimeDependent const> vectors, FeatureSearch
 
 /// Returns the features of a scene's fields and currents up to its end, for adaptive steps with
 /// error `error`, or for the scene's constant steps if it is not given. Empty if nothing depends on
-/// t. Later calls for the same fields are fast.
+/// t, for rigid bodies, for scenes without steps, and if a vector is not finite. Later calls for
+/// the same fields are fast, unless a function of the program is among them.
 std::shared_ptr<TimeFeatures const> features_of(io::Scene const& scene,
                                                 std::optional<double> error);
 

@@ -13,7 +13,7 @@
 namespace cayspin::simulation {
 
 /// Values of vectors that depend on t: at equally spaced times, at times near their events, and at
-/// all times evaluated later.
+/// times evaluated later, of which the first are kept: up to 8 million numbers.
 class TimeSamples {
  public:
   TimeSamples(std::span<TimeDependent const> vectors, FeatureSearch const& search);
@@ -29,12 +29,12 @@ class TimeSamples {
   double change(std::size_t i, std::size_t component) const;
   /// Returns true if change(i, component) is at least three times as large as most changes nearby.
   bool changes_unusually(std::size_t i, std::size_t component) const;
-  /// Returns the time from which on no component changes.
+  /// Returns the time from which on no component changes; 0 if none changes at all.
   double last_change() const;
   /// Returns the number of the first sample between two times, and the number after the last one.
   std::pair<std::size_t, std::size_t> within(double begin, double end) const;
 
-  /// Returns all components at t, and stores them. A vector that is not finite at t is replaced by
+  /// Returns all components at t, and keeps them. A vector that is not finite at t is replaced by
   /// its value very close to t or, if that is not finite either, by 0.
   std::vector<double> const& evaluate(double t);
   double value(double t, std::size_t component) { return evaluate(t)[component]; }
@@ -47,7 +47,7 @@ class TimeSamples {
   bool are_too_coarse() const;
   /// Returns the largest length of each vector, over all values.
   std::vector<double> const& largest() const { return largest_; }
-  /// Returns all values of a component with their times, in the order of time.
+  /// Returns all values of a component that are kept, with their times, in the order of time.
   std::vector<std::pair<double, double>> all(std::size_t component) const;
 
  private:

@@ -37,7 +37,7 @@ struct RestWithTorques {
 double largest_torque(TorqueMotion const& motion, Vectors const& spins);
 
 /// Searches for a state with max |m x H| <= torque by Newton's method. If it finds none, the torque
-/// of the result is larger.
+/// of the result is larger or not finite.
 RestWithTorques find_rest_with_torques(TorqueMotion const& motion, Vectors const& start,
                                        double torque, std::int64_t evaluations);
 

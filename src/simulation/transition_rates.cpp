@@ -246,7 +246,7 @@ Numbers mobilities(io::Scene const& scene, StateHessian const& state) {
   return found;
 }
 
-/// Returns the mean square of the velocity along the unstable mode, divided by kT.
+/// Returns the mean square of the velocity of precession along the unstable mode, divided by kT.
 double square_of_velocity(State const& saddle, Numbers const& mobilities) {
   Vector const& mode = saddle.mode();
   Vector turned(mode.size());

@@ -20,15 +20,16 @@ namespace cayspin::simulation {
 /// An equilibrium and the Hessian of its energy.
 struct StateHessian : TangentBasis {
   std::vector<double> numbers;  // matrix elements, row by row
-  /// Sums of m x H in states far from the equilibrium. Their components along an axis vanish if
-  /// turning all spins about it does not change the energy.
+  /// Sums of m x (-dE/dm) in states far from the equilibrium. Their components along an axis vanish
+  /// if turning all mobile spins about it does not change the energy.
   std::vector<std::array<double, 3>> torques;
 
   using TangentBasis::TangentBasis;
 
-  /// Returns the spins after a random rotation of all and a random change of each. `sample`: the
-  /// seed of the random numbers.
+  /// Returns the spins after a random rotation of all that are not frozen, and a random change of
+  /// each. `sample`: the seed of the random numbers.
   std::vector<double> far_state(unsigned sample) const;
+  /// Appends the sum of a state. `field`: -dE/dm there.
   void add_torque(std::vector<double> const& state, std::vector<double> const& field);
 };
 

@@ -8,8 +8,8 @@
 namespace cayspin::simulation {
 
 /// A thread's turn to use Kokkos. Other threads wait for its end, because an execution space
-/// accepts work from only one thread at a time. Throws UsageError if it is taken within the step of
-/// a run.
+/// accepts work from only one thread at a time. Throws UsageError if the thread has a turn already,
+/// as in a field function that a step calls.
 class Turn {
  public:
   Turn() : lock_(mutex_of_others()) {
