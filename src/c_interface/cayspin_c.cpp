@@ -21,7 +21,7 @@ using namespace cayspin::simulation;
 namespace io = cayspin::io;
 
 struct cayspin_simulation {
-  std::mutex turn;  // serialises calls, except cayspin_time and cayspin_steps
+  std::mutex turn;  // serialises all calls but cayspin_time, cayspin_steps, cayspin_close
   std::unique_ptr<SceneRun> run;
   std::optional<LentVectors> borrowed, borrowed_field;
 };
