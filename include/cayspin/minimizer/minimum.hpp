@@ -56,8 +56,8 @@ struct Minimum {
 /// Options of minimize.
 struct MinimizeOptions {
   double torque = 1e-6;  ///< bound on max |m x H|, in the units of H
-  /// Limit on the number of evaluations of the field. One more iteration and one search for a way
-  /// out of a saddle may exceed it.
+  /// Limit on the number of evaluations of the field. It may be exceeded by the measurement of the
+  /// field at the start, one more iteration, and one search for a saddle and a way out of it.
   std::int64_t evaluations = 10000;
   double time = 0;             ///< time at which H is evaluated
   bool preconditioned = true;  ///< by the exchange measured on the field

@@ -112,8 +112,9 @@ class BlochProblem {
 
   /// Returns the complex rates of waves with this wave vector (in cycles per cell): a wave grows as
   /// e^(rate t). Only the half with the higher frequencies is returned, the lowest of these first.
-  /// Throws std::invalid_argument for a wave vector that does not fit the lattice along an axis
-  /// where the interaction reaches around.
+  /// Round-off decides which of the real rates, whose frequencies are 0, are in that half. Throws
+  /// std::invalid_argument for a wave vector that does not fit the lattice along an axis where the
+  /// interaction reaches around.
   std::vector<std::complex<double>> rates(std::array<double, 3> const& wave) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double const around = wave[axis] * static_cast<double>(cells[axis]);
@@ -142,7 +143,7 @@ class BlochProblem {
 
 /// Returns the problem, from products of the Hessian with the tangent axes of one cell. `stops`:
 /// returns true to end early, with an incomplete problem. Throws std::invalid_argument where cells
-/// differ.
+/// differ in their spins, `precession`, `damping` or mobile sites; the field is not compared.
 template <class Exec, class Field, class Spins, class Numbers, class Stops>
 BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Spins const& spins,
                            Numbers const& precession, Numbers const& damping, Stops const& stops,
