@@ -36,8 +36,8 @@ class SyncedFile {
   /// will get, next to which the journal lies. Throws std::runtime_error.
   void begin(std::filesystem::path const& path);
 
-  // These functions return 0, or the system's error number. After an error, nothing more is
-  // committed.
+  // The functions below, except descriptor(), return 0 or the system's error number. After an error
+  // of commit() or write(), nothing more is committed.
 
   /// Makes all data written so far survive a power cut. Call H5Fflush before.
   int commit();

@@ -127,7 +127,8 @@ DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header, hsize_t r
   Extents chunk{1};
   chunk.insert(chunk.end(), inner.begin(), inner.end());
   chunk[1] = std::clamp<hsize_t>(chunk_bytes / of_replica, 1, replicas);
-  // A replica that exceeds the largest chunk is cut along its axes, the slowest first.
+  // A replica that would exceed the largest chunk in double precision is cut along its axes, the
+  // slowest first.
   for (std::size_t axis = 2; axis + 1 < chunk.size(); ++axis)
     while (elements(chunk) * 8 > most_chunk_bytes && chunk[axis] > 1)
       chunk[axis] = (chunk[axis] + 1) / 2;
@@ -150,8 +151,8 @@ DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header, hsize_t r
                                 std::move(properties), path, inner);
 }
 
-// Returns the bytes that a frame may take in the file: the first frame of chunks that hold several
-// frames takes all of them.
+// Returns the bytes that a frame may take in the file: if chunks hold several frames, the first of
+// these takes the whole chunks.
 std::uint64_t bytes_of_chunks(hid_t spins, Extents const& inner, std::uint64_t number_bytes,
                               std::filesystem::path const& path) {
   PropertyHandle const properties(H5Dget_create_plist(spins));

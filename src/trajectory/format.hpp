@@ -51,8 +51,9 @@ inline std::int64_t frames_of_chunk(std::uint64_t bytes, std::int64_t chunks) {
 }
 
 /// Returns the extents (1, z, y, x, 3) of the part of a frame that a chunk of /spins holds, for a
-/// lattice (nx, ny, nz). If a frame exceeds `limit` bytes, it is cut into nearly equal parts along
-/// z; if a plane or a row does, along y or x, too. `planes`: the most along z; 0 for no bound.
+/// lattice (nx, ny, nz). If a frame exceeds `limit` bytes, it is cut along z into equal parts, the
+/// last of which may be smaller; if a plane or a row does, along y or x, too. `planes`: the most
+/// along z; 0 for no bound.
 inline std::array<hsize_t, 5> frame_chunk(std::array<std::int64_t, 3> const& shape,
                                           std::uint64_t bytes_per_component,
                                           std::int64_t planes = 0,

@@ -189,7 +189,8 @@ class RunOutput::Implementation {
     rethrow();
   }
 
-  // Runs in the writer thread. Writes all parts, including those left when it is asked to stop.
+  // Runs in the writer thread. Writes all parts, including those left when it is asked to stop, but
+  // none after an error.
   void write_parts(std::stop_token const& stop) {
     std::unique_lock lock(mutex_);
     while (changed_.wait(lock, stop, [&] { return !parts_.empty(); })) {
