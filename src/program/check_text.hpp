@@ -25,7 +25,8 @@ inline bool has_stable_dt(Plan const& plan) { return std::isfinite(plan.stable_d
 int order(io::Scene const& scene, Variant const& variant);
 std::optional<std::int64_t> evaluations(io::Scene const& scene, Variant const& variant);
 
-/// Prints method, time, stable dt, features, noise and cost.
+/// Prints method, time, stable dt and cost; also features of fields in t, and noise, if there are
+/// any.
 void print_steps(io::Scene const& scene, Plan const& plan);
 
 /// Returns a whole number, unless it is so large that the double is not exact.

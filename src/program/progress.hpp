@@ -49,7 +49,7 @@ class Progress {
   Listener listener_;
   bool terminal_, equal_steps_ = true;
   std::int64_t sites_, first_ = 0, steps_ = 0, next_ = 0;
-  std::int64_t method_steps_ = 0;  // internal steps of the method
+  std::int64_t method_steps_ = 0;  // internal ones, if the method has such
   std::string stage_;
   std::optional<Clock::time_point> begin_;  // start of the run
   Clock::time_point stage_begin_, shown_;

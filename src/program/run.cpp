@@ -53,7 +53,7 @@ Restart restart_of(EarlierRun left, io::Stage const& stage, Plan const& plan,
 }
 
 // Reads the scene as typed, and makes all checks that need nothing else. Throws UsageError if the
-// ranks were given different scenes or options.
+// ranks were given different scenes, precisions or files to restart from.
 io::Scene typed_scene(RunOptions const& options, Ranks& ranks) {
   auto typed = ranks.together([&] {
     auto scene = io::with_shape_of_start(io::read_scene(options.scene, options.overrides));
@@ -71,7 +71,7 @@ io::Scene typed_scene(RunOptions const& options, Ranks& ranks) {
 }
 
 // Returns the scene with a method in place of "auto": that of the earlier run, or the one that the
-// first rank chooses for all.
+// first rank chooses for all. Returns any other scene unchanged.
 io::Scene with_method(io::Scene const& typed, EarlierRun const* left, RunOptions const& options,
                       std::string const& space, Ranks& ranks) {
   auto const as_before =

@@ -67,7 +67,7 @@ class RunOfStages {
   using Spins = SpinField<Real, typename Space::memory_space>;
 
  public:
-  /// `typed`: the whole scene, as in the file; `resolved`: the scene with the method that was
+  /// `typed`: the whole scene, as typed; `resolved`: the scene with the method that was
   /// chosen for "auto", or empty. `plan_of`: plans a stage again if it starts at another step than
   /// planned.
   RunOfStages(io::Scene const& typed, std::string resolved, std::vector<PlannedStage> stages,

@@ -82,7 +82,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   /// Returns why the run failed, if it did.
   std::optional<std::string> const& failure() const { return failure_; }
   bool interrupted() const { return interrupted_; }
-  /// Returns true if the run ended at a saddle of the energy, where there is no torque.
+  /// Returns true if the run ended below until_torque, but at a saddle or a maximum of the energy.
   bool at_saddle() const { return at_saddle_; }
 
  private:

@@ -31,7 +31,7 @@ struct TryOptions : SceneOptions {
 };
 
 struct TradeOptions : TryOptions {
-  double seconds = 10;  // largest duration of a run
+  double seconds = 10;  // after a longer run, its method is not tried with finer steps
   bool advice = false;
 };
 

@@ -22,11 +22,11 @@ struct SweepOptions : SceneOptions {
 struct Grid {
   io::SweepHeader header;
   std::vector<std::string> texts;  // of the scenes
-  std::vector<double> costs;       // spin updates of each run
+  std::vector<double> costs;       // steps times sites of each run
   std::int64_t largest = 0;        // memory of the largest run, in bytes
 };
 
-/// Reads every scene as `run` would. Throws UsageError or io::SceneError, which names the
+/// Reads and checks the scene of every run. Throws UsageError or io::SceneError, which names the
 /// combination that is wrong.
 Grid make_grid(SweepOptions const& options);
 

@@ -117,7 +117,7 @@ class Search {
     auto coarsest = coarsest_steps(pilot_, candidate, horizon_.time, horizon_.own_steps);
     if (pilot_.scene().integrator.refuse_unstable && !candidate.method->adaptive) {
       // Starts at the stable dt, since a larger one is the usual reason for a refusal. Not without
-      // refuse_unstable, because the stable dt takes long to compute.
+      // refuse_unstable, because with a sigma the stable dt takes long to compute.
       double const stable = pilot_.plan(candidate, horizon_.time, coarsest).stable_dt;
       if (!(stable > 0)) return;
       coarsest.count =
@@ -270,7 +270,8 @@ double limit_of(Pilot const& pilot) {
 }
 
 // Returns a solution up to the horizon, which is halved until the solution's error is below a
-// fraction of `error` and the solution takes at most `seconds`.
+// fraction of `error` and the solution is expected to take at most `seconds`. Throws NumbersFailed
+// after twenty halvings.
 Known fine_solution(Pilot const& pilot, Horizon& horizon, double error, double seconds) {
   auto const by = fine_tsit5();
   double const tightest = by.least_tolerance();

@@ -13,7 +13,7 @@ struct Advice {
   Candidate candidate;
   Steps steps;  // up to the scene's end
   double dt = 0;
-  double error = 0;  // at the horizon of the trials
+  double error = 0;  // up to the horizon of the trials
   double seconds = 0;
   std::int64_t memory = 0;  // of the choice, in bytes
   bool measured = true;     // otherwise the error is an extrapolation from other steps

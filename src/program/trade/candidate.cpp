@@ -55,8 +55,9 @@ bool is_possible(io::Scene const& scene, Candidate const& candidate) {
 
 // Returns the candidates in double precision that the rows of the list of methods ask for.
 std::vector<Candidate> in_double(io::Scene const& scene) {
-  // Exchange adds a multiple of the spin itself to H, which does not turn the spin. A constant
-  // sigma removes it, and only the sum of the neighbours remains.
+  // Exchange adds a multiple of the spin itself to H, which does not turn the spin. If all moments
+  // and gyromagnetic factors are 1, a constant sigma removes it, and only the sum of the neighbours
+  // remains.
   double const couplings = sum_of_couplings(scene);
   std::vector<Candidate> all;
   for (auto const* const method : io::methods()) {

@@ -24,8 +24,8 @@ inline constexpr Repeats measured_well{3, 5e-3};
 
 struct LadderLimits {
   double least_error = 1e-9;  // nothing finer is run
-  double seconds = 10;        // limit on the duration of a run
-  double far_behind = 30;     // limit on the ratio of a run's time to another candidate's
+  double seconds = 10;        // after a longer run nothing finer is run
+  double far_behind = 30;     // nor after one this many times as long as another candidate's
   int rungs = 40;
   TrialProgress* progress = nullptr;
   double share = 0;  // share of all ladders done

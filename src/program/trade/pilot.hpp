@@ -25,9 +25,10 @@ struct Stretch {
   bool guarded = false;  // true: the run fails if the guard of `cayspin run` would stop it
 };
 
-/// Number of repetitions of a run to measure its time; the shortest counts.
+/// How often a run is repeated to measure its time; the shortest counts. Runs that fail or take
+/// more than 0.3 s are not repeated, and no run is done more than a hundred times.
 struct Repeats {
-  int least = 1;
+  int least = 1;       // runs, even if they take longer than `seconds`
   double seconds = 0;  // runs are repeated until they take this long in all
 };
 

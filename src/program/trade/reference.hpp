@@ -10,8 +10,8 @@
 
 namespace cayspin::program::trade {
 
-/// Returns the times, in units of 1/1024 horizon, at which runs are compared: a dozen, and those
-/// just after a field jumps or has its shortest feature.
+/// Returns the times, in units of 1/1024 horizon, at which runs are compared: a dozen, and up to
+/// sixteen just after a field jumps or has its shortest feature.
 std::vector<std::int64_t> times_of_looks(TimeFeatures const& features, double horizon);
 
 /// A solution by an adaptive method up to a horizon, with which runs are compared.
@@ -71,8 +71,9 @@ struct Horizon {
 /// Returns tsit5 in a form whose error follows its tolerance.
 Candidate fine_tsit5();
 
-/// Returns the longest horizon that a coarse run covers in `seconds`, or in ten steps: the scene's
-/// end, halved at most twenty times. Throws NumbersFailed if a coarse run fails.
+/// Returns a horizon that a coarse run covers in `seconds`, or in ten steps: the scene's end,
+/// halved at most twenty times, after which the run may take longer. It is the longest of those
+/// that were tried, up to four halvings apart. Throws NumbersFailed if a coarse run fails.
 Horizon horizon_within(Pilot const& pilot, double seconds);
 
 /// A converged solution of a scene, up to its end or as far as it converges.

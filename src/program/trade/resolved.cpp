@@ -52,8 +52,8 @@ std::string integrator_table(io::Scene const& scene, Advice const& advice, doubl
   return fmt::format("integrator={{{}}}", keys);
 }
 
-// Adds overrides of those periods of [output] that the scene sets. `steps_of` converts them to
-// steps of the new method.
+// Adds overrides of those periods of frames and samples that the scene sets. `steps_of` converts
+// them to steps of the new method.
 template <class StepsOf>
 void add_output_keys(io::Scene const& scene, std::vector<std::string>& overrides,
                      StepsOf const& steps_of) {
@@ -111,7 +111,8 @@ std::optional<io::Scene> with_method_of(io::Scene const& scene, std::string cons
     return io::parse_scene(text, scene.path, {}, scene.given);
   };
   auto const typed = parsed(typed_before), resolved = parsed(resolved_before);
-  // Output periods are in steps of the scene. They are scaled to steps of the chosen method.
+  // The periods of frames and samples are in steps of the scene. They are scaled to steps of the
+  // chosen method.
   double const ratio = typed.integrator.dt / resolved.integrator.dt;
   auto const steps = [&](std::int64_t of_scene) {
     return std::llround(static_cast<double>(of_scene) * ratio);
