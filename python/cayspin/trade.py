@@ -121,7 +121,7 @@ class Trade(list):
     - `dt`, in the scene's unit, or `tolerance`, in radians
     - `error`: the largest distance of any spin, dimensionless
     - `seconds` of stepping, and `evaluations` of the field of all sites
-    - `front`: whether no other run has less error in less time
+    - `front`: whether no other run is faster and at least as accurate
     """
 
     def __init__(self, answer: dict):
@@ -157,7 +157,7 @@ class Trade(list):
 class Advice:
     """Result of advise(): the cheapest method for an error, and its steps."""
 
-    method: str  #: its word in a scene
+    method: str  #: its name, as in "rkmk4 tangent, single"
     error: float  #: predicted largest distance of any spin, dimensionless
     seconds: float  #: predicted seconds of the whole run
     memory: int  #: bytes
@@ -176,10 +176,10 @@ class Advice:
 
 def trade(scene: Scene, seconds: float = 10, precision: str | None = None,
           space: str | None = None, threads: int | None = None) -> Trade:
-    """Tries the methods that can run the `scene`, except a few that only show a formula, in runs of
-    at most `seconds` each, as `cayspin trade` does. This takes minutes. `precision`, `space` and
-    `threads` are those of Simulation; by default both precisions and the program's space and
-    threads.
+    """Tries the methods that can run the `scene`, except a few that only show a formula, with finer
+    and finer steps, as `cayspin trade` does. After a run that takes longer than `seconds`, its
+    method is not tried with finer steps. This takes minutes. `precision`, `space` and `threads` are
+    those of Simulation; by default both precisions and the program's space and threads.
 
     Raises CayspinError for a scene that the program cannot run, such as one with functions or
     arrays.

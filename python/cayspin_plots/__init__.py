@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Pictures of cayspin's trajectory files (docs/reference/file_format.md)."""
+"""Pictures of the files (docs/reference/file_format.md) and the measurements of cayspin."""
 
 import logging
 import pathlib

@@ -80,7 +80,7 @@ def _series(file, group=""):
 
 
 def read_trajectory(path):
-    """Reads whole frames only. `complete` is False if the run was killed or is under way."""
+    """Reads whole frames only. `complete` is False if the run is under way or ended early."""
     with opened(path, "trajectory") as file:
         frames = _series(file)
         rank = 6 if np.ndim(file["spins"]) == 6 else 5

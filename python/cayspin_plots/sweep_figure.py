@@ -13,7 +13,8 @@ MOST_TICKS = 12
 
 
 def choose_keys(sweep, names):
-    """Indices of the keys for the axes: the named ones, or the first two that vary."""
+    """Indices of the keys for the axes: the named ones, or the first two that vary; the first key
+    if none does."""
     if names is None:
         varying = [i for i, values in enumerate(sweep.values) if len(values) > 1]
         return (varying or [0])[:2]

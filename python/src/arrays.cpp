@@ -26,8 +26,8 @@ std::shared_ptr<nb::object> kept(nb::object object) {
           }};
 }
 
-// Returns true for a real number. NumPy would also convert a complex number (to its real part) and
-// an array of one element.
+// Returns false for a complex number (of which NumPy would take the real part) and for an array
+// with axes (even if NumPy would convert its one element). The cast refuses what is no number.
 bool is_real_number(nb::object const& number) {
   if (PyFloat_CheckExact(number.ptr())) return true;
   if (PyComplex_Check(number.ptr())) return false;

@@ -17,7 +17,7 @@ namespace cayspin::python {
 
 namespace nb = nanobind;
 
-/// An array of float32 or float64 in host memory, with any strides.
+/// An array with four axes in host memory, with any strides. vectors_of() checks its type.
 using NumbersIn = nb::ndarray<nb::ro, nb::ndim<4>, nb::device::cpu>;
 /// One number for each site, x fastest.
 using SiteNumbersIn = nb::ndarray<nb::ro, double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;

@@ -69,12 +69,13 @@ class Run:
         self._send(signal.SIGCONT, paused=False)
 
     def stop(self) -> None:
-        """Ends the run after the step under way; its file keeps what was written."""
+        """Ends the run after the step under way; its file keeps what was written. A second call
+        ends the run at once."""
         self._send(signal.SIGINT, signal.SIGCONT, paused=False)
 
     def close(self) -> None:
-        """Stops the run and waits for its end, or kills it after a minute. Its file keeps the
-        frames."""
+        """Stops the run by stop() and waits for its end, or kills it after a minute. Its file keeps
+        the frames."""
         if self._process.poll() is None:
             self.stop()
             try:
