@@ -75,7 +75,7 @@ struct Field {
 };
 
 /// Returns the first key whose value depends on t: an applied field (also a program's own), a
-/// source, a factor of a term, or a current. Empty if there is none.
+/// source, a factor of a term, or a torque. Empty if there is none.
 std::string_view key_in_time(Field const& field);
 inline bool depends_on_time(Field const& field) { return !key_in_time(field).empty(); }
 

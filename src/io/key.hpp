@@ -26,8 +26,8 @@ struct Limits {
 inline constexpr Limits not_negative{"a number >= 0", 0};
 inline constexpr Limits positive{"a number > 0", 0, std::numeric_limits<double>::infinity(), true};
 
-/// A key in a table of the scene, and the member of Section that it sets. The reader accepts the
-/// keys in Section::keys() and refuses any other. A Triple is read as a direction and normalised.
+/// A key in a table of the scene, and the member of Section that it sets. Most tables accept the
+/// keys in Section::keys() and no other. A Triple is read as a direction and normalised.
 template <class Section>
 struct Key {
   std::string_view name;

@@ -16,8 +16,8 @@ namespace cayspin::inline v0_2::io {
 /// The table [lattice].
 struct Lattice {
   /// nx, ny, nz; for rigid bodies count, 1, 1. For a crystal nz is basis.size() times the number of
-  /// cells along z: plane k * basis.size() + s has site s of the cells with
-  /// number k along z.
+  /// cells along z: plane k * basis.size() + s has site s of the cells with number k
+  /// along z.
   std::array<std::int64_t, 3> shape = {1, 1, 1};
   Triple spacing = {1, 1, 1};
   std::array<BoundaryKind, 3> boundary = {};

@@ -9,7 +9,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// The table [material] of a scene in SI, as typed. System, Lattice and Field have its values in
+/// The table [material] of a scene in SI, in SI units. System, Lattice and Field have its values in
 /// reduced units.
 struct Material {
   bool atomistic = false;  ///< mu_s, J and K instead of Ms, A and Ku

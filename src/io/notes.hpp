@@ -8,9 +8,9 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Returns one line, "FILE:LINE: key: message", for each key of a scene that has no effect, does
-/// not fit another key, or has a value that looks as if typed in other units; also for a start file
-/// whose zero vectors mean sites without a spin. `cayspin check` prints these notes, `run` and
+/// Returns lines, "FILE:LINE: key: message", about keys of a scene that have no effect, do not fit
+/// another key, or have values that look as if typed in other units; also about a start file whose
+/// zero vectors mean sites without a spin. `cayspin check` prints these notes, `run` and
 /// `relax` print them as warnings. Reads some of the files that the scene names. Throws SceneError.
 std::vector<std::string> notes(Scene const& scene);
 

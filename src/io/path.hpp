@@ -37,7 +37,7 @@ struct Path {
   std::vector<double> saddle;            ///< spins of the highest saddle
   std::vector<SaddleOfPath> saddles;     ///< highest first
   std::optional<RatesOfPath> rates;
-  double torque = 0;  ///< largest max |m x H| of the saddles; above it if moments differ
+  double torque = 0;  ///< largest max |m x H| of the saddles; an upper bound if moments differ
   double across = 0;  ///< largest part of H across the path, over all spins
   std::int64_t evaluations = 0;
   bool converged = false;

@@ -48,8 +48,8 @@ struct Stage;
 /// even if the scene is typed in SI, unless a comment says otherwise.
 struct Scene {
   Units units;
-  /// The next three are set only for units = "SI". Their numbers are as typed: t in s, velocities
-  /// in m/s, strengths in T.
+  /// The next three are set only for units = "SI". Their numbers are in SI: t in s, velocities in
+  /// m/s, strengths in T.
   std::optional<Material> material;
   std::optional<std::array<AppliedComponent, 3>> applied_in_tesla;
   Torque torque_in_si;
@@ -62,7 +62,7 @@ struct Scene {
   Output output;
   Ensemble ensemble;
   std::optional<Columns> columns;
-  std::string text;            ///< the TOML text; re-serialised when an override changed it
+  std::string text;            ///< the TOML text; re-serialised if changed, as by an override
   std::filesystem::path path;  ///< the scene file, or the name of a text without one
   std::vector<std::filesystem::path> files;  ///< input files that its own tables name
   Given given;
@@ -123,13 +123,14 @@ SceneError scene_error(Scene const& scene, std::string_view key, std::string_vie
 /// Returns the number of spins, or of rigid bodies.
 std::int64_t sites(Scene const& scene);
 
-/// Opens every file that the scene reads, and checks the types and shapes of datasets, but not
-/// their values. Also refuses a lattice in which no site has a spin. Throws SceneError.
+/// Opens every file that the scene reads, and checks the types and shapes of datasets. Checks
+/// values only in a unit-cell file, and where they say which sites have a spin: refuses a lattice
+/// in which none has. Throws SceneError.
 void check_files(Scene const& scene);
 
 /// Returns the initial spins on the host, sites x 3, normalised in double: component c of site (i,
 /// j, k) is at ((k*ny + j)*nx + i)*3 + c. A site without a spin has the zero vector. Throws
-/// SceneError naming the site if its spin is zero or not finite.
+/// SceneError if a spin is zero or not finite.
 std::vector<double> initial_spins(Scene const& scene);
 
 /// Returns the initial spins of only these sites, in the same order. An OVF file is read
@@ -140,8 +141,9 @@ std::vector<double> initial_spins(Scene const& scene, SiteBox const& box);
 /// unit-cell file. Throws SceneError.
 std::vector<Coupling> couplings(Scene const& scene);
 
-/// Return 1 for the sites that hold a spin, and for the sites whose spin does not move, in the
-/// order of initial_spins; empty if all are occupied, or none is frozen. Throw SceneError.
+/// Return 1 for the sites that hold a spin, or for those that are frozen, and 0 for the others, in
+/// the order of initial_spins. Empty if no key says so: all are occupied, none is frozen. Throw
+/// SceneError.
 std::vector<unsigned char> occupied(Scene const& scene, SiteBox const& box);
 std::vector<unsigned char> frozen(Scene const& scene, SiteBox const& box);
 
@@ -149,8 +151,8 @@ std::vector<unsigned char> frozen(Scene const& scene, SiteBox const& box);
 /// uniform or given for the sites of a cell. Throws SceneError for a negative one.
 std::vector<double> moments_of_sites(Scene const& scene, SiteBox const& box);
 
-/// Returns the moment of each site, however the scene gives moments; 0 where there is no spin,
-/// empty if all are 1.
+/// Returns the moment of each site, however the scene gives moments; 0 where there is no spin.
+/// If empty, all are 1.
 std::vector<double> all_moments(Scene const& scene, SiteBox const& box);
 /// Returns site-dependent gyromagnetic ratios; empty if they are uniform or given for the sites of
 /// a cell. Throws SceneError for one that is not positive.
@@ -195,9 +197,9 @@ std::vector<std::array<std::int64_t, 2>> regions_of_bonds(Scene const& scene, Si
 std::vector<std::array<std::int64_t, 2>> regions_across(Scene const& scene, SiteBox const& box,
                                                         std::size_t axis, std::int64_t reach);
 
-/// For each site of a box, returns the value that `numbers` has at the site `reach` further along an
-/// axis, or back if `reach` is negative; 0 past an open end. |reach| must be below the extent of the
-/// lattice along that axis.
+/// For each site of a box, returns the value that `numbers` has at the site `reach` further along
+/// an axis, or back if `reach` is negative; 0 past an open end. |reach| must be below the extent of
+/// the lattice along that axis.
 std::vector<double> numbers_across(Scene const& scene, SiteNumbers const& numbers,
                                    std::string_view key, SiteBox const& box, std::size_t axis,
                                    std::int64_t reach);
@@ -238,8 +240,8 @@ bool has_noise_of_sites(Scene const& scene);
 /// damping, it is also divided by 1 + damping^2. Throws SceneError for a negative damping or
 /// temperature.
 std::vector<double> noise_of_sites(Scene const& scene, SiteBox const& box);
-/// Returns the largest number of noise_of_sites, or of noise_of_cell_sites unless
-/// has_noise_of_sites.
+/// Returns the largest number of noise_of_sites if has_noise_of_sites, otherwise of
+/// noise_of_cell_sites.
 double largest_noise(Scene const& scene);
 /// Refuses a dt for which the noise of half a step would turn spins too far. `heat`: the largest
 /// product of damping, temperature, and gyromagnetic ratio over moment. Throws SceneError.

@@ -21,7 +21,7 @@ struct SiteNumbers {
   std::vector<double> per_region;
   GivenNumbers given;
   double unit = 1;  ///< multiplies each number, which may be typed in SI
-  std::string key;  ///< in SI, the key in [material] that gives the numbers
+  std::string key;  ///< if set, the key that gives the numbers, for messages
   std::filesystem::path image = {};
   std::vector<int> levels = {};  ///< grey values; a pixel's number is how many it reaches
 

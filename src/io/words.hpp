@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-/// The named values of a scene, except those of methods, which are in io/method.hpp.
+/// Named values of a scene. Methods are in io/method.hpp.
 namespace cayspin::inline v0_2::io {
 
 enum class SystemKind { llg, rigid_body };

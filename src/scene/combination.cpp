@@ -75,7 +75,7 @@ void check_isotropy(Scene const& scene) {
 }
 
 // Checks the requirements of methods that move one colour of a checkerboard at a time: a lattice of
-// spins, the default generator, and an even number of cells along periodic axes.
+// spins, the default generator, and an even number of cells, or one, along periodic axes.
 void check_two_colours(Scene const& scene) {
   constexpr std::string_view key = "integrator.method";
   auto const method = scene.integrator.method->word;
@@ -111,8 +111,8 @@ void check_tangent(Scene const& scene) {
            "\"cayley\"");
 }
 
-// Checks the keys of [integrator] against each other, and against the system, the temperature, the
-// lattice and a program's own field.
+// Checks the keys of [integrator] against each other, and against the system, the temperature and
+// the lattice. Also refuses field.applied beside a program's own uniform field.
 void check_integrator(Scene const& scene) {
   if (scene.field.own.uniform && scene.field.applied)
     refuse(scene, "field.applied", "the program has a uniform field of its own", "no such key");

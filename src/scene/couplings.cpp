@@ -146,7 +146,7 @@ bool are_close(Coupling const& a, Coupling const& b) {
   return difference <= 1e-6 * largest;
 }
 
-// Returns each bond once. Refuses bonds that are not written from both ends with equal values.
+// Returns each bond once. Refuses bonds that are not written from both ends with values that agree.
 std::vector<Coupling> one_direction(std::vector<Item> const& items,
                                     std::vector<Coupling> const& couplings) {
   constexpr std::string_view accepted = "each bond from both ends, with J, and with -D there";

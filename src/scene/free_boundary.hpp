@@ -14,10 +14,10 @@ bool has_free_boundary(Table const& root);
 
 /// Adds the anisotropies that represent DMI with a free boundary. There, m obeys dm/dn = (D/2A) m x
 /// d, with the continuum's A and the DMI vector D d of the bond: Rohart and Thiaville, Phys. Rev. B
-/// 88, 184422 (2013), eq. 8. An imagined spin beyond the side, with which m obeys this, acts like a
+/// 88, 184422 (2013), eq. 8. An imagined spin beyond the side that makes m obey this acts like a
 /// uniaxial anisotropy along d with the continuum's constant Ku = -D^2/(4A), a hard axis. In a
 /// scene, the constants of exchange and anisotropy are 2A and 2Ku. Refuses a scene without
-/// exchange.
+/// exchange, and a uniform exchange that is not above 0.
 void add_free_boundaries(Scene& scene);
 
 /// Returns the constants of such an anisotropy at the sites of a box; nothing if `numbers` are not

@@ -25,7 +25,7 @@ SineCosine of_twice_atan(double q) {
   return {2 * tangent / square, is_obtuse ? -cosine : cosine};
 }
 
-// Returns sinh(R/w) / sinh(r/w) without overflow; infinite if r is 0.
+// Returns sinh(R/w) / sinh(r/w) without overflow of a sinh; infinite if r is 0.
 double quotient_of_sinh(double R, double r, double w) {
   return std::exp((R - r) / w) * (std::expm1(-2 * R / w) / std::expm1(-2 * r / w));
 }

@@ -52,8 +52,8 @@ void put(toml::table& table, std::string_view key, toml::node&& value) {
   std::move(value).visit([&](auto&& typed) { table.insert_or_assign(key, std::move(typed)); });
 }
 
-// Sets the keys of `from` in `to`. A value or an inline table replaces the previous one; a table
-// made by dotted keys is merged into it.
+// Sets the keys of `from` in `to`. A value or an inline table replaces the previous one; any other
+// table, such as one made by dotted keys, is merged into it.
 void merge(toml::table& to, toml::table&& from) {
   for (auto&& [key, value] : from) {
     auto* const before = to.get_as<toml::table>(key.str());

@@ -34,8 +34,8 @@ double largest_coupling(std::vector<Coupling> const& couplings) {
   return largest;
 }
 
-// Returns the unit of energy: the magnitude of the first constant that is uniform and not 0, or 1 T
-// times the moment if there is none.
+// Returns the unit of energy: the magnitude of J, of the largest entry of the couplings, of K or of
+// D, whichever is the first that is uniform and not 0. If none is, 1 T times the moment.
 double energy_unit(Material const& material, Field const& field) {
   auto const one = [](std::optional<double> const& value, SiteNumbers const& numbers) {
     return numbers.there() ? 0 : std::abs(value.value_or(0));
@@ -103,8 +103,8 @@ void convert_couplings(Field& field, units::ReducedUnits const& units) {
   field.couplings_scale = units.energy(field.couplings_scale);
 }
 
-// Stores site-dependent moments with their unit, and the moments of a cell's sites relative to the
-// first; none of these if all are equal.
+// Stores site-dependent moments with their unit and, unless all are equal, the moments of a cell's
+// sites relative to the first.
 void convert_moments(Scene& scene) {
   scene.lattice.moments_of_sites = scene.material->moment_factors;
   scene.lattice.moments_of_sites.unit = 1 / scene.material->moment;

@@ -141,7 +141,7 @@ bool is_zero(AppliedComponent const& component) {
   return number != nullptr && *number == 0;
 }
 
-// A torque of zeros is the same scene as none: its energy falls, and `cayspin relax` takes it.
+// A torque of zeros counts as none: the energy falls, and `cayspin relax` accepts the scene.
 void drop_zeros(Torque& torque) {
   if (torque.zhang_li && std::ranges::all_of(torque.zhang_li->velocity, is_zero))
     torque.zhang_li.reset();

@@ -10,7 +10,7 @@
 #include <vector>
 
 // Unit-cell files of Vampire, which other programs write, too. Both functions throw
-// std::runtime_error with a message of one line, which names the file and its line.
+// std::runtime_error with a message of one line, which names the file and the line reached.
 namespace cayspin::inline v0_2::io::detail {
 
 /// Largest number of sites in a cell.
