@@ -99,7 +99,7 @@ class Simulation:
             until = arguments.real(until, "run: until")
         end = self._run.last_step if until is None else self._run.step_at(until)
         if end < self.steps:
-            passed = end * self._scene.dt if until is None else until
+            passed = self.time + (end - self.steps) * self._scene.dt if until is None else until
             raise _cayspin.CayspinError(f"run: until: t = {passed:g} has passed, the time is "
                                         f"{self.time:g}; accepted: a later time")
         self._run.require_reachable(end - self.steps)

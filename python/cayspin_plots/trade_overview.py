@@ -36,5 +36,5 @@ def draw(trades, path):
     axis.grid(False)
     axis.set_xlabel("largest error of any spin")
     axis.set_title("The fastest method, and its speed over that of the best baseline\n"
-                   "(RK4, Heun or Dormand-Prince 5; orange: faster, grey: slower)")
+                   "(RK4, RK5, Heun or Dormand-Prince 5; orange: faster, grey: slower)")
     style.save(figure, path)

@@ -161,9 +161,9 @@ void add_runs(Json& object, io::SweepInfo const& sweep) {
   io::for_each_scalar([&](char const* name, auto member) {
     object[name] = last_frame([member](auto const& run) { return run.scalars.*member; });
   });
-  object["evaluations"] = results([](auto const& run) { return run.cost.evaluations; });
-  object["wall_seconds"] = results([](auto const& run) { return run.cost.wall_seconds; });
-  object["step_seconds"] = results([](auto const& run) { return run.cost.step_seconds; });
+  object["evaluations"] = last_frame([](auto const& run) { return run.cost.evaluations; });
+  object["wall_seconds"] = last_frame([](auto const& run) { return run.cost.wall_seconds; });
+  object["step_seconds"] = last_frame([](auto const& run) { return run.cost.step_seconds; });
 }
 
 void add_contents(Json& object, InfoFile const& file, io::SweepInfo const& sweep) {

@@ -74,7 +74,8 @@ void Progress::show(Step const& step) {
   if (step.number == first_) {
     // Draws at once, because the first step may take long.
     if (listener_ == Listener::user && steps_ > first_)
-      draw(0, fmt::format("step {} of {}", first_, steps_));
+      draw(static_cast<double>(first_) / static_cast<double>(steps_),
+           fmt::format("step {} of {}", first_, steps_));
     return;
   }
   if (pause.count() < least_pause) return;

@@ -160,7 +160,7 @@ int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
     found.push_back({minimum.torque, minimum.end == MinimizeEnd::converged, minimum.evaluations});
   }
   cost.wall_seconds = cost.step_seconds = clock.seconds();
-  if (interrupt_requested()) {
+  if (found.size() < run.replicas()) {
     file.close(cost);
     fmt::print(stderr, "{}: interrupted after {} of {} replicas; no frame was written\n",
                scene.path.string(), found.size(), run.replicas());

@@ -344,6 +344,7 @@ Command add_advise(CLI::App& program) {
       ->transform(
           CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}},
                                 CLI::AsNumberWithUnit::CASE_SENSITIVE, "TIME"))
+      ->check(CLI::PositiveNumber)
       ->type_name("TIME");
   add_json_option(*command, options->json);
   return {command, [options](Ranks&) { return advise_on(*options); }};

@@ -51,7 +51,7 @@ std::vector<io::SweptKey> read_keys(SweepOptions const& options) {
     if (std::ranges::any_of(options.overrides,
                             [&](auto const& override) { return overlap(override, key.key); }))
       refuse("--set has it too; accepted: one of them");
-    if (key.key == "output.file")
+    if (overlap(key.key, "output.file"))
       refuse("all runs go into the file that --output names; accepted: other keys");
     runs *= static_cast<double>(key.values.size());
     keys.push_back(std::move(key));
