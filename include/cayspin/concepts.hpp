@@ -44,7 +44,7 @@ concept has_evaluations = requires {
   { Stepper::evaluations } -> std::convertible_to<int>;
 };
 
-/// True when the stepper counts evaluations itself, because their number depends on the spins.
+/// True when the stepper counts evaluations itself.
 template <class Stepper>
 concept counts_evaluations = requires(Stepper const& stepper) {
   { stepper.evaluations_done() } -> std::convertible_to<std::int64_t>;
@@ -181,7 +181,7 @@ concept Observer = requires(Type& observer, detail::ExecutionOf<Spins> const& ex
                std::is_same_v<decltype(observer(exec, step, spins)), Next>;
 };
 
-/// Returns the number of generator evaluations per step; empty if it depends on the spins.
+/// Returns the number of generator evaluations per step; empty if the stepper does not declare it.
 template <class Stepper>
 constexpr std::optional<int> evaluations_per_step() {
   if constexpr (detail::has_evaluations<Stepper>) {

@@ -139,7 +139,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> select(typename ValueTraits<Value>::mask
 /// select<Value>(condition, yes, no) is `yes` at the sites where the condition holds, `no`
 /// elsewhere; for numbers or vectors. Use it in kernels instead of `if`, since a pack of sites may
 /// need both. Write conditions only with < and ==: select<Value>(Value(0) < m.z, a, b). Kokkos 4.7
-/// compares packs of 512 bits the wrong way round with > and >=.
+/// compares 512-bit packs of doubles the wrong way round with > and >=.
 using detail::select;
 
 }  // namespace cayspin::inline v0_2

@@ -58,7 +58,7 @@ class DemagnetizingField {
     return Convolution::work_bytes(lattice, {lattice, options});
   }
 
-  /// Writes H of the spins into `field`. Throws std::invalid_argument for another lattice.
+  /// Writes H of the spins into `field`. Throws std::invalid_argument for spins on another lattice.
   template <class HostSpins>
     requires on_host
   void operator()(HostSpins const& spins, HostSpins const& field, double /*t*/) const {
@@ -68,7 +68,7 @@ class DemagnetizingField {
     (*convolution_)(spins, field);
   }
   /// Writes H of the spins into `field`, both in device memory. Throws std::invalid_argument for
-  /// another lattice, and std::runtime_error if cuFFT fails.
+  /// spins on another lattice, and std::runtime_error if cuFFT fails.
   template <class Exec, class Spins>
     requires(!on_host)
   void operator()(Exec const& exec, Spins const& spins, Spins const& field, double /*t*/) const {

@@ -50,7 +50,7 @@ class DipolarField {
     return Convolution::work_bytes(lattice, {lattice, crystal, options});
   }
 
-  /// Writes H of the spins into `field`. Throws std::invalid_argument for another lattice.
+  /// Writes H of the spins into `field`. Throws std::invalid_argument for spins on another lattice.
   template <class HostSpins>
   void operator()(HostSpins const& spins, HostSpins const& field, double /*t*/) const {
     static_assert(std::is_same_v<typename HostSpins::value_type, Real>,

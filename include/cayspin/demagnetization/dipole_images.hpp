@@ -88,9 +88,9 @@ class PointsOfLattice {
 /// so that its mean magnetization produces no demagnetising field.
 ///
 /// With two or three periods, Ewald's sums are used: C. Kittel, Introduction to Solid State
-/// Physics, appendix B; D. E. Parry, Surf. Sci. 49, 433 (1975). With one period, the nearest 32
-/// images on each side are summed. An integral, corrected by differences over a period, replaces
-/// the others.
+/// Physics, appendix B; D. E. Parry, Surf. Sci. 49, 433 (1975). With one period, the nearest image
+/// and 32 more on each side are summed. An integral, corrected by differences over a period,
+/// replaces the others.
 class DipoleImages {
  public:
   explicit DipoleImages(std::vector<Point> const& periods) : lattice_(periods) {

@@ -61,10 +61,11 @@ double energy_factor_of(Term const& term) {
 
 }  // namespace detail
 
-/// A field term that costs more than the rest, for example a demagnetising field by FFTs. Multirate
-/// evaluates it once a step and interpolates it in time for the other evaluations. Everywhere else
-/// it behaves as the term itself: every evaluation of the energy recomputes it. It is a handle: the
-/// copies in an EffectiveField and in a Multirate share their memory.
+/// A field term that costs more than the rest, for example a demagnetising field by FFTs. After its
+/// first step, Multirate evaluates it once a step and interpolates it in time for the other
+/// evaluations. Everywhere else it behaves as the term itself: every evaluation of the energy
+/// recomputes it. It is a handle: the copies in an EffectiveField and in a Multirate share their
+/// memory.
 ///
 /// Term: HostField, or a term with a static `degree`, 1 or 2 (concepts.hpp).
 template <class Spins, class Term>

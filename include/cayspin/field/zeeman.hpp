@@ -32,8 +32,8 @@ struct Zeeman {
   }
 };
 
-/// A uniform applied field that changes with time: `applied(t)` is called on the host, once for
-/// each evaluation of the field, at its time t.
+/// A uniform applied field that changes with time: `applied(t)` is called on the host before each
+/// evaluation of the field, with its time t.
 template <class Applied>
 class TimeDependentZeeman {
   static_assert(std::is_invocable_r_v<Vec3<double>, Applied const&, double>,

@@ -139,7 +139,7 @@ class EnergyControl {
   bool due(Step const& step) const { return !energy_ || step.number % options_.period == 0; }
 
   /// Changes `spins` in place. Throws std::invalid_argument when they are not on the lattice given
-  /// at construction. If the energy is not finite, the spins do not change.
+  /// at construction. If the energy is not a number, the spins do not change.
   template <class Exec>
   void operator()(Exec const& exec, Step const& step, Spins const& spins) {
     detail::check_access<Exec, typename Spins::memory_space>();

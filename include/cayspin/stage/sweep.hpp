@@ -17,8 +17,8 @@
 #include <tuple>
 
 // All stages of a Runge-Kutta step in one pass through the lattice. Each stage is one or two planes
-// behind the previous one (in a single plane: one row), so that the data it reads are still in the
-// cache.
+// behind the previous one (in a single plane that is not cut into strips: one row), so that the
+// data it reads are still in the cache.
 namespace cayspin::inline v0_2 {
 
 /// Order in which the stages of a step traverse the lattice. Both orders give equal bits.

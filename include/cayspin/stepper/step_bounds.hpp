@@ -51,7 +51,7 @@ class StepBounds {
   struct Step {
     double dt, end;  // end: t + dt, or exactly the start of a bound
   };
-  /// Returns a step from t, at most `dt` long and not beyond `end`.
+  /// Returns a step from t that is longer than `dt` by at most 1e-9 dt, and not beyond `end`.
   Step step(double t, double dt, double end) const {
     double stop = end;
     for (auto at = first_that_ends_after(t); at != all_.end() && at->begin < t + 2 * dt; ++at) {

@@ -14,10 +14,10 @@
 
 namespace cayspin::inline v0_2 {
 
-/// Thrown when an adaptive step would have to be shorter than min_dt or than the resolution of t:
-/// the values are not finite, or the field is not smooth. The spins are those before the step;
-/// under integrate() they are those of the last time at which an observer was due, or of a later
-/// time. The next step starts a run from them.
+/// Thrown when an adaptive step would have to be shorter than min_dt or than the resolution of t.
+/// In the second case the values are not finite, or the field is not smooth. The spins are those
+/// before the step; under integrate() they are those of the last time at which an observer was due,
+/// or of a later time. The next step starts a run from them.
 class StepTooSmall : public std::runtime_error {
  public:
   StepTooSmall(std::string const& message, double start, double length, double least)
@@ -38,7 +38,7 @@ struct StepOptions {
   double tolerance = 1e-6;  ///< bound on the error of a run: the largest angle between a spin and
                             ///< its exact direction, in radians
   double first_dt = 0;      ///< 0: chosen from the largest rate and the tolerance
-  double min_dt = 0;        ///< a step that would be shorter throws StepTooSmall
+  double min_dt = 0;        ///< an error that needs a shorter step throws StepTooSmall
   double max_dt = std::numeric_limits<double>::infinity();
   double end = std::numeric_limits<double>::infinity();  ///< no stage is evaluated after this time
   /// Intervals in which the field jumps, or changes so fast that steps may miss the change between
@@ -79,8 +79,8 @@ class StepController {
     return options_.tolerance * (exponent_ < 0.25 ? 1.0 / 12 : 1.0 / 160);
   }
 
-  /// Returns the first dt: that of the options if it is not 0, otherwise one for spins that turn by
-  /// at most `rate` per unit of time, or `asked` if none turns.
+  /// Returns the first dt, between min_dt and max_dt: that of the options if it is not 0, otherwise
+  /// one for spins that turn by at most `rate` per unit of time, or `asked` if none turns.
   double first_dt(double rate, double asked) const {
     double const angle = 0.5 * std::pow(step_tolerance(), exponent_);
     bool const turns = rate > 0 && std::isfinite(rate);
