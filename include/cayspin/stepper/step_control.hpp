@@ -142,7 +142,7 @@ class OwnSteps {
   double next_dt() const { return next_dt_; }
   /// Forgets the run so far: the next step starts from the t and spins that it is given.
   void reset() { running_ = false; }
-  /// Returns true if the internal steps have reached t, the end of a step of dt.
+  /// Returns true if the internal steps have reached t, the end of a step of dt, to within 1e-9 dt.
   bool has_reached(double t, double dt) const { return end_time_ >= t - slack(dt); }
 
  protected:
