@@ -154,7 +154,7 @@ concept Stepper =
 /// | `int64 rejected_steps()` | internal steps rejected so far | required |
 /// | `reset()` | the next step starts from its t and spins | required |
 /// | `step_towards(exec, generator, spins, t, dt, wanted)` | see below | step |
-/// | `bool has_reached(t, dt)` | internal steps reach t, to within 1e-9 dt | step is called |
+/// | `bool has_reached(t, dt)` | internal steps reach t, but for round-off | step is called |
 ///
 /// step_towards writes the spins only when the internal steps have reached the time `wanted`, which
 /// may be later than t + dt.

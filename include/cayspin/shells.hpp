@@ -50,14 +50,18 @@ inline std::vector<BondOfLength> bonds_within(Crystal const& crystal, int reach,
   return bonds;
 }
 
-/// Returns an upper bound on how many cells apart, along any cell vector, two sites within `length`
-/// of each other can be.
-inline double cells_within(Crystal const& crystal, double length) {
+/// Returns an upper bound on how many cells apart, along any cell vector that repeats, two sites
+/// within `length` of each other can be.
+inline double cells_within(Crystal const& crystal, double length,
+                           std::array<bool, 3> const& repeats) {
   auto const& [a, b, c] = crystal.cell;
   double const volume = std::abs(scalar_product(a, vector_product(b, c)));
+  std::array const normals{vector_product(b, c), vector_product(c, a), vector_product(a, b)};
   double most = 0;
-  for (auto const& normal : {vector_product(b, c), vector_product(c, a), vector_product(a, b)})
-    most = std::max(most, length * std::hypot(normal[0], normal[1], normal[2]) / volume);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    auto const& [x, y, z] = normals[axis];
+    if (repeats[axis]) most = std::max(most, length * std::hypot(x, y, z) / volume);
+  }
   double spread = 0;
   for (auto const& site : crystal.basis)
     for (auto const& other : crystal.basis)
@@ -104,7 +108,7 @@ inline std::vector<Coupling> couplings_of_shells(Crystal const& crystal,
       throw std::invalid_argument("cayspin::couplings_of_shells: the sites of a cell have only " +
                                   std::to_string(shells) + " distances");
     // If the cell vectors are skew, other bonds up to this length may reach over more cells.
-    if (is_whole && (is_bounded || detail::cells_within(crystal, length) <= reach)) break;
+    if (is_whole && (is_bounded || detail::cells_within(crystal, length, repeats) <= reach)) break;
   }
   return couplings;
 }

@@ -334,6 +334,17 @@ struct EndingField {
   }
 };
 
+// times.at(steps) and times.at(steps - 1) + dt may differ by the round-off of a late t.
+TEST(AdaptiveEnd, IsReachedLateInARun) {
+  Slab const slab = coupled_chain(0.05);
+  for (std::int64_t steps = 1; steps <= 20; ++steps) {
+    Times const times{1e6, 0.01, steps};
+    auto spins = chain_start();
+    Tsit5 stepper(spins, {.tolerance = 1e-6, .end = times.at(steps)});
+    EXPECT_EQ(integrate(Space(), stepper, slab.orthogonal(), spins, times).steps, steps);
+  }
+}
+
 TEST(AdaptiveEnd, NoStageLooksBeyondIt) {
   double const end = 1.7;
   auto spins = chain_start();

@@ -51,6 +51,21 @@ class SiteDependent : public GradientTest<Backend> {
 };
 TYPED_TEST_SUITE(SiteDependent, Backends, BackendName);
 
+// Products of such constants are beyond the range of float.
+TYPED_TEST(SiteDependent, ExchangeOfTinyAndHugeConstants) {
+  using Spins = typename TypeParam::Spins;
+  using Real = typename TypeParam::Real;
+  auto const lattice = Lattice::chain(6);
+  auto const spins = random_spins<Spins>(lattice, 5);
+  for (double const constant : {1e-30, 1e-23, 1e25}) {
+    auto const constants = random_numbers_on<Spins>(lattice, constant, constant, 5, 7);
+    auto const found =
+        energy(this->exec, EffectiveField(SiteDependentExchange(constants)), spins, 0).value;
+    auto const uniform = energy(this->exec, EffectiveField(Exchange(lattice, constant)), spins, 0);
+    EXPECT_NEAR(found / uniform.value, 1, 32 * std::numeric_limits<Real>::epsilon());
+  }
+}
+
 TYPED_TEST(SiteDependent, ExchangeIsTheHarmonicMean) {
   using Spins = typename TypeParam::Spins;
   for (auto const& lattice : lattices)

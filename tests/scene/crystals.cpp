@@ -204,6 +204,13 @@ TEST(Crystals, BondsThatCannotBeListedAreRefused) {
   EXPECT_THROW(couplings_of_shells(skew, {1}), std::invalid_argument);
 }
 
+TEST(Crystals, ShellsOfAThinCellThatDoesNotRepeat) {
+  for (double const thickness : {1.0, 5e-4, 1e-8}) {
+    Crystal const thin{{{{1, 0, 0}, {0, 1, 0}, {0, 0, thickness}}}, {{0, 0, 0}}};
+    EXPECT_EQ(couplings_of_shells(thin, {1}, {true, true, false}).size(), 2U) << thickness;
+  }
+}
+
 TEST(Crystals, CellsWhosePlanesOverflowAreRefused) {
   std::int64_t const cells = (std::int64_t{1} << 62) + 1;  // of 4 sites: 4 planes modulo 2^64
   EXPECT_THROW(Crystal::fcc().lattice({1, 1, cells}), std::invalid_argument);

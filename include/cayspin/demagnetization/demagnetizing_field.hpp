@@ -65,6 +65,7 @@ class DemagnetizingField {
     static_assert(std::is_same_v<typename HostSpins::value_type, Real>,
                   "DemagnetizingField was made for spins of another precision.");
     require_lattice("cayspin::DemagnetizingField", lattice_, spins.lattice());
+    require_lattice("cayspin::DemagnetizingField", lattice_, field.lattice());
     (*convolution_)(spins, field);
   }
   /// Writes H of the spins into `field`, both in device memory. Throws std::invalid_argument for
@@ -73,6 +74,7 @@ class DemagnetizingField {
     requires(!on_host)
   void operator()(Exec const& exec, Spins const& spins, Spins const& field, double /*t*/) const {
     require_lattice("cayspin::DemagnetizingField", lattice_, spins.lattice());
+    require_lattice("cayspin::DemagnetizingField", lattice_, field.lattice());
     (*convolution_)(exec, spins, field);
   }
 

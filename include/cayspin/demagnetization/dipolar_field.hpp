@@ -56,6 +56,7 @@ class DipolarField {
     static_assert(std::is_same_v<typename HostSpins::value_type, Real>,
                   "DipolarField was made for spins of another precision.");
     require_lattice("cayspin::DipolarField", lattice_, spins.lattice());
+    require_lattice("cayspin::DipolarField", lattice_, field.lattice());
     (*convolution_)(spins, field);
   }
 

@@ -9,6 +9,7 @@
 #include <cayspin/stencil.hpp>
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -117,9 +118,15 @@ struct FindBonds {
  private:
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Value mean(Value const& own, Value const& other) const {
-    Value const sum = own + other, none(0);
-    return as_value<Value>(2 * inverse_square) * (own * other) /
-           select<Value>(sum == none, Value(1), sum);
+    constexpr Real least = std::numeric_limits<Real>::min() / std::numeric_limits<Real>::epsilon(),
+                   most = std::numeric_limits<Real>::max();
+    Value const all = own + other, product = own * other,
+                factor = as_value<Value>(2 * inverse_square);
+    Value const sum = select<Value>(all == Value(0), Value(1), all);
+    // Where the product is beyond the range of Real.
+    Value const far = factor * (own * (other / sum));
+    Value const near = select<Value>(product < Value(most), factor * product / sum, far);
+    return select<Value>(Value(least) < product, near, far);
   }
 };
 

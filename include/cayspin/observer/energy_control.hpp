@@ -139,7 +139,7 @@ class EnergyControl {
   bool due(Step const& step) const { return !energy_ || step.number % options_.period == 0; }
 
   /// Changes `spins` in place. Throws std::invalid_argument when they are not on the lattice given
-  /// at construction. If the energy is not a number, the spins do not change.
+  /// at construction. If the energy is not finite, the spins do not change.
   template <class Exec>
   void operator()(Exec const& exec, Step const& step, Spins const& spins) {
     detail::check_access<Exec, typename Spins::memory_space>();
@@ -154,7 +154,7 @@ class EnergyControl {
     excess_ = energy - *energy_;
     double const most = options_.largest_fraction * std::abs(step.dt);
     double const kappa = std::clamp(excess_ / slope, -most, most);
-    if (!std::isfinite(kappa) || kappa == 0) return;
+    if (!std::isfinite(excess_) || !std::isfinite(kappa) || kappa == 0) return;
     detail::for_each_site<Real>(
         exec, "cayspin::EnergyControl::turn", spins.layout(),
         detail::TurnAboutAxes<Real>{spins.array(), axes_.array(), spins.output(false),

@@ -85,7 +85,7 @@ class StepController {
     double const angle = 0.5 * std::pow(step_tolerance(), exponent_);
     bool const turns = rate > 0 && std::isfinite(rate);
     double const dt = options_.first_dt > 0 ? options_.first_dt : turns ? angle / rate : asked;
-    return std::clamp(dt, options_.min_dt, largest_dt());
+    return std::min(std::max(dt, options_.min_dt), largest_dt());
   }
 
   bool accepts(double error) const { return error <= step_tolerance(); }
@@ -143,7 +143,7 @@ class OwnSteps {
   /// Forgets the run so far: the next step starts from the t and spins that it is given.
   void reset() { running_ = false; }
   /// Returns true if the internal steps have reached t, the end of a step of dt, to within 1e-9 dt.
-  bool has_reached(double t, double dt) const { return end_time_ >= t - slack(dt); }
+  bool has_reached(double t, double dt) const { return end_time_ >= t - slack(t, dt); }
 
  protected:
   /// Outcome of an attempted step. The error is an angle.
@@ -168,7 +168,7 @@ class OwnSteps {
   template <class Begin, class TakeStep>
   void go_on_to(double t, double dt, Begin const& begin, TakeStep const& take_step) {
     double const asked = t + dt;
-    if (!(dt >= 0) || !(asked <= options_.end + slack(dt)))
+    if (!(dt >= 0) || !(asked <= options_.end + slack(asked, dt)))
       throw std::invalid_argument(
           region_ + "::step: dt must not be negative, nor t + dt beyond the end of the options");
     try {
@@ -234,7 +234,10 @@ class OwnSteps {
   double end_time_ = 0, dt_ = 0, next_dt_ = 0;  // the last internal step ends at end_time_
 
  private:
-  static double slack(double dt) { return 1e-9 * std::abs(dt); }
+  // Ends of steps that are computed in different ways differ by the round-off of t.
+  static double slack(double t, double dt) {
+    return 1e-9 * std::abs(dt) + 4 * std::numeric_limits<double>::epsilon() * std::abs(t);
+  }
 
   StepBounds bounds_;
   [[noreturn]] void give_up(double t, double dt) const {
