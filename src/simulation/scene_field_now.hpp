@@ -207,7 +207,8 @@ struct SceneFieldNow {
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Value e(static_cast<cayspin::detail::scalar_t<Value>>(lattice_terms.magnitude));
-    if (energies.data) return e;
+    // lattice_terms.magnitude lacks a program's own field, which the sum of all terms includes.
+    if (energies.data) return e + Kokkos::abs(stencil.site().load(energies));
     if (quadratic.present()) e = e + quadratic.magnitude(stencil.center());
     if (has_applied) e = e + Kokkos::abs(zeeman.energy_density(stencil));
     if (has_stored) e = e + Kokkos::abs(stored.energy_density(stencil));

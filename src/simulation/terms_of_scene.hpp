@@ -263,6 +263,15 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
   });
   none_.magnitude += 0.5 * std::ranges::max(pairs_.field_bounds());
   none_.magnitude += 0.5 * largest_moment_ * bound_of_dipoles(scene, lattice);
+  // If each site has its own moment, it multiplies both a field and its energy.
+  double const square = per_moments_ ? largest_moment_ * largest_moment_ : 1;
+  auto const add_demagnetization = [&](double strength) {
+    none_.magnitude += 0.5 * square * std::abs(scene.field.mu0 * strength);
+  };
+  if (auto const& demag = scene.field.demag; demag && !demag->dipoles)
+    add_demagnetization(demag->strength);
+  if (auto const& slab = scene.field.slab_demag; slab && !slab_of_moments(scene))
+    add_demagnetization(slab->strength);
   for (auto const& term : scene.field.anisotropies)
     none_.magnitude += 0.5 * std::abs(term.constant);
   for (auto const& term : scene.field.crystal_anisotropies)
