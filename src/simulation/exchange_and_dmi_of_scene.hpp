@@ -5,7 +5,9 @@
 
 #include <cayspin/field/site_dependent_exchange.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <stdexcept>
 #include <string_view>
 
@@ -18,8 +20,11 @@ void FieldInPass<Spins>::Terms::add_exchange_of_sites(io::Scene const& scene,
   auto const& field = scene.field;
   if (!field.exchange_factors.there()) return;
   auto const constants = io::numbers_of_sites(scene, field.exchange_factors, "field.exchange", box);
+  double factor = 1;
+  for (auto const& between : field.exchange_between)
+    factor = std::max(factor, std::abs(between.factor));
   none_.magnitude +=
-      field.exchange->energy_magnitude(lattice_) * largest_of_parts(lattice_, constants);
+      factor * field.exchange->energy_magnitude(lattice_) * largest_of_parts(lattice_, constants);
   try {
     exchange_of_sites_.emplace(scalar_field_of<Real, Memory>("exchange", lattice_, constants));
   } catch (std::invalid_argument const& error) {
@@ -36,7 +41,10 @@ void FieldInPass<Spins>::Terms::add_dmi_of_sites(io::Scene const& scene, io::Sit
   auto const& field = scene.field;
   if (!field.dmi_factors.there()) return;
   auto const constants = io::numbers_of_sites(scene, field.dmi_factors, key, box);
-  none_.magnitude += 6 * largest_of_parts(lattice_, constants);
+  double const largest = largest_of_parts(lattice_, constants);
+  none_.magnitude +=
+      (field.dmi_normals.there() ? 3 : 1) *
+      io::sum_over_axes(lattice_, [&](std::size_t, double spacing) { return largest / spacing; });
   auto const add = [&](std::vector<double> const& of_sites, auto const& vector_along) {
     auto& dmi =
         dmis_of_sites_.emplace_back(scalar_field_of<Real, Memory>("dmi", lattice_, of_sites));

@@ -45,5 +45,35 @@ TEST(Magnitudes, IncludeTheFieldOfAProgram) {
   EXPECT_NEAR(magnitude_of(scene), 3 * 4, 1e-12);
 }
 
+// Parallel spins have no energy of exchange or DMI, so that their magnitude is that of the bonds.
+TEST(Magnitudes, IncludeDmiAtAnySpacing) {
+  auto const magnitude = [](std::string const& dmi) {
+    return magnitude_of(llg_scene("0.5", "rkmk4", 1,
+                                  "lattice = { shape = [6, 6], spacing = [1e-4, 2e-4, 1] }\n"
+                                  "initial = { uniform = [0, 0, 1] }\nfield = { dmi = " +
+                                      dmi + " }\n"));
+  };
+  double const expected = 36 * 1e-4 * (1e4 + 5e3);
+  for (std::string const dmi :
+       {"{ bulk = 1e-4 }", "{ bulk = 'i < 9 ? 1e-4 : 0' }", "{ d2d = 1e-4 }",
+        "{ interfacial = 'i < 9 ? 1e-4 : 0', normal = [0, 0, 1] }"})
+    EXPECT_NEAR(magnitude(dmi), expected, 1e-9) << dmi;
+  // A normal of each site is a sum of three terms.
+  EXPECT_NEAR(magnitude("{ interfacial = 1e-4, normal = ['0', '0', 'i < 9 ? 1 : 0'] }"),
+              3 * expected, 1e-9);
+}
+
+TEST(Magnitudes, IncludeTheFactorOfABond) {
+  auto const magnitude = [](std::string const& factor) {
+    return magnitude_of(
+        llg_scene("0.5", "rkmk4", 1,
+                  "lattice = { shape = [2], regions = 'i' }\ninitial = { uniform = [0, 0, 1] }\n"
+                  "field = { exchange = 1, exchange_between = [{ between = [0, 1], factor = " +
+                      factor + " }] }\n"));
+  };
+  EXPECT_NEAR(magnitude("-1e5"), 1e5 * magnitude("1"), 1e-5);
+  EXPECT_NEAR(magnitude("0.5"), magnitude("1"), 1e-12);
+}
+
 }  // namespace
 }  // namespace cayspin::simulation::test
