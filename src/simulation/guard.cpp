@@ -1,14 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "guard.hpp"
 
+#include "io/site_box.hpp"
 #include "text.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace cayspin::simulation {
+
+bool all_are_damped(io::Scene const& scene) {
+  auto const& dampings = scene.system.dampings;
+  if (!dampings.there()) return scene.system.damping > 0;
+  bool all = true;
+  io::for_each_box_of_planes(scene.lattice.shape, sizeof(double), [&](io::SiteBox const& box) {
+    if (!all) return;
+    auto const values = io::numbers_of_sites(scene, dampings, "system.damping", box);
+    auto const moments = io::all_moments(scene, box);
+    auto const frozen = io::frozen(scene, box);
+    for (std::size_t site = 0; site < values.size(); ++site) {
+      bool const moves =
+          (moments.empty() || moments[site] > 0) && (frozen.empty() || !frozen[site]);
+      if (moves && !(values[site] > 0)) all = false;
+    }
+  });
+  return all;
+}
 
 std::optional<std::string> Guard::judge(Step const& step, Energy const& energy,
                                         double norm_defect) {

@@ -13,9 +13,11 @@
 
 namespace cayspin::simulation {
 
-inline bool energy_must_fall(io::Scene const& scene) {
-  bool const is_damped = scene.system.damping > 0 || scene.system.dampings.there();
-  return scene.system.kind == io::SystemKind::llg && is_damped && !is_thermal(scene) &&
+/// Returns true if each spin that moves is damped.
+bool all_are_damped(io::Scene const& scene);
+
+inline bool energy_must_fall(io::Scene const& scene, bool all_damped) {
+  return scene.system.kind == io::SystemKind::llg && all_damped && !is_thermal(scene) &&
          !io::has_torque(scene.field) && !io::depends_on_time(scene.field) &&
          scene.integrator.energy_guard && scene.integrator.method->keeps_length;
 }
@@ -29,14 +31,10 @@ class Guard {
  public:
   /// `epsilon`: of the run's precision. A check is due after every step for up to 4096 sites, and
   /// after every tenth step for more.
-  Guard(io::Scene const& scene, double epsilon)
-      : energy_must_fall_(energy_must_fall(scene)),
-        keeps_norm_(scene.integrator.method->keeps_length),
-        epsilon_(epsilon),
-        most_rise_(std::max(64 * epsilon, scene.integrator.tolerance.value_or(0))),
-        units_(scene.units),
-        begin_(scene.begin.step),
-        period_(period_of(io::sites(scene))) {}
+  Guard(io::Scene const& scene, double epsilon) : Guard(scene, epsilon, all_are_damped(scene)) {}
+
+  /// Returns a guard that has seen no state. `scene`: with the same damping.
+  Guard made_again(io::Scene const& scene) const { return Guard(scene, epsilon_, all_damped_); }
 
   static constexpr std::int64_t period_of(std::int64_t sites) { return sites <= 4096 ? 1 : 10; }
 
@@ -75,11 +73,22 @@ class Guard {
   }
 
  private:
+  // Dampings of sites, which may be in a file, are read only once.
+  Guard(io::Scene const& scene, double epsilon, bool all_damped)
+      : all_damped_(all_damped),
+        energy_must_fall_(energy_must_fall(scene, all_damped)),
+        keeps_norm_(scene.integrator.method->keeps_length),
+        epsilon_(epsilon),
+        most_rise_(std::max(64 * epsilon, scene.integrator.tolerance.value_or(0))),
+        units_(scene.units),
+        begin_(scene.begin.step),
+        period_(period_of(io::sites(scene))) {}
+
   struct Look {
     std::int64_t step;
     double energy;
   };
-  bool energy_must_fall_, keeps_norm_;
+  bool all_damped_, energy_must_fall_, keeps_norm_;
   double epsilon_, most_rise_;
   io::Units units_;
   std::int64_t begin_, period_;

@@ -122,7 +122,7 @@ class RunningScene : public Simulation<Real, Space> {
 
   /// Call it after the spins were replaced: forgets the state that belongs to the earlier spins.
   void begin_again(io::Scene const& scene) {
-    guard_ = Guard(scene, epsilon);
+    guard_ = guard_.made_again(scene);
     if (rest_) rest_->begin_again();
     if (control_) control_->reset();
     if (noise_) noise_->reset();
