@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "limits_of_terms.hpp"
 #include "terms_of_scene.hpp"
 
 #include <cayspin/field/site_dependent_exchange.hpp>
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +24,6 @@ void FieldInPass<Spins>::Terms::add_exchange_at_faces(io::Scene const& scene,
                                                       io::SiteBox const& box) {
   auto const& numbers = scene.field.exchange_at_faces;
   if (!numbers.there()) return;
-  constexpr double most = 1.0 / 3;
   auto const constants = io::numbers_of_sites(scene, numbers, "field.exchange", box);
   exchange_at_faces_ = scalar_field_of<Real, Memory>("exchange_at_faces", lattice_, constants);
   double strongest = 0, spacing = longest_of_distant_;
@@ -37,13 +35,10 @@ void FieldInPass<Spins>::Terms::add_exchange_at_faces(io::Scene const& scene,
   std::vector<double> per_exchange(constants.size());
   for (std::size_t site = 0; site < constants.size(); ++site)
     per_exchange[site] = constants[site] > 0 ? 1 / constants[site] : 0;
-  double const ratio = largest_of_parts(lattice_, per_exchange) * strongest * spacing / 2;
-  if (ratio > most)
-    throw io::scene_error(
-        scene, "field.interlayer",
-        fmt::format("is {:.3g} times the exchange of half a cell; accepted: at most 1/3: smaller "
-                    "cells, or a larger exchange",
-                    ratio));
+  // At faces with other spacings or constants, this bound may exceed the ratio that the plan
+  // allows.
+  double const bound = largest_of_parts(lattice_, per_exchange) * strongest * spacing / 2;
+  double const ratio = std::min(bound, most_at_faces);
   double const epsilon = std::numeric_limits<Real>::epsilon();
   double const steps = std::log(epsilon) / std::log(ratio / (1 - ratio));
   sweeps_of_faces_ = ratio > 0 ? 1 + static_cast<std::int32_t>(std::ceil(steps / 2)) : 1;

@@ -6,6 +6,7 @@
 #include "io/ovf.hpp"
 #include "io/trajectory.hpp"
 #include "largest_field.hpp"
+#include "limits_of_terms.hpp"
 #include "multirate_method.hpp"
 #include "ranks.hpp"
 #include "run_files.hpp"
@@ -174,6 +175,7 @@ Plan make_plan(io::Scene const& scene, Precision precision,
   require_demagnetization(scene);
   io::require_alike_where_followed(scene);
   auto const lattice = make_lattice(scene);
+  require_limits_of_terms(scene, lattice);
   auto const& integrator = scene.integrator;
   auto const& begin = scene.begin;
   Plan plan{

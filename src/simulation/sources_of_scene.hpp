@@ -8,14 +8,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <string>
 #include <utility>
 #include <vector>
 
 // The sources of a scene's applied field, for FieldInPass. Included by compile_field_in_pass.hpp.
 namespace cayspin::simulation {
 
-// Sums the profiles of sources with equal time factors.
+// Sums the profiles of sources with equal time factors. The plan has refused too many factors.
 template <class Spins>
 void FieldInPass<Spins>::Terms::add_sources(io::Scene const& scene, io::SiteBox const& box) {
   std::vector<std::pair<io::AppliedComponent, std::vector<double>>> profiles;
@@ -28,12 +27,6 @@ void FieldInPass<Spins>::Terms::add_sources(io::Scene const& scene, io::SiteBox 
     else
       std::ranges::transform(vectors, same->second, same->second.begin(), std::plus<>());
   }
-  constexpr auto most = static_cast<std::size_t>(SourcesNow<Real>::most);
-  if (profiles.size() > most)
-    throw io::scene_error(scene, "field.sources",
-                          "has " + std::to_string(profiles.size()) +
-                              " different factors `time`; accepted: at most " +
-                              std::to_string(most));
   for (auto const& [time, vectors] : profiles) {
     std::vector<double> lengths(vectors.size() / 3);
     for (std::size_t site = 0; site < lengths.size(); ++site)

@@ -159,16 +159,37 @@ steps = 1
   double const torque = 0.04 * 0.8 + 2 * 0.02 * 0.6 * 0.8, k = 2 * 1e3 / 0.25;
   EXPECT_NEAR(energy("exchange = 1e3", turned), -0.04 * 0.6 - 0.02 * 0.36 - torque * torque / k,
               1e-10);
-  expect_refused(
-      [] {
-        auto scene = scene_of(
-            "system = { kind = 'llg', damping = 0.1 }\nlattice = { shape = [2], regions = 'i' }\n"
-            "field = { exchange = 1, interlayer = [{ between = [0, 1], J = 2 }] }\n" +
-            start_and_step);
-        SceneRun::open(scene, {});
-        return scene;
-      },
-      "times the exchange of half a cell");
+}
+
+// `lattice`: the shape, the spacing and the regions.
+io::Scene with_an_interlayer(std::string const& lattice, std::string const& exchange, double J) {
+  return scene_of(
+      fmt::format("system = {{ kind = 'llg', damping = 0.1 }}\nlattice = {{ {} }}\n"
+                  "field = {{ exchange = {}, interlayer = [{{ between = [0, 1], J = {} }}] }}\n",
+                  lattice, exchange, J) +
+      start_and_step);
+}
+
+TEST(Interlayers, AreRefusedWhereTheExchangeBesideThemIsWeak) {
+  std::string const words = "is 1 times the exchange of half a cell";
+  std::string const chain = "shape = [3], regions = 'i'";
+  expect_refused([&] { return with_an_interlayer(chain, "1", 2); }, words);
+  expect_refused([&] { return with_an_interlayer(chain, "{ regions = [1, 0.1, 1] }", 0.2); },
+                 words);
+  expect_refused([&] { return with_an_interlayer(chain, "{ regions = [0.1, 1, 1] }", 0.2); },
+                 words);
+  // Neither the exchange of other cells nor the spacing of axes without such faces counts.
+  for (auto const& scene :
+       {with_an_interlayer(chain, "{ regions = [1, 1, 0.01] }", 0.2),
+        with_an_interlayer("shape = [2, 2, 2], spacing = [10, 10, 1], regions = 'k'", "1", 0.2)})
+    EXPECT_NO_THROW(SceneRun::open(scene, {})->advance(1));
+}
+
+TEST(Interlayers, AreRefusedBesideNegativeExchange) {
+  std::string const chain = "shape = [2], regions = 'i'";
+  for (std::string const exchange : {"-1", "{ regions = [-1, -2] }"})
+    expect_refused([&] { return with_an_interlayer(chain, exchange, 0.1); },
+                   "field.exchange: is negative beside an interlayer");
 }
 
 // Two layers of thickness d with an antiferromagnetic bond saturate in a field B where 2 A k tanh(k

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "io/scene.hpp"
+
+#include <cayspin/lattice.hpp>
+
+namespace cayspin::simulation {
+
+/// Most of an interlayer's strength over that of the exchange in half a cell.
+inline constexpr double most_at_faces = 1.0 / 3;
+
+/// Throws io::SceneError if interlayers are too strong for the exchange beside them or that is
+/// negative, or if the sources of the applied field have too many different factors of t.
+void require_limits_of_terms(io::Scene const& scene, Lattice const& lattice);
+
+}  // namespace cayspin::simulation
