@@ -267,5 +267,15 @@ TEST_F(Checking, PeriodicFilmsGoOnForEver) {
   expect_refused({"check", "film.toml", "--set", "lattice.shape=[4,4,4]"}, "periodic_images");
 }
 
+TEST_F(Checking, RefusesInterlayersThatARunCannotEvaluate) {
+  auto const layers = write("layers.toml",
+                            "system = { kind = 'llg', damping = 0.1 }\n"
+                            "lattice = { shape = [2], regions = 'i' }\n"
+                            "field = { exchange = 1, interlayer = [{ between = [0, 1], J = 2 }] }\n"
+                            "initial = { uniform = [0, 0, 1] }\n"
+                            "integrator = { method = 'heun', dt = 0.01, steps = 1 }\n");
+  expect_refused({"check", layers}, "field.interlayer: is 1 times the exchange of half a cell");
+}
+
 }  // namespace
 }  // namespace cayspin::program::test

@@ -175,5 +175,20 @@ TEST(FieldInPass, NumbersOfSites) {
   }
 }
 
+TEST(FieldInPass, APlanRefusesMoreThanEightFactorsOfSources) {
+  auto const sources = [](int count) {
+    std::string list;
+    for (int i = 0; i < count; ++i)
+      list += fmt::format("{{ profile = ['x', 0, 0], time = 'cos({}*t)' }}, ", i);
+    return llg_scene("0.1", "heun", 1,
+                     "lattice = { shape = [4] }\ninitial = { uniform = [0, 0, 1] }\n"
+                     "field = { sources = [" +
+                         list + "] }\n");
+  };
+  expect_refused([&] { return sources(9); },
+                 "field.sources: has 9 different factors `time`; accepted: at most 8");
+  EXPECT_NO_THROW(make_plan(sources(8), Precision::double_precision));
+}
+
 }  // namespace
 }  // namespace cayspin::simulation::test
