@@ -266,8 +266,9 @@ void copy_from_host(std::vector<Number> const& from,
   constexpr std::size_t components = Components;
   Kokkos::View<Number const* [components], Kokkos::LayoutRight, Kokkos::HostSpace,
                Kokkos::MemoryUnmanaged> const host(from.data(), to.sites());
-  auto const there = Kokkos::create_mirror_view_and_copy(MemorySpace(), host);
   Exec const exec;
+  auto const there =
+      Kokkos::create_mirror_view_and_copy(Kokkos::view_alloc(exec, MemorySpace()), host);
   copy(exec, there, to);
   exec.fence("cayspin::copy_from_host");
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Tests which ensembles are stepped as columns of one lattice, and that replicas in columns move,
-// are sampled and fail like separate runs. tests/program/ensembles.cpp compares their bits in
-// files.
+// are sampled and fail like separate runs; also that ensembles relax. tests/program/ensembles.cpp
+// compares their bits in files.
+#include "../support/watchdog.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/ensemble_run.hpp"
 #include "simulation/failure.hpp"
@@ -171,6 +172,25 @@ TEST(ReplicaColumns, FailAsRunsOfTheirOwn) {
   } catch (NumbersFailed const& failure) {
     EXPECT_EQ(failure.what(), *said);
   }
+}
+
+// The searches build their fields side by side. Terms that need a pass fill tables and fields.
+TEST(Ensembles, RelaxWithTermsThatNeedAPass) {
+  auto const scene = llg_scene("0.1", "rkmk4", 1, R"([lattice]
+shape = [4]
+moments = 2.0
+[field]
+exchange = 1.0
+applied = [0.0, 0, 0.5]
+anisotropy = { constant = "0.1*i", axis = [0, 0, 1] }
+[initial]
+random = { seed = 7 }
+[ensemble]
+replicas = 4
+)");
+  cayspin::test::Watchdog const watchdog("relax of an ensemble");
+  EnsembleRun run(scene, {}, false);
+  for (auto const& minimum : run.relax({})) EXPECT_EQ(minimum.end, MinimizeEnd::converged);
 }
 
 }  // namespace

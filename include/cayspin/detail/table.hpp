@@ -14,8 +14,12 @@ Kokkos::View<Element*, MemorySpace> table_of(std::string const& label,
                                              std::vector<Element> const& elements) {
   Kokkos::View<Element*, MemorySpace> table(Kokkos::view_alloc(Kokkos::WithoutInitializing, label),
                                             elements.size());
-  Kokkos::deep_copy(table, Kokkos::View<Element const*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
-                               elements.data(), elements.size()));
+  // Without an instance, deep_copy waits for all instances, and in a kernel that would be for ever.
+  typename MemorySpace::execution_space const exec;
+  Kokkos::View<Element const*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> const host(
+      elements.data(), elements.size());
+  Kokkos::deep_copy(exec, table, host);
+  exec.fence("cayspin::table_of");
   return table;
 }
 
