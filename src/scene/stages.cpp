@@ -81,7 +81,8 @@ void apply_stage(toml::table& document, toml::table& stage, std::string const& p
   std::vector<std::string> applied;
   for (auto&& [name, value] : stage) {
     std::string const key(name.str());
-    if (key == "name" || key == "relax") continue;
+    bool const is_of_stages = key == "name" || key == "relax";
+    if (is_of_stages && !prefix.empty()) continue;
     auto const place = place_of(value.source(), path);
     require_changeable(key, place, prefix);
     auto* const table = value.as_table();

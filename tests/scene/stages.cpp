@@ -218,7 +218,8 @@ TEST(ChangedOnTheWay, FollowsTheRulesOfStages) {
   EXPECT_EQ(changed_on_the_way(scene, {"integrator.end=0.5"}).integrator.steps, 50);
   EXPECT_EQ(
       changed_on_the_way(changed, {"integrator.steps=3", "integrator.dt=0.5"}).integrator.steps, 3);
-  for (std::string const wrong : {"lattice.shape=[1]", "initial={}", "output.file='a'"}) {
+  for (std::string const wrong : {"lattice.shape=[1]", "initial={}", "output.file='a'", "relax=true",
+                                  "name='a'"}) {
     EXPECT_THROW(changed_on_the_way(scene, {wrong}), SceneError) << wrong;
   }
 }
