@@ -22,7 +22,8 @@ CheckpointPeriod checkpoint_period(Item const& item) {
   return {0, steps};
 }
 
-// Reads the interval between frames or samples, and returns it in steps.
+// Reads the interval between frames or samples, and returns it in steps. Without [integrator] there
+// are no steps, and a time counts as one.
 std::int64_t period(Item const& item, Table const& root, Integrator const& integrator) {
   constexpr std::string_view accepted =
       "a whole number of steps >= 1, or { time = TIME }, a multiple of dt";
@@ -31,7 +32,9 @@ std::int64_t period(Item const& item, Table const& root, Integrator const& integ
   table.accept_only({"time"});
   auto const time = table.required("time", "a time > 0");
   if (!(integrator.dt > 0)) time.fail("needs integrator.dt", "a whole number of steps");
-  auto const steps = whole_steps(time, integrator.dt);
+  constexpr Limits not_negative{"a time > 0", 0};
+  auto const steps = root.contains("integrator") ? whole_steps(time, integrator.dt)
+                                                 : std::int64_t{number(time, not_negative) > 0};
   if (steps < 1) time.fail("is 0", "a time > 0");
   return steps;
 }

@@ -76,6 +76,7 @@ void check_purpose(Purpose purpose, Scene const& scene) {
   }
   if (scene.system.kind != SystemKind::llg)
     detail::refuse(scene, "system.kind", "rigid bodies have no equilibrium", "\"llg\"");
+  if (purpose == Purpose::start) return;  // it neither moves nor relaxes
   // `cayspin modes` accepts torques. relax and path, which read scenes for the same purpose, refuse
   // torques later.
   if (has_torque(scene.field) && purpose != Purpose::relax)

@@ -131,6 +131,17 @@ integrator = { method = "rkmk4", dt = 0.1, steps = 4 }
   EXPECT_EQ(end_of(stages_of(scene).back()), 4);
   EXPECT_NE(said(with_stages("[[stage]]\nname = \"a\"\n", start)).find("integrator: is missing"),
             std::string::npos);
+  std::string const steps = "[[stage]]\nintegrator = { method = \"rkmk4\", dt = 0.1, steps = 4 }\n";
+  for (std::string const moving :
+       {"field.applied=['sin(t)',0,0]", "torque.zhang_li.velocity=[1,0,0]"})
+    EXPECT_EQ(said(with_stages(steps, start), {moving}), "taken");
+  auto const every = [&](std::string const& time) {
+    return std::vector<std::string>{"output.every.time=" + time, "output.scalars_every.time=0.2"};
+  };
+  EXPECT_EQ(said(with_stages(steps, start), every("0.4")), "taken");
+  EXPECT_NE(said(with_stages(steps, start), every("0.25")).find("dt"), std::string::npos);
+  EXPECT_NE(said(with_stages(steps, start), every("0")).find("output.every.time: is 0"),
+            std::string::npos);
 }
 
 TEST(Stages, AreInTheTextAndReachedByOverrides) {
@@ -218,8 +229,8 @@ TEST(ChangedOnTheWay, FollowsTheRulesOfStages) {
   EXPECT_EQ(changed_on_the_way(scene, {"integrator.end=0.5"}).integrator.steps, 50);
   EXPECT_EQ(
       changed_on_the_way(changed, {"integrator.steps=3", "integrator.dt=0.5"}).integrator.steps, 3);
-  for (std::string const wrong : {"lattice.shape=[1]", "initial={}", "output.file='a'", "relax=true",
-                                  "name='a'"}) {
+  for (std::string const wrong :
+       {"lattice.shape=[1]", "initial={}", "output.file='a'", "relax=true", "name='a'"}) {
     EXPECT_THROW(changed_on_the_way(scene, {wrong}), SceneError) << wrong;
   }
 }
