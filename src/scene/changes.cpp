@@ -61,6 +61,41 @@ bool same_sites(Scene const& before, Scene const& now, SiteNumbers Lattice::*num
   return true;
 }
 
+// Returns numbers per site in the scene's own units, because the units of reduced numbers may
+// differ. `of_cell`: the numbers of the cell's sites, for scenes without any per site.
+std::vector<double> in_own_units(Scene const& scene, SiteBox const& box, OfSites<double> of_sites,
+                                 std::vector<double> const& of_cell, double unit) {
+  auto numbers = of_sites(scene, box);
+  auto const in_plane = static_cast<std::size_t>(box.extent[0] * box.extent[1]);
+  auto const first = static_cast<std::size_t>(box.begin[2]);
+  if (numbers.empty()) {
+    numbers.resize(in_plane * static_cast<std::size_t>(box.extent[2]));
+    for (std::size_t site = 0; site < numbers.size(); ++site)
+      numbers[site] = of_cell_site(of_cell, (first + site / in_plane) % scene.lattice.basis.size());
+  }
+  for (double& number : numbers) number *= unit;
+  return numbers;
+}
+
+std::vector<double> own_moments(Scene const& scene, SiteBox const& box) {
+  return in_own_units(scene, box, moments_of_sites, scene.lattice.moments,
+                      scene.material ? scene.material->moment : 1);
+}
+
+std::vector<double> own_gyromagnetic(Scene const& scene, SiteBox const& box) {
+  return in_own_units(scene, box, gyromagnetic_of_sites, scene.lattice.gyromagnetic,
+                      scene.material ? scene.material->gamma : 1);
+}
+
+// Compares numbers of the cell's sites, or numbers per site if one of the scenes has these.
+bool same_numbers(Scene const& before, Scene const& now, std::vector<double> Lattice::*of_cell,
+                  SiteNumbers Lattice::*of_sites, OfSites<double> in_units) {
+  auto const &a = before.lattice, &b = now.lattice;
+  if ((a.*of_sites).there() || (b.*of_sites).there())
+    return same_sites<double>(before, now, of_sites, in_units, 1);
+  return same_of_cell(a.*of_cell, b.*of_cell, b.basis.size());
+}
+
 bool same(toml::node const& a, toml::node const& b);
 
 bool same(toml::array const& a, toml::array const& b) {
@@ -124,11 +159,10 @@ std::string changed_lattice_key(Scene const& before, Scene const& now) {
     if (!same_spacing(before, now, axis)) return "lattice.spacing";
     if (a.boundary[axis] != b.boundary[axis]) return "lattice.boundary";
   }
-  if (!same_of_cell(a.moments, b.moments, b.basis.size())) return "lattice.moments";
-  if (!same_of_cell(a.gyromagnetic, b.gyromagnetic, b.basis.size())) return "lattice.gyromagnetic";
-  if (!same_sites<double>(before, now, &Lattice::moments_of_sites, moments_of_sites, 1))
+  if (!same_numbers(before, now, &Lattice::moments, &Lattice::moments_of_sites, own_moments))
     return "lattice.moments";
-  if (!same_sites<double>(before, now, &Lattice::gyromagnetic_of_sites, gyromagnetic_of_sites, 1))
+  if (!same_numbers(before, now, &Lattice::gyromagnetic, &Lattice::gyromagnetic_of_sites,
+                    own_gyromagnetic))
     return "lattice.gyromagnetic";
   if (!same_sites<unsigned char>(before, now, &Lattice::occupied, occupied, 1))
     return "lattice.occupied";

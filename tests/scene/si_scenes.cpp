@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // units = "SI": conversion to reduced units, and refusals.
+#include "io/changes.hpp"
 #include "io/expression.hpp"
 #include "si_constants.hpp"
 #include "wrong_scenes.hpp"
@@ -194,6 +195,22 @@ TEST(SiScene, OverridesAreInSi) {
   auto const again = with_overrides(scene, {"integrator.dt=2.5e-13"});
   expect_close(again.integrator.dt, 2.5e-13 * gamma * mu0 * 8e5);
   EXPECT_EQ(again.integrator.steps, 200);
+}
+
+// Another way of typing a number may have another unit.
+TEST(SiScene, LatticesAreComparedInSi) {
+  auto const changed = [](std::string const& before, std::string const& now) {
+    std::string const regions = "lattice.regions='i<4'";
+    return changed_lattice_key(scene_of(si_film, {regions, before}),
+                               scene_of(si_film, {regions, now}));
+  };
+  EXPECT_EQ(changed("material.Ms=8e5", "material.Ms='8e5'"), "");
+  EXPECT_EQ(changed("material.Ms={regions=[8e5,8e5]}", "material.Ms='8e5'"), "");
+  EXPECT_EQ(changed("material.Ms=8e5", "material.Ms='7e5'"), "lattice.moments");
+  EXPECT_EQ(changed("material.Ms={regions=[8e5,4e5]}", "material.Ms={regions=[4e5,2e5]}"),
+            "lattice.moments");
+  EXPECT_EQ(changed("material.gamma=2e11", "material.gamma='2e11'"), "");
+  EXPECT_EQ(changed("material.gamma=2e11", "material.gamma='1.9e11'"), "lattice.gyromagnetic");
 }
 
 TEST(WrongSiScene, OfUnits) {
