@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 #include <variant>
 
@@ -104,6 +105,20 @@ void refuse_options(Scene const& scene) {
     if (is_set) refuse(scene, key, what, accepted);
 }
 
+// The seeds of replicas count up from the scene's.
+void require_seeds(Scene const& scene) {
+  auto const most = std::numeric_limits<std::int64_t>::max() - (scene.ensemble.replicas - 1);
+  auto const require = [&](std::string_view key, std::int64_t seed) {
+    if (seed > most)
+      refuse(scene, key,
+             fmt::format("{} is too large for {} replicas", seed, scene.ensemble.replicas),
+             fmt::format("a whole number from 0 to {}", most));
+  };
+  if (scene.thermal) require("thermal.seed", scene.thermal->seed);
+  if (auto const* const random = std::get_if<RandomStart>(&scene.initial))
+    require("initial.random.seed", random->seed);
+}
+
 }  // namespace
 
 Ensemble read_ensemble(Table const& root) {
@@ -133,6 +148,7 @@ Ensemble read_ensemble(Table const& root) {
 
 void check_ensemble(Scene const& scene, bool relaxes) {
   refuse_options(scene);
+  require_seeds(scene);
   for (auto const replica : {std::int64_t{0}, scene.ensemble.replicas - 1})
     relaxes ? replica_to_relax(scene, replica) : replica_of(scene, replica);
 }

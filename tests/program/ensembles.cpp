@@ -356,6 +356,10 @@ TEST_F(Ensembles, AreRefusedInOneLine) {
           "ensemble.vary: in replica 2: system.damping: -1 is negative");
   refused(vary(""), "integrator.method: \"auto\" does not go with an ensemble",
           set("integrator={method='auto',error=1e-3,end=1.0}"));
+  for (std::string const key : {"thermal.seed", "initial.random.seed"})
+    refused(vary("") + "[thermal]\ntemperature = 0.1\n",
+            key + ": 9223372036854775806 is too large for 3 replicas",
+            set(key + "=9223372036854775806"));
   refused(vary(""), "output.terms: does not go with an ensemble", set("output.terms=true"));
   refused(vary(""), "output.chunk: does not go with an ensemble", set("output.chunk=1"));
   refused(vary(""), "output.checkpoint_every: does not go with an ensemble",
