@@ -96,8 +96,7 @@ class Notes {
         auto const* const number = std::get_if<double>(&current->velocity[axis]);
         return number == nullptr || *number != 0;
       };
-      bool const is_on = flows(0) || flows(1) || flows(2);
-      if (is_on && !any_axis(flows))
+      if (!any_axis(flows))
         add("torque.zhang_li", "acts nowhere: no cell has a neighbour along the current");
     }
   }
