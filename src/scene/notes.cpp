@@ -186,8 +186,11 @@ class Notes {
   std::size_t shells() const {
     if (!scene_.places.contains("field.couplings.shells")) return 0;
     auto const document = toml::parse(scene_.text);
-    auto const* const typed = document.at_path("field.couplings.shells").as_array();
-    return typed == nullptr ? 0 : typed->size();
+    auto const typed = document.at_path("field.couplings.shells");
+    auto const* const with_unit = typed.as_table();  // { meV = [..] }
+    auto const* const numbers =
+        with_unit == nullptr ? typed.as_array() : with_unit->begin()->second.as_array();
+    return numbers == nullptr ? 0 : numbers->size();
   }
 
   // Returns how many of the bonds belong to shells. They are the first, with the nearest shell

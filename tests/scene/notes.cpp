@@ -94,6 +94,11 @@ TEST(Notes, SayWhatActsNowhere) {
            "field.couplings.pairs: couples each site to itself"},
           {{chain, "field.couplings={shells=[1,0,0,0,0,0,0,1],pairs=[{offset=[7,0,0],J=1}]}"},
            "field.couplings.shells: entry 7, for pairs 8 apart"},
+          {{"units='SI'", "system={kind='llg'}", "integrator.dt=1e-15",
+            "material={mu_s={bohr_magnetons=1},alpha=0.1,damping_form='gilbert'}",
+            "lattice={shape=[8],spacing=3e-10}",
+            "field={couplings={shells={meV=[1,1,1,1,1,1,1,1]}}}"},
+           "field.couplings.shells: entry 7, for pairs 2.4e-09 m apart"},
       }) {
     auto const found = notes_with(overrides);
     SCOPED_TRACE(testing::PrintToString(overrides) + testing::PrintToString(found));
