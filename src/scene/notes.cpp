@@ -179,8 +179,12 @@ class Notes {
     auto const first = look_at_shells(bonds);
     for (std::size_t i = first; i < bonds.size(); ++i)
       if (comes_back(bonds[i]))
-        add(first > 0 ? "field.couplings.pairs" : fmt::format("field.couplings[{}]", i),
-            "couples each site to itself, once around the periodic lattice");
+        add(key_of_bond(i), "couples each site to itself, once around the periodic lattice");
+  }
+
+  std::string key_of_bond(std::size_t bond) const {
+    constexpr auto pairs = "field.couplings.pairs";
+    return scene_.places.contains(pairs) ? pairs : fmt::format("field.couplings[{}]", bond);
   }
 
   std::size_t shells() const {
@@ -266,7 +270,7 @@ class Notes {
       for (std::size_t i = 0; i < scene_.field.couplings.size(); ++i)
         for (int const site : scene_.field.couplings[i].between)
           if (is_empty(site)) {
-            add(fmt::format("field.couplings[{}]", i), fmt::format(fmt::runtime(nowhere), site));
+            add(key_of_bond(i), fmt::format(fmt::runtime(nowhere), site));
             break;
           }
   }
