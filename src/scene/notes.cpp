@@ -217,6 +217,18 @@ class Notes {
     return first;
   }
 
+  // Counts the sites that lattice.occupied leaves empty, whatever their moments.
+  std::int64_t zeros_of_occupied() const {
+    auto by_key = scene_;
+    by_key.lattice.moments.clear();
+    by_key.lattice.moments_of_sites = {};
+    auto const& [nx, ny, nz] = by_key.lattice.shape;
+    std::int64_t zeros = 0;
+    for (std::int64_t plane = 0; plane < nz; ++plane)
+      zeros += std::ranges::count(occupied(by_key, {{0, 0, plane}, {nx, ny, 1}}), 0);
+    return zeros;
+  }
+
   void of_sites() {
     auto const& lattice = scene_.lattice;
     auto const count = lattice.basis.size();
@@ -245,10 +257,11 @@ class Notes {
     };
     auto const all = sites(scene_), there = total(spins), free = total(moving);
     if (lattice.occupied.there()) {
-      if (is_shape_of_start())
+      auto const zeros = zeros_of_occupied();
+      if (zeros > 0 && is_shape_of_start())
         add("initial.file",
-            fmt::format("zero vectors are sites without a spin, {} of {}", all - there, all));
-      else if (there == all)
+            fmt::format("zero vectors are sites without a spin, {} of {}", zeros, all));
+      else if (zeros == 0)
         add("lattice.occupied", "is 0 nowhere: every site has a spin");
     }
     if (lattice.frozen.there() && free == there)

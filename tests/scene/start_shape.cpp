@@ -90,6 +90,19 @@ TEST(StartShape, IsWholeWithoutZeros) {
   EXPECT_FALSE(scene.lattice.occupied.there());
   EXPECT_FALSE(needs_pass(scene));
   EXPECT_EQ(scene.text, replaced(film_from_file, "FILE", "full.ovf"));
+  auto const typed = notes(read(folder, "full.ovf", {"lattice.occupied={file='full.ovf'}"}));
+  ASSERT_EQ(typed.size(), 1U);
+  expect_holds(typed[0], "lattice.occupied: is 0 nowhere");
+}
+
+TEST(StartShape, HasTheZerosOfTheFileAlone) {
+  Folder const folder;
+  std::vector<unsigned char> there(24, 1);
+  there[3] = 0;
+  write(folder, "disc.ovf", disc(there));
+  auto const said = notes(read(folder, "disc.ovf", {"lattice.moments='i'"}));
+  ASSERT_EQ(said.size(), 1U);
+  expect_holds(said[0], "initial.file: zero vectors are sites without a spin, 1 of 24");
 }
 
 TEST(StartShape, HasToBeThatOfTheScene) {
