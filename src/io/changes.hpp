@@ -12,10 +12,10 @@ namespace cayspin::inline v0_2::io {
 /// Returns the first key that gives two scenes of equal shape and cell_sites different sites:
 /// "system.kind", or spacing, boundary, cell, basis, moments, gyromagnetic, occupied or frozen of
 /// lattice, as in "lattice.spacing"; empty if none does. Scenes in SI are compared by their
-/// spacings in m, and site-dependent moments and gyromagnetic ratios in SI. Site-dependent numbers are compared site by site, unless both scenes name the
-/// same expression or file, or both get the numbers from a program. Along an axis with one cell,
-/// spacing and boundary are ignored, unless a cell has several sites or a scene has demag. Throws
-/// SceneError when a file cannot be read.
+/// spacings in m, and site-dependent moments and gyromagnetic ratios in SI. Site-dependent numbers
+/// are compared site by site, unless both scenes name the same expression or file, or both get the
+/// numbers from a program. Along an axis with one cell, spacing and boundary are ignored, unless a
+/// cell has several sites or a scene has demag. Throws SceneError when a file cannot be read.
 std::string changed_lattice_key(Scene const& before, Scene const& now);
 
 /// Returns the keys whose values differ between two scene texts, such as "field.applied", in
