@@ -131,6 +131,11 @@ cayspin_array array_of(io::HostVectors const& vectors) {
   return array;
 }
 
+/// Throws for a dt that is too large if the scene sets refuse_unstable.
+void require_stable(SceneRun const& run) {
+  if (run.scene().integrator.refuse_unstable) run.warning();
+}
+
 void run_to_end(SceneRun& run, RunRecorder& recorder) {
   Looks const looks{.period = Guard::period_of(io::sites(run.scene())), .until_torque = true};
   recorder.look();
@@ -180,7 +185,11 @@ cayspin_status cayspin_open_text(char const* text, char const* name, cayspin_pre
 }
 
 cayspin_status cayspin_step(cayspin_simulation* simulation, int64_t count) {
-  return changing(simulation, [&](SceneRun& run) { run.advance(count); });
+  return changing(simulation, [&](SceneRun& run) {
+    run.require_reachable(count);
+    require_stable(run);
+    run.advance(count);
+  });
 }
 
 cayspin_status cayspin_run(cayspin_simulation* simulation, char const* output, int overwrite) {
@@ -194,6 +203,7 @@ cayspin_status cayspin_run(cayspin_simulation* simulation, char const* output, i
       throw UsageError("the simulation is at step " + std::to_string(run.steps()) +
                        " and the scene ends at step " + std::to_string(run.last_step()) +
                        "; accepted: a later end");
+    require_stable(run);
     run_with_file(run, output != nullptr ? std::filesystem::path(output) : *file, overwrite != 0);
   });
 }

@@ -41,17 +41,18 @@ void RunRecorder::look(bool last) {
   auto const& output = run_.scene().output;
   std::int64_t const now = run_.steps();
   if (now == written_) return;
-  if (checkpoints_.due({now, run_.time(), 0, last || now == end_})) {
-    run_.save(checkpoint_);
-    checkpoints_.wait();
-  }
   auto const due = [&](std::int64_t every) {
     return last || now == first_ || now == end_ || now % every == 0;
   };
   bool const frame = due(output.every), scalars = now != sampled_ && due(output.scalars_every);
-  if (!frame && !scalars) return;
-  // run_.sample() is in the scene's units already.
-  auto const values = as_scalars(run_.sample(), {});
+  bool const stored = checkpoints_.due({now, run_.time(), 0, last || now == end_});
+  if (!frame && !scalars && !stored) return;
+  // The sample is in the scene's units already.
+  auto const values = as_scalars(run_.judged_sample(), {});
+  if (stored) {
+    run_.save(checkpoint_);
+    checkpoints_.wait();
+  }
   if (scalars) {
     file_.write_scalars(now, run_.time(), values, run_.more_of_sample());
     sampled_ = now;

@@ -27,7 +27,8 @@ class RunRecorder {
   /// Returns the next step at which to call look(): for a frame, a sample or a checkpoint; at the
   /// end, the current step.
   std::int64_t next() const;
-  /// Writes what is due at the current step, once; with `last`, always a frame.
+  /// Writes what is due at the current step, once; with `last`, always a frame. Throws
+  /// NumbersFailed, and writes nothing, if the guard refuses the state.
   void look(bool last = false);
   /// Closes the file, and marks in it whether the run went as planned. If the scene has
   /// output.checkpoint_every, and the last frame is of the current step, also stores the checkpoint

@@ -360,8 +360,15 @@ Sample SceneRun::sample() {
   return sampled();
 }
 
-Sample SceneRun::sampled() {
+Sample SceneRun::judged_sample() {
+  Turn const turn;
+  return sampled(true);
+}
+
+Sample SceneRun::sampled(bool judges) {
   Sample now = look();
+  if (auto const failure = judges ? failure_of(now) : std::nullopt)
+    throw NumbersFailed(scene_.path.string() + ": " + *failure);
   now.time *= scene_.units.time;
   now.energy.value *= scene_.units.energy;
   now.energy.magnitude *= scene_.units.energy;

@@ -187,6 +187,8 @@ class SceneRun {
 
   /// Returns the current energy, norm defect and magnetization.
   Sample sample();
+  /// Returns the sample if the guard accepts the current state, otherwise throws NumbersFailed.
+  Sample judged_sample();
   /// Returns the further numbers of a sample, in the order of more_scalars().
   std::vector<double> more_of_sample();
   /// Returns by how many cells the lattice has moved to follow its object.
@@ -212,6 +214,8 @@ class SceneRun {
   virtual void exchange(Checkpoint& checkpoint) = 0;
   virtual void go_on_from(std::int64_t shift) = 0;
   virtual Sample look() = 0;
+  /// Returns what is wrong with a sample of the current state, if anything.
+  virtual std::optional<std::string> failure_of(Sample const& now) const = 0;
   virtual std::vector<double> more() = 0;
   virtual std::vector<std::pair<std::string, double>> term_energies() = 0;
   virtual LentVectors evaluated_field() = 0;
@@ -230,7 +234,7 @@ class SceneRun {
   static void side_by_side(std::span<SceneRun* const> runs,
                            std::function<void(std::size_t)> const& work);
   Minimum relaxed(RelaxSettings const& settings);
-  Sample sampled();
+  Sample sampled(bool judges = false);
 
   Precision precision_;
   std::string space_;

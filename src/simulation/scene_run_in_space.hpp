@@ -212,6 +212,11 @@ class SceneRunInSpace final
     return sample_scene(simulation_->exec, simulation_->generator, now(), simulation_->spins);
   }
 
+  std::optional<std::string> failure_of(Sample const& sample) const override {
+    auto guard = simulation_->guard();  // a copy: the steps of the run's own checks stay as they are
+    return guard.judge(now(), sample.energy, sample.norm_defect);
+  }
+
   std::vector<std::pair<std::string, double>> term_energies() override {
     if (!terms_) terms_.emplace(scene_, plan().lattice);
     auto const found = (*terms_)(simulation_->exec, now(), simulation_->spins);

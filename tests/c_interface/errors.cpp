@@ -233,6 +233,31 @@ TEST(CInterfaceErrors, NumbersThatFail) {
   EXPECT_EQ(energy, -2);  // along the field, where nothing turns
 }
 
+// The guard looks at more than 4096 sites at every tenth step only, but at each frame.
+TEST(CInterfaceErrors, NumbersThatFailInTheLastFrame) {
+  auto text = scene_text({}, "steps = 5");
+  text.replace(text.find("[2]"), 3, "[4100]");
+  text.replace(text.find("rkmk4"), 5, "classical_euler");
+  text.replace(text.find("dt = 0.01"), 9, "dt = 1e300");
+  auto const simulation = open(text);
+  auto const file = std::filesystem::temp_directory_path() / "cayspin_c_interface_failing.h5";
+  expect_failure(cayspin_run(simulation.get(), file.c_str(), 1), CAYSPIN_NUMBERS_FAILED, "not finite");
+  std::filesystem::remove(file);
+}
+
+TEST(CInterfaceErrors, RefusedSteps) {
+  auto const text = scene_text({}, "steps = 10\nrefuse_unstable = true");
+  auto unstable = text;
+  unstable.replace(unstable.find("dt = 0.01"), 9, "dt = 1000.0");
+  auto const simulation = open(unstable);
+  auto const file = std::filesystem::temp_directory_path() / "cayspin_c_interface_refused.h5";
+  std::filesystem::remove(file);
+  expect_failure(cayspin_step(simulation.get(), 1), CAYSPIN_WRONG_SCENE, "integrator.dt: 1000");
+  expect_failure(cayspin_run(simulation.get(), file.c_str(), 0), CAYSPIN_WRONG_SCENE, "dt: 1000");
+  EXPECT_FALSE(std::filesystem::exists(file));
+  EXPECT_EQ(cayspin_step(open(text).get(), 1), CAYSPIN_OK) << cayspin_last_error();
+}
+
 // Each thread has its own message, like errno.
 TEST(CInterfaceErrors, BelongToTheirThread) {
   expect_failure(cayspin_step(nullptr, 1), CAYSPIN_WRONG_USAGE, "simulation is NULL");
