@@ -49,6 +49,13 @@ class RunNoise {
 
   /// Call when the spins are replaced: no half of the noise has been applied to them.
   void reset() { begun_ = -1; }
+  /// Calls visit(name, number) for the state that a run needs to continue after a failed step.
+  template <class Visit>
+  void visit_memory(Visit const& visit) {
+    visit("noise.begun", begun_);
+  }
+  /// Call it if the run goes on from the spins of another one, at the same step.
+  void go_on_from(RunNoise const& other) { begun_ = other.begun_; }
   /// Returns the time spent on noise since the last call.
   double take_seconds() { return std::exchange(seconds_, 0.0); }
 

@@ -14,6 +14,7 @@
 #include <cayspin/serialize.hpp>
 
 #include <cstdint>
+#include <exception>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -90,6 +91,11 @@ class RunningScene : public Simulation<Real, Space> {
   void go_on_from(std::int64_t shift) {
     if (follower_) follower_->go_on_from(shift);
   }
+  /// Call it if the spins are those of `before`, at the same step.
+  void go_on_from(RunningScene const& before) {
+    go_on_from(before.shift());
+    if (noise_ && before.noise_) noise_->go_on_from(*before.noise_);
+  }
 
   /// Returns the numbers of a sample that are not in Scalars, in the order of more_scalars().
   std::vector<double> more(Space const& exec, Step const& step, Spins const& spins) const {
@@ -124,7 +130,7 @@ class RunningScene : public Simulation<Real, Space> {
   void begin_again(io::Scene const& scene) {
     guard_ = guard_.made_again(scene);
     if (rest_) rest_->begin_again();
-    if (control_) control_->reset();
+    reset_control();
     if (noise_) noise_->reset();
   }
 
@@ -140,7 +146,17 @@ class RunningScene : public Simulation<Real, Space> {
     if (rest_) serialize(*rest_, checkpoint, "rest.");
     if (control_) serialize(*control_, checkpoint, "energy_control.");
     if (follower_) serialize(*follower_, checkpoint, "follow.");
-    if (noise_ && checkpoint.restores()) noise_->reset();
+    // Checkpoints of earlier versions lack these numbers, which matter only after a failed step.
+    auto const visit_if_there = [&](std::string const& name, std::int64_t& step) {
+      try {
+        visit(name, step);
+      } catch (std::exception const&) {
+        if (!checkpoint.restores()) throw;
+        step = -1;
+      }
+    };
+    if (control_) visit_if_there("energy_control.corrected", corrected_);
+    if (noise_) noise_->visit_memory(visit_if_there);
   }
 
  private:
@@ -160,7 +176,7 @@ class RunningScene : public Simulation<Real, Space> {
       if (auto& noise = scene_.noise_)
         return (*noise)(exec, step, scene_.times.first, spins, wanted, look);
       if (wanted && look() == Next::stop) return Next::stop;
-      if (scene_.control_ && !step.last) (*scene_.control_)(exec, step, spins);
+      if (scene_.control_ && !step.last) scene_.correct(exec, step, spins);
       return Next::proceed;
     }
 
@@ -181,7 +197,9 @@ class RunningScene : public Simulation<Real, Space> {
       return scene_.follower_ && !step.last && scene_.follower_->due(step);
     }
     Next look(Space const& exec, Step const& step, Spins const& spins) {
-      if (looks_.due(step) && looks_(exec, step, spins) == Next::stop) return Next::stop;
+      // Also if only the follower is due: should a later step fail, an adaptive method keeps the
+      // spins of this one.
+      if (looks_(exec, step, spins) == Next::stop) return Next::stop;
       if (!follows(step)) return Next::proceed;
       cells_ = scene_.follower_->cells_off(exec, spins);
       stopped_ = step;
@@ -203,7 +221,18 @@ class RunningScene : public Simulation<Real, Space> {
     follower_->move(this->exec, this->spins, cells);
     guard_.add_to_energies(energy() - before);
     if (rest_) rest_->begin_again();
+    reset_control();
+  }
+
+  void correct(Space const& exec, Step const& step, Spins const& spins) {
+    // A step that failed is repeated from spins that are corrected already.
+    if (corrected_ == step.number) return;
+    (*control_)(exec, step, spins);
+    corrected_ = step.number;
+  }
+  void reset_control() {
     if (control_) control_->reset();
+    corrected_ = -1;
   }
 
   static void add(Summary const& more, Summary& summary) {
@@ -221,6 +250,7 @@ class RunningScene : public Simulation<Real, Space> {
   std::optional<SceneGenerator<Spins>> torque_;
   std::optional<RestSearch<Real, Space>> rest_;
   std::optional<EnergyControl<Spins, SceneGenerator<Spins>>> control_;
+  std::int64_t corrected_ = -1;  // the step after which control_ last corrected the spins
   std::optional<RunNoise<Spins>> noise_;
   std::optional<Follower<Spins>> follower_;
   std::optional<MoreOfSample<Spins>> more_;

@@ -138,9 +138,9 @@ class SceneRunInSpace final
     std::vector<double> const start(numbers.begin(), numbers.end());
     auto times = plan.times;
     times.first = number_;
-    auto const followed = shift();
-    simulation_ = std::make_unique<RunningScene<Real, Space>>(scene, plan, times, start);
-    simulation_->go_on_from(followed);
+    auto changed = std::make_unique<RunningScene<Real, Space>>(scene, plan, times, start);
+    changed->go_on_from(*simulation_);
+    simulation_ = std::move(changed);
     lent_.reset();
     terms_.reset();
     continues_ = false;
@@ -213,7 +213,8 @@ class SceneRunInSpace final
   }
 
   std::optional<std::string> failure_of(Sample const& sample) const override {
-    auto guard = simulation_->guard();  // a copy: the steps of the run's own checks stay as they are
+    auto guard =
+        simulation_->guard();  // a copy: the steps of the run's own checks stay as they are
     return guard.judge(now(), sample.energy, sample.norm_defect);
   }
 

@@ -5,8 +5,11 @@
 #include "simulation/plan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
+#include <stdexcept>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -48,6 +51,21 @@ std::vector<std::string> const following = {"lattice.follow={axis='x',quantity='
 double place_of_wall(SceneRun& run, int cells) {
   auto const mean = run.sample().magnetization.z;
   return spacing * (0.5 * cells * (1 + mean) + static_cast<double>(run.shift()));
+}
+
+// An adaptive method keeps the spins of the last step that the follower has seen.
+TEST(Following, ARunWhoseFieldFailsSaysTheStepOfItsSpins) {
+  auto scene = scene_of(wall(240, "method = \"tsit5\"\ntolerance = 1e-6", 200), following);
+  auto const fails = std::make_shared<bool>(false);
+  scene.field.own.uniform = [fails](double t) {
+    if (*fails && t > 0.775) throw std::runtime_error("once");
+    return std::array<double, 3>{0, 0, applied};
+  };
+  auto const run = SceneRun::open(scene, {}), same = SceneRun::open(scene, {});
+  *fails = true;
+  EXPECT_THROW(run->advance(200), std::runtime_error);
+  same->advance(run->steps());
+  EXPECT_LT(largest_distance(spins_of(*run), spins_of(*same)), 1e-4);
 }
 
 TEST(Following, AWallGoesAsFastAsInALongStrip) {

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <thread>
 
 namespace cayspin::simulation::test {
@@ -70,6 +71,41 @@ TEST(Restarting, BeginsAnewAfterSpinsWereGiven) {
   run->advance(7);
   second->advance(7);
   EXPECT_EQ(spins_of(*second), spins_of(*run));
+  fs::remove(file);
+}
+
+// A field of the program throws once; the step is then repeated from spins that energy control has
+// corrected already.
+TEST(Restarting, CorrectsTheEnergyOnceIfAStepFails) {
+  auto scene = llg_scene("0", "heun", 40, chain_of_nine);
+  scene = io::with_overrides(scene, {"integrator.energy_control=true"});
+  auto const file = fs::path(testing::TempDir()) / fmt::format("control_{}.h5", ::getpid());
+  auto const run_of = [&](int failing_call, std::optional<fs::path> const& restart = {}) {
+    auto const calls_left = std::make_shared<int>(-1);
+    scene.field.own.nonlocal = [calls_left](io::HostVectors const&, io::HostVectors const& field,
+                                            double) {
+      if ((*calls_left)-- == 0) throw std::runtime_error("once");
+      auto* const data = static_cast<double*>(field.data);
+      for (int i = 0; i < 9; ++i)
+        for (int c = 0; c < 3; ++c) data[i * field.strides[2] + c * field.strides[3]] = 0.1 * c;
+    };
+    auto run = SceneRun::open(scene, {.restart = restart});
+    *calls_left = failing_call;
+    return run;
+  };
+  auto const whole = run_of(-1);
+  whole->advance(20);
+  for (int const failing_call : {12, 13, 14}) {  // one of them is not that of energy control
+    auto const failed = run_of(failing_call);
+    EXPECT_THROW(failed->advance(20), std::runtime_error);
+    ASSERT_GT(failed->steps(), 0);
+    failed->save(file);
+    auto const restarted = run_of(-1, file);
+    for (auto* const run : {failed.get(), restarted.get()}) {
+      run->advance(20 - run->steps());
+      EXPECT_EQ(spins_of(*run), spins_of(*whole)) << failing_call;
+    }
+  }
   fs::remove(file);
 }
 

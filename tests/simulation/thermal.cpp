@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <set>
+#include <stdexcept>
 #include <vector>
 
 namespace cayspin::simulation::test {
@@ -113,7 +114,8 @@ TEST_F(ThermalRuns, WaitForNoiseOnlyAtLooks) {
   EXPECT_EQ(fences_of_noise, 10);
 }
 
-// A field of the program throws once; the step is then repeated with the same noise.
+// A field of the program throws once; the step is then repeated with the same noise, also by a run
+// that continues from a checkpoint, and after a change of keys.
 TEST_F(ThermalRuns, GoOnAfterAFieldThatFailed) {
   auto const run_of = [&](int failing_call) {
     auto scene = thermal_chain();
@@ -138,6 +140,19 @@ TEST_F(ThermalRuns, GoOnAfterAFieldThatFailed) {
       }
     }
     EXPECT_EQ(spins_of(*run), spins_of(*whole)) << failing_call;
+  }
+  auto const file = folder_ / "failed.h5";
+  auto const failed = run_of(6);
+  EXPECT_THROW(failed->advance(9, {.period = 1000}), std::runtime_error);
+  failed->save(file);
+  auto again = thermal_chain();
+  again.field.own.uniform = [](double) { return std::array<double, 3>{0.1, 0.2, 0.3}; };
+  auto const restarted = SceneRun::open(again, {.restart = file});
+  EXPECT_EQ(restarted->steps(), failed->steps());
+  failed->change({"integrator.steps=50"});
+  for (auto* const run : {restarted.get(), failed.get()}) {
+    run->advance(9 - run->steps());
+    EXPECT_EQ(spins_of(*run), spins_of(*whole));
   }
 }
 
