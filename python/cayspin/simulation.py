@@ -75,7 +75,7 @@ class Simulation:
         if n > 0 and self._observers:
             self._advance(self._run.steps + n, _GUARD_PERIOD)
         else:
-            self._run.advance(n, _GUARD_PERIOD, False)
+            self._run.advance(n, _GUARD_PERIOD, False, 0)
 
     def run(self, until: float | None = None, output: str | os.PathLike | bool | None = None,
             overwrite: bool = False) -> None:
@@ -241,7 +241,7 @@ class Simulation:
             due = min([(run.steps // every + 1) * every for every, _ in self._observers] + [end])
             if recorder:
                 due = min(due, recorder.next)
-            at_rest = run.advance(due - run.steps, guard_period, until_torque)
+            at_rest = run.advance(due - run.steps, guard_period, until_torque, end)
             if recorder:
                 recorder.look(at_rest or run.steps == end)
             scene = self._scene

@@ -65,11 +65,15 @@ SiteNumbersOut at_sites(io::Scene const& scene, std::string const& expression) {
   }
 }
 
-bool advance(SceneRun& run, std::int64_t count, std::int64_t period, bool until_torque) {
+bool advance(SceneRun& run, std::int64_t count, std::int64_t period, bool until_torque,
+             std::int64_t run_end) {
   Advanced ended;
   {
     nb::gil_scoped_release const released;
-    ended = run.advance(count, {period, until_torque, interrupted});
+    ended = run.advance(count, {.period = period,
+                                .until_torque = until_torque,
+                                .interrupted = interrupted,
+                                .run_end = run_end});
   }
   rethrow_interruption();
   return ended == Advanced::at_rest;
@@ -279,7 +283,7 @@ void define_run(nb::module_& module) {
            })
       .def_prop_ro("scene", &SceneRun::typed_scene)
       .def_prop_ro("last_step", &SceneRun::last_step)
-      .def("advance", advance, "count"_a, "period"_a, "until_torque"_a)
+      .def("advance", advance, "count"_a, "period"_a, "until_torque"_a, "run_end"_a)
       .def("relax", relax, "torque"_a, "evaluations"_a, "applied"_a.none(), "keep_saddles"_a)
       .def("modes", modes, "count"_a, "tolerance"_a, "evaluations"_a)
       .def("path", path, "start"_a, "end"_a, "images"_a, "torque"_a, "evaluations"_a, "rates"_a)

@@ -48,7 +48,9 @@ class RunningScene : public Simulation<Real, Space> {
       : Base(scene, plan.lattice, times, start),
         method_(open_method(scene, plan, static_cast<Base*>(this))),
         guard_(scene, epsilon),
-        last_change_(plan.features->last_change) {
+        last_change_(plan.features->last_change),
+        features_end_(io::depends_on_time(scene.field) ? plan.times.steps
+                                                       : std::numeric_limits<std::int64_t>::max()) {
     if (auto const& bound = scene.integrator.until_torque) {
       torque_.emplace(this->generator.precession_alone());
       rest_.emplace(scene, *bound);
@@ -84,6 +86,9 @@ class RunningScene : public Simulation<Real, Space> {
     return ending;
   }
 
+  /// Sets the step to which this call of advance() and later ones go on, if past the scene's end.
+  void set_run_end(std::int64_t step) { run_end_ = step; }
+
   Guard const& guard() const { return guard_; }
 
   /// Returns by how many cells the lattice has moved to follow its object.
@@ -115,12 +120,13 @@ class RunningScene : public Simulation<Real, Space> {
     found.failure = guard_.judge(step, now.energy, now.norm_defect);
     if (with_torque && !found.failure) {
       // Energies before and after a change of the field cannot be compared.
+      double const last_change = this->last_change();
       bool const fell =
-          last_change_ > 0 ? step.time >= last_change_ : now.energy.value < guard_.first_energy();
+          last_change > 0 ? step.time >= last_change : now.energy.value < guard_.first_energy();
       auto const rest = rest_->look(
           exec, step, spins, this->generator.landau_lifshitz().field().made_for(FieldFor::energy),
           now.largest_rate, fell, at_end);
-      found.at_rest = rest.at_minimum && step.time >= last_change_;
+      found.at_rest = rest.at_minimum && step.time >= last_change;
       found.at_saddle = rest.at_saddle;
     }
     return found;
@@ -212,6 +218,12 @@ class RunningScene : public Simulation<Real, Space> {
     std::int64_t cells_ = 0, moved_ = -1;
   };
 
+  // Returns the time after which the field is constant: never, if that is unknown because the run
+  // goes on past the scene's end.
+  double last_change() const {
+    return run_end_ > features_end_ ? std::numeric_limits<double>::infinity() : last_change_;
+  }
+
   // Tells the guard how the move changes the energy, since no step has caused that change.
   void move(Step const& step, std::int64_t cells) {
     auto const energy = [&] {
@@ -246,7 +258,8 @@ class RunningScene : public Simulation<Real, Space> {
 
   std::unique_ptr<OpenMethod> method_;
   Guard guard_;
-  double last_change_;  // of fields and torques that depend on t
+  double last_change_;  // of fields and torques that depend on t, up to step features_end_
+  std::int64_t features_end_, run_end_ = 0;
   std::optional<SceneGenerator<Spins>> torque_;
   std::optional<RestSearch<Real, Space>> rest_;
   std::optional<EnergyControl<Spins, SceneGenerator<Spins>>> control_;

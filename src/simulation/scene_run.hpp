@@ -43,6 +43,7 @@ struct Looks {
   bool until_torque = false;               // may end early by the scene's until_torque
   std::function<bool()> interrupted = {};  // called between steps, about twenty times a second
   bool at_end = false;                     // the guard also checks the last of the steps
+  std::int64_t run_end = 0;                // step to which later calls go on, if any do
 };
 
 enum class Advanced { whole, interrupted, at_rest };

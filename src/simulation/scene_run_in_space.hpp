@@ -60,6 +60,7 @@ class SceneRunInSpace final
     simulation_->times.steps = target;
     simulation_->times.first = number_;
     simulation_->times.continues = continues_;
+    simulation_->set_run_end(std::max(target, looks.run_end));
     // If an exception interrupts a step, the method's memory is not that of a whole step.
     continues_ = false;
     Ending ending;

@@ -196,6 +196,23 @@ TEST(Pulses, AreWaitedForByRunsThatEndAtRest) {
   EXPECT_LE(run->time(), 600);  // the next check
 }
 
+// The last change of a field is unknown past the end of a scene.
+TEST(Pulses, AreWaitedForPastTheEndOfTheScene) {
+  for (std::string const end : {"steps = 0", "end = 50"}) {
+    auto const scene = scene_of(fmt::format(
+        "system = {{ kind = 'llg', damping = 0.5 }}\nlattice = {{ shape = [1] }}\n"
+        "field = {{ applied = ['t > 60 ? 2 : 0', '0', '1.0'] }}\n"
+        "initial = {{ uniform = [1, 0, 0.2] }}\nintegrator = {{ method = 'rkmk4', dt = 0.05, "
+        "{}, until_torque = 1e-6 }}\n",
+        end));
+    auto const run = SceneRun::open(scene, {});
+    Looks const looks{.period = 1, .until_torque = true, .run_end = 2000};
+    EXPECT_EQ(run->advance(900, looks), Advanced::whole) << end;
+    EXPECT_EQ(run->advance(1100, looks), Advanced::whole) << end;
+    EXPECT_EQ(run->steps(), 2000) << end;
+  }
+}
+
 // At rest the energy is -0.5, above the -0.8 at the start.
 TEST(Pulses, ThatLowerAFieldDoNotKeepARunFromEndingAtRest) {
   auto const scene = scene_of(
