@@ -32,6 +32,7 @@ using Numbers = std::vector<double>;
 
 constexpr double pi = std::numbers::pi;
 constexpr double boltzmann = 1.380649e-23;  // J/K
+constexpr Eigen::Index most_zeros = 8;      // zero modes that are counted
 /// Eigenvalues below this fraction of a bound on the largest one count as zero.
 constexpr double zero = 1e-5;
 
@@ -73,7 +74,7 @@ class State {
     if (factors.info() != Eigen::Success)
       throw NumbersFailed(fmt::format("rates: {} has {} negative curvature", name,
                                       unstable < 0 ? "a second" : "a"));
-    auto const [vectors, values] = near_vectors(rest, factors, std::min<Eigen::Index>(n, 8));
+    auto const [vectors, values] = near_vectors(rest, factors, std::min(n, most_zeros));
     auto const count = (values.array() <= bound).count();
     zeros_ = vectors.leftCols(count);
     rest += largest * zeros_ * zeros_.transpose();
@@ -107,9 +108,10 @@ class State {
     auto const rotated = rotations();
     if (std::ssize(rotated) != count)
       throw NumbersFailed(
-          fmt::format("rates: {} has {}; accepted: none, translations along periodic axes, or "
+          fmt::format("rates: {} has {}{}; accepted: none, translations along periodic axes, or "
                       "rotations of all spins",
-                      name_, counted(count, "zero mode")));
+                      name_, count == most_zeros && hessian_.rows() > most_zeros ? "at least " : "",
+                      counted(count, "zero mode")));
     constexpr std::array volumes{2 * pi, 4 * pi, 8 * pi * pi};  // of all angles
     return volumes[rotated.size() - 1] * volume_of(rotated);
   }
@@ -227,8 +229,9 @@ class State {
 };
 
 /// Returns the gyromagnetic ratio divided by the moment, in reduced units, for each site that has
-/// coordinates.
+/// coordinates; 0 without precession.
 Numbers mobilities(io::Scene const& scene, StateHessian const& state) {
+  if (!scene.system.precession) return Numbers(state.sites.size(), 0.0);
   auto const& lattice = scene.lattice;
   io::SiteBox const box{{0, 0, 0}, lattice.shape};
   auto const moments = io::moments_of_sites(scene, box),

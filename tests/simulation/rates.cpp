@@ -12,6 +12,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
+#include <string>
+#include <vector>
 
 namespace cayspin::simulation::test {
 namespace {
@@ -201,6 +203,45 @@ TEST_F(Rates, OfASkyrmionOfPdFeIr) {
   double const time = 2.00231930 / 4.837769e-14 / 3, kelvin = 6.333623e-6 * 1e3;
   EXPECT_NEAR(found.rates.prefactor_forward * time * kelvin / 4.19766298e12, 1, 2e-3);
   EXPECT_NEAR(found.rates.prefactor_backward * time / 8.71839224e14, 1, 2e-3);
+}
+
+/// Returns spins along z with the given curvatures.
+StateHessian state_of(std::vector<double> const& curvatures) {
+  std::size_t const count = curvatures.size();
+  std::vector<double> spins;
+  for (std::size_t site = 0; 2 * site < count; ++site) spins.insert(spins.end(), {0, 0, 1});
+  StateHessian state(spins, {});
+  state.numbers.resize(count * count);
+  for (std::size_t i = 0; i < count; ++i) state.numbers[i * count + i] = curvatures[i];
+  return state;
+}
+
+TEST_F(Rates, HaveNoFluxByPrecessionWithoutIt) {
+  io::Scene scene;
+  scene.lattice.shape = {1, 1, 1};
+  scene.system.damping = 0.5;
+  auto const well = state_of({1, 2}), top = state_of({-1, 1});
+  EXPECT_GT(rates_between(scene, well, top, well, -1).prefactor_forward, 0.1);
+  scene.system.precession = false;
+  auto const overdamped = rates_between(scene, well, top, well, -1);
+  EXPECT_EQ(overdamped.prefactor_forward, 0);
+  EXPECT_EQ(overdamped.prefactor_backward, 0);
+  EXPECT_GT(overdamped.langer_forward, 0.01);
+}
+
+TEST_F(Rates, SayThatThereAreAtLeastEightZeroModes) {
+  io::Scene scene;
+  scene.lattice.shape = {6, 1, 1};
+  std::vector<double> curvatures(12, 0.0);
+  curvatures[0] = -1, curvatures[1] = 1;
+  auto const top = state_of(curvatures);
+  try {
+    rates_between(scene, top, top, top, -1);
+    ADD_FAILURE() << "taken";
+  } catch (NumbersFailed const& error) {
+    EXPECT_NE(std::string(error.what()).find("at least 8 zero modes"), std::string::npos)
+        << error.what();
+  }
 }
 
 }  // namespace
