@@ -260,7 +260,7 @@ void require_bands(io::Scene const& scene, std::vector<std::array<double, 3>> co
           scene, "lattice.shape",
           fmt::format("{} along {}, and bonds reach over {}; accepted: at least {}",
                       counted(cells[axis], "cell"), "xyz"[axis], counted(reach, "cell"),
-                      2 * reach + 1));
+                      2 * reach));
   }
 }
 

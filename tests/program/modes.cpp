@@ -376,7 +376,7 @@ TEST_F(Bands, RefuseWhatHasNone) {
   std::string const strip = "lattice.boundary=[\"periodic\",\"open\"]";
   refused({"0,0.3,0", "--set", strip}, "along y, which is open; accepted: 0 there");
   refused({"0.3,0,0", "--set", strip, "--set", "lattice.shape=[1,8]"},
-          "1 cell along x, and bonds reach over 1 cell; accepted: at least 3");
+          "1 cell along x, and bonds reach over 1 cell; accepted: at least 2");
   refused({"0.3,0,0", "--set", "lattice.boundary=[\"periodic\",\"open\",\"open\"]", "--set",
            "lattice.shape=[3,40,40]"},
           "has 1600 sites in a cell, which extends over the open axes");
