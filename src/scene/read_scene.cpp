@@ -112,6 +112,18 @@ std::string text_of(toml::table const& document) {
   return stream.str();
 }
 
+// Returns the comments of a text that say which keys are functions of the program.
+std::string notes_of_functions(std::string const& text, bool with_applied) {
+  std::istringstream lines(text);
+  std::string notes;
+  for (std::string line; std::getline(lines, line);) {
+    bool const is_note =
+        line.starts_with("# field.") && line.ends_with(": a function of the program");
+    if (is_note && (with_applied || !line.starts_with("# field.applied:"))) notes += line + '\n';
+  }
+  return notes;
+}
+
 // Reads the tables of a document without stages. `place`: for messages about missing tables.
 void read_tables(Purpose purpose, toml::table& document, std::string const& place, Scene& scene) {
   detail::Table const root({&document, "", place}, scene);
@@ -260,7 +272,7 @@ Scene changed_on_the_way(Scene const& scene, std::vector<std::string> const& ove
   for (auto const& [key, numbers] : given.numbers) changed.given.numbers[key] = numbers;
   read_tables(Purpose::any, document, first_line, changed);
   write_cell(document, changed);
-  changed.text = text_of(document);
+  changed.text = text_of(document) + notes_of_functions(scene.text, !changed.field.applied);
   detail::check_stage(scene, changed);
   return changed;
 }

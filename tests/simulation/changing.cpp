@@ -94,6 +94,23 @@ TEST(Changing, IsRefusedWhereSamplesHaveTheEnergiesOfOtherTerms) {
   EXPECT_EQ(run->more_of_sample().size(), 2u);
 }
 
+TEST(Changing, KeepsTheNotesAboutFunctionsOfTheProgram) {
+  std::string const applied = "# field.applied: a function of the program\n",
+                    nonlocal = "# field.nonlocal: a function of the program\n";
+  auto scene = llg_scene("0.1", "rkmk4", 40, "lattice = { shape = [9] }\n");
+  scene.text += applied + nonlocal;
+  auto const run = SceneRun::open(scene, {});
+  auto const has = [&](std::string const& note) {
+    return run->typed_scene().text.find(note) != std::string::npos;
+  };
+  for (std::string const damping : {"0.2", "0.3"}) {
+    run->change({"system.damping=" + damping});
+    EXPECT_TRUE(has(applied) && has(nonlocal)) << run->typed_scene().text;
+  }
+  run->change({"field.applied=[0,0,1]"});
+  EXPECT_TRUE(!has(applied) && has(nonlocal)) << run->typed_scene().text;
+}
+
 TEST(Changing, LeavesARunAsItWasWhereItIsRefused) {
   auto const scene = llg_scene("0.1", "rkmk4", 40, film);
   auto const run = SceneRun::open(scene, {});
