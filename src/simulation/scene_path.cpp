@@ -50,14 +50,26 @@ class PathOfScene {
     copy_from_host(to, images_.back());
     auto const found = search();
     ScenePath result{found.end, in_scene_units(found)};
-    if (options_.rates && found.end == PathEnd::converged)
-      result.path.rates = rates_of(scene_, exec_, field_, images_.front(), saddle_, images_.back(),
-                                   found.saddle().curvature);
+    if (options_.rates && found.end == PathEnd::converged) add_rates(found, result);
     result.path.header.threads = threads_of(exec_);
     return result;
   }
 
  private:
+  void add_rates(MinimumEnergyPath const& found, ScenePath& result) const {
+    struct Interrupted {};
+    auto const poll = [&] {
+      if (options_.observer && options_.observer({found.evaluations}) == Next::stop)
+        throw Interrupted();
+    };
+    try {
+      result.path.rates = rates_of(scene_, exec_, field_, images_.front(), saddle_, images_.back(),
+                                   found.saddle().curvature, poll);
+    } catch (Interrupted const&) {
+      result.end = PathEnd::interrupted;
+    }
+  }
+
   MinimumEnergyPath search() {
     try {
       return minimum_energy_path(exec_, field_, images_, saddle_,

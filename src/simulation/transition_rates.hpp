@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -42,10 +43,12 @@ io::RatesOfPath rates_between(io::Scene const& scene, StateHessian const& start,
                               StateHessian const& saddle, StateHessian const& end,
                               double saddle_curvature);
 
-/// Computes the Hessian, one column at a time, by products of the Hessian and a vector.
+/// Computes the Hessian, one column at a time, by products of the Hessian and a vector. Calls
+/// poll() before each column; it throws to interrupt the work.
 template <class Exec, class Field, class Spins>
 StateHessian hessian_of(Exec const& exec, Field const& field, Spins const& spins,
-                        std::vector<unsigned char> const& frozen) {
+                        std::vector<unsigned char> const& frozen,
+                        std::function<void()> const& poll) {
   using Real = typename Spins::value_type;
   auto const& lattice = spins.lattice();
   auto const numbers = copy_to_host(spins);
@@ -61,6 +64,7 @@ StateHessian hessian_of(Exec const& exec, Field const& field, Spins const& spins
   state.numbers.resize(n * n);
   std::vector<Real> given(numbers.size());
   for (std::size_t column = 0; column < n; ++column) {
+    poll();
     auto const at = 3 * state.sites[column / 2];
     for (std::size_t c = 0; c < 3; ++c) given[at + c] = static_cast<Real>(state.vector(column)[c]);
     copy_from_host(given, vector);
@@ -86,11 +90,11 @@ StateHessian hessian_of(Exec const& exec, Field const& field, Spins const& spins
 template <class Exec, class Field, class Spins>
 io::RatesOfPath rates_of(io::Scene const& scene, Exec const& exec, Field const& field,
                          Spins const& start, Spins const& saddle, Spins const& end,
-                         double saddle_curvature) {
+                         double saddle_curvature, std::function<void()> const& poll) {
   auto const frozen = io::frozen(scene, {{0, 0, 0}, scene.lattice.shape});
-  return rates_between(scene, hessian_of(exec, field, start, frozen),
-                       hessian_of(exec, field, saddle, frozen),
-                       hessian_of(exec, field, end, frozen), saddle_curvature);
+  return rates_between(scene, hessian_of(exec, field, start, frozen, poll),
+                       hessian_of(exec, field, saddle, frozen, poll),
+                       hessian_of(exec, field, end, frozen, poll), saddle_curvature);
 }
 
 }  // namespace cayspin::simulation

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -53,7 +54,7 @@ Rate rate(Field const& field, cayspin::Lattice const& lattice, std::vector<doubl
     if (lattice.boundary[axis] == Boundary::periodic)
       scene.lattice.boundary[axis] = io::BoundaryKind::periodic;
   found.rates = rates_of(scene, exec, field, images.front(), saddle, images.back(),
-                         found.path.saddle().curvature);
+                         found.path.saddle().curvature, [] {});
   return found;
 }
 
@@ -203,6 +204,22 @@ TEST_F(Rates, OfASkyrmionOfPdFeIr) {
   double const time = 2.00231930 / 4.837769e-14 / 3, kelvin = 6.333623e-6 * 1e3;
   EXPECT_NEAR(found.rates.prefactor_forward * time * kelvin / 4.19766298e12, 1, 2e-3);
   EXPECT_NEAR(found.rates.prefactor_backward * time / 8.71839224e14, 1, 2e-3);
+}
+
+TEST_F(Rates, AskBeforeEachColumnWhetherToGoOn) {
+  auto const lattice = cayspin::Lattice::chain(3);
+  EffectiveField const field(Zeeman{{0, 0, 1}});
+  Spins const spins("spins", lattice);
+  copy_from_host(std::vector<double>{0, 0, 1, 0, 0, 1, 0, 0, 1}, spins);
+  Exec const exec;
+  int calls = 0;
+  hessian_of(exec, field, spins, {}, [&] { ++calls; });
+  EXPECT_EQ(calls, 6);
+  auto const interrupt = [&] {
+    if (--calls == 3) throw std::runtime_error("interrupted");
+  };
+  EXPECT_THROW(hessian_of(exec, field, spins, {}, interrupt), std::runtime_error);
+  EXPECT_EQ(calls, 3);
 }
 
 /// Returns spins along z with the given curvatures.
