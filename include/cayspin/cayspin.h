@@ -80,11 +80,12 @@ cayspin_status cayspin_open_text(char const* text, char const* name, cayspin_pre
 
 /* Takes `count` steps. After CAYSPIN_NUMBERS_FAILED the spins are those that failed a check or, if
    the method failed, those before the failing step (with adaptive methods up to 1000 steps
-   earlier). */
+   earlier). CAYSPIN_WRONG_SCENE for a dt that integrator.refuse_unstable refuses. */
 cayspin_status cayspin_step(cayspin_simulation* simulation, int64_t count);
 
 /* Takes steps to the scene's end, and writes a file as `cayspin run` does: `output` or, if that is
-   NULL, the scene's output.file. It is an error if the file exists, unless `overwrite` is not 0. */
+   NULL, the scene's output.file. It is an error if the file exists, unless `overwrite` is not 0, and
+   as in cayspin_step if dt is refused. */
 cayspin_status cayspin_run(cayspin_simulation* simulation, char const* output, int overwrite);
 
 /* Moves the spins to an equilibrium, as `cayspin relax` does: until max |m x H| is below `torque`,

@@ -9,6 +9,7 @@ import unittest
 import warnings
 
 import cayspin
+import h5py
 import numpy as np
 from package_test import PackageTest, scene, stepped
 
@@ -147,6 +148,18 @@ class Time(PackageTest):
         self.assert_refused(cayspin.NumbersFailed, "not finite any more", sim.step, 4000)
         self.assertGreater(sim.steps, 0)
         self.assertLess(sim.steps, 4000)
+
+    def test_failing_numbers_in_the_last_frame(self):
+        sim = cayspin.Simulation(scene(
+            lattice={"shape": [4100, 1, 1]}, field={"slab_demag": None}, system={"damping": 1.0},
+            integrator={"method": "classical_rk4", "dt": 1e4, "steps": 5}))
+        file = self.folder / "failing.h5"
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            self.assert_refused(cayspin.NumbersFailed, "not finite any more", sim.run, output=file)
+        with h5py.File(file) as written:
+            self.assertEqual(written.attrs["complete"], 0)
+            self.assertTrue(np.isfinite(written["spins"][:]).all())
 
 
 class OtherThreads(PackageTest):
