@@ -84,8 +84,8 @@ cayspin_status cayspin_open_text(char const* text, char const* name, cayspin_pre
 cayspin_status cayspin_step(cayspin_simulation* simulation, int64_t count);
 
 /* Takes steps to the scene's end, and writes a file as `cayspin run` does: `output` or, if that is
-   NULL, the scene's output.file. It is an error if the file exists, unless `overwrite` is not 0, and
-   as in cayspin_step if dt is refused. */
+   NULL, the scene's output.file. It is an error if the file exists, unless `overwrite` is not 0,
+   and, as in cayspin_step, if dt is refused. */
 cayspin_status cayspin_run(cayspin_simulation* simulation, char const* output, int overwrite);
 
 /* Moves the spins to an equilibrium, as `cayspin relax` does: until max |m x H| is below `torque`,

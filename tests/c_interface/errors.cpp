@@ -241,7 +241,8 @@ TEST(CInterfaceErrors, NumbersThatFailInTheLastFrame) {
   text.replace(text.find("dt = 0.01"), 9, "dt = 1e300");
   auto const simulation = open(text);
   auto const file = std::filesystem::temp_directory_path() / "cayspin_c_interface_failing.h5";
-  expect_failure(cayspin_run(simulation.get(), file.c_str(), 1), CAYSPIN_NUMBERS_FAILED, "not finite");
+  expect_failure(cayspin_run(simulation.get(), file.c_str(), 1), CAYSPIN_NUMBERS_FAILED,
+                 "not finite");
   std::filesystem::remove(file);
 }
 
