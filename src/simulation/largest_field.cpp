@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <ranges>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -256,12 +257,19 @@ double largest_profile(io::Scene const& scene, io::SiteVectors const& profile) {
   return std::abs(scene.field.mu0) * largest;
 }
 
+// `features` has an entry for each source that depends on t, in their order.
 double bound_of_sources(io::Scene const& scene, Times const& times, TimeFeatures const& features) {
   constexpr auto key = "field.sources";
+  auto const is_of_source = [](auto const& entry) { return entry.first == key; };
+  auto of_sources = std::views::filter(features.largest, is_of_source);
+  auto next = of_sources.begin();
   double bound = 0;
-  for (auto const& [profile, time] : scene.field.sources)
-    bound += largest_profile(scene, profile) *
-             largest(AppliedField({time, 0.0, 0.0}, key), key, scene, times, features);
+  for (auto const& [profile, time] : scene.field.sources) {
+    AppliedField const factor({time, 0.0, 0.0}, key);
+    TimeFeatures own;
+    if (factor.depends_on_time() && next != of_sources.end()) own.largest = {*next++};
+    bound += largest_profile(scene, profile) * largest(factor, key, scene, times, own);
+  }
   return bound;
 }
 
@@ -293,7 +301,10 @@ double torque_bound(io::Scene const& scene, Lattice const& lattice, Times const&
     bound *= std::hypot(1, of->nonadiabaticity);
   }
   if (auto const& of = torque.slonczewski) {
-    bound += slonczewski_bound(scene, *of, times, features);
+    // If gamma differs from site to site, strengths in T turn spins by the site's own.
+    bool const are_fields = scene.material && scene.material->gamma_factors.there();
+    bound += (are_fields ? largest_gyromagnetic_of_sites(scene) : 1) *
+             slonczewski_bound(scene, *of, times, features);
   }
   return bound;
 }

@@ -188,6 +188,26 @@ TEST(GyromagneticOfSites, BoundsTheStep) {
   EXPECT_NEAR(stable_dt("gyromagnetic = '1 + 0.5*i'") * 3, one, 1e-12 * one);
 }
 
+// In SI, Slonczewski strengths are fields, which turn spins by the gamma of their site.
+TEST(GyromagneticOfSites, BoundsTheStepOfSlonczewskiTorques) {
+  auto const stable_dt = [](std::string const& gamma) {
+    return make_plan(scene_of(R"toml(
+units = "SI"
+system = { kind = "llg" }
+material = { mu_s = 1.5e-23, alpha = 0.1, gamma = { regions = )toml" +
+                              gamma + R"toml( } }
+lattice = { shape = [4], spacing = 3e-10, regions = "i % 2" }
+initial = { uniform = [1, 0, 0] }
+integrator = { method = "heun", dt = 1e-13, steps = 1 }
+torque = { slonczewski = { polarization = [0, 0, 1], damping_like = 1 } }
+)toml"),
+                     Precision::double_precision)
+        .stable_dt;
+  };
+  double const slow = stable_dt("[1.76e11, 1.76e11]");
+  EXPECT_NEAR(stable_dt("[1.76e11, 1.76e13]") * 100, slow, 1e-12 * slow);
+}
+
 TEST(GyromagneticOfSites, IsRefusedInOneLine) {
   auto const with = [](std::string const& value, std::string const& integrator) {
     return [=] {

@@ -227,6 +227,22 @@ TEST(Pulses, ThatLowerAFieldDoNotKeepARunFromEndingAtRest) {
   EXPECT_LT(std::hypot(m[0], m[1]), 1e-5);
 }
 
+TEST(Pulses, OfOneSourceDoNotBoundTheStepForAnother) {
+  auto const stable_dt = [](std::string const& sources) {
+    return make_plan(llg_scene("0.1", "heun", 100,
+                               "lattice = { shape = [4] }\ninitial = { uniform = [1, 0, 0] }\n"
+                               "field = { sources = [" +
+                                   sources + "] }"),
+                     Precision::double_precision)
+        .stable_dt;
+  };
+  std::string const constant = "{ profile = [0, 0, 10] }",
+                    strong = "{ profile = [0, 0, 1e-6], time = '1e3*sin(t)' }";
+  double const alone = stable_dt(constant);
+  EXPECT_NEAR(stable_dt(constant + ", " + strong), alone, 1e-3 * alone);
+  EXPECT_NEAR(stable_dt(strong + ", " + constant), alone, 1e-3 * alone);
+}
+
 TEST(Pulses, BitsOfARunInPiecesAreThoseOfOne) {
   auto const scene =
       scene_of(pulse_scene("method = 'dp5', tolerance = 1e-5, dt = 0.25, end = 502"));
