@@ -56,8 +56,8 @@ class EnsembleRun {
 
   /// Returns when advance() checks the replicas: at its last step, and before that only every 100
   /// steps, because a check of a small lattice takes as long as a step. If `until_torque` is true
-  /// and the scene has that key, it checks after every step, or for more than 4096 sites ten steps
-  /// after the last check.
+  /// and the scene has that key, it checks after every step, or for more than 4096 sites after
+  /// every tenth step.
   Looks looks(bool until_torque, std::function<bool()> interrupted) const;
 
   /// Advances all replicas to step steps() + count. With looks.until_torque, those that have ended

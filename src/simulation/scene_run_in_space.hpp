@@ -51,7 +51,7 @@ class SceneRunInSpace final
   Advanced advance_to(std::int64_t target, Looks const& looks) override {
     leave_lent_memory(true);
     looks_ = looks;
-    next_look_ = std::min(next_look_, looked_ + looks.period);
+    next_look_ = std::min(next_look_, look_after(looked_));
     interrupt_.emplace(looks.interrupted);
     failure_.reset();
     ended_ = Advanced::whole;
@@ -103,10 +103,15 @@ class SceneRunInSpace final
     return Next::stop;
   }
 
+  // Counts periods from the begin of the scene, like Guard::due, wherever the last look was.
+  std::int64_t look_after(std::int64_t step) const {
+    return step + looks_.period - (step - scene_.begin.step) % looks_.period;
+  }
+
   Next judge(Space const& exec, Step const& step, Spins const& spins) {
     bool const first = looked_ < 0;
     looked_ = step.number;
-    next_look_ = step.number + looks_.period;
+    next_look_ = look_after(step.number);
     auto const found = simulation_->look(exec, step, spins, looks_.until_torque);
     failure_ = found.failure;
     if (failure_) return Next::stop;

@@ -111,6 +111,23 @@ TEST(Restarting, CorrectsTheEnergyOnceIfAStepFails) {
 
 // When a poll returns true, for example for one of Python's signals, the request is passed to the
 // run, which then has to stop.
+// The guard checks so many sites after every tenth step of the scene, wherever the pieces end.
+TEST(Restarting, DoesNotChangeWhereARunComesToRest) {
+  auto const scene = scene_of(
+      "system = { kind = 'llg', damping = 0.5 }\nlattice = { shape = [65, 64] }\n"
+      "field = { applied = [0, 0, 1] }\ninitial = { uniform = [1, 0, 0] }\n"
+      "integrator = { method = 'rkmk4', dt = 0.05, end = 40, until_torque = 1e-3 }\n");
+  auto const steps_in_pieces_of = [&](std::int64_t count) {
+    auto const run = SceneRun::open(scene, {});
+    auto ended = Advanced::whole;
+    while (ended == Advanced::whole && run->steps() + count <= scene.integrator.steps)
+      ended = run->advance(count, {.period = 10, .until_torque = true, .at_end = true});
+    EXPECT_EQ(ended, Advanced::at_rest);
+    return run->steps();
+  };
+  EXPECT_EQ(steps_in_pieces_of(37), steps_in_pieces_of(800));
+}
+
 TEST(Interrupting, IsNotAskedAfterTheLastStep) {
   auto scene = llg_scene("0.1", "rkmk4", 40, chain_of_nine);
   auto const wait = std::make_shared<std::chrono::milliseconds>(0);
