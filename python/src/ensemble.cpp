@@ -125,8 +125,7 @@ void define_ensemble(nb::module_& module) {
            nb::call_guard<nb::gil_scoped_release>())
       .def("advance", advance, "count"_a, "until_torque"_a)
       .def("relax", relax, "torque"_a, "evaluations"_a, "keep_saddles"_a)
-      .def("require_reachable",
-           [](EnsembleRun& run, std::int64_t count) { run.first().require_reachable(count); })
+      .def("require_reachable", &EnsembleRun::require_reachable)
       .def("step_at", [](EnsembleRun& run, double t) { return run.first().step_at(t); })
       .def("warning", &EnsembleRun::warning, nb::call_guard<nb::gil_scoped_release>())
       .def("spins", spins)

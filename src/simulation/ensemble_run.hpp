@@ -60,6 +60,10 @@ class EnsembleRun {
   /// every tenth step.
   Looks looks(bool until_torque, std::function<bool()> interrupted) const;
 
+  /// Throws UsageError if the replicas cannot take `count` more steps, as SceneRun does. Some
+  /// replicas may already be beyond steps().
+  void require_reachable(std::int64_t count) const { first().require_reachable(count, steps_); }
+
   /// Advances all replicas to step steps() + count. With looks.until_torque, those that have ended
   /// early stay where they are. If one fails or is interrupted, others may already be beyond
   /// steps(); when the run goes on, these wait until all have caught up.

@@ -223,15 +223,15 @@ std::int64_t SceneRun::step_at(double t) const {
   return plan().times.origin + static_cast<std::int64_t>(whole);
 }
 
-void SceneRun::require_reachable(std::int64_t count) const {
+void SceneRun::require_reachable(std::int64_t count, std::int64_t step) const {
   if (!io::has_integrator(scene_))
     throw UsageError("the scene has no table [integrator]; accepted: relax()");
   if (count < 0) throw UsageError(fmt::format("{} steps; accepted: a whole number >= 0", count));
   constexpr std::int64_t last = std::int64_t{1} << 53U;  // times beyond it are not exact
-  if (count > last - number_)
+  if (count > last - step)
     throw UsageError(
-        fmt::format("{} steps after step {}; accepted: up to step {}", count, steps(), last));
-  std::int64_t const target = number_ + count;
+        fmt::format("{} steps after step {}; accepted: up to step {}", count, step, last));
+  std::int64_t const target = step + count;
   if (std::isfinite(plan().options.steps.end) && plan().variant.method->adaptive &&
       target > last_step())
     throw UsageError(fmt::format(

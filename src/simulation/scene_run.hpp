@@ -57,8 +57,8 @@ struct RelaxSettings {
   std::function<bool()> interrupted = {};  // called about twenty times a second
 };
 
-/// A type-erased run of a scene, for other languages. Calls from several threads take turns, even if
-/// they are for different runs; steps() and time() never wait. Kokkos starts with the first run
+/// A type-erased run of a scene, for other languages. Calls from several threads take turns, even
+/// if they are for different runs; steps() and time() never wait. Kokkos starts with the first run
 /// of a process, unless the program has started it, and ends with the process.
 ///
 /// N calls of advance(1) give the same bits as advance(N), and as `cayspin run`.
@@ -108,7 +108,9 @@ class SceneRun {
   std::int64_t step_at(double t) const;
 
   /// Throws what advance(count) would throw before its first step.
-  void require_reachable(std::int64_t count) const;
+  void require_reachable(std::int64_t count) const { require_reachable(count, number_); }
+  /// The check for `count` more steps after step `step`.
+  void require_reachable(std::int64_t count, std::int64_t step) const;
 
   /// Takes `count` more steps, or fewer if the run ends early. Throws UsageError for a negative
   /// `count`, for a scene without [integrator], for steps beyond number 2^53, and when an adaptive

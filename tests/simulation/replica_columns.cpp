@@ -124,6 +124,20 @@ TEST(ReplicaColumns, MeetAfterAnInterrupt) {
   }
 }
 
+// The first replica is at the end when the last ones have not begun, except on many threads.
+TEST(ReplicaColumns, GoOnAfterAnInterruptToTheEndOfAdaptiveSteps) {
+  auto const scene = scene_of(
+      llg_scene("0.1", "heun", 40, chains).text,
+      {"integrator={method='tsit5',tolerance=1e-6,dt=0.02,steps=40}", "ensemble.replicas=8"});
+  EnsembleRun run(scene, {}, false);
+  run.advance(40, run.looks(false, [&] { return run.first().steps() > 0; }));
+  auto const left = 40 - run.steps();
+  EXPECT_NO_THROW(run.require_reachable(left));
+  EXPECT_THROW(run.require_reachable(left + 1), UsageError);
+  EXPECT_EQ(run.advance(left, run.looks(false, {})), Advanced::whole);
+  EXPECT_EQ(run.steps(), 40);
+}
+
 TEST(ReplicaColumns, GoOnFromRest) {
   auto const scene = scene_of(llg_scene("0.5", "heun", 4000, chains).text,
                               {"ensemble={replicas=2,vary={'field.exchange'=[0.5,2.0]}}",
