@@ -35,7 +35,10 @@ using namespace nb::literals;
 class Interruption {
  public:
   std::function<bool()> question() {
-    return [this] { return asked_ = asked_ || interrupted(); };
+    return [this] {
+      if (!asked_ && interrupted()) asked_ = true;
+      return asked_.load();
+    };
   }
 
  private:

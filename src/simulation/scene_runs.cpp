@@ -47,7 +47,7 @@ std::vector<SceneRun::Outcome> SceneRun::advance_all(std::span<SceneRun* const> 
       error = std::current_exception();
       interrupted = true;  // an error of the calling program: the other runs stop, too
     }
-    interrupted = interrupted || advanced == Advanced::interrupted;
+    if (advanced == Advanced::interrupted) interrupted = true;
   });
   return outcomes;
 }
@@ -73,7 +73,7 @@ std::vector<SceneRun::Relaxed> SceneRun::relax_all(std::span<SceneRun* const> ru
       error = std::current_exception();
       interrupted = true;
     }
-    interrupted = interrupted || minimum.end == MinimizeEnd::interrupted;
+    if (minimum.end == MinimizeEnd::interrupted) interrupted = true;
   });
   return all;
 }
