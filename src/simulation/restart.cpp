@@ -6,6 +6,7 @@
 #include "io/relax.hpp"
 #include "multirate_method.hpp"
 #include "text.hpp"
+#include "thermal.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -250,11 +251,11 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
   if (!is_at(step_)) {
     // Noise depends on the number of the step, so a run with noise must keep its step numbers.
     auto const step = std::llround(std::min(time / dt, 1e15));
-    if (alike || scene.begin != io::StageBegin{} || scene.thermal || !is_at(step))
+    if (alike || scene.begin != io::StageBegin{} || is_thermal(scene) || !is_at(step))
       refuse(
           fmt::format("its step {} is at t = {:.12g}{}, not at that many steps of dt = {:.12g}{}",
                       step_, time, units.si ? " s" : "", dt, units.si ? " s" : ""),
-          scene.thermal ? "the dt it was run with"
+          is_thermal(scene) ? "the dt it was run with"
                         : "the dt it was run with, or one of which t is a multiple");
     step_ = step;
   }

@@ -123,6 +123,7 @@ TEST_F(Restarting, NamesWhatElseDiffers) {
   expect_named(set("thermal={temperature=0.01,seed=2}"), "thermal");
   expect_named(set("integrator.dt=0.01"), "integrator.dt");
   EXPECT_EQ(info_of("second.h5").frame_steps.front(), 24);
+  expect_named(set("integrator.dt=0.01", "thermal={temperature=0}"), "integrator.dt, thermal");
   // 1.0 equals 1, and keys of [output] and [initial] are not named.
   output_of(to_second(set("field.exchange=1", "output.every=3", "initial={uniform=[0,0,1]}")));
 }
