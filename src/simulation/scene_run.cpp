@@ -317,6 +317,9 @@ FoundModes SceneRun::modes(ModesOptions const& options) {
   if (!(options.tolerance > 0 && options.tolerance < 1))
     throw UsageError(
         fmt::format("tolerance {}; accepted: a number between 0 and 1", options.tolerance));
+  if (options.evaluations < 1)
+    throw UsageError(
+        fmt::format("{} evaluations; accepted: a whole number >= 1", options.evaluations));
   Turn const turn;
   require_rest(without_torque(scene_));
   auto now = options;

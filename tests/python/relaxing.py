@@ -83,6 +83,9 @@ class Relaxing(PackageTest):
             self.assert_refused(cayspin.CayspinError, "modes; accepted: 1 to 128",
                                 lambda count=count: sim.modes(count))
         self.assert_refused(cayspin.CayspinError, "tolerance", lambda: sim.modes(tolerance=2.0))
+        for limit in (0, -1):
+            self.assert_refused(cayspin.CayspinError, "evaluations; accepted: a whole number >= 1",
+                                lambda limit=limit: sim.modes(evaluations=limit))
 
     # With the polarization along the spins, the torque adds a = damping_like to the decay and
     # -damping a to both stiffnesses.
