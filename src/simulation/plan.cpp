@@ -227,12 +227,11 @@ Plan make_plan(io::Scene const& scene, Precision precision,
   bool const in_double = precision == Precision::double_precision;
   plan.memory = in_double ? memory_of<double>(scene, lattice, plan.variant, precision, 0)
                           : memory_of<float>(scene, lattice, plan.variant, precision, 0);
-  auto const count = [&](std::int64_t every) { return (integrator.steps + every - 1) / every + 1; };
-  plan.frames = count(scene.output.every);
+  plan.frames = frames_of(integrator.steps, scene.output.every);
   constexpr double frame_bytes = 8 * 7;
   double const sample_bytes = frame_bytes + 8 * static_cast<double>(more_scalars(scene).count());
   auto const frames = static_cast<double>(plan.frames);
-  auto const samples = static_cast<double>(count(scene.output.scalars_every));
+  auto const samples = static_cast<double>(frames_of(integrator.steps, scene.output.scalars_every));
   auto const numbers = 3 * static_cast<double>(lattice.sites());
   plan.file_bytes = frames * (numbers * (in_double ? 8 : 4) + frame_bytes) + samples * sample_bytes;
   if (has_positions(scene.lattice))

@@ -46,6 +46,12 @@ struct Plan {
   static constexpr double most_noise = 0.5;  // radians per step
 };
 
+/// Returns the number of frames, or of samples, of so many steps: the first, the last, and those
+/// after every `every` steps.
+inline std::int64_t frames_of(std::int64_t steps, std::int64_t every) {
+  return steps / every + (steps % every != 0) + 1;
+}
+
 /// Throws io::SceneError, for example for an invalid lattice. `features`: the scene's, if they are
 /// already known.
 Plan make_plan(io::Scene const& scene, Precision precision,

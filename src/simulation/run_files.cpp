@@ -2,6 +2,7 @@
 #include "run_files.hpp"
 
 #include "files/file_beside.hpp"
+#include "plan.hpp"
 #include "single_terms.hpp"
 
 #include <cayspin/version.hpp>
@@ -101,9 +102,9 @@ io::CheckpointHeader checkpoint_header(io::Scene const& scene, Precision precisi
 
 io::TrajectoryStorage storage_of(io::Scene const& scene) {
   auto const& output = scene.output;
-  auto frames = (scene.integrator.steps + output.every - 1) / output.every + 1;
+  auto frames = frames_of(scene.integrator.steps, output.every);
   for (auto const& [name, relax, of] : scene.stages)
-    frames += (of.integrator.steps + of.output.every - 1) / of.output.every + 1;
+    frames += frames_of(of.integrator.steps, of.output.every);
   return {output.compression, output.chunk, frames, output.sync};
 }
 

@@ -121,6 +121,11 @@ TEST_F(Checking, CountsCostAndFrames) {
   EXPECT_LT(numbers.at("file_bytes").get<double>(), size);
 }
 
+TEST_F(Checking, CountsTheFramesOfTheLongestPeriod) {
+  auto const numbers = check(chain_scene(), set("output.every=9223372036854775807"));
+  EXPECT_EQ(numbers.at("frames"), 2);
+}
+
 TEST_F(Checking, CountsBytesOfFilesThatNoDiskHolds) {
   auto const changes = set("integrator={method='euler',dt=0.01,steps=1000000000000}",
                            "output.every=1", "lattice.shape=[1000,1000]");
