@@ -97,7 +97,10 @@ Minimum SceneMinimizer<Real, Space>::relax(Space const& exec, io::Scene const& s
   auto const largest = moments.empty() ? 1 : std::ranges::max(moments);
   if (moments.empty() || !(largest > 0)) return minimize(exec, scene, field, spins, options);
   auto closer = options;
-  closer.torque *= largest;
+  auto const bound = [](double torque) {
+    return std::max(torque, Minimizer<SpinField<double>>::least_bound);
+  };
+  closer.torque = bound(options.torque * largest);
   Minimum all;
   all.iterations = all.evaluations = all.saddles = 0;
   constexpr int tries = 20;
@@ -115,7 +118,7 @@ Minimum SceneMinimizer<Real, Space>::relax(Space const& exec, io::Scene const& s
     found.saddles += all.saddles;
     all = found;
     if (found.end != MinimizeEnd::converged || found.torque <= options.torque) return all;
-    closer.torque = 0.5 * of_gradient * options.torque / found.torque;
+    closer.torque = bound(0.5 * of_gradient * options.torque / found.torque);
   }
   all.end = MinimizeEnd::stagnated;
   return all;

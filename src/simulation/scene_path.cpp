@@ -71,11 +71,12 @@ class PathOfScene {
   }
 
   MinimumEnergyPath search() {
+    double const torque = std::max(moment_ * options_.torque / scene_.units.field,
+                                   Minimizer<SpinField<double>>::least_bound);
     try {
-      return minimum_energy_path(exec_, field_, images_, saddle_,
-                                 {.torque = moment_ * options_.torque / scene_.units.field,
-                                  .evaluations = options_.evaluations,
-                                  .observer = options_.observer});
+      return minimum_energy_path(
+          exec_, field_, images_, saddle_,
+          {.torque = torque, .evaluations = options_.evaluations, .observer = options_.observer});
     } catch (FieldNotFinite const&) {
       throw NumbersFailed(fmt::format("{}: the field of an end, or its energy, is not finite",
                                       scene_.path.string()));

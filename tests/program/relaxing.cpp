@@ -224,6 +224,16 @@ TEST_F(Relax, IsRefusedByCheck) {
   EXPECT_TRUE(contains(start({"check", body}).errors, "integrator: is missing"));
 }
 
+// A small moment makes the bound on the gradient smaller than the least one.
+TEST_F(Relax, TakesTheLeastTorqueWithAnyMoment) {
+  for (std::string const moment : {"0.5", "1e-3"}) {
+    auto const outcome =
+        relax(scene, joined({"--torque", "1e-150", "--evaluations", "200", "--overwrite"},
+                            set("lattice.moments=[" + moment + "]", "lattice.shape=[4,3]")));
+    EXPECT_TRUE(outcome.status == 0 || outcome.status == 3) << outcome.errors;
+  }
+}
+
 TEST_F(Relax, RefusesInOneLine) {
   write("scene.toml", scene);
   for (auto const& [more, part] : std::vector<std::pair<Arguments, std::string>>{
