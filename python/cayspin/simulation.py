@@ -333,7 +333,8 @@ class Simulation:
         """The effective field H of every site now, (nz, ny, nx, 3), for a crystal with several
         sites in a cell (site, nz, ny, nx, 3), in T in SI; read-only. It includes torques of
         currents, as the field that would turn the spins in the same way, and is 0 at frozen sites.
-        Raises CayspinError for rigid bodies."""
+        At vacant sites it means nothing and need not be 0. Raises CayspinError for rigid bodies.
+        """
         return sites.by_site(self._run.field(), self._scene._scene.cell_sites)
 
     def energy(self) -> float:
