@@ -113,7 +113,7 @@ std::int64_t EnsembleRun::evaluations() const {
 double EnsembleRun::step_seconds() const {
   Turn::Reserved const turn;
   if (columns_) return columns_->step_seconds();
-  double all = 0;
+  double all = seconds_of_columns_;
   for (auto const& run : runs_) all += run->step_seconds();
   return all;
 }
@@ -215,16 +215,23 @@ void EnsembleRun::check_columns() {
 
 void EnsembleRun::leave_columns() {
   require_memory_of_all(scene_, first().scene(), settings_.precision, false);
-  for (std::size_t number = 0; number < replicas(); ++number) {
+  // If an exception interrupts this, the columns remain. The first run stays where it is, because
+  // other threads read it.
+  std::vector<std::unique_ptr<SceneRun>> others;
+  for (std::size_t number = 1; number < replicas(); ++number) {
     auto const replica = static_cast<std::int64_t>(number);
-    if (number > 0) runs_.push_back(SceneRun::open(io::replica_of(scene_, replica), settings_));
-    columns_->continue_in(*runs_[number], replica);
+    others.push_back(SceneRun::open(io::replica_of(scene_, replica), settings_));
+    columns_->continue_in(*others.back(), replica);
   }
+  columns_->continue_in(*runs_.front(), 0);
+  for (auto& run : others) runs_.push_back(std::move(run));
+  seconds_of_columns_ = columns_->step_seconds();
   columns_.reset();
 }
 
 std::vector<Minimum> EnsembleRun::relax(RelaxSettings const& settings) {
   Turn::Reserved const turn;
+  first().require_relaxable(settings);
   at_rest_.assign(replicas(), false);
   if (columns_) leave_columns();
   std::vector<SceneRun*> all;

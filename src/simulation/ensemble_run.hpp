@@ -94,6 +94,7 @@ class EnsembleRun {
   std::vector<Guard> guards_;    // of columns
   std::vector<Sample> samples_;  // of columns, at steps(); or empty
   std::vector<bool> at_rest_;
+  double seconds_of_columns_ = 0;  // step_seconds() of columns that runs have replaced
   std::atomic<std::int64_t> steps_ = 0;
 };
 

@@ -277,7 +277,7 @@ Minimum SceneRun::relax(RelaxSettings const& settings) {
   return relaxed(settings);
 }
 
-Minimum SceneRun::relaxed(RelaxSettings const& settings) {
+void SceneRun::require_relaxable(RelaxSettings const& settings) const {
   double const least = Minimizer<SpinField<double>>::least_bound * scene_.units.field;
   if (!(settings.torque >= least) || !std::isfinite(settings.torque))
     throw UsageError(
@@ -286,6 +286,10 @@ Minimum SceneRun::relaxed(RelaxSettings const& settings) {
     throw UsageError(
         fmt::format("{} evaluations; accepted: a whole number >= 1", settings.evaluations));
   require_rest(scene_);
+}
+
+Minimum SceneRun::relaxed(RelaxSettings const& settings) {
+  require_relaxable(settings);
   auto field = scene_.field;
   if (auto const& applied = settings.applied) {
     field.own.uniform = nullptr;

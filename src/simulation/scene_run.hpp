@@ -166,6 +166,9 @@ class SceneRun {
   /// settings, io::SceneError for rigid bodies, torques and temperatures, NumbersFailed for a field
   /// that is not finite, and any exception of a field of the program.
   Minimum relax(RelaxSettings const& settings = {});
+  /// Throws UsageError for a torque or evaluations that relax() does not accept, io::SceneError for
+  /// a scene that has no equilibrium.
+  void require_relaxable(RelaxSettings const& settings) const;
 
   /// Returns the normal modes about the spins, which must be at equilibrium, in the current field.
   /// Throws UsageError for invalid options, io::SceneError also for spins with neither precession

@@ -89,7 +89,12 @@ TEST(ReplicaColumns, AreSampledAndRelaxedAsRunsOfTheirOwn) {
       scene_of(llg_scene("0.1", "heun", 40, chains).text, {"field.applied=[0.3,0.1,0]"});
   EnsembleRun run(cold, {}, false);
   run.advance(11, run.looks(false, {}));
+  auto const seconds = run.step_seconds();
+  EXPECT_GT(seconds, 0);
+  EXPECT_THROW(run.relax({.torque = -1}), UsageError);
+  EXPECT_EQ(run.step_seconds(), seconds);
   auto const found = run.relax({.torque = 1e-9});
+  EXPECT_EQ(run.step_seconds(), seconds);
   auto const own = SceneRun::open(io::replica_of(cold, 17), {});
   own->advance(11);
   EXPECT_EQ(found[17].evaluations, own->relax({.torque = 1e-9}).evaluations);
