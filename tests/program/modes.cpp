@@ -373,6 +373,11 @@ TEST_F(Bands, RefuseWhatHasNone) {
   refused(
       {"0.1,0,0", "--set", "lattice.boundary=\"periodic\"", "--set", "lattice.frozen=\"i < 1\""},
       "the cells differ");
+  refused({"0,0,0", "--at-rest", "--set", "lattice.boundary=\"periodic\"", "--set",
+           "lattice.regions=\"i < 4 ? 0 : 1\"", "--set",
+           "field.anisotropy={constant={regions=[0.5, 2.0]}, axis=[0, 0, 1]}", "--set",
+           "initial={uniform=[0, 0, 1]}"},
+          "the cells differ");
   std::string const strip = "lattice.boundary=[\"periodic\",\"open\"]";
   refused({"0,0.3,0", "--set", strip}, "along y, which is open; accepted: 0 there");
   refused({"0.3,0,0", "--set", strip, "--set", "lattice.shape=[1,8]"},

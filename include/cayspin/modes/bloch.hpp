@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -141,9 +142,87 @@ class BlochProblem {
   }
 };
 
+[[noreturn]] inline void throw_cells_differ() {
+  throw std::invalid_argument(
+      "cayspin::bloch_modes: the cells differ; accepted: a state and a field that are the same in "
+      "all cells along periodic axes");
+}
+
+/// A site of the first cell.
+struct PartOfCell {
+  std::int64_t site = -1;
+  Eigen::Index first = -1;  // first of its two rows, if mobile
+  std::array<Point, 2> axes;
+};
+
+/// Compares the products of the Hessian with a random vector and with the same vector shifted by
+/// one cell along each periodic axis. Throws std::invalid_argument if they differ by more than
+/// round-off and by more than spins that differ by `spread` explain.
+template <class Hessian, class Spins, class Stops>
+void require_equal_cells(Hessian& hessian, CellsOfLattice const& cells,
+                         std::vector<PartOfCell> const& parts, Spins const& vector,
+                         Spins const& product, double strongest_field, double spread,
+                         Stops const& stops) {
+  auto const [nx, ny, nz] = cells.cells;
+  auto const number_of = [&, nx = nx, ny = ny](CellsOfLattice::Place const& place) {
+    auto const cell = (place.cell[2] * ny + place.cell[1]) * nx + place.cell[0];
+    return static_cast<std::size_t>(cell * cells.parts) + place.part;
+  };
+  auto const count = static_cast<std::size_t>(cells.sites());
+  std::vector<std::size_t> site_of(count);
+  std::vector<std::array<double, 2>> weights(count);
+  std::minstd_rand random;
+  for (std::size_t site = 0; site < count; ++site) {
+    site_of[number_of(cells(static_cast<std::int64_t>(site)))] = site;
+    for (double& weight : weights[site])
+      weight = 2 * static_cast<double>(random()) / static_cast<double>(random.max()) - 1;
+  }
+  auto const shifted = [&](std::size_t site, CellsOfLattice::Cell const& shift) {
+    auto place = cells(static_cast<std::int64_t>(site));
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      place.cell[axis] = (place.cell[axis] + shift[axis]) % cells.cells[axis];
+    return site_of[number_of(place)];
+  };
+  auto const product_with = [&](CellsOfLattice::Cell const& shift) {
+    std::vector<double> numbers(3 * count);
+    for (std::size_t site = 0; site < count; ++site) {
+      auto const& part = parts[cells(static_cast<std::int64_t>(site)).part];
+      if (part.first < 0) continue;
+      auto const& [u, v] = weights[shifted(site, shift)];
+      Point::Map(&numbers[3 * site]) = u * part.axes[0] + v * part.axes[1];
+    }
+    copy_from_host(numbers, vector);
+    hessian.multiply(vector, product);
+    auto const found = copy_to_host(product);
+    return std::vector<double>(found.begin(), found.end());
+  };
+
+  std::vector<double> unshifted;
+  double tolerance = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (cells.cells[axis] == 1) continue;
+    if (unshifted.empty()) {
+      if (stops()) return;
+      unshifted = product_with({0, 0, 0});
+      double strongest = strongest_field;
+      for (double const number : unshifted) strongest = std::max(strongest, std::abs(number));
+      tolerance = 100 * hessian.round_off(strongest) + 8 * spread * strongest;
+    }
+    if (stops()) return;
+    CellsOfLattice::Cell shift{0, 0, 0};
+    shift[axis] = 1;
+    auto const now = product_with(shift);
+    for (std::size_t site = 0; site < count; ++site) {
+      auto const other = shifted(site, shift);
+      Point const difference = Point::Map(&now[3 * site]) - Point::Map(&unshifted[3 * other]);
+      if (difference.norm() > tolerance) throw_cells_differ();
+    }
+  }
+}
+
 /// Returns the problem, from products of the Hessian with the tangent axes of one cell. `stops`:
 /// returns true to end early, with an incomplete problem. Throws std::invalid_argument where cells
-/// differ in their spins, `precession`, `damping` or mobile sites; the field is not compared.
+/// differ in their spins, `precession`, `damping`, mobile sites or Hessian.
 template <class Exec, class Field, class Spins, class Numbers, class Stops>
 BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Spins const& spins,
                            Numbers const& precession, Numbers const& damping, Stops const& stops,
@@ -164,13 +243,9 @@ BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Sp
     return Point(first[0], first[1], first[2]);
   };
 
-  struct Part {
-    std::int64_t site = -1;
-    Eigen::Index first = -1;  // first of its two rows, if mobile
-    std::array<Point, 2> axes;
-  };
-  std::vector<Part> parts(static_cast<std::size_t>(cells.parts));
+  std::vector<PartOfCell> parts(static_cast<std::size_t>(cells.parts));
   Eigen::Index rows = 0;
+  double spread = 0;  // of the spins of different cells
   double const alike = 100 * std::sqrt(std::numeric_limits<Real>::epsilon());
   for (std::int64_t site = 0; site < cells.sites(); ++site) {
     auto const place = cells(site);
@@ -182,11 +257,11 @@ BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Sp
       if (moves[number] != 0) part.first = rows, rows += 2;
     }
     auto const first = static_cast<std::size_t>(part.site);
-    if (!((at(m, site) - at(m, part.site)).norm() < alike) || a[number] != a[first] ||
-        b[number] != b[first] || moves[number] != moves[first])
-      throw std::invalid_argument(
-          "cayspin::bloch_modes: the cells differ; accepted: a state that is the same in all cells "
-          "along periodic axes");
+    double const apart = (at(m, site) - at(m, part.site)).norm();
+    if (!(apart < alike) || a[number] != a[first] || b[number] != b[first] ||
+        moves[number] != moves[first])
+      throw_cells_differ();
+    spread = std::max(spread, apart);
   }
 
   BlochProblem problem;
@@ -195,6 +270,7 @@ BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Sp
   evaluations = found.evaluations + hessian.evaluations();
   if (rows == 0) return problem;  // no spin moves
   Spins const vector = named("modes::vector"), product = named("modes::product");
+  require_equal_cells(hessian, cells, parts, vector, product, found.strongest(), spread, stops);
   std::vector<Eigen::MatrixXd> blocks(
       static_cast<std::size_t>(cells.cells[0] * cells.cells[1] * cells.cells[2]),
       Eigen::MatrixXd::Zero(rows, rows));
