@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace cayspin::test {
@@ -244,6 +245,33 @@ TYPED_TEST(Paths, TakeFewEvaluations) {
     ASSERT_EQ(found.end, PathEnd::converged);
     EXPECT_LE(found.evaluations, 60 * 16) << n;
   }
+}
+
+/// E = -m_z^2, and NaN near the equator.
+struct HoleAtTheEquator {
+  template <class Stencil>
+  KOKKOS_FUNCTION auto field(Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    return Vec3<Value>{Value(0.0), Value(0.0), Value(2.0) * within(stencil.center().z)};
+  }
+  template <class Stencil>
+  KOKKOS_FUNCTION auto energy_density(Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    Value const z = within(stencil.center().z);
+    return Value(-z * z);
+  }
+
+ private:
+  template <class Value>
+  KOKKOS_FUNCTION static Value within(Value const& z) {
+    return select<Value>(z * z < Value(0.09), Value(std::numeric_limits<float>::quiet_NaN()), z);
+  }
+};
+
+TYPED_TEST(Paths, EndWhereTheFieldIsNotFinite) {
+  EffectiveField const field(HoleAtTheEquator{});
+  auto const found = this->find(field, Lattice::chain(1), up, down, this->options(), 5);
+  EXPECT_EQ(found.end, PathEnd::not_finite);
 }
 
 TYPED_TEST(Paths, AreRefused) {

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -70,7 +71,7 @@ class PathString {
   }
 
   /// Evaluates all images that are not fixed, and returns the largest gradient of a spin across the
-  /// path.
+  /// path, or NaN where a gradient or an energy is not finite.
   template <class Exec, class Field>
   double look(Exec const& exec, Field const& field, double time) {
     double largest = 0;
@@ -99,6 +100,8 @@ class PathString {
       image.step_square = sums[0];
       image.change_square = sums[1];
       image.largest_across = largest_length(exec, image.across);
+      if (!std::isfinite(image.largest_across) || !std::isfinite(image.energy.value))
+        return std::numeric_limits<double>::quiet_NaN();
       largest = std::max(largest, image.largest_across);
     }
     return largest;
