@@ -363,6 +363,15 @@ TEST_F(Bands, NeedCellsOnlyWhereBondsReach) {
       "1 cell along x, and bonds reach over 1 cell");
 }
 
+TEST_F(Bands, KeepTheRealRateThatDecaysLeast) {
+  auto const outcome =
+      modes(film, {"--wave-vector", "0,0,0", "--at-rest", "--quiet", "--set",
+                   "system={kind=\"llg\", damping=1.0, precession=false}", "--set",
+                   "lattice.boundary=\"periodic\"", "--set", "initial={uniform=[1, 0, 0]}"});
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_NEAR(numbers("decay").at(0), 0.1, 1e-10);
+}
+
 TEST_F(Bands, RefuseWhatHasNone) {
   auto const refused = [&](Arguments const& more, std::string const& part) {
     expect_refused(joined({"modes", write("scene.toml", film), "--wave-vector"}, more), part);

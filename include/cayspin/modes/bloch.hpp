@@ -19,6 +19,7 @@
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 // Spin waves with given wave vectors. If all cells of a periodic lattice are equal, they follow
@@ -110,12 +111,13 @@ class BlochProblem {
   Eigen::MatrixXd turning;
   std::array<bool, 3> reaches_around{};  // true if the interaction reaches half the lattice
   CellsOfLattice::Cell cells{};
+  double round_off = 0;  // of elements of the matrices, relative to the largest
 
   /// Returns the complex rates of waves with this wave vector (in cycles per cell): a wave grows as
   /// e^(rate t). Only the half with the higher frequencies is returned, the lowest of these first.
-  /// Round-off decides which of the real rates, whose frequencies are 0, are in that half. Throws
-  /// std::invalid_argument for a wave vector that does not fit the lattice along an axis where the
-  /// interaction reaches around.
+  /// Of real rates, whose frequencies are 0, those that decay least are in that half, the least
+  /// first. Throws std::invalid_argument for a wave vector that does not fit the lattice along an
+  /// axis where the interaction reaches around.
   std::vector<std::complex<double>> rates(std::array<double, 3> const& wave) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double const around = wave[axis] * static_cast<double>(cells[axis]);
@@ -135,9 +137,18 @@ class BlochProblem {
     Eigen::ComplexEigenSolver<Eigen::MatrixXcd> const found(turning * sum, false);
     // For a wave e^(i (k.r - w t)), the imaginary part of the rate is -w.
     std::vector<std::complex<double>> rates(found.eigenvalues().begin(), found.eigenvalues().end());
-    std::ranges::sort(rates, {}, [](auto const& rate) { return rate.imag(); });
+    double largest = 0;
+    for (auto const& rate : rates) largest = std::max(largest, std::abs(rate));
+    auto const is_real = [&](auto const& rate) {
+      return std::abs(rate.imag()) <= round_off * largest;
+    };
+    std::ranges::sort(rates, {}, [&](auto const& rate) {
+      return is_real(rate) ? std::pair(0.0, -rate.real()) : std::pair(rate.imag(), 0.0);
+    });
     rates.resize(rates.size() / 2);
     std::ranges::reverse(rates);
+    auto const first = std::ranges::find_if(rates, is_real);
+    std::reverse(first, std::find_if_not(first, rates.end(), is_real));
     return rates;
   }
 };
@@ -304,8 +315,15 @@ BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Sp
   evaluations = found.evaluations + hessian.evaluations();
 
   double largest = 0;
-  for (auto const& block : blocks) largest = std::max(largest, block.cwiseAbs().maxCoeff());
-  double const least = 1e3 * std::numeric_limits<Real>::epsilon() * largest;
+  for (auto const& block : blocks) {
+    if (!block.allFinite())
+      throw std::invalid_argument(
+          "cayspin::bloch_modes: the field is not finite; accepted: a field that is finite for "
+          "spins near the state");
+    largest = std::max(largest, block.cwiseAbs().maxCoeff());
+  }
+  problem.round_off = 1e3 * std::numeric_limits<Real>::epsilon();
+  double const least = problem.round_off * largest;
   auto const& [nx, ny, nz] = cells.cells;
   for (std::int64_t z = 0; z < nz; ++z)
     for (std::int64_t y = 0; y < ny; ++y)
