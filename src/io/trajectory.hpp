@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -128,10 +129,12 @@ class TrajectoryFile {
   /// Creates the file with everything but frames. Without `overwrite`, an existing file is an
   /// error; with it, the file is replaced once the new one (PATH.partial) has its header. A failed
   /// creation changes no existing file and leaves no new one. `positions`: three numbers for each
-  /// site in the order of the file, or empty. Throws std::invalid_argument for a wrong header,
+  /// site in the order of the file, or empty. `before_named`: called before the new file takes its
+  /// name; if it throws, the creation fails. Throws std::invalid_argument for a wrong header,
   /// storage or number of positions.
   TrajectoryFile(std::filesystem::path path, TrajectoryHeader const& header, bool overwrite,
-                 TrajectoryStorage const& storage = {}, std::vector<double> const& positions = {});
+                 TrajectoryStorage const& storage = {}, std::vector<double> const& positions = {},
+                 std::function<void()> const& before_named = {});
 
   /// Closes the file. Unless finish() was called, it stays marked as not complete.
   ~TrajectoryFile();

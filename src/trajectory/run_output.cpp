@@ -61,14 +61,15 @@ class RunOutput::Implementation {
       throw std::invalid_argument("the sites of a crystal have no positions for its XDMF file");
     if (options.xdmf) require_free_beside(path, ".xdmf", options.overwrite);
     if (options.table) require_free_beside(path, ".txt", options.overwrite);
-    file_.emplace(path, header, options.overwrite, options.storage, options.positions);
-    if (options.xdmf)
-      xdmf_.emplace(
-          beside(path, ".xdmf"), path,
-          XdmfGrid{header.shape, header.cell_sites, options.spacing, !options.positions.empty()},
-          single_, options.overwrite);
-    if (options.table)
-      table_.emplace(beside(path, ".txt"), header.units.si, options.overwrite, header.more);
+    file_.emplace(path, header, options.overwrite, options.storage, options.positions, [&] {
+      if (options.xdmf)
+        xdmf_.emplace(
+            beside(path, ".xdmf"), path,
+            XdmfGrid{header.shape, header.cell_sites, options.spacing, !options.positions.empty()},
+            single_, options.overwrite);
+      if (options.table)
+        table_.emplace(beside(path, ".txt"), header.units.si, options.overwrite, header.more);
+    });
     planes_ = header.shape[2];
     pieces_ = frame_pieces(header.shape, single_ ? sizeof(float) : sizeof(double), options.storage,
                            options.most_planes, header.cell_sites);

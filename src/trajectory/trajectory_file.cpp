@@ -91,7 +91,8 @@ void require_valid(TrajectoryHeader const& header, TrajectoryStorage const& stor
 class TrajectoryFile::Implementation {
  public:
   Implementation(std::filesystem::path path, TrajectoryHeader const& header, bool overwrite,
-                 TrajectoryStorage const& storage, std::vector<double> const& positions)
+                 TrajectoryStorage const& storage, std::vector<double> const& positions,
+                 std::function<void()> const& before_named)
       : path_(std::move(path)),
         single_(header.precision == single_precision),
         more_(header.more),
@@ -111,6 +112,7 @@ class TrajectoryFile::Implementation {
     create_datasets(file.get(), header, storage);
     if (!positions.empty()) write_positions(file.get(), header, positions, path_);
     check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), path_, "cannot create the file");
+    if (before_named) before_named();
     file_ = file.commit();
   }
 
@@ -254,10 +256,11 @@ class TrajectoryFile::Implementation {
 
 TrajectoryFile::TrajectoryFile(std::filesystem::path path, TrajectoryHeader const& header,
                                bool overwrite, TrajectoryStorage const& storage,
-                               std::vector<double> const& positions) {
+                               std::vector<double> const& positions,
+                               std::function<void()> const& before_named) {
   QuietErrors const quiet;
-  implementation_ =
-      std::make_unique<Implementation>(std::move(path), header, overwrite, storage, positions);
+  implementation_ = std::make_unique<Implementation>(std::move(path), header, overwrite, storage,
+                                                     positions, before_named);
 }
 
 TrajectoryFile::~TrajectoryFile() = default;

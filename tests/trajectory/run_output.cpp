@@ -189,6 +189,21 @@ TEST_F(TrajectoryTest, FilesBesideTheTrajectoryAreKeptUnlessOverwritten) {
                        "cannot end in .txt"));
 }
 
+TEST_F(TrajectoryTest, OldTrajectoryIsKeptIfAFileBesideItCannotBeWritten) {
+  auto const path = folder_ / "a.h5";
+  write_frames(path, 3).finish({});
+  for (auto const* const name : {"a.txt", "a.xdmf"}) {
+    auto const blocked = folder_ / (std::string(name) + ".partial");
+    fs::create_directory(blocked);
+    EXPECT_THROW(RunOutput(path, small_header(), {.overwrite = true, .xdmf = true, .table = true}),
+                 std::runtime_error);
+    fs::remove(blocked);
+    EXPECT_EQ(read_info(path).frames, 3);
+    EXPECT_TRUE(read_info(path).complete);
+    EXPECT_FALSE(fs::exists(folder_ / "a.h5.partial"));
+  }
+}
+
 TEST_F(TrajectoryTest, TableGivesTheDoublesBack) {
   auto header = small_header();
   header.units.si = true;
