@@ -123,8 +123,8 @@ class RunOutput::Implementation {
     hand_over_samples();
     wait();
     ended_ = true;
-    if (xdmf_) xdmf_->finish();
     complete ? file_->finish(cost) : file_->close(cost);
+    if (xdmf_) xdmf_->finish();
   }
 
   std::int64_t frames() {

@@ -204,6 +204,20 @@ TEST_F(TrajectoryTest, OldTrajectoryIsKeptIfAFileBesideItCannotBeWritten) {
   }
 }
 
+// The XDMF file has frames to write at the end unless the last frames took a second.
+TEST_F(TrajectoryTest, TrajectoryIsCompleteIfItsXdmfFileCannotBeWritten) {
+  auto const path = folder_ / "a.h5";
+  RunOutput output(path, small_header(), {.xdmf = true});
+  for (int frame = 0; frame < 1010; ++frame) hand_over<double>(output, frame);
+  EXPECT_EQ(output.frames(), 1010);
+  fs::create_directory(folder_ / "a.xdmf.partial");
+  try {
+    output.finish({});
+  } catch (std::runtime_error const&) {
+  }
+  EXPECT_TRUE(read_info(path).complete);
+}
+
 TEST_F(TrajectoryTest, TableGivesTheDoublesBack) {
   auto header = small_header();
   header.units.si = true;
