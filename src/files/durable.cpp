@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <system_error>
 
 namespace cayspin::inline v0_2::io {
 
@@ -54,6 +55,17 @@ int sync_folder_of(std::filesystem::path const& path) {
   int const error = ::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP ? 0 : errno;
   ::close(file);
   return error;
+}
+
+std::filesystem::path followed(std::filesystem::path path) {
+  constexpr int most_links = 40;  // as in Linux
+  std::error_code error;
+  for (int links = 0; links < most_links; ++links) {
+    auto const target = std::filesystem::read_symlink(path, error);
+    if (error) return path;
+    path = path.parent_path() / target;
+  }
+  return path;
 }
 
 }  // namespace cayspin::inline v0_2::io

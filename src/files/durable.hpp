@@ -7,7 +7,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-// Each function returns 0, or the system's error number.
+// Each function that returns an int returns 0, or the system's error number.
 
 int write_all(int file, void const* data, std::size_t bytes, std::uint64_t offset);
 
@@ -21,5 +21,8 @@ int sync_file(int file);
 /// Waits until the names of the files in the folder of `path` would survive a power cut. A folder
 /// that may not be read counts as synchronised.
 int sync_folder_of(std::filesystem::path const& path);
+
+/// Returns the file that symbolic links at `path` lead to, which need not exist.
+std::filesystem::path followed(std::filesystem::path path);
 
 }  // namespace cayspin::inline v0_2::io

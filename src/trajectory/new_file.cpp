@@ -109,6 +109,8 @@ NewFile::NewFile(fs::path path, bool overwrite, bool shared, SyncedFile* synced)
     if (!shared) require_replaceable(path_);
     target_ = fs::canonical(path_);
     complete_from_journal(target_);
+  } else {
+    target_ = followed(path_);
   }
   written_ = target_.string() + ".partial";
   create_with_room(written_, path_);

@@ -57,6 +57,16 @@ TEST_F(TrajectoryTest, OverwriteFollowsALink) {
   EXPECT_TRUE(read_info(path).complete);
 }
 
+TEST_F(TrajectoryTest, CreationFollowsALinkToNoFile) {
+  auto const link = folder_ / "link.h5";
+  fs::create_symlink("other.h5", folder_ / "a.h5");
+  fs::create_symlink("a.h5", link);
+  create(link).finish({});
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(folder_ / "other.h5")));
+  EXPECT_TRUE(read_info(link).complete);
+}
+
 TEST_F(TrajectoryTest, FileOfAnotherWriterIsKept) {
   auto const path = folder_ / "a.h5";
   write_bytes(path, "precious");
