@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "file_beside.hpp"
 
+#include "durable.hpp"
+
 #include <fmt/format.h>
 
 #include <cerrno>
@@ -30,7 +32,7 @@ void require_free(fs::path const& path, bool overwrite) {
 }
 
 FileBeside::FileBeside(fs::path path, bool overwrite)
-    : path_(std::move(path)), partial_(path_.string() + ".partial") {
+    : path_(std::move(path)), target_(followed(path_)), partial_(target_.string() + ".partial") {
   require_free(path_, overwrite);
   errno = 0;
   stream_.open(partial_, std::ios::binary | std::ios::trunc);
@@ -49,7 +51,7 @@ void FileBeside::commit() {
   stream_.close();
   if (!stream_) fail();
   std::error_code error;
-  fs::rename(partial_, path_, error);
+  fs::rename(partial_, target_, error);
   if (error) throw_unwritten(path_, error.message());
   committed_ = true;
 }

@@ -6,7 +6,8 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// A file being written as PATH.partial, which commit() renames to PATH. Failures throw
+/// A file being written as PATH.partial, which commit() renames to PATH. If PATH is a symbolic
+/// link, that is done with the file it leads to. Failures throw
 /// std::runtime_error("PATH: cannot write the file: REASON").
 class FileBeside {
  public:
@@ -25,7 +26,7 @@ class FileBeside {
  private:
   [[noreturn]] void fail() const;
 
-  std::filesystem::path path_, partial_;
+  std::filesystem::path path_, target_, partial_;
   std::ofstream stream_;
   bool committed_ = false;
 };

@@ -204,6 +204,14 @@ TEST_F(TrajectoryTest, OldTrajectoryIsKeptIfAFileBesideItCannotBeWritten) {
   }
 }
 
+TEST_F(TrajectoryTest, FilesBesideTheTrajectoryMayBeLinks) {
+  write_bytes(folder_ / "table.txt", "old");
+  fs::create_symlink("table.txt", folder_ / "a.txt");
+  { RunOutput const output(folder_ / "a.h5", small_header(), {.overwrite = true, .table = true}); }
+  EXPECT_TRUE(fs::is_symlink(folder_ / "a.txt"));
+  EXPECT_EQ(read_bytes(folder_ / "table.txt").front(), '#');
+}
+
 // The XDMF file has frames to write at the end unless the last frames took a second.
 TEST_F(TrajectoryTest, TrajectoryIsCompleteIfItsXdmfFileCannotBeWritten) {
   auto const path = folder_ / "a.h5";
