@@ -12,11 +12,14 @@ namespace cayspin::inline v0_2::mpi::detail {
 /// occupies a core, which is slow if ranks share cores.
 inline void wait_for(std::span<MPI_Request> requests) {
   constexpr int patience = 1000;
-  for (int tries = 0;; ++tries) {
+  for (int tries = 0;;) {
     int done = 0;
     MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE);
     if (done) return;
-    if (tries >= patience) std::this_thread::yield();
+    if (tries < patience)
+      ++tries;
+    else
+      std::this_thread::yield();
   }
 }
 
