@@ -30,6 +30,9 @@ inline void exchange_with_all(MPI_Comm comm, std::span<std::span<std::byte const
   constexpr int tag = 2;  // neighbours' ghosts use 0 and 1
   int own = 0;
   MPI_Comm_rank(comm, &own);
+  // Lengths are checked first: after an error, no message may be under way.
+  for (auto const& message : received) words_of_message(message.size());
+  for (auto const& message : sent) words_of_message(message.size());
   std::vector<MPI_Request> requests;
   // Each rank starts with the rank after it, so that not all start with rank 0.
   auto const for_each_rank = [&](auto const& messages, auto const& post) {

@@ -76,17 +76,25 @@ class GhostMessages {
                        std::array<int, 2> const& neighbor) {
     std::array<MPI_Request, 4> requests;
     requests.fill(MPI_REQUEST_NULL);
+    std::array<int, 2> received_words{}, sent_words{};
+    // All before the first message: after an error, none may be under way.
     for (std::size_t side = 0; side < 2; ++side) {
       if (neighbor[side] == MPI_PROC_NULL) continue;
-      reserve(received_[side], bytes(fields, faces.received[side]));
-      MPI_Irecv(received_[side].data(), words_of(received_[side]), MPI_INT32_T, neighbor[side],
+      auto const in = bytes(fields, faces.received[side]), out = bytes(fields, faces.sent[side]);
+      received_words[side] = words_of(in);
+      sent_words[side] = words_of(out);
+      reserve(received_[side], in);
+      reserve(sent_[side], out);
+    }
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (neighbor[side] == MPI_PROC_NULL) continue;
+      MPI_Irecv(received_[side].data(), received_words[side], MPI_INT32_T, neighbor[side],
                 static_cast<int>(1 - side), comm, &requests[side]);
     }
     for (std::size_t side = 0; side < 2; ++side) {
       if (neighbor[side] == MPI_PROC_NULL) continue;
-      reserve(sent_[side], bytes(fields, faces.sent[side]));
       copy<true>(fields, faces.sent[side], sent_[side]);
-      MPI_Isend(sent_[side].data(), words_of(sent_[side]), MPI_INT32_T, neighbor[side],
+      MPI_Isend(sent_[side].data(), sent_words[side], MPI_INT32_T, neighbor[side],
                 static_cast<int>(side), comm, &requests[2 + side]);
     }
     wait_for(requests);
@@ -112,8 +120,8 @@ class GhostMessages {
 
   /// Returns the number of 4-byte words. Throws std::length_error for a message of 8 GiB or more,
   /// whose length MPI's int cannot hold.
-  static int words_of(Buffer const& buffer) {
-    auto const words = buffer.size() / sizeof(std::int32_t);
+  static int words_of(std::size_t size) {
+    auto const words = size / sizeof(std::int32_t);
     if (words > static_cast<std::size_t>(std::numeric_limits<int>::max()))
       throw std::length_error("cayspin::mpi: a face of the part is 8 GiB or more; use more ranks");
     return static_cast<int>(words);
