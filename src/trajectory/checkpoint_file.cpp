@@ -162,14 +162,18 @@ class CheckpointWriter::Implementation {
     check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), path_, action);
     space_.trim();
     if (int const error = space_.sync()) throw_failure(path_, action, std::strerror(error));
-    check(file_.commit().close(), path_, action);
+    auto committed = file_.commit();
+    has_name_ = true;
+    check(committed.close(), path_, action);
     if (int const error = sync_folder_of(path_)) throw_failure(path_, action, std::strerror(error));
   }
 
  private:
   void require_open() const {
-    if (numbers_.get() < 0)
+    if (has_name_)
       throw std::logic_error(path_.string() + ": the checkpoint has its name already");
+    if (numbers_.get() < 0)
+      throw std::logic_error(path_.string() + ": the checkpoint could not be written");
   }
 
   void create_field(std::string const& name, hsize_t components) {
@@ -188,7 +192,7 @@ class CheckpointWriter::Implementation {
   OpenFileSpace space_;
   GroupHandle numbers_;
   CheckpointContents contents_;
-  bool has_spins_ = false;
+  bool has_spins_ = false, has_name_ = false;
   DatasetHandle field_;  // a partly written field
   std::string name_;
   hsize_t written_planes_ = 0;

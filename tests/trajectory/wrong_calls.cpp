@@ -140,6 +140,21 @@ TEST_F(TrajectoryTest, FramesWithoutSpinsAreNotWritten) {
   EXPECT_EQ(read_info(folder_ / "b.h5").frame_steps, (std::vector<std::int64_t>{0, 1, 2}));
 }
 
+TEST_F(TrajectoryTest, CheckpointThatCouldNotBeWrittenHasNoName) {
+  auto const path = folder_ / "a.checkpoint.h5";
+  auto spins = numbered_spins<double>(small_header(), 0);
+  CheckpointWriter writer(path, checkpoint_of(small_header()));
+  writer.field("spins", spins);
+  std::filesystem::create_directory(path);
+  EXPECT_THROW(writer.commit(), std::runtime_error);
+  try {
+    writer.commit();
+    ADD_FAILURE() << "no error";
+  } catch (std::logic_error const& error) {
+    EXPECT_TRUE(contains(error.what(), "the checkpoint could not be written"));
+  }
+}
+
 TEST_F(TrajectoryTest, CheckpointsTakeFieldsOfTheirLatticeAlone) {
   auto const path = folder_ / "a.checkpoint.h5";
   double number = 0.25;
