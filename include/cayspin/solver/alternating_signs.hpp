@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cayspin/detail/memory.hpp>
-#include <cayspin/lattice.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -37,14 +36,5 @@ struct AlternatingSigns {
     return load<Value>(signs);
   }
 };
-
-/// Returns how many bonds along an axis join opposite signs, if signs alternate along it: all bonds
-/// except those that close an odd ring.
-inline double opposed_bonds(Lattice const& lattice, int axis) {
-  auto const extent = lattice.shape[static_cast<std::size_t>(axis)];
-  bool const closes =
-      lattice.boundary[static_cast<std::size_t>(axis)] == Boundary::periodic && extent % 2 == 0;
-  return static_cast<double>(lattice.sites() / extent * (extent - (closes ? 0 : 1)));
-}
 
 }  // namespace cayspin::inline v0_2::detail
