@@ -170,8 +170,7 @@ class CheckpointWriter::Implementation {
 
  private:
   void require_open() const {
-    if (has_name_)
-      throw std::logic_error(path_.string() + ": the checkpoint has its name already");
+    if (has_name_) throw std::logic_error(path_.string() + ": the checkpoint has its name already");
     if (numbers_.get() < 0)
       throw std::logic_error(path_.string() + ": the checkpoint could not be written");
   }
