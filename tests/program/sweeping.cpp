@@ -67,6 +67,13 @@ TEST_F(Sweeping, GivesTheSameBitsSideBySide) {
     EXPECT_EQ(spins("one.h5", run), spins("two.h5", run)) << run;
 }
 
+TEST_F(Sweeping, LeavesNoCheckpoints) {
+  output_of(sweep_into("adaptive.h5", {"--quiet", "--over", "integrator.tolerance=1e-4,1e-5",
+                                       "--set", "integrator.method='tsit5'"}));
+  EXPECT_TRUE(sweep_in("adaptive.h5").complete);
+  EXPECT_FALSE(exists("adaptive.h5.runs"));
+}
+
 TEST_F(Sweeping, GoesOnAfterAKill) {
   // The runs with 200000 and 200001 steps take so long that the kill comes during one of them.
   auto const all = [](char const* file) {
@@ -263,6 +270,9 @@ TEST_F(Sweeping, WrongUsesAreOneLine) {
              "integrator={method='heun',dt=0.01,steps=1}"},
             "--over integrator.dt has it too"},
            {{"--over", "output.file='a.h5','b.h5'"}, "output.file"},
+           {{"--over", "system.damping=0.1", "--set", "output.xdmf=true"},
+            "output.xdmf: true: a sweep writes one file"},
+           {{"--over", "output.table=false,true"}, "output.table: true: a sweep writes one file"},
            {{"--over", "system.damping=0.1", "--jobs", "0"}, "--jobs"}})
     expect_refused(sweep_into("wrong.h5", more), part);
   EXPECT_FALSE(exists("wrong.h5"));

@@ -15,6 +15,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace cayspin::program::sweep {
 namespace {
@@ -72,6 +73,16 @@ Plan plan_of(io::Stage const& stage, Precision precision) {
   return plan;
 }
 
+// Refuses files beside a run's own file: the sweep's file would not have their contents.
+void require_one_file(io::Scene const& scene) {
+  for (auto const& [key, is_set] :
+       {std::pair{"output.xdmf", scene.output.xdmf}, {"output.table", scene.output.table}})
+    if (is_set)
+      throw io::scene_error(scene, key,
+                            "true: a sweep writes one file, with the samples of all runs; "
+                            "accepted: false");
+}
+
 // The values of a run are passed to its scene as overrides, so messages call them --set. Replaces
 // that by --over.
 std::string naming_over(std::string message, std::vector<std::string> const& overrides) {
@@ -107,6 +118,7 @@ Grid make_grid(SweepOptions const& options) {
       if (scene.output.sync)
         throw io::scene_error(scene, "output.sync",
                               "true: a sweep is not protected against power cuts; accepted: false");
+      require_one_file(scene);
       std::int64_t steps = 0;
       for (auto const& stage : io::stages_of(scene)) {
         steps += stage.relax ? 0 : stage.scene.integrator.steps;

@@ -2,6 +2,7 @@
 #include "session.hpp"
 
 #include "hdf5/reading_trial.hpp"
+#include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
 #include "program/progress.hpp"
 #include "simulation/failure.hpp"
@@ -75,7 +76,8 @@ void Session::open(bool is_new) {
   }
   if (is_new)
     for (auto const& entry : fs::directory_iterator(folder_))
-      if (entry.path().extension() == ".h5") fs::remove(entry.path());
+      if (auto const kind = entry.path().extension(); kind == ".h5" || kind == ".partial")
+        fs::remove(entry.path());
   for (std::int64_t number = 0; number < info_.header.runs(); ++number) {
     auto& run = info_.runs[index(number)];
     io::SweptRun found;
@@ -215,8 +217,13 @@ bool Session::close() {
 
 void Session::remove_folder() {
   std::error_code ignored;
-  for (std::int64_t number = 0; number < info_.header.runs(); ++number)
-    fs::remove(run_file(number), ignored);
+  for (std::int64_t number = 0; number < info_.header.runs(); ++number) {
+    auto const file = run_file(number);
+    for (auto const& written : {file, io::checkpoint_beside(file)}) {
+      fs::remove(written, ignored);
+      fs::remove(written.string() + ".partial", ignored);
+    }
+  }
   release();
 }
 

@@ -38,7 +38,8 @@ class Session {
   /// Writes the recorded results.
   void write();
   /// Writes the results; if all runs have ended, copies their files into the sweep's file and
-  /// removes them, and the folder if nothing else is in it. Returns false if interrupted.
+  /// removes them with their checkpoints, and the folder if nothing else is in it. Returns false if
+  /// interrupted.
   bool close();
 
  private:
