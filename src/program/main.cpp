@@ -162,12 +162,13 @@ int perform(int count, char** given) {
   }
 }
 
+int work(int, char** argv) { return sweep::work(argv[2], argv[3], perform); }
+
 }  // namespace
 }  // namespace cayspin::program
 
 int main(int argc, char** argv) {
   using namespace cayspin::program;
-  if (argc == 4 && std::string_view(argv[1]) == sweep::worker_word)
-    return sweep::work(argv[2], argv[3], perform);
-  return cayspin::simulation::perform_and_report(cayspin::program::perform, argc, argv);
+  bool const is_worker = argc == 4 && std::string_view(argv[1]) == sweep::worker_word;
+  return perform_and_report(is_worker ? work : perform, argc, argv);
 }

@@ -74,6 +74,14 @@ TEST_F(Sweeping, LeavesNoCheckpoints) {
   EXPECT_FALSE(exists("adaptive.h5.runs"));
 }
 
+TEST_F(Sweeping, RunsHaveOneThreadInTheSpaceSerial) {
+  auto const all = sweep_into("serial.h5", {"--quiet", "--jobs", "1", "--space", another_space,
+                                            "--over", "integrator.steps=20,30"});
+  if (another_space == "serial") expect_refused(joined(all, {"--threads", "2"}), "--threads 2: ");
+  output_of(all);
+  EXPECT_TRUE(sweep_in("serial.h5").complete);
+}
+
 TEST_F(Sweeping, GoesOnAfterAKill) {
   // The runs with 200000 and 200001 steps take so long that the kill comes during one of them.
   auto const all = [](char const* file) {

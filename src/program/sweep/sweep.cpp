@@ -54,7 +54,8 @@ Sharing share_machine(SweepOptions const& options, Grid const& grid, std::size_t
   jobs = std::clamp<std::int64_t>(std::min(jobs, fits), 1,
                                   static_cast<std::int64_t>(std::max<std::size_t>(open, 1)));
   Sharing sharing{static_cast<int>(jobs), options.threads};
-  if (!sharing.threads && on_host) sharing.threads = std::max(1, cores / sharing.jobs);
+  if (!sharing.threads && on_host)
+    sharing.threads = grid.header.space == "serial" ? 1 : std::max(1, cores / sharing.jobs);
   return sharing;
 }
 
