@@ -254,6 +254,14 @@ TEST_F(Sweeping, OnlyOneProcessHasAFile) {
   end(run, SIGKILL);
 }
 
+TEST_F(Sweeping, StagesWithOtherTermsAreRefused) {
+  write("chain.toml", chain_scene() + "[[stage]]\nfield.dmi = { bulk = 0.1 }\n");
+  expect_refused(
+      sweep_into("terms.h5", {"--over", "system.damping=0.1,0.2", "--set", "output.terms=true"}),
+      "field: has different terms from those at the start");
+  EXPECT_FALSE(exists("terms.h5.runs"));
+}
+
 TEST_F(Sweeping, WrongUsesAreOneLine) {
   for (auto const& [more, part] : std::vector<std::pair<Arguments, std::string>>{
            {{}, "--over"},

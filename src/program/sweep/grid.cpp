@@ -8,6 +8,7 @@
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/plan.hpp"
 #include "simulation/scene_minimizer.hpp"
+#include "simulation/single_terms.hpp"
 
 #include <cayspin/version.hpp>
 
@@ -120,7 +121,9 @@ Grid make_grid(SweepOptions const& options) {
                               "true: a sweep is not protected against power cuts; accepted: false");
       require_one_file(scene);
       std::int64_t steps = 0;
-      for (auto const& stage : io::stages_of(scene)) {
+      auto const stages = io::stages_of(scene);
+      for (auto const& stage : stages) {
+        require_same_terms(stages[0].scene, stage.scene);
         steps += stage.relax ? 0 : stage.scene.integrator.steps;
         if (scene.integrator.method->automatic) continue;
         auto const plan = plan_of(stage, options.precision);
