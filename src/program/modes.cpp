@@ -106,8 +106,8 @@ void check_files(io::Scene const& scene, std::filesystem::path const& file) {
   }
 }
 
-// Reads the scene. The scene of a trajectory file starts at the last frame, in the last field if
-// that scene has a list of fields.
+// Reads the scene. The scene of a trajectory file starts at the last frame, in the field of that
+// frame if that scene has a list of fields.
 io::Scene scene_of(ModesCommand const& options) {
   if (!is_hdf5(options.scene)) {
     auto const scene =
@@ -124,7 +124,8 @@ io::Scene scene_of(ModesCommand const& options) {
   std::vector overrides{as_start(options.scene)};
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
   auto scene = io::parse_scene_to_relax(info.header.scene_text, options.scene, overrides);
-  scene.field = io::fields_in_turn(scene).back();
+  auto const fields = io::fields_in_turn(scene);
+  scene.field = fields[std::min(static_cast<std::size_t>(info.frames), fields.size()) - 1];
   scene.field.applied_in_turn.clear();
   return scene;
 }
