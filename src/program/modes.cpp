@@ -341,26 +341,31 @@ Command add_modes(CLI::App& program) {
   command->get_option("SCENE")->description(
       "Scene file (TOML), or a trajectory file (HDF5), whose last frame is the start");
   command->get_option("--output")->description("The file to write (default: modes.h5)");
-  command->add_option("--count", options->search.count, "Modes, the slowest first (default: 8)")
-      ->check(CLI::Range(std::size_t{1}, ModesOptions::most));
+  auto* const count =
+      command->add_option("--count", options->search.count, "Modes, the slowest first (default: 8)")
+          ->check(CLI::Range(std::size_t{1}, ModesOptions::most));
   command->add_option("--torque", options->torque, "Largest |m x H| at rest (default: 1e-6)");
-  command->add_option("--tolerance", options->search.tolerance,
-                      "Error of the shapes (default: 1e-9)");
+  auto* const tolerance = command->add_option("--tolerance", options->search.tolerance,
+                                              "Error of the shapes (default: 1e-9)");
   command
       ->add_option("--evaluations", options->search.evaluations,
                    "Largest number of evaluations of the field in each search (default: 100000)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 53U));
   command->add_flag("--at-rest", options->at_rest, "The start is the equilibrium: do not relax");
-  command->add_flag("--hessian", options->hessian,
-                    "Also the lowest eigenvalues of the energy's Hessian, and their vectors");
-  command
-      ->add_option("--wave-vector", options->corners,
-                   "Waves in place of modes: a corner of a path of wave vectors, in cycles per "
-                   "cell")
-      ->allow_extra_args(false)
-      ->type_name("KX,KY,KZ");
+  auto* const hessian =
+      command->add_flag("--hessian", options->hessian,
+                        "Also the lowest eigenvalues of the energy's Hessian, and their vectors");
+  auto* const waves =
+      command
+          ->add_option("--wave-vector", options->corners,
+                       "Waves in place of modes: a corner of a path of wave vectors, in cycles per "
+                       "cell")
+          ->allow_extra_args(false)
+          ->type_name("KX,KY,KZ");
+  for (auto* const of_modes : {count, tolerance, hessian}) waves->excludes(of_modes);
   command->add_option("--points", options->points, "From one corner to the next (default: 50)")
-      ->check(CLI::Range(1, 100000));
+      ->check(CLI::Range(1, 100000))
+      ->needs(waves);
   command->add_flag("--quiet", options->quiet, "No table");
   add_json_option(*command, options->json);
   return {command, [options](Ranks&) { return find_modes_of_scene(*options); }};
