@@ -136,6 +136,7 @@ int run(RunOptions const& options, Ranks& ranks) {
   if (typed.ensemble.there()) {
     ranks.together([&] {
       if (ranks.many()) io::require_no_ensemble(typed, "a run on several ranks");
+      if (options.ranks) io::require_no_ensemble(typed, "--ranks");
     });
     return run_ensemble(typed, options);
   }

@@ -368,6 +368,7 @@ TEST_F(Ensembles, AreRefusedInOneLine) {
   write("all.toml", chain_scene() + vary(""));
   for (Arguments const& command :
        {Arguments{"trade", "all.toml"}, Arguments{"modes", "all.toml"},
+        Arguments{"run", "all.toml", "--ranks", "1,1", "-o", "all.h5"},
         Arguments{"sweep", "all.toml", "--over", "system.damping=1,2", "-o", "sweep.h5"}})
     expect_refused(command, "takes no ensemble");
 }
