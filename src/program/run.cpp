@@ -53,7 +53,7 @@ Restart restart_of(EarlierRun left, io::Stage const& stage, Plan const& plan,
 }
 
 // Reads the scene as typed, and makes all checks that need nothing else. Throws UsageError if the
-// ranks were given different scenes, precisions or files to restart from.
+// ranks were given different scenes, precisions, spaces, divisions or files.
 io::Scene typed_scene(RunOptions const& options, Ranks& ranks) {
   auto typed = ranks.together([&] {
     auto scene = io::with_shape_of_start(io::read_scene(options.scene, options.overrides));
@@ -61,8 +61,13 @@ io::Scene typed_scene(RunOptions const& options, Ranks& ranks) {
     io::check_files(scene);
     return scene;
   });
-  bool const alike = ranks.same(typed.text + std::string(to_string(options.precision)) +
-                                options.restart.value_or("").string());
+  auto given = typed.text;
+  for (auto const& option :
+       {std::string(to_string(options.precision)), options.restart.value_or("").string(),
+        options.output.value_or("").string(), options.space.value_or(""),
+        options.ranks.value_or("")})
+    given += '\n' + option;
+  bool const alike = ranks.same(given);
   ranks.together([&] {
     if (!alike && ranks.is_first())
       throw UsageError("the ranks were given different scenes or options; accepted: the same");

@@ -52,13 +52,17 @@ TEST_F(OnRanks, AreRefusedInOneLine) {
   expect_refused(start_on(2, {"relax", scene}), "relax runs on one rank; accepted: run");
 
   auto const other = write("other.toml", film("[7, 9, 13]", "method = \"heun\""));
-  Arguments both = launch(1, run_of(scene, "out.h5"));
-  both.push_back(":");
-  auto const second = launch(1, run_of(other, "out.h5"));
-  both.insert(both.end(), second.begin(), second.end());
   Treatment launcher;
   launcher.program = CAYSPIN_MPIEXEC;
-  expect_refused(start(both, launcher), "the ranks were given different scenes");
+  for (auto const& of_second : {run_of(other, "out.h5"), run_of(scene, "other.h5"),
+                                run_of(scene, "out.h5", {"--space", "serial"}),
+                                run_of(scene, "out.h5", {"--ranks", "1,2"})}) {
+    Arguments both = launch(1, run_of(scene, "out.h5"));
+    both.push_back(":");
+    auto const second = launch(1, of_second);
+    both.insert(both.end(), second.begin(), second.end());
+    expect_refused(start(both, launcher), "the ranks were given different scenes or options");
+  }
 }
 
 TEST_F(OnRanks, SayOnceThatOneHasTooLittleMemory) {
