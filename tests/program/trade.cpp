@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <set>
@@ -190,6 +191,17 @@ TEST_F(Trading, AnAdvisedRunHasTheErrorAskedFor) {
     auto const text = info_of("out.h5").header.scene_text;
     EXPECT_EQ(text.find("energy_guard = false") != text.npos, !fine) << text;
   }
+}
+
+TEST_F(Trading, AnAdvisedRunKeepsTheTimesOfCheckpoints) {
+  auto const advice = nlohmann::json::parse(
+      advise("1e-3", joined({"--json"}, set("output={every=4,checkpoint_every=\"4 steps\"}"))));
+  std::set<std::string> const overrides = advice["overrides"];
+  auto const every = std::ranges::find_if(
+      overrides, [](auto const& one) { return one.starts_with("output.every="); });
+  ASSERT_NE(every, overrides.end()) << advice;
+  EXPECT_TRUE(overrides.contains("output.checkpoint_every=\"" + every->substr(13) + " steps\""))
+      << advice;
 }
 
 /// A scene to advise on, compared at each of its frames.

@@ -52,14 +52,16 @@ std::string integrator_table(io::Scene const& scene, Advice const& advice, doubl
   return fmt::format("integrator={{{}}}", keys);
 }
 
-// Adds overrides of those periods of frames and samples that the scene sets. `steps_of` converts
-// them to steps of the new method.
+// Adds overrides of those periods of frames, samples and checkpoints that the scene sets in steps.
+// `steps_of` converts them to steps of the new method.
 template <class StepsOf>
 void add_output_keys(io::Scene const& scene, std::vector<std::string>& overrides,
                      StepsOf const& steps_of) {
   for (auto const& [key, every] : {std::pair{"output.every", scene.output.every},
                                    {"output.scalars_every", scene.output.scalars_every}})
     if (scene.places.contains(key)) overrides.push_back(fmt::format("{}={}", key, steps_of(every)));
+  if (auto const every = scene.output.checkpoint_every.steps; every > 0)
+    overrides.push_back(fmt::format("output.checkpoint_every=\"{} steps\"", steps_of(every)));
 }
 
 }  // namespace
@@ -81,8 +83,11 @@ Resolved resolve(io::Scene const& scene, Advice const& advice) {
   resolved.overrides.push_back(integrator_table(scene, advice, resolved.dt, resolved.steps));
   if (has_slow_field(scene) && advice.candidate.substeps == 0)
     resolved.overrides.emplace_back(without_multirate(scene));
-  add_output_keys(scene, resolved.overrides,
-                  [&](std::int64_t every) { return within(integrator, every) / together * parts; });
+  add_output_keys(scene, resolved.overrides, [&](std::int64_t every) {
+    // Those of checkpoints may be no multiple of `together`.
+    auto const all = within(integrator, every);
+    return std::max<std::int64_t>(1, all / together * parts + all % together * parts / together);
+  });
   return resolved;
 }
 
