@@ -193,6 +193,21 @@ TEST_F(Trading, AnAdvisedRunHasTheErrorAskedFor) {
   }
 }
 
+TEST_F(Trading, TheConstantSigmaIsThatOfEqualSpins) {
+  auto const sigmas = [&](std::string const& lattice) {
+    std::set<std::string> found;
+    for (auto const& method : trade(joined({"--seconds", "0.1"}, set(lattice)))["methods"]) {
+      std::string const name = method["method"];
+      if (auto const at = name.find(" sigma "); at != name.npos)
+        found.insert(name.substr(at + 7, name.find(',', at) - at - 7));
+    }
+    return found;
+  };
+  EXPECT_EQ(sigmas("lattice={shape=[6],moments=[2.0],gyromagnetic=[6.0]}"),
+            std::set<std::string>{"3"});
+  EXPECT_EQ(sigmas("lattice={shape=[6],moments=\"i < 3 ? 1 : 2\"}"), std::set<std::string>());
+}
+
 TEST_F(Trading, AnAdvisedRunKeepsTheTimesOfCheckpoints) {
   auto const advice = nlohmann::json::parse(
       advise("1e-3", joined({"--json"}, set("output={every=4,checkpoint_every=\"4 steps\"}"))));

@@ -33,13 +33,22 @@ double Candidate::least_tolerance() const {
 
 namespace {
 
-double sum_of_couplings(io::Scene const& scene) {
+// Returns the rate gyromagnetic ratio / moment * the sum of a site's couplings by exchange; 0 if
+// the sites differ in it, or if it depends on t.
+double rate_of_couplings(io::Scene const& scene) {
+  auto const& lattice = scene.lattice;
+  auto const rates = io::noise_of_cell_sites(scene);
+  bool const is_uniform =
+      !lattice.moments_of_sites.there() && !lattice.gyromagnetic_of_sites.there() &&
+      !scene.field.exchange_factors.there() &&
+      std::ranges::all_of(rates, [&](double rate) { return rate == rates.front(); });
+  if (!is_uniform || scene.field.in_time.exchange != io::AppliedComponent(1.0)) return 0;
   double sum = 0;
   for (int axis = 0; axis < 3; ++axis)
-    if (scene.lattice.shape[axis] > 1)
+    if (lattice.shape[axis] > 1)
       sum += 2 * scene.field.exchange.value_or(io::Exchange{}).constant /
-             (scene.lattice.spacing[axis] * scene.lattice.spacing[axis]);
-  return sum;
+             (lattice.spacing[axis] * lattice.spacing[axis]);
+  return rates.front() * sum;
 }
 
 bool is_possible(io::Scene const& scene, Candidate const& candidate) {
@@ -55,10 +64,9 @@ bool is_possible(io::Scene const& scene, Candidate const& candidate) {
 
 // Returns the candidates in double precision that the rows of the list of methods ask for.
 std::vector<Candidate> in_double(io::Scene const& scene) {
-  // Exchange adds a multiple of the spin itself to H, which does not turn the spin. If all moments
-  // and gyromagnetic factors are 1, a constant sigma removes it, and only the sum of the neighbours
-  // remains.
-  double const couplings = sum_of_couplings(scene);
+  // Exchange adds a multiple of the spin itself to H, which does not turn the spin. A constant
+  // sigma removes it if it is equal at all sites, and only the sum of the neighbours remains.
+  double const couplings = rate_of_couplings(scene);
   std::vector<Candidate> all;
   for (auto const* const method : io::methods()) {
     Candidate const plain{{.method = method, .rotation = method->usual_rotation()}};
