@@ -17,6 +17,25 @@ import cayspin_plots  # noqa: F401  puts `texture` on the path
 from texture import checksum
 
 
+# Prints the signals that a run gets if it is stopped twice. Like view_texture.py, it needs nothing
+# compiled.
+STOP_TWICE = """
+import pathlib, sys, types
+from unittest import mock
+package = types.ModuleType("cayspin")
+package.__path__ = [sys.argv[1]]
+sys.modules["cayspin"] = package
+from cayspin.view.run import Run
+with mock.patch("subprocess.Popen") as popen, mock.patch("pathlib.Path.exists") as exists:
+    exists.side_effect = [False, True, True]
+    popen.return_value.poll.return_value = None
+    run = Run("cayspin", pathlib.Path(sys.argv[2]))
+    run.stop()
+    run.stop()
+    print(*(call.args[0].name for call in popen.return_value.send_signal.call_args_list))
+"""
+
+
 def state_of(pid):
     return pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
 
@@ -288,6 +307,13 @@ class Steering(ScriptTest):
         wait(lambda: page.news()["run"] == "ended")
         self.assertEqual(page.news()["state"], "ended early")
         self.assertIn("interrupted", page.news()["message"])
+
+    def test_a_second_stop_does_not_kill_the_run(self):
+        scene = self.folder / "scene.toml"
+        scene.write_text(LONG_SCENE)
+        result = subprocess.run([sys.executable, "-c", STOP_TWICE, SCRIPTS / "cayspin", scene],
+                                capture_output=True, text=True)
+        self.assertEqual((result.stdout, result.stderr), ("SIGINT SIGCONT SIGCONT\n", ""))
 
     def test_the_page_takes_its_run_along(self):
         (self.folder / "scene.toml").write_text(LONG_SCENE)

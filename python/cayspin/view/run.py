@@ -30,7 +30,7 @@ class Run:
     refused."""
 
     def __init__(self, program: str, scene: pathlib.Path):
-        self.output, self._paused = _output_of(scene), False
+        self.output, self._paused, self._stopped = _output_of(scene), False, False
         was_there = self.output is None or self.output.exists()
         self._messages = tempfile.TemporaryFile()
         try:
@@ -69,9 +69,11 @@ class Run:
         self._send(signal.SIGCONT, paused=False)
 
     def stop(self) -> None:
-        """Ends the run after the step under way; its file keeps what was written. A second call
-        ends the run at once."""
-        self._send(signal.SIGINT, signal.SIGCONT, paused=False)
+        """Ends the run after the step under way; its file keeps what was written."""
+        # A second interrupt would kill the run.
+        interrupts = () if self._stopped else (signal.SIGINT,)
+        self._stopped = True
+        self._send(*interrupts, signal.SIGCONT, paused=False)
 
     def close(self) -> None:
         """Stops the run by stop() and waits for its end, or kills it after a minute. Its file keeps
