@@ -41,9 +41,12 @@ def parse_arguments():
     parser.add_argument("--movie", type=pathlib.Path, metavar="MOVIE",
                         help="all frames, images of a path, or a mode that moves, .mp4 (by ffmpeg) "
                              "or .gif, in place of a picture")
-    parser.add_argument("--fps", type=command_line.real, default=20,
-                        help="frames per second (default: 20)")
-    return parser.parse_args()
+    parser.add_argument("--fps", type=command_line.real,
+                        help="frames per second of a movie (default: 20)")
+    arguments = parser.parse_args()
+    if arguments.movie is None and arguments.fps is not None:
+        parser.error("--fps without --movie; accepted: both, or no --fps")
+    return arguments
 
 
 def import_libraries():
@@ -99,7 +102,8 @@ def frames_of(file, arguments):
 
 
 def draw_movie(file, arguments):
-    name, writer = arguments.movie, movie_writer(arguments.movie, arguments.fps)
+    name = arguments.movie
+    writer = movie_writer(name, 20 if arguments.fps is None else arguments.fps)
     frames = frames_of(file, arguments)
     limit = None
     if arguments.charge or arguments.difference is not None:
@@ -122,6 +126,11 @@ def draw_movie(file, arguments):
 def figure_of(file, arguments):
     """The figure of a file, and what the name of its picture ends with."""
     if modes.is_modes(file):
+        for option in ("frame", "plane", "difference", "charge"):
+            given = getattr(arguments, option)
+            if given is not None and given is not False:
+                raise ValueError(f"--{option} of a picture of modes; accepted: no --{option}" +
+                                 ", or --movie" * (option != "difference"))
         return modes.draw(file), "modes"
     of_frames = arguments.charge or arguments.difference is not None
     if path.is_path(file) and arguments.frame is None and not of_frames:

@@ -131,6 +131,9 @@ class PlotModes(PlotFound):
                                "--frame", 2)
         self.assert_no_picture("--difference of a mode; accepted: a file of frames", self.file,
                                "--movie", movie, "--difference", 0)
+        for option in (("--frame", 0), ("--plane", "z=0"), ("--difference", 0), ("--charge",)):
+            self.assert_no_picture(f"{option[0]} of a picture of modes; accepted: no {option[0]}",
+                                   self.file, *option)
         waves = self.modes("waves.h5", waves=True)
         self.assertEqual(self.plot(waves).returncode, 0)
         self.assert_no_picture("waves have no shapes; accepted: a file of modes", waves, "--movie",

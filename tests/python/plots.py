@@ -200,6 +200,7 @@ class PlotTexture(ScriptTest):
                 (f"--difference 1.5: {number}", "--difference", 1.5),
                 ("--replica x: accepted: a whole number", "--replica", "x"),
                 ("--fps x: accepted: a number", "--fps", "x"),
+                ("--fps without --movie; accepted: both, or no --fps", "--fps", 5),
                 ("--colors x: accepted: hue, safe", "--colors", "x"),
                 ("--charge not allowed with argument --difference (see cayspin plot --help)",
                  "--difference", 0, "--charge"),
