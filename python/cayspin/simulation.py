@@ -14,6 +14,7 @@ from cayspin import _cayspin, arguments, sites, texture, toml_text
 from cayspin.averages import Averages
 from cayspin.equilibrium import Minimum, Modes
 from cayspin.scene import Scene
+from cayspin.simulation_texture import texture_of
 
 _GUARD_PERIOD = 100  # steps between two checks of energy and lengths in step()
 _LAST_STEP = 2**53
@@ -314,20 +315,9 @@ class Simulation:
         """
         arguments.options(options, texture.OPTIONS, "plot")
         try:
-            return texture.draw(self._texture(), axes, **options)
+            return texture.draw(texture_of(self), axes, **options)
         except ValueError as error:
             raise _cayspin.CayspinError(f"plot: {error}") from None
-
-    def _texture(self):
-        scene, spins = self._scene, self.spins
-        _, boundary, si = texture.lattice_of(scene.text)
-        cell, places = scene.cell, None
-        if spins.ndim == 5 or np.count_nonzero(cell - np.diag(np.diag(cell))):
-            numbers = np.stack(np.meshgrid(*map(np.arange, spins.shape[-4:-1]), indexing="ij"), -1)
-            places = np.stack([(numbers[..., ::-1] + site) @ cell for site in scene.basis])
-            places = places.reshape(spins.shape)
-        return texture.Texture(spins, np.diag(cell), boundary, places, si,
-                               texture.time_text(self.time, si))
 
     def field(self) -> np.ndarray:
         """The effective field H of every site now, (nz, ny, nx, 3), for a crystal with several

@@ -145,19 +145,6 @@ TEST_F(Modes, StartFromFilesAndSaddles) {
   EXPECT_LT(*std::ranges::min_element(decay), -0.1);
 }
 
-// An interrupted relax leaves fewer frames than fields, as here the longer list does.
-TEST_F(Modes, AreThoseInTheFieldOfTheLastFrame) {
-  auto const scene = write("scene.toml", film);
-  auto const in = [](std::string const& fields) { return set("field.applied=[" + fields + "]"); };
-  std::string const two = "[0.1,0,0],[0.2,0,0]";
-  EXPECT_EQ(start(joined({"relax", scene, "--output", "rest.h5"}, in(two))).status, 0);
-  Arguments const of_file{"modes", "rest.h5", "--count", "2", "--quiet", "--overwrite"};
-  output_of(of_file);
-  auto const frequency = numbers("frequency");
-  output_of(joined(of_file, in(two + ",[3,0,0]")));
-  EXPECT_EQ(numbers("frequency"), frequency);
-}
-
 TEST_F(Modes, InfoHasTheSpectrum) {
   auto const scene = write("scene.toml", film);
   EXPECT_EQ(start({"modes", scene, "--count", "2", "--hessian", "--quiet"}).status, 0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// cayspin modes with the torques of currents, compared with closed forms and with a run in time.
+// cayspin modes in the field of a file's last frame, and with the torques of currents, compared
+// with closed forms and with a run in time.
 #include "modes_test.hpp"
 
 #include <fmt/format.h>
@@ -11,6 +12,22 @@
 
 namespace cayspin::program::test {
 namespace {
+
+// An interrupted relax leaves fewer frames than fields, as here the longer list does.
+TEST_F(Modes, AreThoseInTheFieldOfTheLastFrame) {
+  auto const scene = write(
+      "scene.toml",
+      "[system]\nkind = \"llg\"\ndamping = 0.1\n[lattice]\nshape = [4]\n[field]\nexchange = 1.0\n"
+      "anisotropy = { constant = 0.1, axis = [1, 0, 0] }\n[initial]\nuniform = [1, 0.1, 0.1]\n");
+  auto const in = [](std::string const& fields) { return set("field.applied=[" + fields + "]"); };
+  std::string const two = "[0.1,0,0],[0.2,0,0]";
+  EXPECT_EQ(start(joined({"relax", scene, "--output", "rest.h5"}, in(two))).status, 0);
+  Arguments const of_file{"modes", "rest.h5", "--count", "2", "--quiet", "--overwrite"};
+  output_of(of_file);
+  auto const frequency = numbers("frequency");
+  output_of(joined(of_file, in(two + ",[3,0,0]")));
+  EXPECT_EQ(numbers("frequency"), frequency);
+}
 
 struct TorqueModes : Modes {
   static std::string scene(std::string const& lattice_and_field, std::string const& torque) {
