@@ -150,11 +150,12 @@ class PathFinder {
 
   /// Relaxes the string until the gradient across it is below `bound` times the strongest field: at
   /// the highest image if `of_highest`, otherwise at all images. If the gradient no longer falls,
-  /// gives up if `of_highest`; otherwise shortens the steps first. Returns nothing, or why the
-  /// search ends.
+  /// gives up if `of_highest`; otherwise sweeps first, with shorter and shorter steps. Returns
+  /// nothing, or why the search ends.
   std::optional<PathEnd> relax(double bound, bool of_highest,
                                int most_steps = std::numeric_limits<int>::max()) {
-    double turn = longest_turn, least = std::numeric_limits<double>::infinity();
+    double share = 1, least = std::numeric_limits<double>::infinity();
+    if (of_highest && string_.sweeps()) string_.sweep(0);
     bound = std::max(bound, 64.0 * std::numeric_limits<Real>::epsilon()) * strongest_;
     for (int step = 0, since = 0;; ++step, ++since) {
       double const largest = string_.look(exec_, field_, options_.time);
@@ -173,12 +174,13 @@ class PathFinder {
       if (largest < 0.9 * least) since = 0;
       least = std::min(least, largest);
       if (since > 30) {
-        if (turn < 0.03 || of_highest) return std::nullopt;
-        string_.forget_pairs();
-        turn *= 0.5;
+        if (share < 0.2 || of_highest) return std::nullopt;
+        if (string_.sweeps()) share *= 0.5;
+        string_.sweep(share);
         since = 0;
+        least = std::numeric_limits<double>::infinity();
       }
-      string_.step(exec_, preconditioner_, is_mobile_, turn);
+      string_.step(exec_, preconditioner_, is_mobile_, longest_turn);
     }
   }
 
@@ -266,7 +268,7 @@ class PathFinder {
     if (climbed.energy.value > peak.energy + 0.1 * span_of(string_.profile())) return false;
     if (is_known(saddle_.spins())) return false;
     find_direction(exec_, peak_, peak_, saddle_.spins(), peak_, 0, 1, saddle_.vector());
-    string_.bend(exec_, saddle_.vector(), image, fraction);
+    bend(exec_, string_, saddle_.vector(), image, fraction);
     if (!string_.insert(exec_, saddle_.spins(), climbed.energy, image)) return false;
     is_settled_ = false;
     if (found_.saddles.empty() || climbed.energy.value > found_.saddle().energy)

@@ -49,10 +49,10 @@ class Preconditioner {
   void forget_curvature() { shift_ = first_shift_; }
   double first_shift() const { return first_shift_; }
 
-  /// Computes to = (K + c)^-1 from.
+  /// Computes to = (K + c + more)^-1 from.
   template <class Exec>
-  void apply(Exec const& exec, Spins const& from, Spins const& to) {
-    exchange_->solve(exec, shift_, Real(1), from, to);
+  void apply(Exec const& exec, Spins const& from, Spins const& to, double more = 0) {
+    exchange_->solve(exec, shift_ + more, Real(1), from, to);
   }
 
  private:

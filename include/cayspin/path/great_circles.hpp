@@ -8,6 +8,7 @@
 #include <cayspin/rotation/exponential.hpp>
 
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 
@@ -131,6 +132,28 @@ Along find_direction(Exec const& exec, Spins const& spins, Spins const& before, 
       DirectionOfPath<Real>{spins.array(), before.array(), after.array(), gradient.array(),
                             weight_before, weight_after, direction.array()});
   return {square, slope};
+}
+
+/// Turns the images of a path along a tangent vector, fully at a point of the path and by less and
+/// less towards the next fixed images. `fraction`: place of the point between image `after` and the
+/// next one.
+template <class Exec, class Path, class Spins>
+void bend(Exec const& exec, Path const& path, Spins const& vector, std::size_t after,
+          double fraction) {
+  using Real = typename Spins::value_type;
+  double const peak = static_cast<double>(after) + fraction;
+  std::size_t begin = after, end = after + 1;
+  while (!path.is_fixed(begin)) --begin;
+  while (!path.is_fixed(end)) ++end;
+  for (std::size_t k = begin + 1; k < end; ++k) {
+    auto const at = static_cast<double>(k);
+    double const first = static_cast<double>(begin), last = static_cast<double>(end);
+    double const weight = at < peak ? (at - first) / (peak - first) : (last - at) / (last - peak);
+    auto const& spins = path.spins(k);
+    for_each_site<Real>(exec, "cayspin::path::bend", spins.layout(),
+                        TurnTowards<Real>{spins.array(), vector.array(), spins.output(false),
+                                          static_cast<Real>(weight)});
+  }
 }
 
 }  // namespace cayspin::inline v0_2::detail

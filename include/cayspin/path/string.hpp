@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
@@ -122,14 +123,13 @@ class PathString {
     Recursion::Numbers along{};
     for (std::size_t i = 0; i < count_; ++i) along[i] = of_pairs_[i];
     recursion_.begin(count_, use, along, product);
-    double const scale = scale_of(exec, preconditioner, use, product);
+    double const scale = sweeps() ? share_ : scale_of(exec, preconditioner, use, product);
 
     auto const& left = scratch_[0];
     std::vector<std::array<double, pairs + 1>> of_images(size());
     along = {};
-    for (std::size_t k = 0; k < size(); ++k) {
+    for (std::size_t const k : order()) {
       auto const* const image = &images_[k];
-      if (image->is_fixed) continue;
       Kokkos::Array<Real, pairs> weights{};
       double t = 0;
       for (std::size_t i = 0; i < count_; ++i) {
@@ -137,7 +137,9 @@ class PathString {
         t += recursion_.alpha[i] * image->products[Products::change_along + i];
       }
       sum(exec, *image, image->across, 1, t * image->per_square, image->changes, weights, left);
-      preconditioner.apply(exec, left, next_step(*image));
+      double const more =
+          sweeps() ? preconditioner.first_shift() + follow_higher(exec, k, left) : 0;
+      preconditioner.apply(exec, left, next_step(*image), more);
       of_images[k] = changes_along(exec, *image, next_step(*image));
       for (std::size_t i = 0; i < count_; ++i)
         along[i] += scale * across_of(*image, of_images[k], i);
@@ -175,31 +177,23 @@ class PathString {
           exec, "cayspin::path::turn", next.layout(),
           TurnTowards<Real>{image.spins.array(), next.array(), image.trial.output(false), Real(1)});
     }
-    has_step_ = true;
+    has_step_ = !sweeps();
     space_evenly(exec);
+  }
+
+  bool sweeps() const { return share_ > 0; }
+  /// From the next step on, replaces L-BFGS by sweeps down the energy: where an image moves across
+  /// the path, the direction at its lower neighbour turns, so the lower image follows. L-BFGS takes
+  /// this curvature for symmetric, and fails where the energy falls steeply between close images.
+  /// `share`: part of each step that is taken; 0 returns to L-BFGS.
+  void sweep(double share) {
+    share_ = share;
+    forget_pairs();
   }
 
   void forget_pairs() {
     count_ = 0;
     has_step_ = false;
-  }
-
-  /// Turns images along a tangent vector, fully at a point of the path and by less and less towards
-  /// the next fixed images. `fraction`: place of the point between image `after` and the next one.
-  template <class Exec>
-  void bend(Exec const& exec, Spins const& vector, std::size_t after, double fraction) {
-    double const peak = static_cast<double>(after) + fraction;
-    std::size_t begin = after, end = after + 1;
-    while (!is_fixed(begin)) --begin;
-    while (!is_fixed(end)) ++end;
-    for (std::size_t k = begin + 1; k < end; ++k) {
-      auto const at = static_cast<double>(k);
-      double const first = static_cast<double>(begin), last = static_cast<double>(end);
-      double const weight = at < peak ? (at - first) / (peak - first) : (last - at) / (last - peak);
-      for_each_site<Real>(exec, "cayspin::path::bend", spins(k).layout(),
-                          TurnTowards<Real>{spins(k).array(), vector.array(),
-                                            spins(k).output(false), static_cast<Real>(weight)});
-    }
   }
 
   /// Adds a state as a fixed image between image `after` and the next one. The number of images
@@ -255,6 +249,29 @@ class PathString {
   };
 
   Spins const& next_step(Image const& image) const { return image.steps[count_]; }
+
+  /// Returns the images that are not fixed; for sweeps, each after its higher neighbour.
+  std::vector<std::size_t> order() const {
+    std::vector<std::size_t> images;
+    for (std::size_t k = 0; k < size(); ++k)
+      if (!is_fixed(k)) images.push_back(k);
+    if (sweeps())
+      std::ranges::stable_sort(images, std::greater<>(), [this](auto k) { return energy(k); });
+    return images;
+  }
+
+  /// Adds to the gradient of an image the change that comes from the step of its higher neighbour.
+  /// Returns the curvature of the image across the path that comes from its direction.
+  template <class Exec>
+  double follow_higher(Exec const& exec, std::size_t k, Spins const& gradient) const {
+    auto const higher = energy(k - 1) > energy(k + 1) ? k - 1 : k + 1;
+    double const arc = arcs_[std::min(k, higher)];
+    if (!(energy(higher) > energy(k) && arc > 0)) return 0;
+    double const curvature = std::abs(images_[k].slope) / arc;
+    if (!is_fixed(higher))
+      combine(exec, 1, gradient, curvature, next_step(images_[higher]), gradient);
+    return curvature;
+  }
 
   void keep_pair() {
     squares_[count_] = {};
@@ -375,6 +392,7 @@ class PathString {
   std::vector<double> arcs_;
   std::size_t count_ = 0;
   bool has_step_ = false;
+  double share_ = 0;
   std::array<std::array<double, 2>, pairs + 1> squares_{};
   std::array<double, Products::values> of_pairs_{};
   Recursion recursion_;
