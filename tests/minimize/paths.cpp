@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 
 namespace cayspin::test {
 namespace {
@@ -91,6 +92,33 @@ TYPED_TEST(Paths, OfAMacrospinWithALowBarrier) {
                                 this->options());
   ASSERT_EQ(found.end, PathEnd::converged);
   EXPECT_NEAR(found.barrier_forward(), 0.5 * easy * std::pow(1 - applied / easy, 2), this->exact());
+}
+
+// Between close images the energy falls steeply, and images turn the direction at their lower
+// neighbours. A chain with strong exchange turns as one spin.
+TYPED_TEST(Paths, SettleWithManyImagesInAnyField) {
+  std::mt19937 engine(7);
+  std::uniform_real_distribution<double> fields(0.2, 0.9);
+  std::uniform_int_distribution<int> images(16, 64), sites(2, 32);
+  for (int scene = 0; scene < 6; ++scene) {
+    double const applied = scene == 0 ? 0.9 : fields(engine);
+    int const count = scene == 0 ? 64 : images(engine), length = scene % 2 == 0 ? 1 : sites(engine);
+    auto const lattice = Lattice::chain(length);
+    EffectiveField const field(UniaxialAnisotropy(1, {0, 0, 1}), Zeeman{{0, 0, -applied}},
+                               Exchange(lattice, length > 1 ? 400 : 0));
+    std::vector<double> from, to;
+    for (int site = 0; site < length; ++site) {
+      from.insert(from.end(), up.begin(), up.end());
+      to.insert(to.end(), down.begin(), down.end());
+    }
+    auto options = this->options();
+    if (length > 1) options.torque = this->is_double ? 1e-6 : 1e-3;
+    auto const found =
+        this->find(field, lattice, from, to, options, static_cast<std::size_t>(count));
+    ASSERT_EQ(found.end, PathEnd::converged) << applied << ' ' << count << ' ' << length;
+    double const barrier = 0.5 * length * std::pow(1 - applied, 2);
+    EXPECT_NEAR(found.barrier_forward(), barrier, this->is_double ? 1e-10 : 1e-4 * length);
+  }
 }
 
 // The extrema of Stoner and Wohlfarth's energy, at any angle, are found by Newton's method.
