@@ -274,7 +274,8 @@ void define_run(nb::module_& module) {
            [](SceneRun& run, std::filesystem::path const& checkpoint) {
              as_error([&] { run.save(checkpoint); });
            })
-      .def("require_reachable", &SceneRun::require_reachable)
+      .def("require_reachable",
+           [](SceneRun const& run, std::int64_t count) { run.require_reachable(count); })
       .def("change",
            [](SceneRun& run, Overrides const& overrides, ArraysIn const& numbers) {
              auto const arrays = given(std::nullopt, numbers);

@@ -71,18 +71,16 @@ class PathString {
     return points;
   }
 
-  /// Evaluates all images that are not fixed, and returns the largest gradient of a spin across the
-  /// path, or NaN where a gradient or an energy is not finite.
+  /// Evaluates the images that are not fixed. Returns the largest gradient across the path, or NaN.
   template <class Exec, class Field>
   double look(Exec const& exec, Field const& field, double time) {
-    double largest = 0;
     for (auto& image : images_) {
       if (image.is_fixed) continue;
-      auto const now = look_at_image(exec, field, time, image.spins, image.changes[count_]);
+      image.energy = look_at_image(exec, field, time, image.spins, image.changes[count_]).energy;
       ++evaluations_;
-      image.energy = now.energy;
     }
     measure_arcs(exec, [this](std::size_t k) -> Spins const& { return spins(k); });
+    double largest = 0;
     for (std::size_t k = 1; k + 1 < size(); ++k) {
       auto& image = images_[k];
       if (image.is_fixed) continue;
@@ -325,7 +323,7 @@ class PathString {
   double scale_of(Exec const& exec, Preconditioner<Spins>& preconditioner,
                   std::array<bool, pairs> const& use, Product const& product) {
     if (count_ == 0 || !use[count_ - 1]) return 1;
-    std::size_t const last = count_ - 1;
+    auto const last = count_ - 1;
     auto const& [change, conditioned] = scratch_;
     double along = 0;
     for (auto const& image : images_) {
