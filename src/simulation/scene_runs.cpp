@@ -59,7 +59,12 @@ std::vector<SceneRun::Relaxed> SceneRun::relax_all(std::span<SceneRun* const> ru
   std::atomic<bool> interrupted = false;
   auto asking = settings;
   asking.interrupted = or_asked(interrupted, settings.interrupted);
-  side_by_side(runs, [&](std::size_t number) {
+  // With these terms a search frees memory on the way. Kokkos then waits for all kernels, also for
+  // the one in which runs are side by side.
+  bool const frees_memory = std::ranges::any_of(runs, [](SceneRun const* run) {
+    return io::needs_pass(run->scene_) || io::is_nonlocal(run->scene_.field);
+  });
+  auto const relax_one = [&](std::size_t number) {
     auto& [minimum, error] = all[number];
     if (asking.interrupted()) {
       minimum.end = MinimizeEnd::interrupted;
@@ -74,7 +79,15 @@ std::vector<SceneRun::Relaxed> SceneRun::relax_all(std::span<SceneRun* const> ru
       interrupted = true;
     }
     if (minimum.end == MinimizeEnd::interrupted) interrupted = true;
-  });
+  };
+  if (!frees_memory) {
+    side_by_side(runs, relax_one);
+    return all;
+  }
+  for (std::size_t number = 0; number < runs.size(); ++number) {
+    Turn::Work const of_the_turn;
+    relax_one(number);
+  }
   return all;
 }
 
