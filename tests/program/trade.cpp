@@ -196,7 +196,8 @@ TEST_F(Trading, AnAdvisedRunHasTheErrorAskedFor) {
 TEST_F(Trading, TheConstantSigmaIsThatOfEqualSpins) {
   auto const sigmas = [&](std::string const& lattice) {
     std::set<std::string> found;
-    for (auto const& method : trade(joined({"--seconds", "0.1"}, set(lattice)))["methods"]) {
+    auto const all = trade(joined({"--seconds", "0.1"}, set(lattice)));
+    for (auto const& method : all["methods"]) {
       std::string const name = method["method"];
       if (auto const at = name.find(" sigma "); at != name.npos)
         found.insert(name.substr(at + 7, name.find(',', at) - at - 7));

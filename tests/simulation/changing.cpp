@@ -97,7 +97,8 @@ TEST(Changing, IsRefusedWhereSamplesHaveTheEnergiesOfOtherTerms) {
 TEST(Changing, KeepsTheNotesAboutFunctionsOfTheProgram) {
   std::string const applied = "# field.applied: a function of the program\n",
                     nonlocal = "# field.nonlocal: a function of the program\n";
-  auto scene = llg_scene("0.1", "rkmk4", 40, "lattice = { shape = [9] }\n");
+  auto scene = llg_scene("0.1", "rkmk4", 40,
+                         "lattice = { shape = [9] }\ninitial = { uniform = [0, 0, 1] }\n");
   scene.text += applied + nonlocal;
   auto const run = SceneRun::open(scene, {});
   auto const has = [&](std::string const& note) {

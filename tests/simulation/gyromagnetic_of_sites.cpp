@@ -194,7 +194,7 @@ TEST(GyromagneticOfSites, BoundsTheStepOfSlonczewskiTorques) {
     return make_plan(scene_of(R"toml(
 units = "SI"
 system = { kind = "llg" }
-material = { mu_s = 1.5e-23, alpha = 0.1, gamma = { regions = )toml" +
+material = { mu_s = 1.5e-23, alpha = 0.1, damping_form = "gilbert", gamma = { regions = )toml" +
                               gamma + R"toml( } }
 lattice = { shape = [4], spacing = 3e-10, regions = "i % 2" }
 initial = { uniform = [1, 0, 0] }

@@ -49,7 +49,7 @@ TEST(Magnitudes, IncludeTheFieldOfAProgram) {
 TEST(Magnitudes, IncludeDmiAtAnySpacing) {
   auto const magnitude = [](std::string const& dmi) {
     return magnitude_of(llg_scene("0.5", "rkmk4", 1,
-                                  "lattice = { shape = [6, 6], spacing = [1e-4, 2e-4, 1] }\n"
+                                  "lattice = { shape = [6, 6], spacing = [1e-4, 2e-4] }\n"
                                   "initial = { uniform = [0, 0, 1] }\nfield = { dmi = " +
                                       dmi + " }\n"));
   };
