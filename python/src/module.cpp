@@ -252,6 +252,8 @@ auto as_error(Work const& work) {
     return work();
   } catch (UsageError const&) {
     throw;
+  } catch (NumbersFailed const&) {
+    throw;
   } catch (io::SceneError const&) {
     throw;
   } catch (std::runtime_error const& error) {
