@@ -256,7 +256,7 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
           fmt::format("its step {} is at t = {:.12g}{}, not at that many steps of dt = {:.12g}{}",
                       step_, time, units.si ? " s" : "", dt, units.si ? " s" : ""),
           is_thermal(scene) ? "the dt it was run with"
-                        : "the dt it was run with, or one of which t is a multiple");
+                            : "the dt it was run with, or one of which t is a multiple");
     step_ = step;
   }
   if (step_ >= end && !from_.at_begin)
