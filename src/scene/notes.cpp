@@ -257,7 +257,9 @@ class Notes {
     };
     auto const all = sites(scene_), there = total(spins), free = total(moving);
     if (lattice.occupied.there()) {
-      auto const zeros = zeros_of_occupied();
+      bool const moments_may_be_zero =
+          lattice.moments_of_sites.there() || std::ranges::count(lattice.moments, 0.0) > 0;
+      auto const zeros = moments_may_be_zero ? zeros_of_occupied() : all - there;
       if (zeros > 0 && is_shape_of_start())
         add("initial.file",
             fmt::format("zero vectors are sites without a spin, {} of {}", zeros, all));

@@ -45,8 +45,8 @@ std::vector<double> spins_of(cayspin_simulation* simulation) {
   return numbers;
 }
 
-/// What one thread of the test does: it runs `scene`, which writes `file`, and opens `from_file`, a
-/// scene that starts from that file.
+/// The scenes of one thread of the test. It runs `scene`, which writes `file`, and opens
+/// `from_file`, a scene that starts from that file.
 struct Course {
   cayspin_precision precision;
   std::string file, scene, from_file;

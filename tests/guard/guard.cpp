@@ -117,7 +117,7 @@ TEST(Guard, EnergiesAreHeldWhereDampingLetsThemOnlyFall) {
   auto of_sites = scene(0);
   of_sites.system.dampings.expression = "0.1";
   EXPECT_TRUE(must_fall(of_sites));
-  // The energy may rise where precession alone moves a spin.
+  // The energy may rise where only precession moves a spin.
   of_sites.system.dampings.expression = "i";
   EXPECT_FALSE(must_fall(of_sites));
   auto without_motion = of_sites;

@@ -297,7 +297,7 @@ TEST_F(Ensembles, WarnOfTheHottestReplica) {
   EXPECT_FALSE(exists("b.h5"));
 }
 
-// No replica alone has too much noise for this dt.
+// No single replica has too much noise for this dt.
 TEST_F(Ensembles, TakeAStepThatIsLongForATemperatureOfOne) {
   write("all.toml", chain_scene() + "[thermal]\ntemperature = 0.001\n" +
                         vary("\"thermal.temperature\" = { from = 0.001, to = 0.01 }\n", 32));
