@@ -116,8 +116,8 @@ class BlochProblem {
   /// Returns the complex rates of waves with this wave vector (in cycles per cell): a wave grows as
   /// e^(rate t). Only the half with the higher frequencies is returned, the lowest of these first.
   /// If rates are real, their frequencies are 0, and those that decay least are in that half, the
-  /// least first. Throws std::invalid_argument for a wave vector that does not fit the lattice along an
-  /// axis where the interaction reaches around.
+  /// least first. Throws std::invalid_argument for a wave vector that does not fit the lattice
+  /// along an axis where the interaction reaches around.
   std::vector<std::complex<double>> rates(std::array<double, 3> const& wave) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double const around = wave[axis] * static_cast<double>(cells[axis]);

@@ -38,8 +38,8 @@ struct MultirateOptions {
 /// Orders 2 and 3 interpolate by the polynomials through the last Order - 1 values (first pass) and
 /// Order values (second pass). Order 4 uses polynomials chosen for stability
 /// (multirate_weights.hpp), from 4 and 5 values, or interpolates 3 and 4 values after unequal
-/// steps. If only the expensive field makes a mode precess, on a circle and with the frequency w, the
-/// amplitude grows by about 1/4 (w dt)^4 per step at order 2. It falls by about 3/8 (w dt)^4 at
+/// steps. If only the expensive field makes a mode precess, on a circle and with the frequency w,
+/// the amplitude grows by about 1/4 (w dt)^4 per step at order 2. It falls by about 3/8 (w dt)^4 at
 /// order 3, and by about (w dt)^6 at order 4.
 ///
 /// With D the largest eigenvalue of the expensive field, no linear mode grew up to dt D = .05, .24,
