@@ -13,10 +13,11 @@ using enum Against;
 Section steps() {
   Section section{"Steps",
                   R"(
-One spin in a field of 1, damping 0.1. Up to dt 1e-12 the error of a step is far below an
-epsilon, and runs are exact; at 1e-3 they are bounded, apart from `classical_*`. `run` warns above
-the stable dt and above 3 radians a step, or above 2 radians where no stable dt is known. With the
-orthogonal generator, the energy of ab2 rises already at dt 1, which is detected.)",
+One spin in a field of 1, damping 0.1. Up to dt 1e-12 the error of a step is far below an epsilon,
+and runs are exact; at 1e-3 they are bounded, apart from `classical_*`. `run` warns if dt is above
+the stable dt, or if a spin may turn by more than 3 radians per step (2 radians where no stable dt
+is known). With the orthogonal generator, the energy of ab2 rises already at dt 1, which is
+detected.)",
                   {exact, bounded, warned, detected},
                   {exact, drifts, warned}};
   for (char const* dt : {"1e-300", "1e-12", "1e-3", "1", "1e8", "1e160", "1e300"}) {
