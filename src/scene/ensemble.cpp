@@ -55,8 +55,12 @@ std::vector<std::string> overrides_of(Scene const& scene, std::int64_t replica) 
   std::vector<std::string> overrides{"ensemble={}"};
   for (auto const& [key, values] : scene.ensemble.vary)
     overrides.push_back(fmt::format("{}={}", key, values[static_cast<std::size_t>(replica)]));
-  if (scene.thermal)
-    overrides.push_back(fmt::format("thermal.seed={}", scene.thermal->seed + replica));
+  bool const adds_noise = std::ranges::any_of(
+      scene.ensemble.vary, [](auto const& entry) { return entry.key.starts_with("thermal."); });
+  if (scene.thermal || adds_noise) {
+    auto const seed = scene.thermal ? scene.thermal->seed : 0;
+    overrides.push_back(fmt::format("thermal.seed={}", seed + replica));
+  }
   if (auto const* const random = std::get_if<RandomStart>(&scene.initial))
     overrides.push_back(fmt::format("initial.random.seed={}", random->seed + replica));
   return overrides;

@@ -74,7 +74,12 @@ std::optional<std::string> EnsembleRun::continue_from(std::filesystem::path cons
   auto const plan = make_plan(first().scene(), settings_.precision);
   auto const end =
       scene_.integrator.steps > 0 ? plan.times.steps : std::numeric_limits<std::int64_t>::max();
-  Restart const restart({file, info}, scene_, plan, settings_.precision, end);
+  // Times are counted as in the file, which has the units of the first replica. They differ from
+  // those of the ensemble's own scene if damping, for example, is varied.
+  auto scene = scene_;
+  scene.units = first().scene().units;
+  scene.integrator.dt = first().scene().integrator.dt;
+  Restart const restart({file, info}, scene, plan, settings_.precision, end);
   steps_ = restart.step();
   at_rest_.assign(replicas(), false);
   auto const spins = io::read_ensemble_spins(file, info);

@@ -100,6 +100,10 @@ EarlierRun::EarlierRun(std::filesystem::path of_run) : path(std::move(of_run)) {
                     "a trajectory or checkpoint",
                     path.string()));
   trajectory = io::read_info(path);
+  if (trajectory->cost.relaxed) {  // its steps and times are the numbers of the states
+    std::ranges::fill(trajectory->frame_steps, 0);
+    std::ranges::fill(trajectory->frame_times, 0.0);
+  }
   auto const beside = io::checkpoint_beside(path);
   std::error_code ignored;
   if (!std::filesystem::exists(beside, ignored)) return;

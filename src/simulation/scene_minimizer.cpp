@@ -60,8 +60,9 @@ Plan make_plan_to_relax(io::Scene const& scene, Precision precision) {
   io::require_no_ensemble(scene, "this command");
   require_rest(scene);
   auto without_steps = scene;
-  without_steps.integrator.steps = 0;
-  without_steps.integrator.substeps = 1;
+  without_steps.integrator = {};
+  without_steps.integrator.method = io::methods().front();  // any: it takes no step
+  without_steps.integrator.dt = 1;
   // A search evaluates all terms equally often.
   if (auto& slab = without_steps.field.slab_demag; slab && slab->multirate) {
     slab->multirate = false;

@@ -32,6 +32,7 @@ void keep_numbers_of_free_sides(io::Scene const& scene, std::vector<io::Anisotro
 // must keep these moments.
 void keep_moments_of_sites(io::Scene const& scene, io::Lattice& lattice) {
   if (!io::has_moments_of_sites(scene) || lattice.moments_of_sites.there()) return;
+  lattice.moments_of_sites = {};  // all_moments() is in reduced units, whatever the scene's unit
   lattice.moments_of_sites.key = "lattice.moments";
   lattice.moments_of_sites.given = std::make_shared<std::vector<double> const>(
       io::all_moments(scene, {{0, 0, 0}, scene.lattice.shape}));

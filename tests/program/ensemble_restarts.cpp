@@ -83,6 +83,38 @@ TEST_F(EnsembleRestarts, AfterAnInterruptHaveTheBitsOfOneRun) {
   EXPECT_EQ(last("rest.h5", "/spins"), last("whole.h5", "/spins"));
 }
 
+// In SI the reduced unit of time depends on alpha, so it differs between replicas.
+TEST_F(EnsembleRestarts, WithVariedDampingInSiHaveTheBitsOfOneRun) {
+  write("all.toml", R"(units = "SI"
+[material]
+Ms = 8e5
+A = 1.3e-11
+alpha = 0.1
+damping_form = "gilbert"
+[system]
+kind = "llg"
+[lattice]
+shape = [6, 5]
+spacing = [4e-9, 4e-9, 3e-9]
+[field]
+slab_demag = { normal = [0, 0, 1] }
+[initial]
+random = { seed = 5 }
+[integrator]
+method = "heun"
+dt = 1e-13
+steps = 13
+[output]
+every = 3
+)" + ensemble(2, "\"material.alpha\" = { from = 0.2, to = 0.5 }\n"));
+  ASSERT_EQ(run({"--output", "whole.h5"}).status, 0);
+  ASSERT_EQ(run({"--output", "part.h5", "--set", "integrator.steps=6"}).status, 0);
+  auto const outcome = run({"--output", "rest.h5", "--restart", "part.h5"});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  for (std::string const name : {"/spins", "/energy", "/time", "/step"})
+    EXPECT_EQ(last("rest.h5", name), last("whole.h5", name)) << name;
+}
+
 TEST_F(EnsembleRestarts, NameWhatDiffers) {
   write("all.toml", chain_scene() + ensemble(3));
   ASSERT_EQ(run({"--output", "part.h5", "--set", "integrator.steps=5"}).status, 0);

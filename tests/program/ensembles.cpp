@@ -85,6 +85,15 @@ TEST_F(Ensembles, HaveTheBitsOfTheirRuns) {
     }
 }
 
+TEST_F(Ensembles, HaveTheirOwnNoiseIfOnlyTheyAreThermal) {
+  auto const heun = set("integrator.method='heun'", "output.scalars_every=2");
+  run_ensemble(chain_scene() + vary("\"thermal.temperature\" = [0.1, 0.1, 0.1]\n"), heun);
+  for (int replica = 0; replica < 3; ++replica)
+    expect_run(replica, chain_scene(),
+               joined(heun, set("thermal.temperature=0.1", fmt::format("thermal.seed={}", replica),
+                                fmt::format("initial.random.seed={}", 3 + replica))));
+}
+
 TEST_F(Ensembles, ChooseTheirOwnSteps) {
   Arguments const adaptive =
       set("integrator={method='tsit5',tolerance=1e-6,dt=0.1,steps=20}", "output.every=5");

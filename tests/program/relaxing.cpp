@@ -122,6 +122,23 @@ slab_demag = { normal = [0, 0, 1] }
   EXPECT_NEAR(info.frame_scalars[0].magnetization[2], 0.5, 2e-4);
 }
 
+// It takes no steps, so no method or tolerance is refused.
+TEST_F(Relax, IgnoresTheIntegrator) {
+  for (std::string const precision : {"double", "single"}) {
+    Arguments const same{"--precision", precision, "--overwrite"};
+    ASSERT_EQ(relax(scene, same).status, 0);
+    auto const spins = last_spins("out.h5");
+    for (std::string const integrator :
+         {"method = \"auto\"\nerror = 1e-4\ndt = 0.1\nend = 1\n",
+          "method = \"tsit5\"\ntolerance = 1e-9\ndt = 0.1\nend = 1\n",
+          "method = \"implicit_midpoint\"\ndt = 1e9\nend = 1e9\nrefuse_unstable = true\n"}) {
+      auto const outcome = relax(scene + "[integrator]\n" + integrator, same);
+      ASSERT_EQ(outcome.status, 0) << integrator << outcome.errors;
+      EXPECT_EQ(last_spins("out.h5"), spins) << integrator;
+    }
+  }
+}
+
 TEST_F(Relax, SaysWhenItDoesNotConverge) {
   auto const outcome = relax(scene, {"--evaluations", "12"});
   EXPECT_EQ(outcome.status, 3);

@@ -5,6 +5,8 @@
 #include "program_test.hpp"
 
 #include <csignal>
+#include <optional>
+#include <string>
 
 namespace cayspin::program::test {
 namespace {
@@ -282,6 +284,48 @@ TEST_F(Restarting, TakesTheMethodThatAutoChoseBefore) {
   EXPECT_EQ(after.tolerance, before.tolerance);
   EXPECT_EQ(after.steps, 2 * before.steps);
   EXPECT_EQ(second.frame_steps.front(), before.steps);
+}
+
+TEST_F(Restarting, KeepsTheOptionsOfItsOwnSceneBesideTheMethodOfAuto) {
+  auto const to = [](std::string const& steps_and_options) {
+    return "integrator={method='auto',error=1e-4,dt=0.1,steps=" + steps_and_options + "}";
+  };
+  auto const integrator_of = [&](char const* file) {
+    return io::parse_scene(info_of(file).header.resolved_scene, "scene.toml").integrator;
+  };
+  struct Case {
+    std::string before, after;
+    bool energy_guard, refuse_unstable;
+    std::optional<double> until_torque;
+  };
+  for (auto const& [before, after, energy_guard, refuse_unstable, until_torque] :
+       {Case{"", ",energy_guard=false", false, false, {}},
+        Case{",energy_guard=false", ",refuse_unstable=true", true, true, {}},
+        Case{",until_torque=1e-9", ",until_torque=2e-9", true, false, 2e-9}}) {
+    SCOPED_TRACE(before + " then " + after);
+    run_to("5", "first.h5", {"--overwrite", "--set", to("5" + before)});
+    auto const outcome = start(to_second({"--set", to("10" + after)}));
+    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+    auto const first = integrator_of("first.h5"), second = integrator_of("second.h5");
+    EXPECT_EQ(second.method, first.method);
+    EXPECT_EQ(second.dt, first.dt);
+    EXPECT_EQ(second.energy_guard, energy_guard);
+    EXPECT_EQ(second.refuse_unstable, refuse_unstable);
+    EXPECT_EQ(second.until_torque, until_torque);
+  }
+}
+
+// In a file of relax, times are the numbers of its states.
+TEST_F(Restarting, BeginsAtZeroFromAFileOfRelaxedStates) {
+  output_of({"relax", "chain.toml", "--quiet", "--output", "first.h5", "--set",
+             "field.applied=[[0,0,0.1],[0,0,0.2],[0,0,0.3]]"});
+  ASSERT_EQ(info_of("first.h5").frames, 3);
+  auto const outcome = start(to_second({"--set", "field.applied=[0,0,0.3]"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  auto const second = info_of("second.h5");
+  EXPECT_EQ(second.frame_steps.front(), 0);
+  EXPECT_EQ(second.frame_steps.back(), 25);
+  EXPECT_EQ(second.frame_times.front(), 0);
 }
 
 }  // namespace

@@ -92,6 +92,19 @@ class OwnFields(PackageTest):
                     self.assertAlmostEqual(both.energy(), without.energy() + of_own,
                                            delta=200 * limit)
 
+    def test_add_to_dipoles_of_unequal_moments_in_si(self):
+        si = {"units": "SI", "lattice": {**CRYSTAL, "spacing": 3e-10},
+              "material": {"mu_s": {"bohr_magnetons": [2.0, 3.0]}, "alpha": 0.1,
+                           "damping_form": "gilbert"}, "system": {"kind": "llg"},
+              "integrator": {"method": "rkmk4", "dt": 1e-15, "steps": 1}}
+        for precision, limit in (("double", 1e-12), ("single", 1e-4)):
+            sim = cayspin.Simulation(scene({"dipoles": True, "nonlocal": slab}, **si), precision)
+            terms = sim.energies()
+            magnitude = max(map(abs, terms.values()))
+            self.assertEqual(set(terms), {"dipoles", "nonlocal"})
+            self.assertGreater(min(map(abs, terms.values())), 0)
+            self.assertAlmostEqual(sum(terms.values()), sim.energy(), delta=limit * magnitude)
+
     # Yields a simulation with the field `whole` in the scene and a slab as own field, and one with
     # the two exchanged.
     def exchanged(self, whole, lattice, precision="double", **tables):

@@ -9,6 +9,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace cayspin::program::trade {
 namespace {
@@ -28,6 +31,19 @@ std::int64_t steps_between_looks(io::Scene const& scene, bool adaptive) {
                            within(integrator, scene.output.scalars_every)));
 }
 
+// Returns those flags of [integrator] that can be set with any method, in order of the keys.
+std::vector<std::pair<std::string_view, bool>> flags_for_any_method(
+    io::Integrator const& integrator, bool adaptive) {
+  std::vector<std::pair<std::string_view, bool>> flags;
+  for (auto const& key : io::Integrator::keys()) {
+    bool const belongs_to_method =
+        key.name == "compensated" || (key.name == "energy_control" && adaptive);
+    auto const* const flag = std::get_if<bool io::Integrator::*>(&key.member);
+    if (flag && !belongs_to_method) flags.emplace_back(key.name, integrator.**flag);
+  }
+  return flags;
+}
+
 // Returns the complete table [integrator], since that of the scene may have keys that the method
 // does not accept.
 std::string integrator_table(io::Scene const& scene, Advice const& advice, double dt,
@@ -40,13 +56,11 @@ std::string integrator_table(io::Scene const& scene, Advice const& advice, doubl
   if (candidate.method->adaptive && std::isfinite(of_scene.max_dt))
     keys += fmt::format(",max_dt={}", of_scene.max_dt * scene.units.time);
   keys += fmt::format(",dt={},steps={}", dt, steps);
-  for (auto const& key : io::Integrator::keys()) {
-    bool const belongs_to_method =
-        key.name == "compensated" || (key.name == "energy_control" && candidate.method->adaptive);
-    auto const* const flag = std::get_if<bool io::Integrator::*>(&key.member);
-    if (flag && !belongs_to_method && of_scene.**flag != io::Integrator{}.**flag)
-      keys += fmt::format(",{}={}", key.name, of_scene.**flag);
-  }
+  bool const adaptive = candidate.method->adaptive;
+  auto const defaults = flags_for_any_method({}, adaptive);
+  for (auto const& flag : flags_for_any_method(of_scene, adaptive))
+    if (std::ranges::find(defaults, flag) == defaults.end())
+      keys += fmt::format(",{}={}", flag.first, flag.second);
   if (of_scene.until_torque)
     keys += fmt::format(",until_torque={}", *of_scene.until_torque * scene.units.field);
   return fmt::format("integrator={{{}}}", keys);
@@ -122,12 +136,23 @@ std::optional<io::Scene> with_method_of(io::Scene const& scene, std::string cons
   auto const steps = [&](std::int64_t of_scene) {
     return std::llround(static_cast<double>(of_scene) * ratio);
   };
-  bool const same_choice = typed.integrator.error == scene.integrator.error &&
-                           typed.integrator.dt == scene.integrator.dt;
+  auto const& before = typed.integrator;
+  auto const& now = scene.integrator;
+  bool const same_choice = before.error == now.error && before.dt == now.dt &&
+                           before.max_dt == now.max_dt &&
+                           before.until_torque.has_value() == now.until_torque.has_value();
   double const whole = static_cast<double>(scene.integrator.steps) * ratio;
   if (!same_choice || std::abs(whole - std::round(whole)) > 1e-6) return std::nullopt;
   std::vector overrides{io::as_override(resolved_before, "integrator"),
                         fmt::format("integrator.steps={}", steps(scene.integrator.steps))};
+  bool const adaptive = resolved.integrator.method->adaptive;
+  auto const kept = flags_for_any_method(resolved.integrator, adaptive);
+  for (auto const& flag : flags_for_any_method(now, adaptive))
+    if (std::ranges::find(kept, flag) == kept.end())
+      overrides.push_back(fmt::format("integrator.{}={}", flag.first, flag.second));
+  if (now.until_torque)
+    overrides.push_back(
+        fmt::format("integrator.until_torque={}", *now.until_torque * scene.units.field));
   if (has_slow_field(scene) && !has_slow_field(resolved))
     overrides.emplace_back(without_multirate(scene));
   add_output_keys(scene, overrides,
