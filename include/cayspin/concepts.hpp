@@ -86,9 +86,9 @@ int evaluations_of_next_step(Stepper const& stepper) {
 /// |---|---|---|
 /// | `check_spins(spins)` | throws for unsuitable spins or invalid values | accepts all spins |
 /// | `auto prepare(exec, spins, t)` | the term for kernels at time t | the term itself |
-/// | `static bool depends_on_time` | what prepare returns depends on t, not on the spins | false |
+/// | `static bool depends_on_time` | prepare's result depends only on t and stays valid | false |
 /// | `bool is_stationary(exec, spins)` | one prepare fits all t and spins | if it has no prepare |
-/// | `bool needs_only_time(exec, spins)` | prepare ignores spins | if either one above is true |
+/// | `bool needs_only_time(exec, spins)` | prepare ignores spins | see the two above |
 /// | `bool is_affine()` | H is affine in the spins | true if it has a degree |
 /// | `static bool is_conservative` | false: H has no energy, as for a torque | true |
 ///

@@ -58,6 +58,14 @@ struct StoreTurning {
   }
 };
 
+/// Throws std::invalid_argument if the fields of `turning` are on another lattice than the spins.
+template <class Real, class MemorySpace, class Spins>
+void require_turning_of(char const* who, Turning<Real, MemorySpace> const& turning,
+                        Spins const& spins) {
+  require_lattice(who, turning.precession.lattice(), spins.lattice());
+  require_lattice(who, turning.damping.lattice(), spins.lattice());
+}
+
 /// Setup that all searches for modes at an equilibrium share.
 template <class Exec, class Field, class Spins>
 class ModesAt {
@@ -75,6 +83,10 @@ class ModesAt {
     if (options.count < 1 || options.count > ModesOptions::most)
       throw std::invalid_argument(std::string(who) + ": the count must be from 1 to " +
                                   std::to_string(ModesOptions::most));
+    if (!(options.tolerance >= 0) || options.evaluations < 1)
+      throw std::invalid_argument(
+          std::string(who) +
+          ": accepted: a tolerance of 0 or more, and at least one evaluation of the field");
   }
 
   /// Searches, calls take(search, i) for each mode i found, and returns why the search ended.
@@ -164,6 +176,7 @@ NormalModes<Spins> normal_modes(
   using Real = typename Spins::value_type;
   Kokkos::Profiling::ScopedRegion const region("cayspin::normal_modes");
   detail::ModesAt<Exec, Field, Spins> at("cayspin::normal_modes", exec, field, spins, options);
+  detail::require_turning_of("cayspin::normal_modes", turning, spins);
   Turning<Real, typename Spins::memory_space> inverse{{"modes::sideways", spins.lattice()},
                                                       {"modes::along", spins.lattice()}};
   Kokkos::deep_copy(exec, inverse.precession.allocation(), turning.precession.allocation());
@@ -253,6 +266,7 @@ BlochModes bloch_modes(
   detail::require_whole("cayspin::bloch_modes", spins.lattice());
   detail::require_one_replica("cayspin::bloch_modes", spins.lattice());
   detail::require_periodic_along(wave_vectors, spins.lattice());
+  detail::require_turning_of("cayspin::bloch_modes", turning, spins);
   BlochModes found;
   bool is_stopped = false;
   auto const stops = [&] { return is_stopped = is_stopped || (poll && poll() == Next::stop); };

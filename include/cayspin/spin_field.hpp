@@ -247,9 +247,9 @@ void copy(Exec const& exec, SiteField<Real, Components, MemorySpace> const& from
   detail::copy_sites<false>(exec, to, from);
 }
 
-/// Copies numbers in host memory, (sites, Components) with x fastest, into a field; waits. If there
-/// are only as many as for one replica of the lattice, all replicas get them. Throws
-/// std::invalid_argument for any other count.
+/// Copies numbers in host memory, (sites, Components) with x fastest, into a field; waits for all
+/// instances. If there are only as many as for one replica of the lattice, all replicas get them.
+/// Throws std::invalid_argument for any other count.
 template <class Number, class Real, int Components, class MemorySpace>
 void copy_from_host(std::vector<Number> const& from,
                     SiteField<Real, Components, MemorySpace> const& to) {
@@ -266,6 +266,7 @@ void copy_from_host(std::vector<Number> const& from,
   constexpr std::size_t components = Components;
   Kokkos::View<Number const* [components], Kokkos::LayoutRight, Kokkos::HostSpace,
                Kokkos::MemoryUnmanaged> const host(from.data(), to.sites());
+  detail::fence_all_instances<Exec>("cayspin::copy_from_host");
   Exec const exec;
   auto const there =
       Kokkos::create_mirror_view_and_copy(Kokkos::view_alloc(exec, MemorySpace()), host);
@@ -282,6 +283,7 @@ std::vector<Real> copy_to_host(SiteField<Real, Components, MemorySpace> const& f
   Kokkos::View<Real* [components], Kokkos::LayoutRight, Kokkos::HostSpace,
                Kokkos::MemoryUnmanaged> const host(numbers.data(), from.sites());
   auto const there = Kokkos::create_mirror_view(MemorySpace(), host);
+  detail::fence_all_instances<Exec>("cayspin::copy_to_host");
   Exec const exec;
   copy(exec, from, there);
   Kokkos::deep_copy(exec, host, there);

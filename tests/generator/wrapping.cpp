@@ -5,6 +5,9 @@
 
 #include <cayspin/cayspin.hpp>
 
+#include <cmath>
+#include <type_traits>
+
 namespace cayspin::test {
 namespace {
 
@@ -29,6 +32,27 @@ class Doubled : public Forwarding<Doubled<Inner>, Inner> {
 
  private:
   Inner inner_;
+};
+
+/// A generator around another one, without Forwarding and without needs_only_time.
+template <class Inner>
+struct Plain {
+  Inner inner;
+  static constexpr bool depends_on_time = Inner::depends_on_time;
+
+  template <class Exec, class Spins>
+  bool is_stationary(Exec const& exec, Spins const& spins) const {
+    return inner.is_stationary(exec, spins);
+  }
+  template <class Exec, class Spins>
+  auto prepare(Exec const& exec, Spins const& spins, double t) const {
+    auto ready = inner.prepare(exec, spins, t);
+    return Plain<decltype(ready)>{ready};
+  }
+  template <class Stencil>
+  KOKKOS_FUNCTION auto operator()(Stencil const& stencil) const {
+    return inner(stencil);
+  }
 };
 
 template <class Backend>
@@ -75,6 +99,31 @@ TYPED_TEST(Wrapping, SaysWhenItMayBePrepared) {
   says(EffectiveField(Exchange(this->lattice, 1), turning), false, true);
   HostField const on_host(this->spins, SlabDemagOnHost({1, 0, 0}));
   says(EffectiveField(Zeeman{{0, 1, 2}}, on_host), false, false);
+}
+
+// One part of the field depends only on time, and the other on the spins of each stage.
+TYPED_TEST(Wrapping, WithoutForwardingHasTheFieldOfEachStage) {
+  using Spins = typename TestFixture::Spins;
+  HostField const on_host(this->spins, SlabDemagOnHost({1, 0, 0}));
+  TimeDependentZeeman const turning([](double t) {
+    return Vec3<double>{std::cos(t), std::sin(t), 0.5};
+  });
+  LandauLifshitz const inner(EffectiveField(on_host, turning), 0.2);
+  Plain<std::remove_const_t<decltype(inner)>> const plain{inner};
+  EXPECT_FALSE(detail::needs_only_time(plain, this->exec, this->spins));
+  auto const after = [&](auto const& generator, auto make_stepper) {
+    auto spins = spins_of<Spins>(this->lattice, numbers_of(this->spins));
+    auto stepper = make_stepper(spins);
+    integrate(this->exec, stepper, generator, spins, {0, 0.25, 4});
+    this->exec.fence();
+    return numbers_of(spins);
+  };
+  auto const adaptive = [](Spins const& like) {
+    return AdaptiveRkmk<Spins, tableau::Tsitouras5>(like, {.tolerance = 1e-3});
+  };
+  auto const fixed = [](Spins const& like) { return Rkmk4<Spins>(like); };
+  EXPECT_EQ(after(plain, adaptive), after(inner, adaptive));
+  EXPECT_EQ(after(plain, fixed), after(inner, fixed));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cayspin/cayspin.hpp>
 
 #include <cstdlib>
+#include <vector>
 
 using namespace cayspin;
 using namespace cayspin::test;
@@ -92,6 +93,33 @@ TYPED_TEST(Strictness, IntegrateWaitsForItsObserversAndItsEnd) {
     EXPECT_NEAR(seen[i], std::cos(0.5 * i) / std::cosh(0.05 * i), 1e-3) << i;
   integrate(exec, stepper, generator, spins, {1.5, 0.5, 1});
   EXPECT_NEAR(z_now(), std::cos(2.) / std::cosh(0.2), 1e-3);
+}
+
+// Constructors of terms and copies to the host have no instance of the caller's.
+TYPED_TEST(Strictness, TermsAndCopiesWaitForWorkOnAnyInstance) {
+  auto const other = Kokkos::Experimental::partition_space(HostDevice(), 1)[0];
+  auto const lattice = Lattice::chain(4);
+  Kokkos::View<TypeParam* [1], Kokkos::LayoutLeft, HostDeviceMemory> const twos("twos", 4);
+  Kokkos::deep_copy(twos, TypeParam(2));
+  using Numbers = ScalarField<TypeParam, HostDeviceMemory>;
+  Numbers const copied("copied", lattice), damping("damping", lattice), constant("c", lattice);
+  copy(other, twos, copied);
+  EXPECT_EQ(copy_to_host(copied), std::vector<TypeParam>(4, TypeParam(2)));
+  copy(other, twos, damping);
+  EXPECT_TRUE(LandauLifshitz(EffectiveField(Zeeman{{1, 0, 0}}), damping).is_damped());
+
+  auto const spins = [&] {
+    typename TestFixture::Spins all("spins", lattice);
+    copy_from_host(std::vector<TypeParam>{1, 0, 0, /**/ 0, 1, 0, /**/ 1, 0, 0, /**/ 0, 1, 0}, all);
+    return all;
+  }();
+  typename TestFixture::Spins const field("field", lattice);
+  copy(other, twos, constant);
+  SiteDependentExchange const exchange(constant);
+  evaluate_field(HostDevice(), exchange, spins, 0, field);
+  auto const numbers = copy_to_host(field);
+  EXPECT_EQ(numbers[0], -2);  // 2 (m1 - m0) at the free end
+  EXPECT_EQ(numbers[1], 2);
 }
 
 TYPED_TEST(Strictness, AnInstanceWaitsForItselfAlone) {

@@ -3,7 +3,10 @@
 #include "../support/larger.hpp"
 #include "modes.hpp"
 
+#include <cmath>
 #include <complex>
+#include <limits>
+#include <stdexcept>
 
 namespace cayspin::test {
 namespace {
@@ -97,6 +100,23 @@ TYPED_TEST(MacrospinModes, RefuseWhatCannotBe) {
                std::invalid_argument);
   EXPECT_THROW(normal_modes(this->exec, LandauLifshitz(field, 0.1), m, {.count = 129}),
                std::invalid_argument);
+  EXPECT_THROW(normal_modes(this->exec, LandauLifshitz(field, 0.1), m, {.tolerance = std::nan("")}),
+               std::invalid_argument);
+  EXPECT_THROW(normal_modes(this->exec, LandauLifshitz(field, 0.1), m, {.evaluations = 0}),
+               std::invalid_argument);
+  using Real = typename TestFixture::Real;
+  using Memory = typename TestFixture::Spins::memory_space;
+  for (auto const& other : {Lattice::chain(1), Lattice::square(1, 2)}) {
+    Turning<Real, Memory> const turning{{"precession", other, Real(1)}, {"damping", other}};
+    EXPECT_THROW(normal_modes(this->exec, field, turning, m), std::invalid_argument);
+    EXPECT_THROW(bloch_modes(this->exec, field, turning, m, {{0, 0, 0}}), std::invalid_argument);
+  }
+  auto const ring = Lattice::chain(2, 1, Boundary::periodic);
+  Turning<Real, Memory> const turning{{"precession", ring, Real(1)}, {"damping", ring}};
+  for (double const k : {std::nan(""), std::numeric_limits<double>::infinity()})
+    EXPECT_THROW(
+        bloch_modes(this->exec, field, turning, this->uniform(ring, {0, 0, 1}), {{k, 0, 0}}),
+        std::invalid_argument);
 }
 
 // An isotropic open chain with the exchange -A has w = 2 A sin(pi p / n), equal for p and n - p,

@@ -19,6 +19,13 @@ template <class Exec>
 inline constexpr bool is_host_execution =
     std::is_same_v<typename Exec::memory_space, Kokkos::HostSpace>;
 
+/// Waits for the work queued on all instances if Exec is a device. A function that gets no instance
+/// calls it before it reads or writes fields, on which an instance of the caller may still work.
+template <class Exec>
+void fence_all_instances(char const* label) {
+  if constexpr (!is_host_execution<Exec>) Kokkos::fence(label);
+}
+
 /// On synchronous host spaces (is_synchronous), kernels over at most this many sites run on the
 /// calling thread, since waking other threads would take longer.
 inline constexpr std::int64_t calling_thread_sites = 2048;

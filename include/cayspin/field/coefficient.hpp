@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/reduce_sites.hpp>
 #include <cayspin/spin_field.hpp>
 
@@ -84,7 +85,9 @@ struct Signs {
 /// when a number is not finite.
 template <class Real, class MemorySpace>
 Signs signs_of(ScalarField<Real, MemorySpace> const& numbers, char const* what) {
-  typename MemorySpace::execution_space const exec;
+  using Exec = typename MemorySpace::execution_space;
+  fence_all_instances<Exec>("cayspin::signs_of");
+  Exec const exec;
   auto const count = reduce_sites<Sum, 4>(exec, "cayspin::signs_of", numbers.layout(),
                                           SignsOfSites<Real>{numbers.array()});
   if (count[0] != 0)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/ghosts.hpp>
 #include <cayspin/field/coefficient.hpp>
@@ -191,8 +192,10 @@ class SiteDependentExchange : public detail::PreparedOnce {
 
  private:
   void find_bonds() {
+    using Exec = typename MemorySpace::execution_space;
     auto const& lattice = constants_.lattice();
-    typename MemorySpace::execution_space const exec;
+    detail::fence_all_instances<Exec>("cayspin::SiteDependentExchange");
+    Exec const exec;
     for (int axis = 0; axis < 3; ++axis) {
       if (!lattice.has_neighbors(axis)) continue;
       auto const& bonds = bonds_[axis].emplace("SiteDependentExchange::bonds", lattice);

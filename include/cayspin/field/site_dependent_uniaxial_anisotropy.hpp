@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/execution.hpp>
 #include <cayspin/field/coefficient.hpp>
 #include <cayspin/optional_members.hpp>
 #include <cayspin/stencil.hpp>
@@ -99,7 +100,9 @@ class SiteDependentUniaxialAnisotropy : public detail::PreparedOnce {
  private:
   template <class Real, class MemorySpace>
   static void require_unit(SiteField<Real, 3, MemorySpace> const& axes) {
-    typename MemorySpace::execution_space const exec;
+    using Exec = typename MemorySpace::execution_space;
+    detail::fence_all_instances<Exec>("cayspin::SiteDependentUniaxialAnisotropy");
+    Exec const exec;
     auto const count = detail::reduce_sites<detail::Sum, 1>(
         exec, "cayspin::SiteDependentUniaxialAnisotropy::axes", axes.layout(),
         detail::NotUnitOfSites<Real>{axes.array()});

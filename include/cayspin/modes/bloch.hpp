@@ -117,10 +117,12 @@ class BlochProblem {
   /// e^(rate t). Only the half with the higher frequencies is returned, the lowest of these first.
   /// If rates are real, their frequencies are 0, and those that decay least are in that half, the
   /// least first. Throws std::invalid_argument for a wave vector that does not fit the lattice
-  /// along an axis where the interaction reaches around.
+  /// along an axis where the interaction reaches around, or is not finite.
   std::vector<std::complex<double>> rates(std::array<double, 3> const& wave) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double const around = wave[axis] * static_cast<double>(cells[axis]);
+      if (!std::isfinite(around))
+        throw std::invalid_argument("cayspin::bloch_modes: accepted: finite wave vectors");
       if (reaches_around[axis] && std::abs(around - std::round(around)) > 1e-9)
         throw std::invalid_argument(
             std::string("cayspin::bloch_modes: the interaction reaches around the lattice; "

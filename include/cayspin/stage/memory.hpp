@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/memory.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stage/arrays.hpp>
@@ -74,6 +75,7 @@ class StageMemory {
 
   /// Zeroes the fields left by the previous step.
   void forget(std::string const& label) {
+    fence_all_instances<DefaultExec>("cayspin::StageMemory::forget");
     DefaultExec const exec;
     for (auto const& field : carried_) Kokkos::deep_copy(exec, field.allocation(), Real(0));
     exec.fence(label);

@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -124,6 +125,10 @@ class StiffGauss : public detail::StepperBase<Spins> {
 
   StiffGauss(std::string const& own_name, Spins const& like, StiffOptions const& options)
       : detail::StepperBase<Spins>(own_name, like.lattice()), solving_(options) {
+    if (!(options.tolerance >= 0) || options.iterations < 1 || options.halvings < 0)
+      throw std::invalid_argument(
+          "cayspin::" + own_name +
+          ": accepted: a tolerance of 0 or more, at least one iteration and 0 or more halvings");
     std::string const prefix = own_name + "::";
     auto const& lattice = like.lattice();
     x_ = detail::numbered_fields<Spins, count>(prefix + "generator", lattice);
