@@ -52,7 +52,8 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
     store_every_other(value.z, to + 2 * array.stride, count());
   }
 
-  /// See Site::Place.
+  /// For Stencil, which asks a site for its Place (see Site::Place). ColourSite itself does not use
+  /// it.
   struct Place {
     std::ptrdiff_t stride;
   };

@@ -35,10 +35,10 @@ struct ComponentPointers {
 template <class Index>
 struct DeviceLayout {
   std::int32_t last[3];  // last index along each axis, in a replica
-  Index step[3];         // distance of the next site along each axis
-  Index wrap[3];         // takes a step past an end to the other end, or back to the site
+  Index step[3];         // offset from a site to the next one along each axis
+  Index wrap[3];         // shifts a step past an end to the other end, or back to the site
   bool periodic_x;
-  DivisionBy replica;  // the number of a plane's replica
+  DivisionBy replica;  // gives the number of a plane's replica
 
   explicit DeviceLayout(RowLayout const& layout)
       : last{layout.nx - 1, layout.ny - 1, layout.replica_planes - 1},
@@ -49,13 +49,13 @@ struct DeviceLayout {
       wrap[axis] = layout.periodic[axis] ? step[axis] * (last[axis] + 1) : step[axis];
   }
 
-  /// Returns the number of a plane in its replica.
+  /// Returns the index of a plane within its replica.
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t plane_of_replica(std::int32_t z) const {
     return z - replica.quotient(z) * (last[2] + 1);
   }
 
-  /// Returns true if Index can count the numbers of a component and of one more plane, and can
-  /// count all threads.
+  /// Returns true if Index is large enough for the numbers of one component plus one plane, and for
+  /// all threads.
   static bool reaches(RowLayout const& layout, std::int64_t threads) {
     std::int64_t const numbers = (layout.nz + std::int64_t(1)) * layout.plane;
     return std::max(numbers, threads) <= std::numeric_limits<Index>::max();

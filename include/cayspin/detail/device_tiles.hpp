@@ -15,8 +15,8 @@
 // multiprocessor, and x and y are found once for all sites of a thread.
 namespace cayspin::inline v0_2::detail {
 
-/// Division of numbers below 2^31 by a positive divisor that is known at launch: a product and a
-/// shift.
+/// Division of numbers below 2^31 by a positive divisor that is known at launch, by a
+/// multiplication and a shift.
 class QuickDivision {
  public:
   explicit QuickDivision(std::uint32_t divisor)
@@ -35,7 +35,7 @@ class QuickDivision {
 
 class DeviceTiles {
  public:
-  /// Divides the first `nx` places of each of these rows into tiles. A thread works on one plane,
+  /// Divides the first `nx` places of each row in `rows` into tiles. A thread works on one plane,
   /// or on up to eight if the lattice fills a large device many times.
   DeviceTiles(std::int32_t nx, RowRange const& rows)
       : nx_(nx),

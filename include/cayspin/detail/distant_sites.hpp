@@ -18,7 +18,7 @@ struct DistantSites {
   SiteArray<Real, 3> array;
   std::int32_t extent[3];  // of one replica
   bool periodic[3];
-  DivisionBy replica;  // the number of a plane's replica
+  DivisionBy replica;  // gives the number of a plane's replica
   std::ptrdiff_t pitch, plane;
 
   DistantSites(SiteArray<Real, 3> const& of, RowLayout const& layout)
@@ -40,7 +40,7 @@ struct DistantSites {
             load<Value>(from + 2 * array.stride)};
   }
 
-  /// Returns the number of a plane in its replica.
+  /// Returns the index of a plane within its replica.
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t plane_of_replica(std::int32_t z) const {
     return z - replica.quotient(z) * extent[2];
   }
@@ -55,8 +55,8 @@ struct DistantSites {
     return array.data + (first + there) * plane + y * pitch;
   }
 
-  /// Loads sites x, x + 1, ... of a row. Past its ends the row repeats, or is zero if they are
-  /// open; x may lie outside the row by up to its length.
+  /// Loads sites x, x + 1, ... of a row. Past its ends, a periodic row repeats, and an open row is
+  /// zero. x may be outside the row by up to the row's length.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> along(Real const* row, std::int32_t x) const {
     constexpr std::int32_t lanes = lanes_of<Value>;
@@ -100,8 +100,8 @@ struct DistantSites {
   KOKKOS_FORCEINLINE_FUNCTION Value lane_by_lane(Real const* row, std::int32_t x) const {
     using Scalar = scalar_t<Value>;
     auto const at = [&](std::int32_t lane) {
-      // A lane that is two rows or more from the start belongs to no site, so its value is
-      // arbitrary.
+      // A lane two row lengths or more from the start of the row belongs to no site, so its value
+      // is arbitrary.
       std::int32_t i = x + lane;
       i = wrapped(i < 2 * extent[0] ? i : extent[0] - 1, 0);
       return i < 0 ? Scalar(0) : static_cast<Scalar>(row[i]);

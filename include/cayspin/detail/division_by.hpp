@@ -8,7 +8,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Divides whole numbers from 0 to 2^31 - 1 by a fixed one with a multiplication and a shift
+/// Divides whole numbers from 0 to 2^31 - 1 by a fixed divisor, with a multiplication and a shift
 /// (Granlund and Montgomery 1994). On devices this takes a few instructions; an integer division
 /// takes about forty.
 struct DivisionBy {
@@ -19,8 +19,8 @@ struct DivisionBy {
   DivisionBy() = default;
   /// The divisor must be at least 1.
   explicit DivisionBy(std::int32_t divisor) {
-    // 2^bits >= divisor, and the multiplier is 2^(31 + bits) / divisor, rounded up: less than 2^32,
-    // and too large by less than 2^bits / divisor.
+    // 2^bits >= divisor. The multiplier is 2^(31 + bits) / divisor, rounded up. It is less than
+    // 2^32, and rounding has increased it by less than 2^bits / divisor.
     auto const d = static_cast<std::uint32_t>(divisor);
     int const bits = std::bit_width(d - 1);
     shift = 31 + bits;

@@ -9,7 +9,7 @@
 // Loads and stores of packs whose numbers are two apart in memory.
 namespace cayspin::inline v0_2::detail {
 
-/// Returns from[Odd], from[Odd + 2], ...; may read two whole packs from `from`.
+/// Returns from[Odd], from[Odd + 2], ...; may read two whole packs, which start at `from`.
 template <int Odd, class Value, class Real>
 KOKKOS_FORCEINLINE_FUNCTION Value load_every_other(Real const* from) {
   if constexpr (std::is_same_v<scalar_t<Value>, Real>) {

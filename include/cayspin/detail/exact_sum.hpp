@@ -17,7 +17,7 @@ namespace cayspin::inline v0_2::detail {
 /// their words.
 class ExactSum {
  public:
-  /// The words are the digits, then the numbers of summands that are NaN, infinity and -infinity.
+  /// The words are the digits, then three counts: of summands that are NaN, infinity and -infinity.
   static constexpr int digits = 68, words = digits + 3;
 
   CAYSPIN_DETAIL_NOINLINE void add(double number) {
@@ -38,8 +38,8 @@ class ExactSum {
     if (--until_carry_ == 0) carry();
   }
 
-  /// Brings all digits but the last into 0 .. 2^32 - 1. The sum of up to 2^30 such digits then fits
-  /// into a word.
+  /// Brings all digits but the last into 0 .. 2^32 - 1. A word can then hold the sum of up to 2^30
+  /// such digits.
   void carry() {
     for (int i = 0; i + 1 < digits; ++i) {
       word_[i + 1] += word_[i] >> digit_bits;
@@ -84,8 +84,9 @@ class ExactSum {
 
   std::uint64_t digit(int i) const { return i < 0 ? 0 : static_cast<std::uint64_t>(word_[i]); }
 
-  // Rounds a sum >= 0 after carry(). Converts the leading 64 bits of the sum; the lowest of these
-  // is also set if any bit below them is set.
+  // Returns the sum rounded to nearest. It must be >= 0, and carry() must have been called. The
+  // leading 64 bits of the sum are converted to double; the lowest of them is also set if any bit
+  // below them is set.
   double rounded_magnitude() const {
     int top = digits - 1;
     while (top > 0 && word_[top] == 0) --top;

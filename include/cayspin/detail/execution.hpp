@@ -50,7 +50,7 @@ bool runs_on_calling_thread(std::int64_t sites) {
   return is_synchronous<Exec> && sites <= calling_thread_sites;
 }
 
-/// The space under which Kokkos' tools see kernels that run on the calling thread.
+/// The space by which Kokkos' profiling tools see kernels that run on the calling thread.
 #if defined(KOKKOS_ENABLE_SERIAL)
 using CallingThread = Kokkos::Serial;
 #else

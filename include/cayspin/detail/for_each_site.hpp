@@ -39,8 +39,8 @@ struct RowBlock {
 };
 
 /// The blocks that host tasks work on: one or more rows of a plane, or part of a long row. Unless
-/// planes are small, each is large enough to hide the cost of its launch; on large lattices there
-/// are enough for many threads.
+/// planes are small, each block is large enough to hide the cost of starting a task; on large
+/// lattices there are enough blocks for many threads.
 class RowBlocks {
  public:
   RowBlocks(RowLayout const& layout, std::int32_t packs, RowRange const& rows)
@@ -72,7 +72,8 @@ class RowBlocks {
   std::int32_t packs_, parts_of_row_, parts_of_plane_;
 };
 
-/// Host loop. One compiled body serves all host spaces, so that they give equal bits.
+/// Host loop. One compiled body serves all host spaces, so that their results are bitwise
+/// identical.
 template <class Real, class Functor>
 struct RowLoop {
   Functor functor;

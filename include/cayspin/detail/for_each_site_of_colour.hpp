@@ -121,7 +121,7 @@ struct OnDeviceSiteOfColour {
 
 /// Calls functor(site) for the sites of one colour, without ghosts: x + y + z has the parity
 /// functor.colour, where y and z are those in the whole lattice, or in a replica. On hosts it calls
-/// functor(site, site) if the functor takes pairs.
+/// functor(first, second) if the functor takes pairs.
 template <class Real, class Exec, class Functor>
 void for_each_site_of_colour(Exec const& exec, std::string const& label, RowLayout const& layout,
                              Functor const& functor) {

@@ -34,8 +34,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value load(Real const* from) {
   }
 }
 
-// Reductions of float fields load half a register of floats into a pack of doubles, by one
-// instruction that converts.
+// Loads half a register of floats into a pack of doubles, by one instruction that converts.
+// Reductions of float fields use this.
 #if defined(CAYSPIN_DETAIL_AVX512)
 template <>
 KOKKOS_FORCEINLINE_FUNCTION Pack<double> load<Pack<double>, float>(float const* from) {
@@ -95,7 +95,7 @@ KOKKOS_FORCEINLINE_FUNCTION void store_streaming(Value const& value, scalar_t<Va
   store(value, to);
 }
 
-/// Prefetches a cache line that will be read about a row later; any address is allowed.
+/// Prefetches a cache line that will be read about a row later; the address need not be valid.
 KOKKOS_FORCEINLINE_FUNCTION void prefetch([[maybe_unused]] void const* address) {
 #if defined(CAYSPIN_DETAIL_GNU)
   __builtin_prefetch(address);

@@ -18,9 +18,9 @@
 
 // A Pack is the value type of one iteration of a host loop: a register of Kokkos' SIMD types where
 // the configured architecture has one (backend.hpp), otherwise one number. Device loops use single
-// numbers, and device passes of the compiler know no other packs. So that all passes agree on the
-// types of kernels, no kernel has a pack in its template arguments or parameters. The operations
-// here accept packs and numbers, so that kernels are written once.
+// numbers, and in device passes of the compiler a Pack is a single number, too. So that all passes
+// agree on the types of kernels, no kernel has a pack in its template arguments or parameters. The
+// operations here accept packs and numbers, so that kernels are written once.
 namespace cayspin::inline v0_2::detail {
 
 #if defined(CAYSPIN_DETAIL_SIMD_ABI)
@@ -63,8 +63,8 @@ using scalar_t = typename ValueTraits<Value>::scalar;
 template <class Value>
 inline constexpr int lanes_of = ValueTraits<Value>::lanes;
 
-/// True if a Value belongs to a single site, as on devices. Code can then branch, and evaluates
-/// only the formula that this site needs.
+/// True if a Value belongs to a single site, as on devices. Code can then branch, and evaluate only
+/// the formula that this site needs.
 template <class Value>
 inline constexpr bool one_at_a_time = lanes_of<Value> == 1;
 
@@ -75,15 +75,15 @@ KOKKOS_FORCEINLINE_FUNCTION Value multiply_add(Value const& a, Value const& b, V
 #if defined(CAYSPIN_DETAIL_FMA)
     return Kokkos::fma(a, b, c);
 #else
-    return a * b + c;  // a library call per product would cost more than the rounding is worth
+    return a * b + c;  // Kokkos::fma would be a slow library call here
 #endif
   } else {
     return Kokkos::fma(a, b, c);
   }
 }
 
-/// Returns a * b - c, rounded only once where the hardware can do so. Intrinsics do this,
-/// because Kokkos' packs negate c by subtracting it from zero, a separate instruction.
+/// Returns a * b - c, rounded only once where the hardware can do so. Uses intrinsics, because
+/// Kokkos' packs negate c in a separate instruction.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value multiply_subtract(Value const& a, Value const& b,
                                                     Value const& c) {
@@ -144,11 +144,11 @@ KOKKOS_FORCEINLINE_FUNCTION Value nearest(Value const& a) {
   return (a + shift) - shift;
 }
 
-/// Returns the maximum, and `a` where either is NaN.
+/// Returns the maximum of a and b, and `a` where either is NaN.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value maximum(Value const& a, Value const& b) {
 #if defined(CAYSPIN_DETAIL_MAXIMUM_IS_SECOND)
-  if constexpr (lanes_of<Value> > 1) return Kokkos::max(b, a);  // the second where one is NaN
+  if constexpr (lanes_of<Value> > 1) return Kokkos::max(b, a);  // `a` where either is NaN
 #endif
   return select<Value>(a < b, b, a);
 }

@@ -62,7 +62,8 @@ struct Philox {
     word[3] = (numbers ^ numbers) + (draw >> 32U);
   }
 
-  /// Returns counters that are (number, draw) in every lane, for lanes that have different keys.
+  /// Returns an object whose counter is (number, draw) in every lane, for lanes that have different
+  /// keys.
   KOKKOS_FORCEINLINE_FUNCTION static Philox with_equal_counters(std::uint64_t number,
                                                                 std::uint64_t draw) {
     Philox equal(number, draw);

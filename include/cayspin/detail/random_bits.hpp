@@ -12,16 +12,16 @@ namespace cayspin::inline v0_2::detail {
 
 class RandomBitsOfColumns;
 
-/// 16 random bits for each place (a number), by Philox: eight counters serve 64 places. A place
-/// gets the same bits whether it is drawn by itself or with others in a register. Devices draw for
-/// one place at a time.
+/// 16 random bits for each place, by Philox. A place is a number, for example that of a site; eight
+/// counters serve 64 places. A place gets the same bits whether it is drawn by itself or with
+/// others in a register. Devices draw for one place at a time.
 template <bool OnHost>
 class RandomBits {
   friend class RandomBitsOfColumns;
 
  public:
-  /// The most places in one register. The first place in a register must be a multiple of the
-  /// number of places in it.
+  /// Largest number of places in one register. The first place in a register must be a multiple of
+  /// the number of places in it.
   static constexpr std::uint64_t most_lanes = 16;
 
   RandomBits() = default;
@@ -102,8 +102,7 @@ class RandomBits {
     return __builtin_convertvector(found, Numbers);
   }
 
-  // The bits drawn last. They are kept because the next register of a row usually needs some of
-  // them.
+  // The bits that were drawn last. The next register of a row usually needs some of them.
   struct Last {
     std::uint64_t block = ~std::uint64_t{0};
     alignas(64) std::uint32_t drawn[std::size_t{drawn_at_once}] = {};
@@ -180,7 +179,7 @@ class RandomBitsOfReplica {
 
  private:
   std::uint64_t seed_ = 0, draw_ = 0;
-  mutable std::int32_t replica_ = 0;  // of bits_
+  mutable std::int32_t replica_ = 0;  // the replica that bits_ is for
   mutable RandomBits<OnHost> bits_;
 };
 

@@ -17,13 +17,13 @@
 
 // Sums and maxima over sites, in double. On host spaces each row, or piece of a long row, is summed
 // in a fixed order: first the packs at the ends of the row, then those between them, and finally
-// the lanes of the sum in a fixed tree. The sums of rows are added without round-off. So the bits
-// do not depend on the host space, the number of threads or the division of a lattice into parts.
-// Devices sum with twice the digits, in their own order.
+// the lanes of the sum in a fixed tree. The sums of rows are added without round-off. So the result
+// is bitwise the same on any host space, for any number of threads and for any division of a
+// lattice into parts. Devices sum with twice the digits of a double, in an order of their own.
 namespace cayspin::inline v0_2::detail {
 
-// `sums`: how many of the `Count` values are summed, from the first on. The others are reduced to
-// their maxima over the sites.
+// The first `sums` of the `Count` values of a site are summed. The others are reduced to their
+// maxima over the sites.
 struct Sum {
   template <int Count>
   static constexpr int sums = Count;
@@ -83,8 +83,9 @@ struct Collect {
   }
 };
 
-/// Calls functor(site) for the packs of piece task % per_row of row task / per_row, with rows
-/// counted without ghosts: first for those at the ends of the row, then for the others in order.
+/// Each row is cut into per_row pieces. Calls functor(site) for the packs of piece task % per_row
+/// of row task / per_row, where rows are counted without ghosts: first for the packs at the ends of
+/// the row, then for the others in order.
 template <class Value, class Functor>
 void for_each_pack_ends_first(RowLayout const& layout, std::int64_t task, std::int32_t per_row,
                               Functor& functor) {
@@ -209,7 +210,7 @@ template <class Combine, int Count, class Functor>
 struct ReduceOnDevice {
   static constexpr int sums = Combine::template sums<Count>, maxima = Count - sums;
   struct value_type {
-    // An array must have elements.
+    // An array must not be empty.
     DoubledSum sum[std::size_t{sums > 0 ? sums : 1}];
     double maximum[std::size_t{maxima > 0 ? maxima : 1}];
   };
@@ -234,13 +235,13 @@ struct ReduceOnDevice {
   }
 };
 
-/// The most blocks of a reduction on hosts; few hosts have more threads.
+/// Largest number of blocks in a reduction on hosts; few hosts have more threads.
 inline constexpr std::int64_t most_blocks = 1024;
 
 /// Returns the sums and maxima of the numbers that functor(site, values) writes to values[0] ..
-/// values[Count - 1], over all sites of all parts of the lattice; first the sums. Waits. On host
-/// spaces it allocates nothing, and may run in several instances of the space at once. Throws
-/// std::invalid_argument when there are no sites.
+/// values[Count - 1], over all sites of all parts of the lattice. The sums come first, as in
+/// `values`. Waits. On host spaces it allocates nothing, and may run in several instances of the
+/// space at once. Throws std::invalid_argument when there are no sites.
 template <class Combine, int Count, class Exec, class Functor>
 std::array<double, std::size_t{Count}> reduce_sites(Exec const& exec, std::string const& label,
                                                     RowLayout const& layout,

@@ -8,8 +8,8 @@
 #include <cstdint>
 
 // H of a term with many neighbours is faster to compute for all sites of a row together than site
-// by site. Before the host loop of a stage works on a piece of a row, it therefore lets such terms
-// compute H of that piece. The object that such a term's prepare_for_rows returns, or a sum of such
+// by site. The host loop of a stage therefore lets such terms compute H on a piece of a row before
+// it works on this piece. The object that such a term's prepare_for_rows returns, or a sum of such
 // objects, has
 //   static constexpr int row_fields                       how many fields it keeps
 //   void begin_row(row, begin, end, RowFields<Real>)      computes H of sites begin .. end - 1

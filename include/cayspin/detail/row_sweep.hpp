@@ -9,8 +9,8 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// One part of a sweep through a lattice of one plane, at one of its ticks: each stage works on the
-/// next plan.block rows, one row behind the stage before it.
+/// One part of a sweep through a lattice of one plane, at one of its ticks. In a tick each stage
+/// works on plan.block further rows, one row behind the stage before it.
 template <class Real>
 struct RowSweepPart {
   SweepPlan const& plan;

@@ -11,7 +11,7 @@
 // Rows of spins, in a field or in the buffers of a sweep, for a Runge-Kutta stage.
 namespace cayspin::inline v0_2::detail {
 
-/// The first site of a row: component c of site x is data[c * stride + x].
+/// A row of vectors: component c at site x is data[c * stride + x].
 template <class Real>
 struct RowInput {
   Real const* data = nullptr;
@@ -41,7 +41,8 @@ struct Axis {
   KOKKOS_FUNCTION Axis(RowLayout const& layout, int axis)
       : extent(axis == 1 ? layout.ny : layout.nz), wraps(layout.periodic[axis] && extent > 1) {}
 
-  /// Return the neighbour of i, or i itself at an open end.
+  /// Return the neighbour of i, which on a periodic axis may be -1 or `extent`, or i itself at an
+  /// open end.
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t previous(std::int32_t i) const {
     return i > 0 || wraps ? i - 1 : i;
   }

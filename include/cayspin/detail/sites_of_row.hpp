@@ -92,7 +92,8 @@ class SitesOfRow {
     if constexpr (Spacing == 1) return Direction == 0 ? way == 0 : way < lanes;
     return way >= 0 && way < Spacing * lanes && way % Spacing == 0;
   }
-  /// Returns the mask of the lane at the end of the row, if these sites include that end.
+  /// Returns the mask of the lane at the end of the row. Call it only if holds_end<Direction>() is
+  /// true.
   template <int Direction>
   KOKKOS_FORCEINLINE_FUNCTION auto is_end() const {
     return lane_numbers<Value>() == Value(static_cast<scalar_type>(to_end<Direction>() / Spacing));

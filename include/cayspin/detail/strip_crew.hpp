@@ -15,7 +15,7 @@
 namespace cayspin::inline v0_2::detail {
 
 /// Progress of a strip: twice the number of steps done, plus one while a thread works on the next
-/// step. Each has its own cache line.
+/// step. Each StripProgress has its own cache line.
 struct alignas(cache_line_bytes) StripProgress {
   std::atomic<std::int64_t> state = 0;
 };
@@ -23,8 +23,8 @@ struct alignas(cache_line_bytes) StripProgress {
 /// Crew of threads that do `steps` steps of each strip. Step n of a strip may start when its
 /// neighbours have done n - apart steps. The first strip and the last are neighbours, too. Any
 /// number of threads may work, in any order: a thread that waits long takes over steps of other
-/// strips. `progress` has one entry more than there are strips. All entries must be 0 before the
-/// work, and are 0 after it.
+/// strips. `progress` has an entry for each strip, and one that counts the calls of work() that are
+/// done. All entries must be 0 before the first call of work(), and are 0 after the last one.
 struct StripCrew {
   StripProgress* progress;
   std::int32_t strips;
@@ -80,7 +80,7 @@ struct StripCrew {
     return false;
   }
 
-  // The last to leave clears the progress for the next use.
+  // The last thread to leave clears the progress for the next use.
   void leave() const {
     if (progress[strips].state.fetch_add(1, std::memory_order_acq_rel) + 1 < strips) return;
     for (std::int32_t i = 0; i <= strips; ++i)

@@ -10,7 +10,7 @@
 #include <cstdint>
 
 // Divides the lattice of a sweep among threads, and each part into blocks of rows whose buffers fit
-// into the cache. Seams keep the last rows of a block for the next one, which reads them. In a
+// into the cache. Seams keep the last rows of a block, because the next block reads them. In a
 // lattice of one plane that is not cut into strips, stages follow each other by rows instead
 // (row_sweep.hpp).
 namespace cayspin::inline v0_2::detail {
@@ -32,7 +32,7 @@ struct SweepRange {
 };
 
 /// A buffer: a ring of `planes` planes of rows, and a seam of `seam_rows` rows for each plane of
-/// the part. If stages follow each other by rows: a ring of `planes` rows.
+/// the part. If stages follow each other by rows, it is only a ring of `planes` rows.
 struct SweepBuffer {
   std::int32_t producer = 0, planes = 0, seam_rows = 0;
   std::ptrdiff_t ring = 0, seam = 0;  // offsets in the strip, and in the part's seams
@@ -49,8 +49,9 @@ struct SweepPlan {
   std::int32_t parts_y = 1, parts_z = 1, strips = 1;
   std::int32_t lag = 1;  // planes between a stage and the one before it
   bool by_rows = false;
-  // Rows of a strip in one block: at least this many, and fewer than twice as many. A strip with
-  // fewer rows has one block. If stages follow each other by rows: rows per tick.
+  // A block has at least this many rows of each strip, and fewer than twice as many; a strip with
+  // fewer rows is one block. If stages follow each other by rows: the number of rows on which a
+  // stage works in one tick.
   std::int32_t block = 1;
   std::int32_t ring_rows = 0, seam_planes = 0;
   // Strides of a buffer: from component to component, from row to row.
@@ -60,7 +61,7 @@ struct SweepPlan {
 
   std::int64_t parts() const { return std::int64_t(parts_y) * parts_z; }
   std::int64_t tasks() const { return parts() * strips; }
-  /// Returns how many numbers the memory of a part has: its strips, then its seams.
+  /// Returns how many numbers the memory of a part holds: first its strips, then its seams.
   std::ptrdiff_t part_size() const { return strips * strip_size + seams_size; }
   /// Returns how many numbers all buffers hold.
   std::size_t size() const { return static_cast<std::size_t>(parts() * part_size()); }
@@ -136,9 +137,9 @@ struct SweepPlan {
   // times, that with the most parts along z is chosen, because such parts are far apart in memory.
   void cut(int threads, std::int32_t block_of_parts, std::int32_t block_of_strips) {
     std::int32_t const ny = layout.own.ny(), nz = layout.own.nz();
-    // Returns the cost of the largest of `parts` parts, in planes or rows. At each shared end, a
-    // stage repeats (stages - 1) / 2 of them on average. These also move memory, so each counts as
-    // one and a half.
+    // Returns the cost of the largest of `parts` parts, in planes or rows. At each end that is
+    // shared with another part, stages repeat (stages - 1) / 2 planes or rows on average. Repeated
+    // ones also move memory, so each counts as one and a half.
     auto const largest = [&](std::int32_t extent, std::int32_t parts) {
       return (extent + parts - 1) / parts + 0.75 * std::min(parts - 1, 2) * (stages - 1);
     };
@@ -230,7 +231,7 @@ struct FillSweepBuffers {
   }
 };
 
-/// One strip of one part of a sweep, at one block.
+/// One strip of one part of a sweep, within one block.
 template <class Real>
 struct SweepPart {
   SweepPlan const& plan;
@@ -251,15 +252,15 @@ struct SweepPart {
   /// Returns the number of steps of a strip. Each block takes one pass through the planes; in a
   /// step, each stage works on its own plane.
   std::int64_t steps() const { return std::int64_t(blocks) * steps_per_block; }
-  /// Moves to a step, and to the block that it belongs to. Returns the plane of stage 0.
+  /// Moves to a step, and to the block that contains it. Returns the plane of stage 0 in this step.
   std::int32_t begin_step(std::int64_t step) {
     block_ = static_cast<std::int32_t>(step / steps_per_block);
     for (std::int32_t i = 0; i < 3; ++i) bounds_[i] = bound(strip - 1 + i);
     return z.low(0) + static_cast<std::int32_t>(step % steps_per_block);
   }
 
-  /// Returns the first row of a stage, which works on rows low .. high - 1. At the ends of blocks a
-  /// stage is one row behind the stage before it.
+  /// A stage works on rows low(stage) .. high(stage) - 1. At the boundary of two blocks, the rows
+  /// of each stage begin and end one row earlier than those of the stage before it.
   std::int32_t low(int stage) const {
     if (!begins_block()) return bounds_[1];
     return block_ == 0 ? y.low(stage) : bounds_[1] - stage;
@@ -282,7 +283,7 @@ struct SweepPart {
     std::int32_t const turn = (from_begin + block_ * steps_per_block) % buffer.planes;
     Real* const ring =
         memory + strip * plan.strip_size + buffer.ring + turn * plan.ring_rows * plan.row;
-    Real *before = ring, *after = ring;  // not read at the ends of a part
+    Real *before = ring, *after = ring;  // not read unless set below
     if (!begins_block()) {
       // In the first strip of a block, the first row depends on the stage.
       bool const is_second = strip == 1;
@@ -321,7 +322,7 @@ struct SweepPart {
   }
 
   std::int32_t block_ = 0;
-  std::int32_t bounds_[3] = {};  // of the previous strip, this one and the next
+  std::int32_t bounds_[3] = {};  // first rows of the previous strip, this one and the next
 };
 
 }  // namespace cayspin::inline v0_2::detail

@@ -8,13 +8,14 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Returns a View in a memory space with copies of the elements; waits.
+/// Returns a View in MemorySpace with copies of the elements; waits.
 template <class MemorySpace, class Element>
 Kokkos::View<Element*, MemorySpace> table_of(std::string const& label,
                                              std::vector<Element> const& elements) {
   Kokkos::View<Element*, MemorySpace> table(Kokkos::view_alloc(Kokkos::WithoutInitializing, label),
                                             elements.size());
-  // Without an instance, deep_copy waits for all instances, and in a kernel that would be for ever.
+  // Without an execution space instance, deep_copy would wait for all instances. Called from within
+  // a kernel, it would then wait for ever.
   typename MemorySpace::execution_space const exec;
   Kokkos::View<Element const*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> const host(
       elements.data(), elements.size());

@@ -7,7 +7,8 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// True if one or two instructions look up a register of Numbers in a table of sixteen entries.
+/// True if the entries for a register of Numbers can be looked up, in a table of sixteen, by one or
+/// two instructions.
 template <class Numbers>
 #if defined(CAYSPIN_DETAIL_AVX512_OF_INTEGERS)
 inline constexpr bool has_table_of_sixteen = sizeof(Numbers) == 64;

@@ -15,11 +15,11 @@
 
 namespace cayspin::inline v0_2 {
 
-/// m' = -m x H - damping m x (m x H), as A x m with A = H + damping m x H; without precession
-/// (overdamped) A = damping m x H. Reduced units. Damping is double, or a ScalarField with a number
-/// for each site. This is the form of Landau and Lifshitz. In Gilbert's form, A is divided by 1 +
-/// damping^2. Rescaling time converts one form into the other if the damping is uniform, but not if
-/// it differs between sites.
+/// The Landau-Lifshitz equation m' = -m x H - damping * m x (m x H), written as m' = A x m with
+/// A = H + damping * m x H. Without precession (overdamped), A = damping * m x H. In reduced units.
+/// Damping is double, or a ScalarField with a number for each site. In Gilbert's form of the
+/// equation, A is divided by 1 + damping^2. Rescaling time converts one form into the other if the
+/// damping is uniform, but not if it differs between sites.
 template <class Field, class Damping = double>
 class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
                        public detail::ForwardingEnergy<LandauLifshitz<Field, Damping>, Field> {
@@ -34,8 +34,8 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
 
   KOKKOS_FORCEINLINE_FUNCTION Field const& field() const { return field_; }
   KOKKOS_FORCEINLINE_FUNCTION bool has_precession() const { return precession_; }
-  /// Returns false only if the damping is the number 0. With a field of dampings, returns true
-  /// whatever its values are.
+  /// Returns false only if the damping is one number for all sites, and 0. If it is a field,
+  /// returns true whatever its values are.
   KOKKOS_FORCEINLINE_FUNCTION bool is_damped() const {
     if constexpr (uniform)
       return damping_ != 0;
@@ -51,7 +51,7 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
   void check_spins(Spins const& spins) const {
     detail::require_lattice_of(spins, damping_, "cayspin::LandauLifshitz");
   }
-  // For Forwarding.
+  // Members that Forwarding calls.
   template <class Make>
   auto with_parts(Make const& make) const {
     auto prepared = make(field_);
@@ -65,7 +65,7 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
   }
   KOKKOS_FORCEINLINE_FUNCTION Field const& part() const { return field_; }
 
-  // For stages over rows.
+  // Members for host loops over rows (detail/row_fields.hpp).
   static constexpr int row_fields = detail::row_fields<Field>;
   template <class Real>
   void begin_row(detail::RowOfSpins<Real> const& row, std::int32_t begin, std::int32_t end,
@@ -113,7 +113,7 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
       throw std::invalid_argument("cayspin::LandauLifshitz: damping must be >= 0 on every site");
   }
   template <class Real>
-  static void check(SiteArray<Real, 1> const&) {}  // checked as a SiteField
+  static void check(SiteArray<Real, 1> const&) {}  // was checked as a SiteField
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator(Site const& site, Vec3<Value> const& m,

@@ -29,7 +29,7 @@ class Orthogonal : public Forwarding<Orthogonal<Generator>, Generator>,
  public:
   explicit Orthogonal(Generator generator) : generator_(std::move(generator)) {}
 
-  // For Forwarding.
+  // Members that Forwarding calls.
   template <class Make>
   auto with_parts(Make const& make) const {
     auto prepared = make(generator_);
@@ -41,7 +41,7 @@ class Orthogonal : public Forwarding<Orthogonal<Generator>, Generator>,
   }
   KOKKOS_FORCEINLINE_FUNCTION Generator const& part() const { return generator_; }
 
-  // For stages over rows.
+  // Members for host loops over rows (detail/row_fields.hpp).
   static constexpr int row_fields = detail::row_fields<Generator>;
   template <class Real>
   void begin_row(detail::RowOfSpins<Real> const& row, std::int32_t begin, std::int32_t end,
@@ -67,7 +67,7 @@ class Orthogonal : public Forwarding<Orthogonal<Generator>, Generator>,
   }
   KOKKOS_FUNCTION static constexpr bool is_orthogonal() { return true; }
 
-  // For rigid bodies.
+  // For isotropy::Energy; only for a generator of rigid bodies.
   template <class Value, class Site>
   KOKKOS_FORCEINLINE_FUNCTION auto inverse_inertia(Site const& site) const {
     return generator_.template inverse_inertia<Value>(site);

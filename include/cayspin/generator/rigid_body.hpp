@@ -12,7 +12,7 @@
 
 namespace cayspin::inline v0_2 {
 
-/// A symmetric 3 x 3 matrix: xx, yy, zz, xy, xz, yz.
+/// A symmetric 3 x 3 matrix. Order of the entries: xx, yy, zz, xy, xz, yz.
 using SymmetricTensor = std::array<double, 6>;
 
 namespace detail {
@@ -60,10 +60,10 @@ inline constexpr bool is_body = std::is_base_of_v<BodyGenerator<Generator>, Gene
 }  // namespace detail
 
 /// Free rigid bodies of equal inertia I. The spin m of a body is its angular momentum in the body
-/// frame, of length 1: m' = m x I^-1 m, that is A = -I^-1 m (Lewis and Nigam 2002, Sec. 5, sign
-/// corrected), and E = <m, I^-1 m> / 2 per body. Each site of a lattice is an independent body;
-/// Lattice::chain(count) is enough for `count` bodies. Throws std::invalid_argument for an inverse
-/// inertia that is not finite.
+/// frame, of length 1: m' = m x I^-1 m, that is A = -I^-1 m (Lewis and Nigam 2002, Sec. 5, with the
+/// sign corrected), and E = <m, I^-1 m> / 2 per body. Each site of a lattice is an independent
+/// body; Lattice::chain(count) is enough for `count` bodies. Throws std::invalid_argument for an
+/// inverse inertia that is not finite.
 class RigidBody : public detail::BodyGenerator<RigidBody> {
  public:
   explicit RigidBody(SymmetricTensor const& inverse_inertia)

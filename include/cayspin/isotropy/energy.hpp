@@ -7,17 +7,18 @@
 
 namespace cayspin::inline v0_2::isotropy {
 
-/// Correction for rigid bodies that adds dt^p s m to the coordinates F of a step; p is 3 for
-/// LieHeun, and 4 for Rkmk4 and Series4. The number s is chosen so that the leading energy error of
-/// the step cancels. On a body in steady rotation the correction has no effect. The formulas are
-/// those of Lewis and Nigam 2002, Sec. 5.2, in coordinate-free form for any symmetric inertia.
+/// Correction for rigid bodies that adds dt^p * s * m to the coordinates F of a step from m; p is 3
+/// for LieHeun, and 4 for Rkmk4 and Series4. The number s is chosen so that the leading energy
+/// error of the step cancels. On a body in steady rotation the correction has no effect. The
+/// formulas are those of Lewis and Nigam 2002, Sec. 5.2, in coordinate-free form for any symmetric
+/// inertia.
 struct Energy {};
 
 }  // namespace cayspin::inline v0_2::isotropy
 
 namespace cayspin::inline v0_2::detail {
 
-/// Invariants of B = I^-1 and m that the corrections depend on.
+/// The quantities of B = I^-1 and m on which the corrections depend.
 template <class Value>
 struct BodyInvariants {
   Vec3<Value> bm, v;                 // B m, m x B m
@@ -73,7 +74,7 @@ struct Rkmk4Correction {
   }
 };
 
-/// Returns F + dt^p s m.
+/// Returns F + dt^p * s * m, where m is the spin at the start of the step.
 template <class Correction, class Generator, class Site, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> corrected(Generator const& generator, Site const& site,
                                                   Vec3<Value> const& f, Vec3<Value> const& m,

@@ -34,13 +34,14 @@ struct Constant {
 /// dt. This sigma raises the order of LieEuler's energy error by one. Lewis and Nigam 2002, Sec.
 /// 4.1, with the sign and the norm corrected. If A_o is zero, so is sigma.
 struct FiniteDifference {
-  double cap = std::numeric_limits<double>::infinity();  ///< bound on |dt sigma|
+  double cap = std::numeric_limits<double>::infinity();  ///< bound on |dt * sigma|
 };
 
-/// FiniteDifference with the backward difference w' = (w_n - w_(n-1)) / dt: one evaluation per step
-/// instead of two. w is kept from step to step. The first step uses the forward difference.
+/// FiniteDifference with the backward difference w' = (w_n - w_(n-1)) / (previous dt): one
+/// evaluation per step instead of two. w is kept for the next step. The first step uses the forward
+/// difference.
 struct FiniteDifferenceBackward {
-  double cap = std::numeric_limits<double>::infinity();  ///< bound on |dt sigma|
+  double cap = std::numeric_limits<double>::infinity();  ///< bound on |dt * sigma|
 };
 
 }  // namespace cayspin::inline v0_2::isotropy

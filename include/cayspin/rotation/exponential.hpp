@@ -9,8 +9,8 @@ namespace cayspin::inline v0_2 {
 
 /// The exponential map of so(3) (Rodrigues' rotation). Coordinates f stand for the rotation about f
 /// by the angle |f|. No library sine is called, so that loops vectorise. The result is on the
-/// sphere for every finite f. The angle has an error of about eps |f|; beyond |f| = 1/eps, only the
-/// axis of the rotation is meaningful.
+/// sphere for every finite f. The angle has an error of about eps * |f|, where eps is the epsilon
+/// of the precision; beyond |f| = 1/eps, only the axis of the rotation is meaningful.
 struct Exponential {
   /// Returns exp(f) m.
   template <class Value>

@@ -68,8 +68,8 @@ KOKKOS_FORCEINLINE_FUNCTION HalfTurn<Value> half_turn(Value const& angle) {
   Value const a = Value(Scalar(0.5)) * angle;
 
   // Subtracts the nearest multiple of pi, with pi as a sum of three numbers. If rounding a / pi
-  // gives the wrong multiple, |r| exceeds pi / 2 by about a eps. The clamp acts only if this excess
-  // is large, and keeps the result on the sphere. An fma does not round its product, even on
+  // gives the wrong multiple, |r| exceeds pi / 2 by about a * epsilon. The clamp acts only if this
+  // excess is large, and keeps the result on the sphere. An fma does not round its product, even on
   // machines without such an instruction.
   constexpr double pi = 3.14159265358979311600e+00, pi_low = 1.22464679914735317636e-16,
                    pi_lowest = -2.99476980971833966592e-33;
@@ -106,8 +106,9 @@ template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value inverse_tangent_coefficient(Vec3<Value> const& f) {
   using Scalar = scalar_t<Value>;
   Value const square = dot(f, f);
-  // For n < 1/2 the closed form would suffer from cancellation. There the series of |B_2k| n^(2k-2)
-  // / (2k)! is used, whose first omitted term is below 1e-18.
+  // For n < 1/2 the closed form would suffer from cancellation. There the series with the terms
+  // |B_2k| n^(2k-2) / (2k)! is used, where B_2k are Bernoulli numbers; its first omitted term is
+  // below 1e-18.
   constexpr double series[] = {1. / 12,           1. / 720,
                                1. / 30240,        1. / 1209600,
                                1. / 47900160,     691. / 1307674368000,

@@ -14,7 +14,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Functor that turns m into exp(v) m = m + factor tangent x (m + tangent x m), with tangent =
+/// Functor that turns m into exp(v) m = m + factor * tangent x (m + tangent x m), with tangent =
 /// tan(|v| / 2) v / |v| and factor = 2 cos^2(|v| / 2).
 template <class Value>
 struct TurnByTangent {
@@ -29,7 +29,7 @@ struct TurnByTangent {
   }
 
  private:
-  /// Returns a + b1 m1 - b2 m2.
+  /// Returns a + b1 * m1 - b2 * m2.
   KOKKOS_FORCEINLINE_FUNCTION static Value plus_cross(Value const& a, Value const& b1,
                                                       Value const& m1, Value const& b2,
                                                       Value const& m2) {
@@ -102,9 +102,9 @@ struct ChoiceOfTurn {
 };
 
 /// Random rotation: turns m into exp(v) m, where five random bits choose v. In 12 of the 32 cases v
-/// is 0, in 12 it is +-2 s along an axis, and in 8 it is sqrt(2) s (+-1, +-1, +-1). The moments of
-/// v up to the fifth are those of three independent normal numbers of standard deviation s; a step
-/// of weak order 2 depends on no other moments (Kloeden and Platen 1992, Sec. 14.2).
+/// is 0, in 12 it is +-2 * s along an axis, and in 8 it is sqrt(2) * s * (+-1, +-1, +-1). The
+/// moments of v up to the fifth are those of three independent normal numbers of standard deviation
+/// s; a step of weak order 2 depends on no other moments (Kloeden and Platen 1992, Sec. 14.2).
 template <class Real, bool OnHost>
 class RandomTurn {
   using Choice = ChoiceOfTurn<Real>;
@@ -135,7 +135,7 @@ class RandomTurn {
     return {axial_, diagonal_, axial_factor_, diagonal_factor_};
   }
 
-  /// Returns m turned by the five bits from bit `First` on.
+  /// Returns m after the turn that five bits choose, from bit `First` of `numbers` on.
   template <int First, class Value, class Numbers>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> turned(Numbers const& numbers,
                                                  Vec3<Value> const& m) const {
@@ -170,8 +170,9 @@ class RandomTurn {
   std::conditional_t<OnHost, Tables, Nothing> tables_;
 };
 
-/// RandomTurn with different numbers in each lane. The result in a lane has the same bits as that
-/// of the RandomTurn with the numbers of the lane.
+/// RandomTurn with a different variance in each lane. The members hold the four
+/// RandomTurn::numbers() of each lane. The result in a lane is bitwise identical to that of the
+/// RandomTurn with these numbers.
 template <class Real, class Value>
 struct RandomTurnOfNumbers {
   Value axial, diagonal, axial_factor, diagonal_factor;
@@ -188,8 +189,8 @@ struct RandomTurnOfNumbers {
 };
 
 /// RandomTurn for sites with different variances, each at most 1. Tangents are computed as
-/// quotients of polynomials. They are too small, by up to 3e-6 of their value at variance 1, and by
-/// less than round-off at variances below 0.01. This shortens v by O(s^11); the moments of v still
+/// quotients of polynomials. They are too small: at variance 1 by up to 3e-6 of their value, at
+/// variances below 0.01 by less than round-off. This shortens v by O(s^11); the moments of v still
 /// suffice for weak order 2.
 template <class Real, class Value>
 class RandomTurnOfSites {

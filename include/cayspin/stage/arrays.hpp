@@ -15,7 +15,8 @@
 // The arrays of a Runge-Kutta stage, as whole fields, planes or rows. A pass starts from whole
 // fields, and a sweep starts from planes of fields and buffers. Both convert them to rows for the
 // kernel; on devices the kernel uses whole fields. A new array must be added to the functions here,
-// to FieldsOfStep (memory.hpp) and PlaneOfStep (sweep.hpp), and to the kernel.
+// to FieldsOfStep (memory.hpp and stepper/adaptive_memory.hpp) and PlaneOfStep (sweep.hpp), and to
+// the kernel.
 namespace cayspin::inline v0_2::detail {
 
 /// Kind selects the type of the arrays: WholeFields, Planes or Rows.
@@ -30,7 +31,7 @@ struct StageArrays {
   typename Kind::Input sum_before;                   // sum of weighted increments so far
   typename Kind::Output sum;
   typename Kind::Output increment;                    // of this stage
-  typename Kind::Output next;                         // spins of the next stage, or of the end
+  typename Kind::Output next;                         // spins of the next stage, or at the end
   typename Kind::Input carried_before[most_carried];  // left by the previous step
   typename Kind::Output carried[most_carried];        // left by this step
 };
@@ -66,8 +67,8 @@ void find_arrays(Step const& step, StageArrays<Kind, Flow::stages>& arrays) {
   }
 }
 
-/// Converts the arrays to another kind. `to` has one function for inputs, one for the stage's
-/// spins, and one for outputs.
+/// Converts the arrays to another kind. `to` converts one array: to.input() if the stage reads it,
+/// to.spins() for the stage's spins, and to.output() if the stage writes it.
 template <class Flow, class From, class Convert, class Arrays>
 KOKKOS_FORCEINLINE_FUNCTION void convert(StageArrays<From, Flow::stages> const& from,
                                          Convert const& to, Arrays& arrays) {

@@ -17,8 +17,8 @@ constexpr bool is_chain() {
   return true;
 }
 
-/// True if the last stage evaluates the generator at the end of the step, so that the next step
-/// need not evaluate it in its first stage.
+/// True if the last stage evaluates the generator at the end of the step, so that the first stage
+/// of the next step need not evaluate it.
 template <class Tableau>
 inline constexpr bool is_first_same_as_last = requires { Tableau::first_same_as_last; };
 
@@ -123,8 +123,8 @@ struct StageDataFlow {
   static constexpr bool stores_increment =
       !last && detail::stores_increment<Tableau, Update>(Stage);
   static constexpr int carried = last ? carried_fields<Update>() : 0;
-  /// Returns true if increment j is read; a method that recovers increments reads the spins of
-  /// stage j + 1 instead.
+  /// Returns true if increment j is read or, by a method that recovers increments, the spins of
+  /// stage j + 1 in its place.
   static constexpr bool reads_increment(int j) {
     return recovers ? last && j + 1 < Stage : detail::reads_increment<Tableau, Update>(Stage, j);
   }

@@ -13,7 +13,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Returns true if all weights before number j are 0.
+/// Returns true if the weights with indices below j are all 0.
 template <class Weights>
 KOKKOS_FUNCTION constexpr bool is_first(int j) {
   for (int i = 0; i < j; ++i)
@@ -53,9 +53,10 @@ struct SecondWeights {
   KOKKOS_FUNCTION static constexpr double at(int j) { return second_weight<Tableau>(Row, j); }
 };
 
-/// Weights that turn a chain's sum of b[j] increment[j] into a sum over the coordinates of spins:
-/// increment j equals the coordinates of the spin of stage j + 1, divided by a[j + 1][j]. Since no
-/// stage follows the last increment, that increment stays in the sum, with the weight `last`.
+/// Weights that turn a chain's sum of b[j] * (increment j) into a sum over the coordinates of
+/// spins: increment j equals the coordinates of the spin of stage j + 1, divided by a[j + 1][j].
+/// Since no stage follows the last increment, that increment stays in the sum, with the weight
+/// `last`.
 template <class Tableau>
 struct ChartWeights {
   static constexpr double last = Tableau::b[Tableau::stages - 1];
@@ -222,7 +223,8 @@ struct RungeKuttaStage {
   }
 
   // Returns the spin of the next stage. In the last stage it returns the spin at the end of the
-  // step, where the increment of each earlier stage is recovered from the spin of the stage after.
+  // step; for this it recovers the increment of each earlier stage from the spin of the stage that
+  // follows that one.
   template <class Site, class Arrays, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> on_chart(Site const& site, Arrays const& rows,
                                                    Vec3<Value> const& a, Vec3<Value> const& m,
@@ -242,8 +244,8 @@ struct RungeKuttaStage {
     }
   }
 
-  // Returns the stored sum plus this stage's weighted increment. An odd stage also adds that of the
-  // stage before it, which stored no sum.
+  // Returns the stored sum plus this stage's weighted increment. An odd stage also adds the
+  // weighted increment of the stage before it, which stored no sum.
   template <class Site, class Arrays, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> sum_up_to_here(Site const& site, Arrays const& rows,
                                                          Vec3<Value> const* f) const {

@@ -50,8 +50,8 @@ class StageMemory {
     free_work_memory();
     levels_[0] = Spins(name + "::next", lattice);
     buffers_ = Buffers("cayspin::" + name, plan);
-    // A sweep reads its output only in the next step. By then other processes may have taken most
-    // of a shared cache.
+    // A sweep reads its output only in the next step. By then other processes may have replaced
+    // most of the contents of a shared cache.
     streaming_ =
         levels_[0].bytes() + bytes() > std::min(last_level_cache_bytes(), usual_cache_bytes);
   }
@@ -93,7 +93,7 @@ class StageMemory {
     std::apply(action, carried_);
   }
 
-  /// Returns the spins at the end of a step that does not end in place.
+  /// Returns the field to which a step that does not work in place writes the spins at its end.
   Spins& end() { return levels_[0]; }
 
   /// Returns the spins at which stage `Stage` evaluates the generator.
@@ -174,7 +174,7 @@ class StageMemory {
     streaming_ = false;
   }
 
-  std::array<Spins, std::size_t{level_count}> levels_;  // only the first in a sweep
+  std::array<Spins, std::size_t{level_count}> levels_;  // a sweep uses only the first
   std::array<Spins, std::size_t{stages}> increments_;   // all the same field if keeps_sum
   Spins sum_;
   std::array<Carried, carried_fields<Update>()> carried_;

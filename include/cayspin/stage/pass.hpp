@@ -25,7 +25,7 @@ struct StagePlanes {
 
   StageArrays<Planes<Real>, Flow::stages> arrays;
   Axis y;
-  bool from_memory = false;  // true if the core's cache cannot be expected to hold them
+  bool from_memory = false;  // true if these planes are probably not in the core's cache
 
   KOKKOS_FORCEINLINE_FUNCTION RowArrays rows(std::int32_t at) const {
     RowArrays rows;
@@ -75,7 +75,8 @@ KOKKOS_FORCEINLINE_FUNCTION void run_along(Kernel const& kernel, PlanesOf<Kernel
   }
 }
 
-/// The single compiled body of a stage on host spaces, so that every caller gets equal bits.
+/// The single compiled body of a stage on host spaces, so that the results of all callers are
+/// bitwise identical.
 template <class Kernel>
 CAYSPIN_DETAIL_NOINLINE void run_stage(Kernel const& kernel, PlanesOf<Kernel> const& planes,
                                        RowLayout const& layout, RowBlock block) {

@@ -21,7 +21,7 @@
 // data it reads are still in the cache.
 namespace cayspin::inline v0_2 {
 
-/// Order in which the stages of a step traverse the lattice. Both orders give equal bits.
+/// Order in which the stages of a step traverse the lattice. The results are bitwise identical.
 enum class Path {
   pass,  // one kernel per stage
   sweep  // all stages together, on host spaces

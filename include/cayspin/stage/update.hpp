@@ -9,17 +9,18 @@
 #include <cstddef>
 #include <type_traits>
 
-// The geometry of a Runge-Kutta method: how the generator of a stage gives an increment, and how
-// coordinates f, which are sums of increments, move a spin from m0, the spin at the start of the
-// step. increment(f, dt A, m, m0) is the increment of a stage at spin m, which is m0 moved by f.
-// `move` is for stages and `finish` is for the end of the step; displacement(f, m0) is the change
-// of the spin, finish(f, m0) - m0. recovers_increments(stages) is true if a chain of `stages`
-// stages (each uses only the increment before it) does not store increments, but recomputes them
-// from the spins to which they move m0. Where `increment` does not use f, comments omit this
-// argument.
+// The geometry of a Runge-Kutta method: how the generator A of a stage gives an increment, and how
+// coordinates f, which are weighted sums of increments, move a spin from m0, the spin at the start
+// of the step. increment(f, dt A, m, m0) is the increment of a stage at the spin m, which is m0
+// moved by f. `move` is for stages and `finish` is for the end of the step; displacement(f, m0) is
+// the change of the spin, finish(f, m0) - m0. In a chain of stages, each stage uses only the
+// increment of the stage before it. recovers_increments(stages) is true if a chain of this length
+// does not store increments: the last stage recomputes each of them from the spin to which it moved
+// m0. Where `increment` does not use f, comments omit this argument.
 namespace cayspin::inline v0_2::update {
 
-/// Runge-Kutta-Munthe-Kaas: f in the Lie algebra, m = Rotation(f) m0, f' = dRotation_f^-1 (A).
+/// Runge-Kutta-Munthe-Kaas: f is in the Lie algebra, with m = Rotation(f) m0 and f' =
+/// dRotation_f^-1 (A).
 template <class Rotation>
 struct Lie {
   static constexpr bool increment_needs_argument = true;
@@ -46,8 +47,8 @@ struct Lie {
   }
 };
 
-/// Like Lie, but without the inverse differential: the increments are dt A. This preserves the
-/// order of methods up to order 2. Lewis and Nigam 2002, Sec. 4.3.
+/// Like Lie, but without the inverse differential: the increments are dt A. Methods of order 1 and
+/// 2 keep their order. Lewis and Nigam 2002, Sec. 4.3.
 template <class Rotation>
 struct LieUncorrected : Lie<Rotation> {
   static constexpr bool increment_needs_argument = false;
@@ -60,11 +61,11 @@ struct LieUncorrected : Lie<Rotation> {
   }
 };
 
-/// Classical Runge-Kutta in space: f is a displacement, and |m| drifts.
+/// Classical Runge-Kutta in Cartesian components: f is a displacement, and |m| drifts.
 struct Classical {
   static constexpr bool increment_needs_argument = false;
   static constexpr bool needs_turning_alone =
-      true;  // only the part of A normal to m, because increments are dt A x m
+      true;  // only the part of A normal to m matters, because increments are dt A x m
 
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> increment(Vec3<Value> const&,
@@ -110,14 +111,14 @@ struct Projected : Classical {
     return {Value(1) / length, multiply_add(Value(Value(0) - along), m0, f)};
   }
 
-  /// Returns move(increment(step a, m, m), m).
+  /// Returns move(increment(step * a, m, m), m).
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> advance(Value const& step, Vec3<Value> const& a,
                                                          Vec3<Value> const& m) {
     return advance(step, a, m, m);
   }
 
-  /// Returns move(increment(step a, m, m0), m0).
+  /// Returns move(increment(step * a, m, m0), m0).
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> advance(Value const& step, Vec3<Value> const& a,
                                                          Vec3<Value> const& m,
@@ -125,8 +126,9 @@ struct Projected : Classical {
     return multiply_add(step, cross(a, m), m0);
   }
 
-  /// Returns finish(f, m0) with f = sum_j Weights::spin(j) f_j + Weights::last increment(step a, m,
-  /// m0), where f_j moves m0 to spins[j] and m is the last of Count spins.
+  /// Returns finish(f, m0) with
+  /// f = sum_j Weights::spin(j) * f_j + Weights::last * increment(step * a, m, m0),
+  /// where f_j moves m0 to spins[j] and m is the last of Count spins.
   template <class Weights, int Count, class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> arrive(Value const& step, Vec3<Value> const& a,
                                                         Vec3<Value> const* spins,
@@ -144,8 +146,8 @@ struct Projected : Classical {
 };
 
 /// Classical Runge-Kutta in the stereographic chart at m0: f is normal to m0 and stands for the
-/// rotation cay(2 m0 x f). The coordinates of every stage stay normal to m0. Not in the paper.
-/// Breaks down only if the spin of a stage reaches -m0.
+/// rotation cay(2 m0 x f). The coordinates of every stage stay normal to m0. Not in Lewis and Nigam
+/// 2002. Breaks down only if the spin of a stage reaches -m0.
 struct Stereographic {
   static constexpr bool increment_needs_argument = false;
   static constexpr bool needs_turning_alone = true;
@@ -179,7 +181,7 @@ struct Stereographic {
             multiply_add(Value(Value(0) - s), m0, f)};
   }
 
-  /// Returns move(increment(step a, m, m), m) for a unit spin, with one division.
+  /// Returns move(increment(step * a, m, m), m) for a unit spin, with one division.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> advance(Value const& step, Vec3<Value> const& a,
                                                          Vec3<Value> const& m) {
@@ -189,7 +191,7 @@ struct Stereographic {
     return multiply_add(Value(scale * step), u, multiply_add(Value(Value(-2) * scale * s), m, m));
   }
 
-  /// Returns move(increment(step a, m, m0), m0) for unit spins, with one division.
+  /// Returns move(increment(step * a, m, m0), m0) for unit spins, with one division.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> advance(Value const& step, Vec3<Value> const& a,
                                                          Vec3<Value> const& m,
@@ -205,9 +207,10 @@ struct Stereographic {
                      multiply_add(detail::multiply_add(minus, reach, along), m0, m0)));
   }
 
-  /// Returns move(f, m0) with f = sum_j Weights::spin(j) f_j + Weights::last increment(step a, m,
-  /// m0), where f_j moves m0 to spins[j] and m is the last of Count spins; with one division. It
-  /// computes with differences from m0, so that small steps keep their relative precision.
+  /// Returns move(f, m0) with
+  /// f = sum_j Weights::spin(j) * f_j + Weights::last * increment(step * a, m, m0),
+  /// where f_j moves m0 to spins[j] and m is the last of Count spins. Takes one division. The spins
+  /// enter as differences from m0, so that small steps keep their relative precision.
   template <class Weights, int Count, class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> arrive(Value const& step, Vec3<Value> const& a,
                                                         Vec3<Value> const* spins,
@@ -215,9 +218,9 @@ struct Stereographic {
     using Scalar = detail::scalar_t<Value>;
     constexpr int own = Count - 1;
     Vec3<Value> d[std::size_t{Count}];
-    // |d|^2 and 4 - |d|^2: f_j = (2 d + |d|^2 m0) / rest
+    // `square` is |d|^2, and `rest` is 4 - |d|^2. With them, f_j = (2 d + |d|^2 m0) / rest.
     Value square[std::size_t{Count}], rest[std::size_t{Count}];
-    Value others(1);  // product of the computed rests, except that of m
+    Value others(1);  // product of the elements of `rest` that are set, except that of m
     detail::unrolled<Count>([&](auto j) {
       if constexpr (j() < own && Weights::spin(j()) == 0) return;
       d[j()] = spins[j()] - m0;

@@ -9,19 +9,19 @@ namespace cayspin::inline v0_2 {
 
 namespace update {
 
-/// Update with compensated sums: the rounding error of a step is added to the next step.
+/// Update with compensated sums: the rounding error at the end of a step is added to the next step.
 template <class Update>
 struct Compensated : Update {
-  static constexpr std::array carried{"residual"};  // names of the fields that a step leaves
-  static constexpr bool recovers_increments(int) { return false; }  // rounded spins are too inexact
+  static constexpr std::array carried{"residual"};  // fields that a step leaves for the next
+  static constexpr bool recovers_increments(int) { return false; }  // inaccurate from rounded spins
 };
 
 }  // namespace update
 
 namespace detail {
 
-/// Returns the number of fields that the last stage of a step leaves for the last stage of the
-/// next.
+/// Returns the number of fields that the last stage of a step leaves for the last stage of the next
+/// step.
 template <class Update>
 constexpr int carried_fields() {
   if constexpr (requires { Update::carried; }) return static_cast<int>(Update::carried.size());

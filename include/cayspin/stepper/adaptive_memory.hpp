@@ -78,7 +78,7 @@ struct AdaptiveMemory {
     return (stages - 1 - stage) % 2 == 0 ? end : level;
   }
 
-  /// Returns the fields of one stage of passes.
+  /// Returns the fields of one stage, for a pass.
   template <class Flow>
   StageArrays<WholeFields<Real>, stages> arrays() const {
     StageArrays<WholeFields<Real>, stages> arrays;

@@ -31,13 +31,16 @@ using AdaptiveStages = StagedStepper<Spins, tableau::FirstSameAsLast<Embedded>, 
                                      AdaptiveMemory<Spins, tableau::FirstSameAsLast<Embedded>>>;
 }  // namespace detail
 
-/// An embedded Runge-Kutta method that chooses its own steps. The error of a step is the largest
-/// angle between the method's spin and that of the embedded solution. It is kept below a fraction
-/// of the tolerance, because the tolerance bounds the error of a run. `step(.., t, dt)` computes
-/// the spins at t + dt: the tableau's polynomial interpolates the coordinates in which the update
-/// moves spins. The internal steps do not depend on dt, unless no spin turns at the start: the
-/// default first step is then dt. The method remembers its state: `spins` and t must be those at
-/// the end of the previous step. Otherwise call `reset`.
+/// An embedded Runge-Kutta method that chooses its own steps, called internal steps. The error of
+/// an internal step is the largest angle between a spin at its end and the embedded solution for
+/// this spin. It is kept below a fraction of the tolerance, because the tolerance is meant for the
+/// error of a whole run.
+///
+/// `step(.., t, dt)` takes internal steps until they reach t + dt, and computes the spins at that
+/// time by the tableau's polynomial, which interpolates the coordinates in which the update moves
+/// spins. The internal steps do not depend on dt, except that dt is the default first step if no
+/// spin turns at the start. The stepper remembers its state: `spins` and t must be those at the end
+/// of the previous call of `step`. Otherwise call `reset` first.
 template <class Spins, class Embedded, class Update, class Isotropy = isotropy::Zero>
 class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update, Isotropy>,
                            public detail::OwnSteps {
@@ -48,15 +51,15 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
   using typename Base::Real;
   static constexpr int order = Embedded::order;
 
-  /// Throws std::invalid_argument for invalid options, for example a tolerance below 32 epsilon of
-  /// the precision.
+  /// Throws std::invalid_argument for invalid options, for example a tolerance below 32 times the
+  /// epsilon of the precision.
   AdaptiveRungeKutta(std::string const& name, Spins const& like, StepOptions const& options,
                      Isotropy isotropy = {})
       : Base(name, like, isotropy, {name, like.lattice()}),
         OwnSteps(options, Embedded::embedded_order + 1, StepOptions::least_tolerance<Real>(),
                  "cayspin::" + name) {}
 
-  /// Returns the generator evaluations so far.
+  /// Returns the number of generator evaluations so far.
   std::int64_t evaluations_done() const { return evaluations_done_; }
 
   /// Visits the last internal step and the step size control, for cayspin::serialize.
@@ -68,16 +71,16 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     memory_.visit(visit);
   }
 
-  /// Advances `spins` from t to t + dt under `generator`. Waits. Throws StepTooSmall when no step
-  /// is small enough, and std::invalid_argument when `spins` is not on the lattice given at
-  /// construction, dt is negative or options.end is before t + dt.
+  /// Advances `spins` from t to t + dt under `generator`. Waits for each internal step. Throws
+  /// StepTooSmall when no step is small enough, and std::invalid_argument when `spins` is not on
+  /// the lattice given at construction, dt is negative or options.end is before t + dt.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     step_towards(exec, generator, spins, t, dt, t + dt);
   }
 
-  /// Like `step`, towards a later time at which the spins are wanted: until the internal steps
-  /// reach that time, `spins` does not change. Throws like `step`.
+  /// Like `step`, but changes `spins` only if the internal steps reach `wanted`, a time at or after
+  /// t + dt: then `spins` are those at this time. Throws like `step`.
   template <class Exec, class Generator>
   void step_towards(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
                     double wanted) {
@@ -103,14 +106,15 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
                                 detail::FirstGeneratorStage<Isotropy, decltype(prepared), Real>{
                                     std::move(prepared), isotropy_, start.array(),
                                     memory_.last.output(false), memory_.square.output(false)});
-    // On ghosts the generator may be wrong, because a term may store its field for own rows only.
+    // The generator may be wrong at ghosts, because a term may store its field only for this part's
+    // own rows.
     detail::update_ghosts(exec, this->lattice_, memory_.last);
     ++evaluations_done_;
     begin_run(t, std::sqrt(largest_square(exec)), asked);
     begin_time_ = t;
   }
 
-  /// Takes the next internal step, towards a time at which spins are wanted.
+  /// Takes the next internal step. `wanted`: the next time at which spins are needed.
   template <class Exec, class Generator>
   void take_step(Exec const& exec, Generator const& generator, double wanted) {
     memory_.exchange_begin_and_end();
@@ -143,8 +147,8 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     return error(exec);
   }
 
-  /// Returns true if a step of dt ends after the wanted time, by more than round-off. The wanted
-  /// spins are then interpolated from the increments of this step.
+  /// Returns true if a step of dt that ends at `end` passes the time `wanted` by more than
+  /// round-off. The spins at `wanted` are then interpolated from the increments of this step.
   static bool ends_beyond(double wanted, double end, double dt) { return end - wanted > 1e-9 * dt; }
 
   template <class Exec>
@@ -152,8 +156,8 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     return 2 * std::asin(std::min(1.0, 0.5 * std::sqrt(largest_square(exec))));
   }
 
-  /// Returns the kernel of a stage, with a prepared generator. The first stage needs none, because
-  /// its generator is known.
+  /// Returns the kernel of a stage, with a prepared generator. The kernel of the first stage loads
+  /// the values of the generator, which are known.
   template <int Stage, class Prepared>
   auto stage(Prepared prepared, double dt) const {
     return detail::RungeKuttaStage<Tableau, Update, Isotropy, Stage, Prepared, Real>{
@@ -170,7 +174,7 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     return detail::EndStage<Tableau, Update, Isotropy, Prepared, Real>{
         std::move(prepared), isotropy_, outputs, static_cast<Real>(dt)};
   }
-  /// Calls run(kernel..) with all stages, for generators that need only the time.
+  /// Calls run(kernel..) with the kernels of all stages, for generators that need only the time.
   template <class Exec, class Generator, class Run>
   void with_kernels(Exec const& exec, Generator const& generator, double t, double dt,
                     detail::EndOutputs<Tableau, Real> const& outputs, Run const& run) const {
@@ -251,7 +255,7 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
   std::string begin_label_ = this->label("::begin"), end_label_ = this->label("::end"),
               dense_label_ = this->label("::dense_output"), error_label_ = this->label("::error"),
               step_label_ = this->label("::all_stages");
-  double begin_time_ = 0;  // of the last internal step
+  double begin_time_ = 0;  // start of the last internal step
   std::int64_t evaluations_done_ = 0;
 };
 
@@ -267,7 +271,7 @@ class AdaptiveRkmk : public AdaptiveRungeKutta<Spins, Embedded, update::Lie<Rota
       : AdaptiveRkmk::AdaptiveRungeKutta("AdaptiveRkmk", like, options, isotropy) {}
 };
 
-/// Adaptive Runge-Kutta in the stereographic chart at the spins that start each step.
+/// Adaptive Runge-Kutta in the stereographic chart at the spins at the start of each step.
 template <class Spins, class Embedded = tableau::Tsitouras5>
 class AdaptiveStereographic : public AdaptiveRungeKutta<Spins, Embedded, update::Stereographic> {
  public:
@@ -275,7 +279,8 @@ class AdaptiveStereographic : public AdaptiveRungeKutta<Spins, Embedded, update:
       : AdaptiveStereographic::AdaptiveRungeKutta("AdaptiveStereographic", like, options) {}
 };
 
-/// Adaptive baseline: steps in space, at the end of which each spin is divided by its length.
+/// Adaptive baseline: a step in Cartesian components, at the end of which each spin is divided by
+/// its length.
 template <class Spins, class Embedded = tableau::DormandPrince5>
 class AdaptiveProjected : public AdaptiveRungeKutta<Spins, Embedded, update::Projected> {
  public:

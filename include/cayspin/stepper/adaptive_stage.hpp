@@ -9,7 +9,8 @@
 
 #include <cstddef>
 
-// Kernels of an adaptive Runge-Kutta step other than its stages. Tableau is a FirstSameAsLast.
+// Kernels of an adaptive Runge-Kutta step in addition to RungeKuttaStage. Tableau is a
+// FirstSameAsLast.
 namespace cayspin::inline v0_2::detail {
 
 /// Functor that computes the generator at the start of a run, and |A x m|^2, the squared rate of
@@ -32,7 +33,8 @@ struct FirstGeneratorStage {
   }
 };
 
-/// Generator of the first stage, which was computed at the end of the previous step.
+/// Generator of the first stage. Its values were computed at the end of the previous step, or at
+/// the start of the run.
 template <class Real>
 struct KnownGenerator {
   SiteArray<Real, 3> generators;
@@ -64,8 +66,8 @@ struct StepIncrements {
   }
 };
 
-/// Arrays that the end of a step leaves in memory. In a sweep these include the spins, and the
-/// increments if a time within the step is wanted. After passes both are already in memory.
+/// Arrays that the last stage writes. In a sweep these include the spins and, if spins are wanted
+/// at a time within the step, the increments. In passes, earlier stages have stored both.
 template <class Tableau, class Real>
 struct EndOutputs {
   OutputArray<Real, 3> last;
@@ -74,8 +76,8 @@ struct EndOutputs {
   OutputArray<Real, 3> increments[std::size_t{Tableau::stages - 1}] = {};
 };
 
-/// Functor that computes the generator at the end of a step, and the squared distance of the spin
-/// there from the embedded solution.
+/// Functor of the last stage: computes the generator at the end of the step, and the squared
+/// distance between the spin there and the embedded solution.
 template <class Tableau, class Update, class Isotropy, class Generator, class Real>
 struct EndStage {
   using Flow = StageDataFlow<Tableau, Update, Tableau::stages - 1>;
@@ -105,8 +107,8 @@ struct EndStage {
     f[stages - 1] = Update::increment(total, Vec3<Value>(Value(dt) * xi), m, m0);
     Vec3<Value> const error = weighted_sum<ErrorWeights<Tableau>, stages>(f);
     Vec3<Value> const difference = m - Update::finish(Vec3<Value>(total - error), m0);
-    // Large coordinates may differ although their rotations hardly do. The larger of two errors
-    // then counts: that of the spin and that of the coordinates.
+    // If coordinates are large, they may differ although the rotations hardly do. Then the larger
+    // of two errors counts: that of the spin and that of the coordinates.
     Vec3<Value> const unbounded = cross(error, m0);
     Value const apart = dot(difference, difference), of_error = dot(unbounded, unbounded);
     site.store(xi, to.last);
@@ -130,7 +132,7 @@ struct DenseOutput {
   Real dt;
   Real weights[std::size_t{stages}] = {};
 
-  /// Sets the time to fraction s of the step.
+  /// Sets the time to that at the fraction s of the step.
   void set_fraction(double s) {
     for (int j = 0; j < stages; ++j) {
       double weight = 0;

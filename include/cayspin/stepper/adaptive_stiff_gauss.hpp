@@ -15,17 +15,18 @@ namespace cayspin::inline v0_2 {
 
 /// StiffGauss2 with adaptive steps, which become long as spins approach equilibrium. The error of a
 /// step is an angle, the largest over all spins: dt^3 / 12 times the third derivative of a spin,
-/// which is the error for a spin that precesses. It is found from a divided difference of the
-/// changes of the spins over three steps. The difference is multiplied by (1 + b K)^-1 (see
-/// StiffGauss), so that residual short spin waves do not count. If the generator is not stationary,
-/// the rate at the end of the step replaces the earliest of the three changes. Corrections use K +
-/// c in place of K, where c is the mean of A.m over the sites, but at least 0, and 0 without
-/// precession.
+/// which is the error for a spin that precesses. The third derivative is estimated by a divided
+/// difference of the changes of the spins over three steps. This divided difference is multiplied
+/// by (1 + b K)^-1 (see StiffGauss), so that leftover short spin waves do not count. If the
+/// generator is not stationary, the rate at the end of the step replaces the earliest of the three
+/// changes. Corrections use K + c in place of K, where c is the mean of A.m over the sites, but at
+/// least 0, and 0 without precession.
 ///
-/// `step(.., t, dt)` leaves the spins at t + dt; within an internal step A is interpolated
-/// linearly. The internal steps do not depend on dt, unless no spin turns at the start: the default
-/// first step is then dt. The method remembers its state: `spins` and t must be those at the end of
-/// the previous step. Otherwise call `reset`.
+/// `step(.., t, dt)` takes internal steps until they reach t + dt, and computes the spins at t +
+/// dt; within an internal step A is interpolated linearly. The internal steps do not depend on dt,
+/// except that dt is the default first step if no spin turns at the start. The stepper remembers
+/// its state: `spins` and t must be those at the end of the previous call of `step`. Otherwise call
+/// `reset` first.
 template <class Spins>
 class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps {
   using Base = StiffGauss<Spins, 2>;
@@ -34,8 +35,8 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
   using typename Base::Real;
   static constexpr int work_fields = Base::work_fields + 2;
 
-  /// Throws std::invalid_argument for invalid options, for example a tolerance below 32 epsilon of
-  /// the precision.
+  /// Throws std::invalid_argument for invalid options, for example a tolerance below 32 times the
+  /// epsilon of the precision.
   explicit AdaptiveStiffGauss2(Spins const& like, StepOptions const& options = {})
       : Base(name, like, {}),
         OwnSteps(options, Base::order + 1, StepOptions::least_tolerance<Real>(),
@@ -67,16 +68,16 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
     visit("spins_before", before_);
   }
 
-  /// Advances `spins` from t to t + dt under `generator`. Waits. Throws StepTooSmall when no step
-  /// is small enough, and std::invalid_argument like StiffGauss, when dt is negative, or when
-  /// options.end is before t + dt.
+  /// Advances `spins` from t to t + dt under `generator`. Waits for each internal step. Throws
+  /// StepTooSmall when no step is small enough, and std::invalid_argument like StiffGauss, when dt
+  /// is negative, or when options.end is before t + dt.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     step_towards(exec, generator, spins, t, dt, t + dt);
   }
 
-  /// Like `step`, towards a later time at which the spins are wanted: until the internal steps
-  /// reach that time, `spins` does not change. Throws like `step`.
+  /// Like `step`, but changes `spins` only if the internal steps reach `wanted`, a time at or after
+  /// t + dt: then `spins` are those at this time. Throws like `step`.
   template <class Exec, class Generator>
   void step_towards(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
                     double wanted) {
@@ -90,11 +91,12 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
 
  private:
   static constexpr auto name = "AdaptiveStiffGauss2";
-  static constexpr double share_of_corrections = 0.05;  // their error / tolerance of a step
-  static constexpr double most_growth = 2;    // above it, earlier steps do not predict the next
+  static constexpr double share_of_corrections =
+      0.05;                                   // error left by corrections / step tolerance
+  static constexpr double most_growth = 2;    // above it, extrapolation from earlier steps fails
   static constexpr double fast_enough = 0.4;  // desired convergence factor of corrections
-  // If the error / tolerance of a step is below this, the next step starts from A of the last one,
-  // without extrapolation.
+  // If the error / tolerance of a step is below this, the first estimate in the next step is A at
+  // the stage of the last step, without extrapolation.
   static constexpr double hardly_changes = 0.1;
 
   template <class Exec, class Generator>
@@ -130,11 +132,12 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
     swap(now_, this->end_);
   }
 
-  /// Returns the error of a solved step, an angle. If the generator is stationary, it is 0 for the
-  /// first two steps, which are short or start at equilibrium.
+  /// Returns the error of a solved step, an angle. If the generator is stationary, the error is
+  /// taken as 0 in the first two steps, which are short or start at equilibrium.
   template <class Exec, class Generator>
   double error_of(Exec const& exec, Generator const& generator, double t, double dt) {
-    // Midpoints of steps may miss what a field does between them.
+    // The midpoint of a step may miss changes of the field with time, so the rate at the end of the
+    // step is used, too.
     bool const looks_at_end = !detail::is_stationary(generator, exec, now_);
     if (!looks_at_end && this->history_.known() < 2) return 0;
     auto const weights = this->history_.second_difference(looks_at_end);
@@ -197,7 +200,7 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
   std::string local_label_ = this->label("::local_field"),
               difference_label_ = this->label("::difference"),
               error_label_ = this->label("::error"), dense_label_ = this->label("::dense_output");
-  Spins now_, before_;   // those at the end of the last step, and at the start of the one before
+  Spins now_, before_;   // at the end of the last step, and at the start of the second-to-last
   double local_dt_ = 0;  // dt when local_ was measured
 };
 

@@ -8,7 +8,8 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// exp(-x) and 1 - exp(-x), each to a few ulp, for 0 <= x < 700 in double and 80 in float.
+/// exp(-x) and 1 - exp(-x), each to a few ulp, for 0 <= x < 700 in double, and 0 <= x < 80 in
+/// float.
 template <class Value>
 struct Decay {
   Value rest, loss;
@@ -19,8 +20,8 @@ KOKKOS_FORCEINLINE_FUNCTION Decay<Value> decay(Value const& x) {
   using Scalar = scalar_t<Value>;
   constexpr bool is_double = sizeof(Scalar) == sizeof(double);
   constexpr int terms = is_double ? 13 : 7;
-  // ln 2 as a sum. The first number has few bits, so its product with the number of halvings is
-  // exact.
+  // ln 2 as a sum of two numbers. The first has few bits, so that its product with the number of
+  // halvings is exact.
   constexpr double high = 0x1.62e42fefp-1, low = 0x1.473de6af278edp-34;
   constexpr float high_f = 0x1.62ep-1f, low_f = 0x1.0bfbe8p-15f;
   Value const halvings = nearest<Value>(Value(x * Value(Scalar(1.4426950408889634))));
@@ -38,11 +39,11 @@ KOKKOS_FORCEINLINE_FUNCTION Decay<Value> decay(Value const& x) {
           multiply_add(half, part, Value(Scalar(1)) - half)};
 }
 
-/// The exact motion of one spin in a fixed field h over a time dt:
-/// q' = (h + damping q x h) x q, or without precession q' = (damping q x h) x q.
-/// With e = h/|h| and c = q.e: q turns by |h| dt about e (with precession), and c becomes
-/// (c + th)/(1 + c th), th = tanh(damping |h| dt). q stays on the sphere for any finite dt, damping
-/// and h.
+/// The exact motion of one spin q in a fixed field h over a time dt:
+/// q' = (h + damping * q x h) x q, or without precession q' = (damping * q x h) x q.
+/// With e = h/|h| and c = q.e: with precession, q turns about e by the angle |h| * dt. With or
+/// without it, c becomes (c + th)/(1 + c * th), where th = tanh(damping * |h| * dt). q stays on the
+/// sphere for any finite dt, damping and h.
 template <class Value>
 struct ExactFlow {
   using Scalar = scalar_t<Value>;
@@ -51,7 +52,7 @@ struct ExactFlow {
   Scalar dt;
   bool precession, damped;
 
-  /// Returns q after dt. The results in the lanes of `others` are arbitrary.
+  /// Returns q after the time dt. The results in the lanes that `others` marks are arbitrary.
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> operator()(Vec3<Value> const& h, Vec3<Value> const& q,
                                                      Mask const& others) const {
     Vec3<Value> const f = Value(dt) * h;
@@ -63,7 +64,8 @@ struct ExactFlow {
     return select<Value>(near, end, far);
   }
 
-  /// Returns q after dt/2, to first order; q itself if this would change it by 1 or more.
+  /// Returns q after the time dt/2, to first order in dt; q itself if the change would have a
+  /// length of 1 or more.
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> middle(Vec3<Value> const& h, Vec3<Value> const& q) const {
     Vec3<Value> const relaxing = damping * cross(q, h);
     Vec3<Value> const a = precession ? h + relaxing : relaxing;
@@ -73,8 +75,8 @@ struct ExactFlow {
   }
 
  private:
-  /// Returns the sum of first * x^k / ((Odd + 1) .. (Odd + 2 k)) up to k = Terms - 1. Even and odd
-  /// k are summed separately, which halves the chain of dependent operations.
+  /// Returns the sum over k = 0 .. Terms - 1 of first * x^k / ((Odd + 1) * .. * (Odd + 2 k)). Even
+  /// and odd k are summed separately, which halves the chain of dependent operations.
   template <int Odd, int Terms>
   KOKKOS_FORCEINLINE_FUNCTION static Value series(Value const& x, double first) {
     double coefficient[std::size_t{Terms}] = {first};
@@ -91,8 +93,9 @@ struct ExactFlow {
     return multiply_add(lower, x, multiply_add(upper, square, term(0)));
   }
 
-  /// Returns the flow for |f| < 3/2 and damping |f| < 1/2, by entire functions of |f|^2, so that no
-  /// root is needed. The relaxation has the form of the aberration of light along f.
+  /// Returns q after the time dt for |f| < 3/2 and damping * |f| < 1/2, where f = dt * h and turn2
+  /// = |f|^2. All functions are power series in |f|^2, so that no root is needed. The damping moves
+  /// q towards f as relativistic aberration moves the direction of light.
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> small(Vec3<Value> const& f, Value const& turn2,
                                                 Vec3<Value> const& q) const {
     constexpr bool is_double = sizeof(Scalar) == sizeof(double);
@@ -108,8 +111,8 @@ struct ExactFlow {
     if (!damped) return turned;
     Value const y = damping * damping * turn2;
     constexpr int sine_terms = is_double ? 8 : 4, rise_terms = is_double ? 7 : 4;
-    Value const sine = damping * series<1, sine_terms>(y, 1);  // sinh(y^1/2) / |f|
-    Value const rise = series<2, rise_terms>(y, 0.5);          // (cosh(y^1/2) - 1) / y
+    Value const sine = damping * series<1, sine_terms>(y, 1);  // sinh(sqrt(y)) / |f|
+    Value const rise = series<2, rise_terms>(y, 0.5);          // (cosh(sqrt(y)) - 1) / y
     Value const along = dot(f, q);
     Value const growth = multiply_add(y, rise, Value(sine * along));
     Value const pull = multiply_add(Value(damping * damping * rise), along, sine);
@@ -142,10 +145,10 @@ struct ExactFlow {
     return multiply_add(Value(Scalar(2)), multiply_add(half.cosine, c, cross(v, c)), q);
   }
 
-  /// Relaxes q to q + (1 - p) (a (e - q) + p b (e + q)) / (a + p^2 b), where c = q.e, p =
-  /// exp(-damping angle), a = 1 + c and b = 1 - c. The smaller of a and b comes from the part of q
-  /// normal to e, so that a spin nearly opposite to the field leaves that direction at the right
-  /// time.
+  /// Returns q after relaxation: q + (1 - p) * (a * (e - q) + p * b * (e + q)) / (a + p^2 * b),
+  /// where c = q.e, p = exp(-damping * angle), a = 1 + c and b = 1 - c. The smaller of a and b is
+  /// computed from the part of q normal to e, which avoids cancellation. Otherwise a spin nearly
+  /// opposite to the field would leave that direction too early or too late.
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> relax(Value const& angle, Vec3<Value> const& e,
                                                 Vec3<Value> const& q) const {
     constexpr Scalar longest = sizeof(Scalar) == sizeof(double) ? Scalar(340) : Scalar(40);
@@ -165,9 +168,9 @@ struct ExactFlow {
         x == zero);
   }
 
-  /// Takes one Newton step towards length 1. For a spin nearly opposite to the field, an error in
-  /// the length would grow as fast as the angle between the spin and the direction opposite to the
-  /// field. Spins that `rests` marks (no field or no damping) keep their bits.
+  /// Returns q after one Newton step towards length 1. For a spin nearly opposite to the field, an
+  /// error in the length would grow as fast as the angle between the spin and the direction
+  /// opposite to the field. Spins that `rests` marks (no field or no damping) keep their bits.
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> kept_on_sphere(Vec3<Value> const& q,
                                                                 Mask const& rests) {
     Value const factor = multiply_add(Value(Scalar(-0.5)), dot(q, q), Value(Scalar(1.5)));

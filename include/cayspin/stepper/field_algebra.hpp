@@ -45,7 +45,7 @@ struct LargestDifference {
   }
 };
 
-/// Computes to = a x + b y; `to` may be x or y.
+/// Computes to = a * x + b * y; `to` may be x or y.
 template <class Exec, class Spins>
 void combine(Exec const& exec, double a, Spins const& x, double b, Spins const& y,
              Spins const& to) {

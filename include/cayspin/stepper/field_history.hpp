@@ -10,7 +10,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// A ring of the last Count fields of a run, and the steps between them.
+/// A ring of the last Count fields of a run, and the lengths of the steps that start from them.
 template <class Field, std::size_t Count>
 class FieldHistory {
  public:
@@ -48,8 +48,8 @@ class FieldHistory {
     }
   }
 
-  /// Returns times in multiples of `unit`: first 0, for the end of the last step, then those of the
-  /// last Count - 1 fields.
+  /// Returns times relative to the end of the last step, in multiples of `unit`: first 0, for that
+  /// end itself, then the times of the last Count - 1 fields, newest first, which are negative.
   std::array<double, Count> times(double unit) const {
     std::array<double, Count> times{};
     double sum = 0;

@@ -10,20 +10,21 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Gauss's collocation method for dm/dt = a(t) x m on one site, given f_i = dt a(nodes_i):
+/// Gauss's collocation method with the tableau a_ij, b_j for dm/dt = w(t) x m on one site. Given
+/// f_i = dt * w(t + nodes[i] * dt), it solves
 ///   Y_i = m + sum_j a_ij f_j x Y_j, m1 = m + sum_j b_j f_j x Y_j.
-/// The linear equations are solved exactly, so that any f preserves |m|. (Hairer, Lubich, Wanner
-/// 2006, Sec. II.1.3 and IV.2.1)
+/// These linear equations are solved directly, without iteration, so that |m| is preserved for any
+/// f. (Hairer, Lubich, Wanner 2006, Sec. II.1.3 and IV.2.1)
 template <int Stages>
 struct GaussLegendre;
 
 template <>
 struct GaussLegendre<1> {
   static constexpr std::array nodes{0.5};
-  /// Eigenvalue of the matrix a_ij. If there are two, the other is its conjugate.
+  /// Eigenvalue of the matrix a_ij.
   static constexpr std::complex<double> eigenvalue{0.5, 0};
 
-  /// Returns m1, which is cay(f) m. `stage` becomes Y_1.
+  /// Returns m1, which is cay(f[0]) m. `stage` becomes Y_1.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> solve(Vec3<Value> const (&f)[1],
                                                        Vec3<Value> const& m,
@@ -38,7 +39,8 @@ template <>
 struct GaussLegendre<2> {
   static constexpr double sqrt3 = 1.7320508075688772;
   static constexpr std::array nodes{0.5 - sqrt3 / 6, 0.5 + sqrt3 / 6};
-  /// Eigenvalue of the matrix a_ij with the eigenvector (1, i turned).
+  /// Eigenvalue of the matrix a_ij with the eigenvector (1, i * turned). The other eigenvalue is
+  /// its conjugate.
   static constexpr std::complex<double> eigenvalue{0.25, sqrt3 / 12};
   static constexpr double turned = -2 - sqrt3;
 
@@ -71,7 +73,7 @@ struct GaussLegendre<2> {
     Vec3<Value> const p2 = cross(v, stage[1]), w = multiply_add(minus, p2, m);
     stage[0] = w + turned_by(s, u, w);
     Vec3<Value> const change = Value(2) * (cross(u, stage[0]) + p2);
-    // Round-off would change the length by about |f| epsilon; this is corrected.
+    // Corrects the length, which round-off would change by about |f| * epsilon.
     Value const longer = dot(change, multiply_add(Value(0.5), change, m)) / square_to_divide_by(m);
     return m + multiply_add(Value(-longer), m + change, change);
   }

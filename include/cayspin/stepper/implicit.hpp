@@ -32,20 +32,21 @@ class NotConverged : public std::runtime_error {
 /// Options of the solver in implicit steps.
 struct ImplicitOptions {
   double tolerance =
-      8;  ///< bound on the last change of any component, in epsilons of the precision
-  int fixed_point = 50;  ///< fixed-point iterations before Newton's method takes over
-  int newton = 30;       ///< Newton iterations; 0 disables Newton's method
+      8;  ///< bound on the last change of any component, divided by the precision's epsilon
+  int fixed_point = 50;  ///< most fixed-point iterations before Newton's method takes over
+  int newton = 30;       ///< most Newton iterations; 0 disables Newton's method
 };
 
 namespace detail {
 
-/// One iterate of an implicit step: the estimate of the end or of the midpoint, from A at `level`.
+/// One iteration of an implicit step: computes m1 = R(dt xi) m0 or, if `to_middle`, (m0 + m1) / 2,
+/// with A evaluated at `level`, the current estimate.
 template <class Isotropy, class Rotation, class Generator, class Real>
 struct ImplicitStage {
   Generator generator;
   Isotropy isotropy;
   SiteArray<Real, 3> start, level;
-  SiteArray<Real, 1> sigma;  // sigma m0 is added to A, unless data is null
+  SiteArray<Real, 1> sigma;  // sigma * m0 is added to A, unless data is null
   OutputArray<Real, 3> next;
   Real dt;
   bool to_middle;
@@ -62,8 +63,9 @@ struct ImplicitStage {
   }
 };
 
-/// sigma at the start of an implicit step, for isotropies that add it only after the equation is
-/// solved. Zero and Constant do not, and use this empty class.
+/// The sigma at the start of an implicit step, for isotropies that add sigma * m0 to A only after
+/// the equation is solved; they specialise this class. Zero and Constant do not need it, and use
+/// this empty class.
 template <class Spins, class Isotropy>
 struct ImplicitSigma {
   static constexpr bool is_there = false;
@@ -73,13 +75,14 @@ struct ImplicitSigma {
   static std::size_t bytes() { return 0; }
 };
 
-/// Step m1 = R(dt xi(p)) m0, where p is m1 or, if AtMiddle, half way between m0 and m1.
+/// Base class of implicit methods: m1 = R(dt xi(p)) m0, where R is Rotation, xi is A with its
+/// isotropy, and p is m1 or, if AtMiddle, (m0 + m1) / 2.
 template <class Spins, class Isotropy, class Rotation, bool AtMiddle>
 class Implicit : public StepperBase<Spins> {
  public:
   using typename StepperBase<Spins>::Real;
   static constexpr int ghosts =
-      ImplicitSigma<Spins, Isotropy>::ghosts;  // iterations exchange ghosts themselves
+      ImplicitSigma<Spins, Isotropy>::ghosts;  // ghosts are exchanged in each iteration
   static constexpr int work_fields = 2 + ImplicitSigma<Spins, Isotropy>::work_fields;
 
   Implicit(std::string const& name, Spins const& like, Isotropy isotropy, ImplicitOptions options)
@@ -90,17 +93,17 @@ class Implicit : public StepperBase<Spins> {
         next_(name + "::next", like.lattice()),
         sigma_(name, like.lattice()) {}
 
-  /// Returns bytes of work memory, without the 16 fields that Newton's method allocates at its
+  /// Returns the bytes of work memory, without the 16 fields that Newton's method allocates at its
   /// first use.
   std::size_t work_bytes() const { return level_.bytes() + next_.bytes() + sigma_.bytes(); }
 
-  /// Returns the generator evaluations so far.
+  /// Returns the number of generator evaluations so far.
   std::int64_t evaluations_done() const { return evaluations_done_; }
 
   /// Advances `spins` from t to t + dt under `generator`. A step swaps the memory of `spins` with
-  /// that of the stepper, so take arrays of `spins` again after it. Waits. Throws NotConverged when
-  /// no solution is found, and std::invalid_argument when `spins` is not on the lattice given at
-  /// construction.
+  /// that of the stepper, so call spins.array() again after it. Waits for each iteration. Throws
+  /// NotConverged when no solution is found, and std::invalid_argument when `spins` is not on the
+  /// lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
@@ -191,7 +194,7 @@ class Implicit : public StepperBase<Spins> {
 }  // namespace detail
 
 /// Implicit Euler, order 1: m1 = cay(dt xi(m1)) m0, xi = A + sigma m, solved by fixed-point
-/// iteration and, where that fails, by Newton's method. Lewis and Nigam 2002, Sec. 4.2.
+/// iteration or, if that fails, by Newton's method. Lewis and Nigam 2002, Sec. 4.2.
 template <class Spins, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class ImplicitLieEuler : public detail::Implicit<Spins, Isotropy, Rotation, false> {
  public:
@@ -201,9 +204,9 @@ class ImplicitLieEuler : public detail::Implicit<Spins, Isotropy, Rotation, fals
       : ImplicitLieEuler::Implicit("ImplicitLieEuler", like, isotropy, options) {}
 };
 
-/// Implicit midpoint in Cayley form, order 2: m1 = cay(dt A((m0 + m1) / 2)) m0. Conserves |m|
-/// and, without damping, energies that are quadratic in the spins. A sigma would have no effect.
-/// Not in the paper.
+/// Implicit midpoint in Cayley form, order 2: m1 = cay(dt A((m0 + m1) / 2)) m0. Conserves |m| and,
+/// without damping, energies that are quadratic in the spins. A sigma would have no effect. Not in
+/// Lewis and Nigam 2002.
 template <class Spins>
 class ImplicitMidpoint : public detail::Implicit<Spins, isotropy::Zero, Cayley, true> {
  public:

@@ -38,7 +38,7 @@ class LieHeun
 /// Runge-Kutta-Munthe-Kaas of order 4:
 /// F1 = dt xi(m), F2 = D(F1/2), F3 = D(F2/2), F4 = D(F3), D(f) = dcay_f^-1 (dt xi(cay(f) m)),
 /// m <- cay((F1 + 2 F2 + 2 F3 + F4)/6) m, xi = A + sigma m. Lewis and Nigam 2002, Sec. 4.4, with
-/// its stages 3 and 4 corrected.
+/// corrections to its stages 3 and 4.
 template <class Spins, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class Rkmk4 : public RungeKutta<Spins, tableau::Classical4, update::Lie<Rotation>, Isotropy> {
  public:
@@ -57,9 +57,9 @@ class Rkmk : public RungeKutta<Spins, Tableau, update::Lie<Rotation>, Isotropy> 
       : Rkmk::RungeKutta("Rkmk", like, isotropy) {}
 };
 
-/// Runge-Kutta with any explicit tableau in the stereographic chart at the spin that starts each
-/// step. All coordinates are orthogonal to that spin (update::Stereographic). The order is that of
-/// the tableau. It accepts no sigma.
+/// Runge-Kutta with any explicit tableau in the stereographic chart at the spin at the start of
+/// each step. All coordinates are orthogonal to that spin (update::Stereographic). The order is
+/// that of the tableau. It accepts no sigma.
 template <class Spins, class Tableau = tableau::Classical4>
 class StereographicRungeKutta
     : public RungeKutta<Spins, Tableau, update::Stereographic, isotropy::Zero> {
@@ -68,8 +68,9 @@ class StereographicRungeKutta
       : StereographicRungeKutta::RungeKutta("StereographicRungeKutta", like) {}
 };
 
-/// Commutator-free method of order 4 with exact exponentials: no inverse differential; the last
-/// stage and the end use two rotations. Celledoni, Marthinsen and Owren 2003.
+/// Commutator-free method of order 4 with exact exponentials: no inverse differential; two
+/// rotations lead to the last stage, and two to the end of the step. Celledoni, Marthinsen and
+/// Owren 2003.
 template <class Spins, class Isotropy = isotropy::Zero>
 class CommutatorFree4 : public RungeKutta<Spins, tableau::CommutatorFree4,
                                           update::LieUncorrected<Exponential>, Isotropy> {
@@ -78,7 +79,8 @@ class CommutatorFree4 : public RungeKutta<Spins, tableau::CommutatorFree4,
       : CommutatorFree4::RungeKutta("CommutatorFree4", like, isotropy) {}
 };
 
-/// Baseline: Runge-Kutta in space, with the same kernels as the geometric methods. |m| drifts.
+/// Baseline: Runge-Kutta in Cartesian components, with the same kernels as the geometric methods.
+/// |m| drifts.
 template <class Spins, class Tableau>
 class ClassicalRungeKutta : public RungeKutta<Spins, Tableau, update::Classical, isotropy::Zero> {
  public:
@@ -86,7 +88,8 @@ class ClassicalRungeKutta : public RungeKutta<Spins, Tableau, update::Classical,
       : ClassicalRungeKutta::RungeKutta("Classical" + std::to_string(Tableau::order), like) {}
 };
 
-/// Baseline used by most spin codes: each step in space ends by dividing each spin by its length.
+/// Baseline used by most spin codes: Runge-Kutta in Cartesian components; at the end of a step,
+/// each spin is divided by its length.
 template <class Spins, class Tableau>
 class ProjectedRungeKutta : public RungeKutta<Spins, Tableau, update::Projected, isotropy::Zero> {
  public:
@@ -96,43 +99,46 @@ class ProjectedRungeKutta : public RungeKutta<Spins, Tableau, update::Projected,
 
 // Classes rather than aliases, so that compilers deduce Spins: ProjectedRk4 stepper(spins).
 
-/// Euler's method in space, order 1, one evaluation per step. |m| drifts.
+/// Euler's method in Cartesian components, order 1, one evaluation per step. |m| drifts.
 template <class Spins>
 class ClassicalEuler : public ClassicalRungeKutta<Spins, tableau::Euler> {
  public:
   explicit ClassicalEuler(Spins const& like) : ClassicalEuler::ClassicalRungeKutta(like) {}
 };
 
-/// Heun's method in space, order 2, two evaluations per step. |m| drifts.
+/// Heun's method in Cartesian components, order 2, two evaluations per step. |m| drifts.
 template <class Spins>
 class ClassicalHeun : public ClassicalRungeKutta<Spins, tableau::Heun> {
  public:
   explicit ClassicalHeun(Spins const& like) : ClassicalHeun::ClassicalRungeKutta(like) {}
 };
 
-/// The classical Runge-Kutta method in space, order 4, four evaluations per step. |m| drifts.
+/// The classical Runge-Kutta method in Cartesian components, order 4, four evaluations per step.
+/// |m| drifts.
 template <class Spins>
 class ClassicalRk4 : public ClassicalRungeKutta<Spins, tableau::Classical4> {
  public:
   explicit ClassicalRk4(Spins const& like) : ClassicalRk4::ClassicalRungeKutta(like) {}
 };
 
-/// Euler's method in space, order 1, with each spin divided by its length at the end of a step.
+/// Euler's method in Cartesian components, order 1, with each spin divided by its length at the end
+/// of a step.
 template <class Spins>
 class ProjectedEuler : public ProjectedRungeKutta<Spins, tableau::Euler> {
  public:
   explicit ProjectedEuler(Spins const& like) : ProjectedEuler::ProjectedRungeKutta(like) {}
 };
 
-/// Heun's method in space, order 2, with each spin divided by its length at the end of a step.
+/// Heun's method in Cartesian components, order 2, with each spin divided by its length at the end
+/// of a step.
 template <class Spins>
 class ProjectedHeun : public ProjectedRungeKutta<Spins, tableau::Heun> {
  public:
   explicit ProjectedHeun(Spins const& like) : ProjectedHeun::ProjectedRungeKutta(like) {}
 };
 
-/// The classical Runge-Kutta method in space, order 4, with each spin divided by its length at the
-/// end of a step.
+/// The classical Runge-Kutta method in Cartesian components, order 4, with each spin divided by its
+/// length at the end of a step.
 template <class Spins>
 class ProjectedRk4 : public ProjectedRungeKutta<Spins, tableau::Classical4> {
  public:
@@ -145,7 +151,7 @@ class ProjectedRk4 : public ProjectedRungeKutta<Spins, tableau::Classical4> {
 /// because fields are evaluated at rounded spins; a step takes up to a third more time
 /// (docs/reference/methods.md). The method needs one more field of work memory, and always stores
 /// increments. Do not compile it with -ffast-math. It remembers the previous step: `spins` must be
-/// what the previous step left. Otherwise call `reset`.
+/// those at the end of that step. Otherwise call `reset` first.
 template <class Stepper>
   requires requires {
     typename Stepper::tableau_type;

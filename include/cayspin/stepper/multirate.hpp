@@ -26,31 +26,33 @@ struct MultirateOptions {
   std::int64_t substeps = 1;  ///< steps of the inner method in each step
 };
 
-/// A one-step method in substeps, during which one expensive term of the field (SlowField) is
-/// interpolated in time, so that it is evaluated once a step. The order is Order, or that of the
-/// method if it is lower.
+/// A stepper that divides each step into substeps of a one-step method. One expensive term of the
+/// field (SlowField) is evaluated only once per step: during the substeps it is interpolated in
+/// time. The order is Order, or that of the method if it is lower.
 ///
-/// A step predicts the expensive field from its last values, takes the substeps, and evaluates the
-/// expensive field at their end. It then repeats the substeps from the start with the field
-/// interpolated between that value and the last ones. That value is kept for the next step. Without
-/// the second pass, feedback through the field amplifies short waves at any dt.
+/// A step has two passes through its substeps. In the first, the expensive field is extrapolated
+/// from its last values; at the end of this pass it is evaluated. The second pass repeats the
+/// substeps from the start of the step, with the field interpolated through the new value and the
+/// last ones. The new value is kept for the next step. Without the second pass, feedback through
+/// the field amplifies short waves at any dt.
 ///
 /// Orders 2 and 3 interpolate by the polynomials through the last Order - 1 values (first pass) and
 /// Order values (second pass). Order 4 uses polynomials chosen for stability
-/// (multirate_weights.hpp), from 4 and 5 values, or interpolates 3 and 4 values after unequal
-/// steps. If only the expensive field makes a mode precess, on a circle and with the frequency w,
-/// the amplitude grows by about 1/4 (w dt)^4 per step at order 2. It falls by about 3/8 (w dt)^4 at
-/// order 3, and by about (w dt)^6 at order 4.
+/// (multirate_weights.hpp), from 4 and 5 values. In its first steps and after unequal steps it
+/// interpolates at most 3 and 4 values instead. If only the expensive field makes a mode precess,
+/// on a circle and with the frequency w, then its amplitude changes by a small fraction of itself
+/// per step. At order 2 it grows by about (w * dt)^4 / 4. It falls by about 3/8 * (w * dt)^4 at
+/// order 3, and by about (w * dt)^6 at order 4.
 ///
-/// With D the largest eigenvalue of the expensive field, no linear mode grew up to dt D = .05, .24,
-/// .35, .5 at damping .002, .008, .02, .1 (order 4; .02, .08, .14, .4 at order 3). Without damping,
-/// short waves gain energy slowly.
+/// Let D be the largest eigenvalue of the expensive field. At order 4, no linear mode grew up to dt
+/// * D = 0.05, 0.24, 0.35, 0.5 at damping 0.002, 0.008, 0.02, 0.1. At order 3 these limits are
+/// 0.02, 0.08, 0.14, 0.4. Without damping, short waves gain energy slowly.
 ///
 /// The first step evaluates the expensive field in each stage of its substeps. Steps may change
-/// their length, but a step that is more than twice as long as the last one, or goes the other way,
-/// is a first step again. Work memory in addition to the method's: past_fields + 1 fields, and one
-/// of SlowField. This is a predictor-corrector form of the multirate methods of Gear and Wells (BIT
-/// 24, 1984).
+/// their length, but a step that is more than twice as long as the last one, or has the opposite
+/// sign, is a first step again. Work memory in addition to that of the method: past_fields + 1
+/// fields, and the field in SlowField. This is a predictor-corrector form of the multirate methods
+/// of Gear and Wells (BIT 24, 1984).
 template <class Stepper, class SlowTerm, int Order = 4>
 class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   using Base = detail::StepperBase<typename Stepper::spins_type>;
@@ -84,17 +86,18 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
     slow_.check_spins(like);
   }
 
-  /// Returns the generator evaluations by the inner method so far.
+  /// Returns the number of generator evaluations by the inner method so far.
   std::int64_t evaluations_done() const { return evaluations_done_; }
-  /// Returns the evaluations of the expensive field by steps so far: one per step. A first step
-  /// takes one more, and those in the stages of its substeps.
+  /// Returns how often steps have evaluated the expensive field so far: once per step. A first step
+  /// also evaluates it at its start and in each stage of its substeps.
   std::int64_t slow_evaluations_done() const { return slow_evaluations_done_; }
   std::size_t work_bytes() const {
     return stepper_.work_bytes() + (past_fields + 2) * begin_.bytes();
   }
 
-  /// Forgets the previous steps, so that the next step is a first step. Call it after changing the
-  /// spins or the generator. cayspin::integrate calls it for each run.
+  /// Forgets the previous steps, so that the next step is a first step. Call this after changing
+  /// the spins or the generator. cayspin::integrate calls it at the start of each run that does not
+  /// continue the previous one.
   void reset() {
     past_.forget();
     knows_begin_ = false;
@@ -119,10 +122,10 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   }
 
   /// Advances `spins` from t to t + dt under `generator`. `spins` must be those at the end of the
-  /// previous step. A step may swap the memory of `spins` with the inner method's. If a field
-  /// throws, `spins` are those before the step, and the next step is a first step. Throws
-  /// std::invalid_argument when `spins` is not on the lattice given at construction and, except in
-  /// a first step, when the generator's field does not contain the SlowField.
+  /// previous step. A step may swap the memory of `spins` with that of the inner method. If a term
+  /// of the field throws, `spins` are those before the step, and the next step is a first step.
+  /// Throws std::invalid_argument when `spins` is not on the lattice given at construction and,
+  /// except in a first step, when the generator's field does not contain the SlowField.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
@@ -157,8 +160,8 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   template <class Exec, class Generator>
   void go_on(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     past_.remember(dt);
-    // In the first pass the value at the end is missing, so entry 0 of nodes and values is left
-    // out.
+    // The value at the end of the step is unknown in the first pass, which therefore leaves out
+    // entry 0 of nodes and values.
     auto nodes = past_.times(dt);
     std::array<Spins, past_fields> values;
     std::size_t known = std::min(past_.known(), past_fields - 1);
@@ -183,14 +186,14 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
                           {nodes.data(), known + 1}, correct);
   }
 
-  /// Returns true if the steps between these times are as long as the one from 0 to 1.
+  /// Returns true if the nodes are 1, 0, -1, ..: all steps between them have the same length.
   static bool are_equal_steps(std::array<double, past_fields> const& nodes) {
     for (std::size_t i = 0; i < past_fields; ++i)
       if (std::abs(nodes[i] - (1 - static_cast<double>(i))) > 1e-9) return false;
     return true;
   }
 
-  /// Takes the substeps with these values of the expensive field.
+  /// Takes the substeps with the expensive field interpolated from these values.
   template <class Exec, class Generator>
   void take_substeps_between(Exec const& exec, Generator const& generator, Spins& spins, double t,
                              double dt, std::span<Spins const> values,

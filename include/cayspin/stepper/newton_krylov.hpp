@@ -13,8 +13,8 @@
 namespace cayspin::inline v0_2::detail {
 
 /// Solver of v = g(v) on a field by Newton's method with step halving. GMRES solves the linear
-/// systems; it gets each product of g' and a vector from a difference of g. Allocates 16 fields at
-/// its first use.
+/// systems; it approximates each product of g' and a vector by a finite difference of g. Allocates
+/// 16 fields at its first use.
 template <class Spins>
 class NewtonKrylov {
   using Real = typename Spins::value_type;
@@ -23,8 +23,8 @@ class NewtonKrylov {
 
  public:
   /// `g(v, to)` writes g(v) to `to`. `v` is the first guess and becomes the solution; `image`
-  /// becomes g(v). Returns true if, within `iterations`, all components of g(v) - v fell to
-  /// `tolerance` or, if round-off prevents further progress, to at most 512 times that.
+  /// becomes g(v). Returns true if, within `iterations` Newton iterations, the largest component of
+  /// |g(v) - v| fell to `tolerance` or, if round-off prevents further progress, to 512 * tolerance.
   template <class Exec, class Map>
   bool solve(Exec const& exec, Map const& g, Spins const& v, Spins const& image, double tolerance,
              int iterations) {
@@ -71,13 +71,13 @@ class NewtonKrylov {
     return length(exec, basis_[0]);
   }
 
-  // Solves (1 - g') correction = basis_[0], whose length is norm, to a thousandth of norm or as far
-  // as krylov_dimension vectors reach.
+  // Solves (1 - g') correction_ = basis_[0], where `norm` is the length of basis_[0]. Stops when
+  // the residual is a thousandth of `norm`, or after krylov_dimension vectors.
   template <class Exec, class Map>
   void solve_linear(Exec const& exec, Map const& g, Spins const& v, Spins const& image,
                     double norm) {
     constexpr std::size_t m = krylov_dimension;
-    std::array<std::array<double, m + 1>, m> h{};  // columns
+    std::array<std::array<double, m + 1>, m> h{};  // h[j] is column j
     std::array<double, m> cosine{}, sine{};
     std::array<double, m + 1> rest{norm};
     double const small = std::sqrt(epsilon * static_cast<double>(whole(v.lattice()).sites()));

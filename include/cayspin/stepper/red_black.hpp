@@ -18,14 +18,15 @@ namespace cayspin::inline v0_2 {
 /// are fixed. Each spin moves by the exact flow of one spin in a fixed field, with precession and
 /// damping together. Works in place, without work memory.
 ///
-/// On-site terms (anisotropy, a local demagnetising field) are evaluated at the mean of the spin
-/// before and after the move, by iteration. Field terms are therefore also evaluated at spins
-/// shorter than one, and at the zero vector. Without damping, a step of -dt undoes a step of dt.
+/// On-site terms (anisotropy, a local demagnetising field) are evaluated at the mean of the spins
+/// before and after the move, which is found by iteration. Field terms are therefore also evaluated
+/// at spins shorter than one, and at the zero vector. Without damping, a step of -dt undoes a step
+/// of dt.
 ///
-/// If the energy is quadratic in the spins and does not depend on t, both orders conserve it to
-/// round-off without damping. With damping, order 2 never raises it; order 4 may, because one of
-/// its steps goes backwards. This holds for any dt at which the iteration converges: |dt| (1 +
-/// damping) times the strength of the on-site terms must be below about 1/2.
+/// If the energy is at most quadratic in the spins and does not depend on t, both orders conserve
+/// it to round-off without damping. With damping, order 2 never raises it; order 4 may, because one
+/// of the five steps of order 2 in it goes backwards. This holds for any dt at which the iteration
+/// converges: |dt| * (1 + damping) * (strength of the on-site terms) must be below about 1/2.
 template <class Spins, int Order>
 class RedBlack : public detail::StepperBase<Spins> {
   static_assert(Order == 2 || Order == 4, "RedBlack is of order 2 or 4.");
@@ -34,10 +35,10 @@ class RedBlack : public detail::StepperBase<Spins> {
   using typename detail::StepperBase<Spins>::Real;
   static constexpr int order = Order;
   /// Evaluations per step of a long run, where a pass over one colour counts as half an evaluation.
-  /// Consecutive steps in a batch share the pass at which they meet. evaluations_done() counts the
-  /// actual passes.
+  /// Consecutive steps in a batch share the pass at which they meet. evaluations_done() is half the
+  /// actual number of passes.
   static constexpr int evaluations = Order == 2 ? 1 : 5;
-  static constexpr int ghosts = 1;  // each pass exchanges ghosts itself
+  static constexpr int ghosts = 1;  // ghosts are exchanged after each pass
   static constexpr int work_fields = 0;
 
   /// Throws std::invalid_argument when a periodic axis has an odd number of sites greater than one.
@@ -57,7 +58,7 @@ class RedBlack : public detail::StepperBase<Spins> {
 
   std::size_t work_bytes() const { return 0; }
 
-  /// Returns the generator evaluations so far, rounded up.
+  /// Returns the number of generator evaluations so far: half the number of passes, rounded up.
   std::int64_t evaluations_done() const { return (passes_done_ + 1) / 2; }
 
   /// For cayspin::serialize.
@@ -68,7 +69,7 @@ class RedBlack : public detail::StepperBase<Spins> {
 
   /// Advances `spins` from t to t + dt, in place, under `generator`: a LandauLifshitz, or a
   /// generator whose prepare returns one. Throws std::invalid_argument when `spins` is not on the
-  /// lattice given at construction, and when the field needs all spins beforehand.
+  /// lattice given at construction, and when a term of the field needs all spins beforehand.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
@@ -95,9 +96,9 @@ class RedBlack : public detail::StepperBase<Spins> {
     return detail::is_stationary(generator, exec, spins);
   }
 
-  /// Takes `count` steps that share the passes at which they meet, with the bits of single steps.
-  /// Throws std::invalid_argument when `spins` is not on the lattice given at construction, `count`
-  /// is below 1 or takes_batches is false.
+  /// Takes `count` steps. Consecutive steps share the pass at which they meet; the result is
+  /// bitwise identical to that of single steps. Throws std::invalid_argument when `spins` is not on
+  /// the lattice given at construction, `count` is below 1 or takes_batches is false.
   template <class Exec, class Generator>
   void batch(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
              std::int64_t count) {
@@ -155,7 +156,7 @@ class RedBlack : public detail::StepperBase<Spins> {
 };
 
 /// Red-black splitting of order 2 (RedBlack): three passes per step, each over half of the spins.
-/// Consecutive steps of a batch share one of them.
+/// Consecutive steps of a batch share one pass.
 template <class Spins>
 class RedBlack2 : public RedBlack<Spins, 2> {
  public:

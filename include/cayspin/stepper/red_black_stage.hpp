@@ -17,9 +17,10 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// One pass over a colour: one flow of every spin over a fraction of the step, or two flows where
-/// two steps meet. `length` of a flow is its duration, and `middle` is the time from the start of
-/// the step to the midpoint of the flow. Both are in units of dt.
+/// One pass over a colour, in which each spin makes one flow, or two where one step of order 2 ends
+/// and the next one starts. `length` of a flow is its duration, and `middle` is the time from the
+/// start of the step to the midpoint of the flow. Both are in units of dt. `of_one_step`: the flows
+/// belong to one call of `step`, not to consecutive steps of a batch.
 struct ColourPass {
   std::int32_t colour = 0, flows = 1;
   bool of_one_step = true;
@@ -28,8 +29,10 @@ struct ColourPass {
 
 /// Returns the passes of a step. Order 2: colour 0 over dt/2, colour 1 over dt, colour 0 over dt/2.
 /// Order 4: five such steps, over a, a, 1 - 4 a, a, a of dt with a = 1/(4 - 4^(1/3)) (Suzuki 1990).
-/// Adjacent flows of colour 0 share a pass. They stay two flows if the field changes with the spin
-/// itself: such a flow is of order 2, and its errors cancel only within its own step.
+/// Adjacent flows of colour 0 share a pass. RedBlackStage joins them into one flow, unless the
+/// field depends on the spin itself or on t. If it depends on the spin itself, a flow is only
+/// accurate to order 2, and joined flows would spoil the cancellation of errors between the five
+/// steps.
 template <int Order>
 constexpr auto colour_passes() {
   constexpr std::size_t steps = Order == 2 ? 1 : 5;
@@ -52,7 +55,8 @@ constexpr auto colour_passes() {
 }
 
 /// Calls visit(pass) for the passes of `count` steps. Where two steps meet, the last flow of one
-/// and the first flow of the next share a pass; this does not change the bits.
+/// and the first flow of the next share a pass; the result is bitwise identical to that of separate
+/// passes.
 template <int Order, class Visit>
 void for_each_colour_pass(std::int64_t count, Visit const& visit) {
   constexpr auto passes = colour_passes<Order>();
@@ -72,19 +76,20 @@ KOKKOS_FORCEINLINE_FUNCTION Value largest_component(Vec3<Value> const& v) {
 
 /// Functor that moves the spins of one colour in the fields of their neighbours.
 ///
-/// H at a site is N + D(q): the field of the neighbours, and the part that depends on the spin
-/// itself. Multiples of the spin are omitted, because they do not move it. The spin moves from q
-/// to q' by the exact flow in the fixed field N + D(mean), where mean = (q + q')/2 is found by
-/// iteration. Then (q' - q).(N + D(mean)) is zero without damping, and not negative with damping if
-/// dt > 0. An energy that is quadratic in the spins falls by exactly this number in every move.
+/// H at a site is N + D(q), where N is the field of the neighbours, and D(q) is the local field,
+/// which may depend on the spin q itself. Multiples of the spin are omitted, because they do not
+/// move it. The spin moves from q to q' by the exact flow in the fixed field N + D(mean), where
+/// mean = (q + q')/2 is found by iteration. Then (q' - q).(N + D(mean)) is zero without damping,
+/// and not negative with damping if dt > 0. An energy that is at most quadratic in the spins falls
+/// by exactly this number in every move.
 template <class Generator, class Real>
 struct RedBlackStage {
   Generator generators[2];  // prepared for the midpoints of the flows
   SiteArray<Real, 3> spins;
-  bool changes;  // true if the two generators differ
+  bool changes;  // true if the two generators may differ
   Real dt[2];
   std::int32_t flows, colour;
-  bool joined;  // true if two flows may become one, because their fields are equal
+  bool joined;  // true if two flows may become one: they belong to one step, in equal fields
 
   void set(ColourPass const& pass, double step) {
     for (int flow = 0; flow < 2; ++flow) dt[flow] = static_cast<Real>(pass.length[flow] * step);
@@ -160,8 +165,8 @@ struct RedBlackStage {
       d_ = own(q_);
       if (!varies(stage)) return;
 
-      // A change of d_ below enough_ is about the rounding of the field, or moves the spin by about
-      // a quarter of its rounding.
+      // A change of d_ below enough_ is about the rounding error of the field, or moves the spin by
+      // about a quarter of an epsilon.
       constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
       Value const rate = flow_.damping + Value(Real(flow_.precession ? 1 : 0));
       enough_ =
@@ -185,14 +190,14 @@ struct RedBlackStage {
     }
 
    private:
-    /// Returns the part of the field that depends on the spin itself.
+    /// Returns D(m), the local part of the field at the spin m.
     KOKKOS_FORCEINLINE_FUNCTION Vector own(Vector const& m) const {
       if constexpr (in_parts)
         return local_field(*field_, SpinAlone<Site>(site_, m));
       else
         return across(field_->field(VariedStencil(neighbors_, m)) - of_neighbors_, m);
     }
-    /// Returns the lanes that are not sites.
+    /// Returns the mask of the lanes that are not sites.
     KOKKOS_FORCEINLINE_FUNCTION Mask outside() const {
       if constexpr (Site::lanes == 1)
         return false;
@@ -218,7 +223,7 @@ struct RedBlackStage {
   }
 };
 
-/// Functor that takes steps of few spins on a host, in one launch.
+/// Functor that takes `count` steps of few spins on a host, in one launch.
 template <int Order, class Stage, class Real>
 struct RedBlackSteps {
   ColourRowLoop<Real, Stage> loop;

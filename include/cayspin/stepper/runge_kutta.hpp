@@ -39,8 +39,8 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
       : Base(name, like, isotropy, {name, like.lattice()}) {}
 
   /// Advances `spins` from t to t + dt under `generator`. A step may swap the memory of `spins`
-  /// with that of the stepper, so take arrays of `spins` again after it. Throws
-  /// std::invalid_argument when `spins` is not on the lattice given at construction.
+  /// with that of the stepper, so call spins.array() again after it. Throws std::invalid_argument
+  /// when `spins` is not on the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
@@ -80,8 +80,9 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
     visit(memory_.end());
   }
 
-  /// Returns true if `batch` can take these steps: few spins on a host space, not on a part of a
-  /// lattice, in passes, under a generator that does not change between steps.
+  /// Returns true if `batch` can take steps of these spins: there are few of them, on a host space
+  /// and not on a part of a lattice, stages run as passes, and the generator does not change
+  /// between steps.
   template <class Exec, class Generator>
   bool takes_batches(Exec const& exec, Generator const& generator, Spins const& spins) const {
     return this->path() == Path::pass && this->lattice_.part == nullptr &&
@@ -89,8 +90,9 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
            detail::is_stationary(generator, exec, spins);
   }
 
-  /// Takes `count` steps in one or two launches, with the bits of single steps. Throws
-  /// std::invalid_argument like `step`, when `count` is below 1, and when takes_batches is false.
+  /// Takes `count` steps in one or two launches; the result is bitwise identical to that of `count`
+  /// calls of `step`. Throws std::invalid_argument like `step`, when `count` is below 1, and when
+  /// takes_batches is false.
   template <class Exec, class Generator>
     requires detail::is_host_execution<Exec>
   void batch(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
@@ -102,7 +104,7 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
     if (!takes_batches(exec, generator, spins))
       throw std::invalid_argument(
           this->label("::batch: these steps have to be taken one by one (takes_batches)"));
-    constexpr int steps = stages == 1 ? 2 : 1;  // of one pass through the loops
+    constexpr int steps = stages == 1 ? 2 : 1;  // in one pass through the loops
     detail::repeat_on_calling_thread(batch_label_, count / steps,
                                      loops_of_steps(prepared, spins, dt));
     if (count % steps != 0) step(exec, generator, spins, t, dt);

@@ -18,28 +18,27 @@ namespace cayspin::inline v0_2 {
 /// Parameters of a run that determine a stepper's work memory.
 struct PredictedRun {
   int threads = 1;
-  bool by_time_only = true;  ///< the generator is prepared from t, not from the spins (FieldTerm)
+  bool by_time_only = true;  ///< the generator's needs_only_time (FieldTerm) is true
 };
 
 namespace detail {
 
 /// Base class of steppers with Runge-Kutta stages, for constant or adaptive steps. On a host, a
 /// step sweeps through a large field once, unless the generator needs all spins of a stage
-/// beforehand (a nonlocal field). Otherwise each stage is one fused kernel. `Memory` holds the
-/// fields that passes need or the buffers of a sweep.
+/// beforehand (a nonlocal field). Otherwise each stage is a pass: one fused kernel over the field.
+/// `Memory` holds the fields that passes need or the buffers of a sweep.
 template <class Spins, class Tableau, class Update, class Isotropy, class Memory>
 class StagedStepper : public StepperBase<Spins> {
  public:
   using typename StepperBase<Spins>::Real;
   static constexpr int ghosts = Tableau::stages;
-  /// Number of fields, of three numbers per site, in addition to the spins when stages run one by
-  /// one.
+  /// Number of fields, of three numbers per site, that passes need in addition to the spins.
   static constexpr int work_fields = Memory::fields_of_passes;
 
   /// Uses this path from now on instead of the automatic choice, and allocates its memory. Keeps
-  /// what a step leaves for the next one. A step that cannot sweep, because its generator needs the
-  /// spins of each stage, goes back to passes. Throws std::invalid_argument when the fields cannot
-  /// be swept.
+  /// the fields that a step leaves for the next one. If a later step cannot sweep, because its
+  /// generator needs the spins of each stage, the stepper switches back to passes. Throws
+  /// std::invalid_argument when the fields cannot be swept.
   void use(Path path) {
     if (path == Path::sweep) Sweeps::require(plan_.layout, this->label("::use"));
     path_ = path;

@@ -10,10 +10,10 @@
 
 namespace cayspin::inline v0_2 {
 
-/// A time interval in which steps are at most max_dt long; a longer step that would reach the
-/// interval ends at its start. max_dt = 0 stands for a jump of the field between `begin` and `end`,
-/// which are a few ulp of t apart: steps end at `begin`, and a new run starts at `end` with the
-/// same spins.
+/// A time interval in which steps are at most max_dt long. A longer step that would pass `begin` is
+/// shortened, so that a step ends there. max_dt = 0 stands for a jump of the field between `begin`
+/// and `end`, which are a few ulp of t apart: steps end at `begin`, and a new run starts at `end`
+/// with the same spins.
 struct StepBound {
   double begin = 0, end = 0, max_dt = 0;
 };
@@ -51,7 +51,7 @@ class StepBounds {
   struct Step {
     double dt, end;  // end: t + dt, or exactly the start of a bound
   };
-  /// Returns a step from t that is longer than `dt` by at most 1e-9 dt, and not beyond `end`.
+  /// Returns a step from t that is at most (1 + 1e-9) * dt long, and does not pass `end`.
   Step step(double t, double dt, double end) const {
     double stop = end;
     for (auto at = first_that_ends_after(t); at != all_.end() && at->begin < t + 2 * dt; ++at) {

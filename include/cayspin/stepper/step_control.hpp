@@ -17,7 +17,7 @@ namespace cayspin::inline v0_2 {
 /// Thrown when an adaptive step would have to be shorter than min_dt or than the resolution of t.
 /// In the second case the values are not finite, or the field is not smooth. The spins are those
 /// before the step; under integrate() they are those of the last time at which an observer was due,
-/// or of a later time. The next step starts a run from them.
+/// or of a later time. The next step starts a new run from the spins that it is given.
 class StepTooSmall : public std::runtime_error {
  public:
   StepTooSmall(std::string const& message, double start, double length, double least)
@@ -35,10 +35,10 @@ class StepTooSmall : public std::runtime_error {
 
 /// Options for the steps of an adaptive method.
 struct StepOptions {
-  double tolerance = 1e-6;  ///< bound on the error of a run: the largest angle between a spin and
-                            ///< its exact direction, in radians
+  double tolerance = 1e-6;  ///< desired bound on the error of a run: the largest angle between a
+                            ///< spin and its exact direction, in radians
   double first_dt = 0;      ///< 0: chosen from the largest rate and the tolerance
-  double min_dt = 0;        ///< an error that needs a shorter step throws StepTooSmall
+  double min_dt = 0;        ///< if the tolerance needs a shorter step, StepTooSmall is thrown
   double max_dt = std::numeric_limits<double>::infinity();
   double end = std::numeric_limits<double>::infinity();  ///< no stage is evaluated after this time
   /// Intervals in which the field jumps, or changes so fast that steps may miss the change between
@@ -132,8 +132,8 @@ class StepController {
   bool rejected_ = false;
 };
 
-/// The internal steps of an adaptive method. They do not depend on the requested times, except that
-/// these give the first step if no spin turns.
+/// The internal steps of an adaptive method. They do not depend on the requested times, with one
+/// exception: if no spin turns at the start, the first requested dt is the default first step.
 class OwnSteps {
  public:
   std::int64_t accepted_steps() const { return accepted_; }
@@ -142,14 +142,15 @@ class OwnSteps {
   double next_dt() const { return next_dt_; }
   /// Forgets the run so far: the next step starts from the t and spins that it is given.
   void reset() { running_ = false; }
-  /// Returns true if the internal steps have reached t, the end of a step of dt, to within 1e-9 dt.
+  /// Returns true if the internal steps have reached t, to within 1e-9 * |dt| + 4 * epsilon * |t|.
+  /// dt is the length of the requested step that ends at t.
   bool has_reached(double t, double dt) const { return end_time_ >= t - slack(t, dt); }
 
  protected:
   /// Outcome of an attempted step. The error is an angle.
   struct Try {
     double error = 0;
-    double most_growth = std::numeric_limits<double>::infinity();  // largest next dt / dt
+    double most_growth = std::numeric_limits<double>::infinity();  // largest (next dt) / dt
     bool is_solved = true;  // if false, `error` is not used, and dt is halved
   };
 
@@ -161,10 +162,11 @@ class OwnSteps {
         region_(region) {}
 
   /// Calls begin(start) unless a run is in progress; `start` is t, or the end of a jump at t. Then
-  /// calls take_step() until a step ends at t + dt or later. After a jump of the field it calls
-  /// begin() again, with the end of the jump, for the spins at the end of the last step. An
-  /// exception from either call ends the run: the next step starts from the t and spins that it is
-  /// given. Throws std::invalid_argument when dt is negative or options.end is before t + dt.
+  /// calls take_step() until an internal step ends at t + dt or later. If one ends at the start of
+  /// a jump, begin(end of the jump) is called again; it starts from the spins at the end of that
+  /// step. An exception from begin or take_step ends the run: the next step starts from the t and
+  /// spins that it is given. Throws std::invalid_argument when dt is negative or options.end is
+  /// before t + dt.
   template <class Begin, class TakeStep>
   void go_on_to(double t, double dt, Begin const& begin, TakeStep const& take_step) {
     double const asked = t + dt;
@@ -185,12 +187,13 @@ class OwnSteps {
 
   bool is_running() const { return running_; }
 
-  /// Starts a run at t, for spins that turn by at most `rate` per unit of time.
+  /// Starts a run at t, for spins that turn by at most `rate` per unit of time. `asked`: the
+  /// requested dt, which is the default first step if no spin turns.
   void begin_run(double t, double rate, double asked) {
     controller_.reset();
     next_dt_ = controller_.first_dt(rate, asked);
     end_time_ = t;
-    running_ = next_dt_ > 0;  // 0 for spins at equilibrium and a step of no length
+    running_ = next_dt_ > 0;  // next_dt_ is 0 for spins at equilibrium and dt = 0
   }
 
   /// Takes the next internal step: try_step(t, dt) returns a Try. Throws StepTooSmall.
@@ -234,7 +237,8 @@ class OwnSteps {
   double end_time_ = 0, dt_ = 0, next_dt_ = 0;  // the last internal step ends at end_time_
 
  private:
-  // Ends of steps that are computed in different ways differ by the round-off of t.
+  // Times that are computed in different ways, such as t + dt and the sum of internal steps, differ
+  // by round-off.
   static double slack(double t, double dt) {
     return 1e-9 * std::abs(dt) + 4 * std::numeric_limits<double>::epsilon() * std::abs(t);
   }

@@ -16,28 +16,29 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Number of ghosts that a stepper declares; 0 if it does not run on parts of a lattice.
+/// Number of ghost layers that a stepper declares; 0 if it does not run on parts of a lattice.
 template <class Stepper>
 inline constexpr int ghosts_of = 0;
 template <class Stepper>
   requires requires { Stepper::ghosts; }
 inline constexpr int ghosts_of<Stepper> = Stepper::ghosts;
 
-/// Base class of steppers. Each step or batch starts with begin_step: checks at compile time and at
-/// run time, and a profiling region.
+/// Base class of steppers. Each step or batch starts with begin_step, which checks its arguments at
+/// compile time and at run time, and opens a profiling region.
 template <class Spins>
 class StepperBase {
  public:
   using spins_type = Spins;
   using Real = typename Spins::value_type;
 
-  // Not copyable: copies would share a stepper's fields but not its numbers.
+  // Not copyable: a copy would share the memory of the stepper's fields, but have its own counters.
   StepperBase(StepperBase const&) = delete;
   StepperBase& operator=(StepperBase const&) = delete;
   StepperBase(StepperBase&&) = default;
   StepperBase& operator=(StepperBase&&) = default;
 
-  /// For cayspin::integrate: by default no step swaps the memory of the spins.
+  /// For cayspin::integrate: visits no field, because by default a step does not swap the memory of
+  /// the spins.
   template <class Visit>
   void visit_exchanged(Visit const&) {}
 
@@ -48,8 +49,8 @@ class StepperBase {
   }
 
  protected:
-  /// `ghosts`: layers that a step needs at each inner end of a part of a lattice; 0 if the stepper
-  /// does not run on parts.
+  /// `ghosts`: ghost layers that a step needs at each inner end of a part of a lattice; 0 if the
+  /// stepper does not run on parts.
   StepperBase(std::string const& name, Lattice const& lattice, int ghosts = 0)
       : lattice_(lattice), region_("cayspin::" + name) {
     lattice.validate();
@@ -75,8 +76,8 @@ class StepperBase {
     return Kokkos::Profiling::ScopedRegion(region_);
   }
 
-  /// Throws std::invalid_argument when `spins` is an old handle on memory that now belongs to the
-  /// stepper, because a step has swapped it.
+  /// Throws std::invalid_argument when `spins` is an outdated handle: a step has swapped memory,
+  /// and that of `spins` now belongs to the stepper, as `own`.
   void require_other_memory(Spins const& spins, Spins const& own) const {
     if (spins.array().data == own.array().data) [[unlikely]]
       throw std::invalid_argument(

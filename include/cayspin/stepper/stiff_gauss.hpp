@@ -23,14 +23,16 @@
 namespace cayspin::inline v0_2 {
 
 /// Gauss's collocation method for stiff exchange. Order 2 is implicit midpoint in Cayley
-/// coordinates: m1 = cay(f) m0, f = dt A((m0 + m1) / 2). Order 4 has two coupled stages of this
-/// kind.
+/// coordinates: m1 = cay(f) m0, f = dt A((m0 + m1) / 2). Order 4 has two coupled stages.
 ///
-/// A at the stages is extrapolated from earlier steps. Each correction adds (1 + b K)^-1 times the
-/// residual, where K = -J Lap is the exchange as measured at the first step, b = dt (damping - i)
-/// times an eigenvalue of the tableau, and i stands for m x. This is Newton's method if exchange
-/// couples sites along one axis only and the spins are nearly parallel. One or two corrections per
-/// step are typical. A step whose corrections do not converge is halved.
+/// The estimate of A at the stages is first extrapolated from earlier steps, then corrected. Each
+/// correction adds (1 + b K)^-1 times the residual, which is A at the spins of the stages minus the
+/// estimate. Here K = -J Lap is the exchange as measured in the first step, with the lattice
+/// Laplacian Lap. b is an eigenvalue of the tableau times dt * (damping - i), or times dt * damping
+/// if there is no precession; i stands for m x. These are the corrections of Newton's method if
+/// exchange couples sites along one axis only and the spins are nearly parallel. One or two
+/// corrections per step are typical. If the corrections of a step do not converge, the step is
+/// halved.
 ///
 /// Conserves |m|. If H is affine and the generator has no damping, also conserves the energy to
 /// round-off, and the total spin if isotropic exchange is the only term. Works with any generator,
@@ -53,9 +55,9 @@ class StiffGauss : public detail::StepperBase<Spins> {
   explicit StiffGauss(Spins const& like, StiffOptions options = {})
       : StiffGauss(name, like, options) {}
 
-  /// Returns the generator evaluations so far.
+  /// Returns the number of generator evaluations so far.
   std::int64_t evaluations_done() const { return evaluations_done_; }
-  /// Returns how many steps, or parts of steps, were halved so far.
+  /// Returns how often a step, or a part of one, was halved so far.
   std::int64_t halvings_done() const { return halvings_done_; }
 
   /// Forgets the previous steps and the measured exchange.
@@ -89,10 +91,10 @@ class StiffGauss : public detail::StepperBase<Spins> {
   }
 
   /// Advances `spins` from t to t + dt under `generator`. A step swaps the memory of `spins` with
-  /// that of the stepper, so take arrays of `spins` again after it. Waits. If a field throws,
-  /// `spins` is unchanged. Throws NotConverged, with `spins` unchanged, when halved steps have no
-  /// solution either, and std::invalid_argument when `spins` is not on the lattice given at
-  /// construction or the lattice has replicas.
+  /// that of the stepper, so call spins.array() again after it. Waits. If a term of the field
+  /// throws, `spins` is unchanged. Throws NotConverged, with `spins` unchanged, when the equations
+  /// are not solved even for halved steps, and std::invalid_argument when `spins` is not on the
+  /// lattice given at construction or the lattice has replicas.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
@@ -157,14 +159,16 @@ class StiffGauss : public detail::StepperBase<Spins> {
 
   void make_solver() { solver_ = Solver(name, this->lattice_, exchange_.couplings); }
 
-  /// Restores the spins after a failed step.
+  /// Restores the spins after a failed step, and forgets the previous steps.
   void give_back(Spins& spins) {
     if (moved_) swap(spins, start_);
     moved_ = false;
     history_.forget();
   }
 
-  /// Takes one step, or two of half the length if it is not solved.
+  /// Takes one step. If its equation is not solved, takes two steps of half the length instead.
+  /// `halvings`: how often lengths may still be halved. Returns false if the equation of a shortest
+  /// step is not solved either.
   template <class Exec, class Generator>
   bool advance(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
                History* history, int halvings) {
@@ -182,8 +186,9 @@ class StiffGauss : public detail::StepperBase<Spins> {
            advance(exec, generator, spins, t + 0.5 * dt, 0.5 * dt, nullptr, halvings - 1);
   }
 
-  /// Leaves the spins after the step in end_, and A at its stages in x_. `Shifted`: corrections use
-  /// K + local_ in place of K. Returns false if corrections do not converge.
+  /// Solves the equation of one step. Leaves the spins at the end of the step in end_, and A at its
+  /// stages in x_. `Shifted`: corrections use K + local_ in place of K. Returns false if
+  /// corrections do not converge.
   template <bool Shifted = false, class Exec, class Generator>
   bool solve(Exec const& exec, Generator const& generator, Spins const& spins, double t, double dt,
              History* history) {
@@ -209,7 +214,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
         unmeasured_ = 0;
         if (contraction < 0.9 && change * contraction <= (1 - contraction) * tolerance) return true;
         stalled = change < smallest ? 0 : stalled + 1;
-        if (change <= 512 * epsilon && stalled == 2) return true;  // round-off
+        if (change <= 512 * epsilon && stalled == 2) return true;  // at round-off level
         if (change > 10 * smallest) return false;
       }
       smallest = std::min(smallest, change);
@@ -217,15 +222,16 @@ class StiffGauss : public detail::StepperBase<Spins> {
     return false;
   }
 
-  /// Returns the bound on the error that corrections leave, given the first correction.
+  /// Returns the bound on the error that corrections may leave. `first`: size of the first
+  /// correction.
   template <class Generator>
   double tolerance_of(Generator const& generator, History* history, double first) const {
     if (solving_.tolerance > 0) return solving_.tolerance;
     if constexpr (requires { generator.conserves_energy(); })
       if (generator.conserves_energy()) return 4 * epsilon;
     if (history != nullptr && history->is_complete()) return history->tolerance(first);
-    // `first` is proportional to this power of the step's rotation. Without history it is the whole
-    // rotation of the step.
+    // `first` is proportional to the power `of_rotation` of the angle by which spins turn in the
+    // step. Without history it is this angle itself.
     double const of_rotation = 1 + (history != nullptr ? history->known() : 0);
     return std::max(std::min(1e-3 * first, 0.01 * std::pow(first, (Order + 1) / of_rotation)),
                     16 * epsilon);
@@ -243,7 +249,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
   }
 
   /// Corrects x_, and computes the spins at the stages and at the end of the step. Returns the
-  /// largest change of dt x_.
+  /// largest |change of x_| times |dt|.
   template <bool Shifted, class Exec, class Generator>
   double correct(Exec const& exec, Generator const& generator, Spins const& spins, double t,
                  double dt) {
@@ -275,8 +281,9 @@ class StiffGauss : public detail::StepperBase<Spins> {
     return std::abs(dt) * std::sqrt(square);
   }
 
-  /// Computes the residual of one stage, as part of the right side for an eigenvector of the
-  /// tableau.
+  /// Computes the residual of one stage, and stores its part of the right side (r', r''), which
+  /// belongs to an eigenvector of the tableau: stage 0 gives r', and stage 1, if there is one,
+  /// gives r''.
   template <class Exec, class Generator>
   void residual(Exec const& exec, Generator const& generator, std::size_t s, double t, double dt) {
     auto prepared = detail::prepare_term(generator, exec, stage_[s], t + Gauss::nodes[s] * dt);
@@ -307,11 +314,11 @@ class StiffGauss : public detail::StepperBase<Spins> {
   detail::MeasuredExchange exchange_;
   double local_ = 0;
   double last_dt_ = 0;
-  double contraction_ = 1;              // last measured second correction / first correction
+  double contraction_ = 1;              // last measured ratio of second to first correction
   int unmeasured_ = 0;                  // steps since that measurement
-  int corrections_ = 0;                 // of the last step
-  int extrapolated_ = History::fields;  // earlier values that an extrapolation uses
-  bool moved_ = false;                  // start_ holds the spins before the step
+  int corrections_ = 0;                 // number of corrections in the last step
+  int extrapolated_ = History::fields;  // number of earlier values in an extrapolation
+  bool moved_ = false;                  // true if start_ holds the spins before the step
   std::int64_t evaluations_done_ = 0, halvings_done_ = 0;
 };
 

@@ -9,11 +9,11 @@
 
 #include <cstddef>
 
-// Kernels of StiffGauss. x is the estimate of A at the stages.
+// Kernels of StiffGauss. x is the current estimate of A at the stages.
 namespace cayspin::inline v0_2::detail {
 
-/// Functor that extrapolates x by a polynomial from x of earlier steps, and computes the spins at
-/// the stages.
+/// Functor that extrapolates x by a polynomial through its values at stages of earlier steps, and
+/// computes the spins at the stages.
 template <int Stages, int Earlier, class Real>
 struct GuessStage {
   SiteArray<Real, 3> earlier[std::size_t{Earlier}];
@@ -51,9 +51,9 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> across_spin(Vec3<Value> const& v, Vec3<V
   return select<Value>(vacant, zero<Value>(), multiply_add(Value(-dot(v, m) / divisor), m, v));
 }
 
-/// Functor that computes the part of the residual A(Y) - x normal to the spin Y at a stage; zero on
-/// a vacant site. Parts along Y have no effect, since only the cross product of x and Y counts.
-/// The functor also removes the part of x along Y.
+/// Functor that computes the residual A(Y) - x at the spin Y of a stage, and stores its part normal
+/// to Y, times `share`; zero on a vacant site. Parts along Y have no effect, because x acts only
+/// through its cross product with Y. The functor also removes the part of x along Y.
 template <class Generator, class Real>
 struct ResidualStage {
   Generator generator;
@@ -77,16 +77,16 @@ struct ResidualStage {
   }
 };
 
-/// Functor that adds to x the part of the solution normal to the spins at the stages, and computes
-/// the spins there and at the end of the step. `Scaled`: the first solution is multiplied by a
-/// complex factor, a second one by its conjugate. The value to reduce is the largest |change of
-/// x|^2.
+/// Functor that adds to x, at each stage, the part of the solution normal to the spin of the stage.
+/// It then computes the spins at the stages and at the end of the step. `Scaled`: the first
+/// solution is multiplied by the complex factor real + i * imaginary, and a second one by its
+/// conjugate. The value to reduce is the largest |change of x|^2 over the stages.
 template <int Stages, bool Scaled, class Real>
 struct CorrectStage {
   SiteArray<Real, 6> solution[std::size_t{Stages}];
   SiteArray<Real, 3> spins, x[std::size_t{Stages}], stage[std::size_t{Stages}], end;
-  Real dt, real, imaginary;  // parts of the factor
-  bool only_rotated_part;    // all solutions are of the form m x v''
+  Real dt, real, imaginary;  // `real` and `imaginary`: parts of the factor
+  bool only_rotated_part;    // true if v' is zero in all solutions
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
@@ -104,11 +104,12 @@ struct CorrectStage {
     Vec3<Value> const last = GaussLegendre<Stages>::solve(f, site.load(spins), there);
     for (int s = 0; s < Stages; ++s) store_narrowed(there[s], site, stage[s]);
     store_narrowed(last, site, end);
-    values[0] = multiply_add(Value(0), dot(last, last), largest);  // overflow makes it NaN
+    values[0] = multiply_add(Value(0), dot(last, last), largest);  // NaN if `last` overflowed
   }
 
  private:
-  // A solution (v', v'') is v' + i v'', and i stands for m x.
+  // Computes the corrections v from the solutions. A solution (v', v'') stands for v' + i v'',
+  // where i stands for m x.
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void corrections(Site const& site,
                                                Vec3<Value> (&v)[std::size_t{Stages}]) const {
@@ -125,7 +126,8 @@ struct CorrectStage {
     if constexpr (Stages == 1) {
       v[0] = part(0, 0) + cross(Vec3<Value>(site.load(stage[0])), part(0, 3));
     } else {
-      // With solutions z and z~: z + z~ at the first stage, i turned (z - z~) at the second.
+      // With solutions z and z~: v is z + z~ at the first stage, and i * turned * (z - z~) at the
+      // second.
       auto const turned = as_value<Value>(GaussLegendre<2>::turned);
       Vec3<Value> const a = part(0, 0), b = part(0, 3), c = part(1, 0), d = part(1, 3);
       v[0] = (a + c) + cross(Vec3<Value>(site.load(stage[0])), b + d);
@@ -148,10 +150,11 @@ struct SumAlongSpins {
 };
 
 /// Functor that sums weighted changes of the spins over steps, and stores the cross product of the
-/// spins at a stage and this sum: a right side for the solver of corrections.
+/// spins at a stage with this sum. The result is a right side for the solver that StiffGauss uses
+/// for corrections.
 template <class Real>
 struct SecondDifference {
-  SiteArray<Real, 3> spins[4];  // at the end of a step, and at the starts of the last three
+  SiteArray<Real, 3> spins[4];  // at the end of the last step, and at the starts of the last three
   double weights[3];
   SiteArray<Real, 3> stage;
   OutputArray<Real, 3> difference;
@@ -160,7 +163,7 @@ struct SecondDifference {
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     store(site, zero<typename Site::value_type>(), 3);
   }
-  /// Adds the weighted changes over `count` steps to `sum`, then stores the cross product.
+  /// Adds the weighted changes over the last `count` steps to `sum`, then stores the cross product.
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void store(Site const& site, Vec3<Value> sum, int count) const {
     Vec3<Value> later = site.load(spins[0]);
@@ -190,9 +193,9 @@ struct SecondDifferenceWithEnd {
   }
 };
 
-/// Functor that computes the spins within a step: those at the start of the step, turned by f. f is
-/// `whole` times A at the stage of the step, plus `slope` times the change of A since the stage of
-/// the step before.
+/// Functor that computes the spins at a time within a step: cay(f) times the spins at the start of
+/// the step, where f = whole * last + slope * (last - before). `last` and `before` are A at the
+/// stage of this step and at that of the previous step.
 template <class Real>
 struct StiffDenseOutput {
   SiteArray<Real, 3> begin, last, before;
@@ -210,7 +213,8 @@ struct StiffDenseOutput {
   }
 };
 
-/// Functor that finds the largest |v|^2 of a solution (v', v''), v = v' + m x v''.
+/// Functor that computes |v|^2 of a solution (v', v''), where v = v' + m x v''; zero on a vacant
+/// site.
 template <class Real>
 struct LargestSolution {
   SiteArray<Real, 6> solution;

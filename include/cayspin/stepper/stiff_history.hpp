@@ -16,13 +16,13 @@ namespace cayspin::inline v0_2 {
 
 /// Options of StiffGauss.
 struct StiffOptions {
-  /// Bound on the largest remaining error of any site's rotation vector. 0 stands for round-off if
-  /// the generator conserves the energy. Otherwise it stands for 1/200 of the usual first
+  /// Bound on the largest remaining error of any site's rotation vector. 0 (the default) means:
+  /// round-off, if the generator conserves the energy. Otherwise 1/200 of the usual first
   /// correction (for order 4 down to 1/1000, if that correction is small) and, in the first steps,
-  /// for at most 1/1000 of the first correction.
+  /// at most 1/1000 of the first correction.
   double tolerance = 0;
-  int iterations = 30;  ///< corrections before the step is halved
-  int halvings = 12;    ///< how often a step is halved before it throws NotConverged
+  int iterations = 30;  ///< most corrections before the step is halved
+  int halvings = 12;    ///< most successive halvings before NotConverged is thrown
 };
 
 namespace detail {
@@ -48,7 +48,7 @@ class StiffHistory {
     times_ = times_of_equal_steps();
     usual_ = std::numeric_limits<double>::infinity();
   }
-  /// Takes the fields x of the last step, and leaves other memory in their place.
+  /// Stores the fields x of the last step by swapping: x is left with other memory.
   void remember(std::array<Spins, std::size_t{Stages}>& x) {
     std::rotate(earlier_.begin(), earlier_.end() - Stages, earlier_.end());
     std::rotate(times_.begin(), times_.end() - Stages, times_.end());
@@ -64,7 +64,7 @@ class StiffHistory {
     for (double& time : times_) time /= ratio;
   }
 
-  /// For cayspin::serialize. Methods with unequal steps visit the times, too.
+  /// For cayspin::serialize. Methods with unequal steps call visit_times, too.
   template <class Visit>
   void visit_times(Visit const& visit) {
     for (std::size_t i = 0; i < times_.size(); ++i)
@@ -87,10 +87,10 @@ class StiffHistory {
     }
   }
 
-  /// Returns weights that give half the second derivative of the spins' rate, in units of dt, from
-  /// the changes over the last three steps, latest first. With `has_end`, dt times the rate at the
-  /// end of the last step takes the place of the third change. For a first step the weights give
-  /// the first derivative.
+  /// Returns weights for the changes of the spins over the last three steps, latest first. The
+  /// weighted sum is half the second derivative of the spins' rate, with time in units of dt. With
+  /// `has_end`, dt times the rate at the end of the last step takes the place of the third change.
+  /// In the first step of a run the sum is the first derivative instead.
   std::array<double, 3> second_difference(bool has_end) const
     requires(Stages == 1)
   {
@@ -101,8 +101,9 @@ class StiffHistory {
             1 / ((other - now) * (other - before) * (has_end ? 1 : one_before))};
   }
 
-  /// Returns the kernel for the spins within the last step, after the fraction `share` of it. A is
-  /// taken as linear in time, through its values at the stages of the last two steps.
+  /// Returns the kernel that computes the spins within the last step, at the fraction `share` of
+  /// it. A is taken as linear in time, through its values at the stages of the last two steps; as
+  /// constant if there was only one step.
   StiffDenseOutput<Real> dense_output(double dt, double share) const
     requires(Stages == 1)
   {
@@ -117,9 +118,10 @@ class StiffHistory {
     return kernel;
   }
 
-  /// Returns the bound on the error that corrections leave, given the first correction. Spin waves
-  /// that are too short for dt are not damped, and extrapolation amplifies what is left of them. A
-  /// first correction therefore counts as at most 1.2 times the usual one.
+  /// Returns the bound on the error that corrections may leave, and updates the usual first
+  /// correction. `first`: size of the first correction of this step. Spin waves that are too short
+  /// for dt are not damped, and extrapolation amplifies what is left of them. A first correction
+  /// therefore counts as at most 1.2 times the usual one.
   double tolerance(double first) {
     double const least = 16 * epsilon;
     first = usual_ = std::clamp(first, least, std::max(least, 1.2 * usual_));

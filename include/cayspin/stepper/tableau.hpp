@@ -5,12 +5,13 @@
 
 // Explicit Butcher tableaux as data. To add a Runge-Kutta method, write a struct like these.
 // - a: stages x stages, strictly lower triangular; b: weights; c: stage times in units of dt.
-// Embedded tableaux also have an error estimate and interpolate within a step. They use one more
-// stage: the generator at the end of the step, which is the first one of the next step.
-// - error: weights of all stages, including that one. They give the step minus the embedded
-//   solution, which is of order embedded_order.
-// - dense: for each stage, the coefficients of s, s^2, ... s^5 in its weight at t + s dt. The
-//   interpolation is of order dense_order.
+// Embedded tableaux also estimate the error of a step, and interpolate within it. For this they use
+// one more stage, which evaluates the generator at the end of the step. The first stage of the next
+// step uses this value again.
+// - error: weights of all stages, including the additional one. The weighted sum of the increments
+//   is the result of the step minus the embedded solution, which is of order embedded_order.
+// - dense: for each stage, including the additional one, the coefficients of s, s^2, ... s^5 in its
+//   weight at the time t + s * dt. The interpolation is of order dense_order.
 namespace cayspin::inline v0_2::tableau {
 
 /// Euler's method: order 1, one stage.
@@ -54,10 +55,11 @@ struct ThreeEighths4 {
   static constexpr double c[4] = {0, 1. / 3, 2. / 3, 1};
 };
 
-/// Six stages of order 4 with the structure of RK4: each stage starts from the spins at the start
-/// of the step and uses one slope. The weights satisfy the eight conditions of order 4 to 2e-14.
-/// Made for stability along the imaginary axis: up to dt omega = 0.82 per stage with a little
-/// damping; RK4 has 0.71.
+/// Order 4 in six stages with the structure of RK4: each stage starts from the spins at the start
+/// of the step and uses only the increment of the stage before it. The coefficients satisfy the
+/// eight conditions of order 4 to 2e-14. Designed for stability along the imaginary axis: with a
+/// little damping, the largest stable dt * (precession frequency) is 0.82 per stage; for RK4 it is
+/// 0.71.
 struct Oscillatory64 {
   static constexpr int stages = 6, order = 4;
   static constexpr double c[6] = {0,
@@ -72,11 +74,11 @@ struct Oscillatory64 {
                                   0.4468478584675798,   0.057412333557148615, 0.19286791519818647};
 };
 
-/// Seven stages of order 4 with the structure of RK4; the first two have no weight. The eight
-/// conditions of order 4 and the stability polynomial, whose last coefficients are 0.0078, 0.00087
-/// and 0.0001055, determine the numbers. Found by a search for long stable steps and small errors
-/// on films. Largest dt omega per stage at damping 0, 0.02, 0.1, 0.3: 0.79, 0.81, 0.79, 0.61 (RK4:
-/// 0.71, 0.72, 0.73, 0.68).
+/// Order 4 in seven stages with the structure of RK4; the weights b of the first two are 0. The
+/// eight conditions of order 4 and the last coefficients of the stability polynomial, 0.0078,
+/// 0.00087 and 0.0001055, determine the other numbers. Found by a search for long stable steps and
+/// small errors on films. The largest stable dt * (precession frequency) per stage is 0.79, 0.81,
+/// 0.79, 0.61 at damping 0, 0.02, 0.1, 0.3 (RK4: 0.71, 0.72, 0.73, 0.68).
 struct Oscillatory74 {
   static constexpr int stages = 7, order = 4;
   static constexpr double c[7] = {0,
@@ -102,9 +104,9 @@ struct Oscillatory74 {
                                   0.12083268225466433};
 };
 
-/// Five stages of order 4 for strong damping: small errors, and stable up to dt times decay rate =
+/// Order 4 in five stages for strong damping: small errors, and stable up to dt * (decay rate) =
 /// 0.70 per stage, like RK4. The last coefficient of the stability polynomial is 0.85 / 5!. Found
-/// by a search for a small leading error, which is a tenth of RK4's.
+/// by a search for a small leading error term, which is a tenth of that of RK4.
 struct Damped54 {
   static constexpr int stages = 5, order = 4;
   static constexpr double c[5] = {0, 0.14114715574092904, 0.5948055915144558, 0.1966650853743125,
@@ -119,10 +121,10 @@ struct Damped54 {
                                   -0.24045170335125277, 0.13500507499234043};
 };
 
-/// Commutator-free, order 4 (Celledoni, Marthinsen and Owren 2003). The coordinates of rotations
-/// are weighted sums of the generators themselves. Each stage is reached by a rotation with the
-/// weights a, which for the last stage is followed by one with second_a. The end of the step is
-/// reached by two rotations: with b, then with second_b.
+/// Commutator-free, order 4 (Celledoni, Marthinsen and Owren 2003). The coordinates of each
+/// rotation are a weighted sum of the increments dt A of the stages. A rotation with the weights a
+/// leads from the start of the step to each stage; for the last stage, a rotation with second_a
+/// follows. Two rotations lead to the end of the step: first with b, then with second_b.
 struct CommutatorFree4 {
   static constexpr int stages = 4, order = 4;
   static constexpr double a[4][4] = {{0, 0, 0, 0}, {0.5, 0, 0, 0}, {0, 0.5, 0, 0}, {0.5, 0, 0, 0}};
@@ -201,8 +203,8 @@ struct Tsitouras5 {
       {0, 1.5, -4, 2.5}};
 };
 
-/// An embedded tableau with the stage at the end of the step appended: its weight is 0, and its
-/// generator is the next step's first.
+/// An embedded tableau with the stage at the end of the step appended. The weight b of this stage
+/// is 0. The value of the generator there is used again by the first stage of the next step.
 template <class Embedded>
 struct FirstSameAsLast : Embedded {
   static constexpr bool first_same_as_last = true;

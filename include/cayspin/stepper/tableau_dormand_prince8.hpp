@@ -3,8 +3,8 @@
 
 namespace cayspin::inline v0_2::tableau {
 
-/// Dormand and Prince, order 8 in twelve stages: the steps of DOP853, Hairer, Nørsett and Wanner
-/// 1993, Sec. II.5.
+/// Dormand and Prince, order 8 in twelve stages: the coefficients of DOP853 without its error
+/// estimate. Hairer, Nørsett and Wanner 1993, Sec. II.5.
 struct DormandPrince8 {
   static constexpr int stages = 12, order = 8;
   static constexpr double a[12][12] = {

@@ -3,10 +3,11 @@
 
 namespace cayspin::inline v0_2::tableau {
 
-/// Eight stages of order 6. They satisfy the 37 conditions of order 6 to 1e-16, and their stability
-/// polynomial has the last coefficients 1.05 / 7! and 1.39 / 8!. Found by a search for small errors
-/// of order 7, few coefficients and stability on the imaginary axis. Largest dt omega per stage at
-/// damping 0, 0.02, 0.1, 0.3: 0.46, 0.48, 0.51, 0.48 (Dormand-Prince 5: 0.17, 0.35, 0.44, 0.51).
+/// Order 6 in eight stages. The coefficients satisfy the 37 conditions of order 6 to 1e-16, and the
+/// last coefficients of the stability polynomial are 1.05 / 7! and 1.39 / 8!. Found by a search for
+/// small errors of order 7, many zeros in a, and stability on the imaginary axis. The largest
+/// stable dt * (precession frequency) per stage is 0.46, 0.48, 0.51, 0.48 at damping 0, 0.02, 0.1,
+/// 0.3 (Dormand-Prince 5: 0.17, 0.35, 0.44, 0.51).
 struct Oscillatory86 {
   static constexpr int stages = 8, order = 6;
   static constexpr double a[8][8] = {
@@ -33,9 +34,9 @@ struct Oscillatory86 {
                                   1};
 };
 
-/// Eight stages of order 6 for strong damping. The stability polynomial has the last coefficients
-/// 0.8 / 7! and 0.33 / 8!. Largest dt times decay rate: 0.86 per stage (RK4: 0.70, Dormand-Prince
-/// 5: 0.55).
+/// Order 6 in eight stages for strong damping. The last coefficients of the stability polynomial
+/// are 0.8 / 7! and 0.33 / 8!. The largest stable dt * (decay rate) is 0.86 per stage (RK4: 0.70,
+/// Dormand-Prince 5: 0.55).
 struct Damped86 {
   static constexpr int stages = 8, order = 6;
   static constexpr double a[8][8] = {

@@ -13,15 +13,17 @@
 
 #include <limits>
 
-// Steps that use two values of the generator, one of which is stored in a field: finite differences
-// of A_o = A - (m.A) m, and the two-step method of Adams and Bashforth.
+// Methods whose steps use two values of the generator A, one of which is stored in a field:
+// LieEuler with sigma from finite differences of A_o = A - (m.A) m, and the two-step method of
+// Adams and Bashforth.
 namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// Inputs of a rule at a site: the spin m at which A is evaluated, the spin m0 at the start of the
-/// step, A including its isotropy, the stored vector, and dt. The rule returns the step's
-/// coordinates F and, if it writes, sets `kept` to the vector to store.
+/// Input of a rule (one of the functors below) at a site: the spin m at which A is evaluated, the
+/// spin m0 at the start of the step, a = A + sigma m with the sigma of the isotropy policy, the
+/// stored vector `kept`, and dt. The rule returns the coordinates F of the rotation that moves m0.
+/// If Rule::writes is true, it sets `kept` to the vector to store.
 template <class Value>
 struct TwoPoints {
   Vec3<Value> m, m0, a, kept;
@@ -53,7 +55,7 @@ struct ForwardDifference {
 };
 
 /// F = dt (w + sigma m); stores w. Here w is A_o at m, sigma comes from the difference between w
-/// and the stored A_o, and `ratio` is dt / (previous dt).
+/// and the stored A_o, multiplied by ratio = dt / (previous dt).
 struct BackwardDifference {
   static constexpr bool reads = true, writes = true;
   double cap, ratio;
@@ -148,9 +150,9 @@ struct TwoPointStage {
 
 }  // namespace detail
 
-/// A stepper that stores A, or A_o, between the two evaluations of a step, or from one step to the
-/// next. Method, for example detail::ForwardDifferenceMethod, defines how a step uses the stored
-/// and the new value. Work memory: two fields.
+/// A stepper that stores the generator A, or A_o = A - (m.A) m, between the two evaluations of a
+/// step, or from one step to the next. Method, for example detail::ForwardDifferenceMethod, defines
+/// how a step uses the stored and the new value. Work memory: two fields.
 template <class Spins, class Method, class Isotropy, class Rotation>
 class TwoPoint : public detail::StepperBase<Spins> {
   using Base = detail::StepperBase<Spins>;
@@ -171,15 +173,15 @@ class TwoPoint : public detail::StepperBase<Spins> {
         kept_(name + "::kept_generator", like.lattice()),
         streaming_(detail::exceeds_caches<DefaultExec>(like.bytes() + work_bytes())) {}
 
-  /// Returns the generator evaluations in the next step: two in the first step of a method that
-  /// remembers steps.
+  /// Returns the number of generator evaluations in the next step. A method that remembers the
+  /// previous step needs two in its first step and one in each later step.
   int next_step_evaluations() const { return last_dt_ == 0 ? 2 : evaluations; }
 
   std::size_t work_bytes() const { return work_fields * next_.bytes(); }
 
   /// Advances `spins` from t to t + dt under `generator`. For a method that remembers the previous
   /// step, `spins` must be those at the end of that step. A step may swap the memory of `spins`
-  /// with that of the stepper: take arrays of `spins` again after it. Throws std::invalid_argument
+  /// with that of the stepper, so call spins.array() again after it. Throws std::invalid_argument
   /// when `spins` is not on the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
@@ -200,8 +202,8 @@ class TwoPoint : public detail::StepperBase<Spins> {
     detail::update_ghosts(exec, this->lattice_, spins);
   }
 
-  /// Forgets the previous step; the next one is a first step. cayspin::integrate calls it for each
-  /// run.
+  /// Forgets the previous step, so that the next step is a first step. cayspin::integrate calls
+  /// this at the start of each run that does not continue the previous one.
   void reset()
     requires(Method::remembers)
   {
@@ -223,8 +225,8 @@ class TwoPoint : public detail::StepperBase<Spins> {
     visit(next_);
   }
 
-  /// Remembers `spins` as the state at t, as if a step of dt had started from it. The next call of
-  /// `step` must start at the end of that step.
+  /// Evaluates A at `spins` and time t, and stores it as the value at the start of a previous step
+  /// of dt. The next call of `step` must start at t + dt.
   template <class Exec, class Generator>
   void remember(Exec const& exec, Generator const& generator, Spins const& spins, double t,
                 double dt)
@@ -267,9 +269,9 @@ class TwoPoint : public detail::StepperBase<Spins> {
   double last_dt_ = 0;
 };
 
-/// The two-step method of Adams and Bashforth, order 2 with one evaluation: m <- cay(dt (3 xi_n -
-/// xi_(n-1)) / 2) m, xi = A + sigma m. If dt changes, the argument of cay is dt (xi_n + (dt /
-/// previous dt) (xi_n - xi_(n-1)) / 2). The first step is one of LieHeun.
+/// The two-step method of Adams and Bashforth, order 2 with one evaluation per step:
+/// m <- cay(dt (3 xi_n - xi_(n-1)) / 2) m, xi = A + sigma m. If dt changes, the argument of cay is
+/// dt (xi_n + (dt / previous dt) (xi_n - xi_(n-1)) / 2). The first step is a LieHeun step.
 template <class Spins, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class LieAdamsBashforth2
     : public TwoPoint<Spins, detail::AdamsBashforthMethod, Isotropy, Rotation> {
