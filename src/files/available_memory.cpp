@@ -64,8 +64,8 @@ std::int64_t left_around(Group const& group, fs::path const& root, fs::path cons
   }
 }
 
-// Lines have the form number:controllers:name. For version 2 there is one line without controllers,
-// 0::name.
+// Lines of /proc/self/cgroup have the form number:controllers:name. The line for version 2 has no
+// controllers: 0::name.
 std::int64_t left_in_groups(fs::path const& root) {
   auto least = unlimited;
   std::ifstream file(root / "proc/self/cgroup");

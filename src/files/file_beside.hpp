@@ -7,13 +7,13 @@
 namespace cayspin::inline v0_2::io {
 
 /// A file being written as PATH.partial, which commit() renames to PATH. If PATH is a symbolic
-/// link, that is done with the file it leads to. Failures throw
+/// link, the file to which it leads is written in this way. Failures throw
 /// std::runtime_error("PATH: cannot write the file: REASON").
 class FileBeside {
  public:
   /// An existing file is an error unless `overwrite`, and always if it is not a regular file.
   FileBeside(std::filesystem::path path, bool overwrite);
-  /// Removes the written file unless committed.
+  /// Removes the written file unless commit() has renamed it.
   ~FileBeside();
   FileBeside(FileBeside const&) = delete;
   FileBeside& operator=(FileBeside const&) = delete;
@@ -31,8 +31,8 @@ class FileBeside {
   bool committed_ = false;
 };
 
-/// Throws if `path` is a file that may not be replaced: any without `overwrite`, and one that is
-/// not regular.
+/// Throws if `path` exists and may not be replaced: without `overwrite`, or because it is not a
+/// regular file.
 void require_free(std::filesystem::path const& path, bool overwrite);
 
 }  // namespace cayspin::inline v0_2::io

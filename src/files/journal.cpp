@@ -33,7 +33,7 @@ static_assert(sizeof(Sector) == sizeof(std::uint64_t) + sector_bytes);
 static_assert(std::is_trivially_copyable_v<Sector> && std::is_trivially_copyable_v<Head>);
 
 // Fletcher's sum would not do: it does not distinguish bytes of 0 from bytes of 0xff, and sectors
-// of either occur.
+// full of either occur.
 std::uint64_t checksum(Head head, std::span<Sector const> sectors) {
   head.checksum = 0;
   std::uint64_t hash = 0;

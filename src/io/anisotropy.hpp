@@ -9,17 +9,17 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// H = (K (m.e) + K2 (m.e)^3) e.
+/// Uniaxial anisotropy: H = (K (m.e) + K2 (m.e)^3) e.
 struct Anisotropy {
   double constant = 0;        ///< K
   Triple axis = {};           ///< unit vector e
   int site = -1;              ///< index in the cell; below 0: all sites
-  SiteNumbers factors = {};   ///< multiply the constant, which then is 1
+  SiteNumbers factors = {};   ///< K of each site, if site-dependent; `constant` is then 1
   double constant2 = 0;       ///< K2
-  SiteNumbers factors2 = {};  ///< multiply K2, which then is 1
-  SiteVectors axes = {};      ///< instead of one axis; normalised when used
+  SiteNumbers factors2 = {};  ///< K2 of each site, if site-dependent; `constant2` is then 1
+  SiteVectors axes = {};      ///< e of each site, if site-dependent; normalised when used
 
-  /// Returns true if the term has one constant and one axis.
+  /// Returns true if K and e are the same on all sites that have the term, and there is no K2.
   bool is_plain() const {
     return !factors.there() && constant2 == 0 && !factors2.there() && !axes.there();
   }
@@ -31,21 +31,22 @@ struct Anisotropy {
   }
 };
 
-/// Anisotropy of a crystal. Its energy depends on the components of m along two orthogonal axes and
-/// their cross product, in this order. Cubic, with the components a, b, c:
+/// Anisotropy of a crystal. Its energy depends on three components of m: those along two orthogonal
+/// axes and that along their cross product. If cubic, these are called a, b and c:
 ///   E = constant (a^2 b^2 + b^2 c^2 + c^2 a^2) + constant2 a^2 b^2 c^2.
-/// Hexagonal, with the components c, a, b: E = constant Re (a + i b)^6.
+/// If hexagonal, they are called c, a and b: E = constant Re[(a + i b)^6].
 struct CrystalAnisotropy {
   bool hexagonal = false;
   double constant = 0;
   std::array<Triple, 2> axes = {};  ///< unit vectors
   int site = -1;                    ///< index in the cell; below 0: all sites
-  SiteNumbers factors = {};         ///< multiply the constant, which then is 1
+  SiteNumbers factors = {};         ///< values per site; `constant` is then 1
   double constant2 = 0;
-  SiteNumbers factors2 = {};                      ///< multiply constant2, which then is 1
-  std::array<SiteVectors, 2> axes_of_sites = {};  ///< each replaces its axis if set
+  SiteNumbers factors2 = {};                      ///< values per site; `constant2` is then 1
+  std::array<SiteVectors, 2> axes_of_sites = {};  ///< each, if set, replaces its axis
 
-  /// Returns true if it is cubic, of the lowest order, and equal on all sites that have it.
+  /// Returns true if the anisotropy is cubic, without constant2, and equal on all sites that have
+  /// it.
   bool is_plain() const {
     return !hexagonal && constant2 == 0 && !factors.there() && !factors2.there() &&
            !axes_of_sites[0].there() && !axes_of_sites[1].there();

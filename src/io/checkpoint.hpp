@@ -23,7 +23,7 @@ namespace cayspin::inline v0_2::io {
 struct CheckpointHeader {
   std::string scene_text, resolved_scene;  ///< as in TrajectoryHeader
   std::string cayspin_version;
-  std::string precision = "double";            ///< of the run and of the fields: "single", "double"
+  std::string precision = "double";            ///< "single" or "double", for the run and the fields
   std::array<std::int64_t, 3> shape{1, 1, 1};  ///< nx, ny, nz, as in TrajectoryHeader
   std::int64_t cell_sites = 1;
   std::int64_t step = 0;
@@ -32,14 +32,14 @@ struct CheckpointHeader {
   StageBegin stage = {};  ///< start of the current stage
 };
 
-/// "run.checkpoint.h5" for "run.h5"
+/// Returns the name of a trajectory's checkpoint: "run.checkpoint.h5" for "run.h5".
 std::filesystem::path checkpoint_beside(std::filesystem::path trajectory);
 
 /// Writer of PATH.partial, which commit() renames to PATH.
 class CheckpointWriter final : public Checkpoint {
  public:
   CheckpointWriter(std::filesystem::path path, CheckpointHeader const& header);
-  /// Removes the written file unless committed.
+  /// Removes PATH.partial unless commit() has renamed it.
   ~CheckpointWriter() override;
   CheckpointWriter(CheckpointWriter const&) = delete;
   CheckpointWriter& operator=(CheckpointWriter const&) = delete;
@@ -47,8 +47,8 @@ class CheckpointWriter final : public Checkpoint {
   bool restores() const override { return false; }
   void number(std::string const& name, double& value) override;
   void field(std::string const& name, std::vector<double>& numbers) override;
-  /// Stores the next planes along z of a field of `components` numbers per site. Call it until the
-  /// field is whole.
+  /// Stores the next planes along z of a field with `components` numbers per site. Call it until
+  /// all planes of the field are stored.
   void planes(std::string const& name, std::int64_t components, std::vector<double> const& numbers);
 
   /// Waits until the file is on the disk, then renames it. The field "spins" must have been stored.
@@ -59,8 +59,9 @@ class CheckpointWriter final : public Checkpoint {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Reader of a checkpoint. Verifies each field by the field's checksum, and everything else by the
-/// file's, which files of earlier versions do not have.
+/// Reader of a checkpoint. The constructor verifies each field by the field's checksum, and all
+/// other contents except the shape by the checksum of the file, which files of earlier versions
+/// lack.
 class CheckpointReader final : public Checkpoint {
  public:
   explicit CheckpointReader(std::filesystem::path path);
@@ -74,7 +75,7 @@ class CheckpointReader final : public Checkpoint {
   bool restores() const override { return true; }
   void number(std::string const& name, double& value) override;
   void field(std::string const& name, std::vector<double>& numbers) override;
-  /// Returns the numbers of the sites in a box. Needs memory for these numbers and for some planes.
+  /// Returns a field's numbers at the sites of a box. Needs memory for these and for some planes.
   std::vector<double> field(std::string const& name, SiteBox const& box) const;
 
  private:

@@ -7,7 +7,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Returns "1 step", "2 steps".
+/// Returns the count and the noun, which has an "s" unless the count is 1: "1 step", "2 steps".
 inline std::string counted(std::int64_t count, std::string_view what) {
   auto text = std::to_string(count);
   text += ' ';

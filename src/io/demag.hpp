@@ -17,7 +17,7 @@ struct SlabDemagnetization {
   Triple normal = {};  ///< unit vector n
   double strength = 1;
   bool on_host = false;    ///< computed on the host through a mirror copy
-  bool multirate = false;  ///< evaluated only once or twice per step, and not in the substeps
+  bool multirate = false;  ///< evaluated once or twice per dt, and interpolated in the substeps
 
   static constexpr auto keys() {
     using Slab = SlabDemagnetization;
@@ -31,12 +31,12 @@ struct SlabDemagnetization {
 /// The demagnetising field of the cells, H = -strength sum N m, or the field of point dipoles.
 struct Demagnetization {
   double strength = 1;
-  std::array<int, 3> periodic_images{};  ///< along each axis, on each side of the nearest image
-  std::optional<Crystal> dipoles;        ///< positions of the dipoles; empty: cells
+  std::array<int, 3> periodic_images{};  ///< number per axis and side, beyond the nearest image
+  std::optional<Crystal> dipoles;        ///< cell and sites of the point dipoles; empty: cells
   Triple demagnetizing_factors = {};     ///< for dipoles with three periodic axes
-  std::string key = "demag";             ///< the key in [field]: demag or dipoles
+  std::string key = "demag";             ///< name of the key in [field]: "demag" or "dipoles"
   std::optional<bool> multirate;         ///< default: true if method and scene allow it
-  std::filesystem::path cache;           ///< file that keeps slowly computed tensors; or empty
+  std::filesystem::path cache;           ///< file for tensors that take long to compute; or empty
 
   static constexpr auto keys() {
     return std::to_array<Key<Demagnetization>>({{"strength", &Demagnetization::strength},

@@ -20,15 +20,15 @@ struct VariedKey {
 struct Ensemble {
   std::int64_t replicas = 0;  ///< 0: the scene has no such table
   std::vector<VariedKey> vary;
-  std::string text_of_replicas;  ///< scene text without [ensemble], which may be long
+  std::string text_of_replicas;  ///< the scene's text without [ensemble], a table that may be long
 
   bool there() const { return replicas > 0; }
 };
 
-/// For a lattice whose columns (the sites with equal x) are replicas that do not interact
-/// (simulation/replica_columns.hpp). Scenes read from files never have this member.
+/// Set for a lattice whose columns (the sites with equal x) are replicas that do not interact
+/// (simulation/replica_columns.hpp). Reading a scene never sets Scene::columns.
 struct Columns {
-  std::vector<double> temperatures;  ///< factors on the scene's temperature; empty: all 1
+  std::vector<double> temperatures;  ///< factors on the temperature, one per column; empty: all 1
 };
 
 /// Returns the scene of one replica, without [ensemble]: the varied keys have the replica's values,

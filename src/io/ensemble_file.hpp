@@ -17,7 +17,7 @@ namespace cayspin::inline v0_2::io {
 
 /// Result of the search for the equilibrium of one replica, by `cayspin relax`.
 struct RelaxedReplica {
-  double torque = 0;  ///< max |m x H|: reduced, or mu0 H in T
+  double torque = 0;  ///< max |m x H|, reduced; in SI, max |m x mu0 H| in T
   bool converged = false;
   std::int64_t evaluations = 0;
 };

@@ -9,9 +9,9 @@
 #include <string_view>
 
 // Exchange and DMI. Exchange, InterfacialDmi and BulkDmi are lattice terms: their H is linear in
-// the spin and its neighbours. To add such a term, write a struct with the same members as
-// Exchange, add a member to Field, and list that member in Field::lattice_terms. The scene reader,
-// `cayspin check`, the stability bound and the kernels use that list.
+// the spins of a site and its neighbours. To add such a term, write a struct with the same members
+// as Exchange, add a member to Field, and list that member in Field::lattice_terms. The scene
+// reader, `cayspin check`, the stability bound and the kernels use that list.
 namespace cayspin::inline v0_2 {
 class Exchange;
 class InterfacialDmi;
@@ -44,19 +44,21 @@ struct Exchange {
   /// Printed by `cayspin check`, with the values of keys() in place of {}.
   static constexpr std::string_view formula = "H = {} Lap(m)";
 
-  /// Returns the largest |H| of alternating unit spins, or an upper bound on it.
+  /// Returns an upper bound on the magnitudes of H's eigenvalues, with H as a linear operator on
+  /// all spins. An upper bound of |H| for unit spins is such a bound.
   template <class Lattice>
   double field_bound(Lattice const& lattice) const {
     return exchange_bound(lattice, constant);
   }
-  /// Returns a bound on the sum of |bond energies| of a site, to which round-off is proportional.
+  /// Returns a bound on the sum of the |energies| of a site's bonds. Round-off is proportional to
+  /// it.
   template <class Lattice>
   double energy_magnitude(Lattice const& lattice) const {
     return sum_over_axes(lattice, [&](std::size_t, double spacing) {
       return 2 * std::abs(constant) / (spacing * spacing);
     });
   }
-  /// Returns the library's term for kernels, which has neighbor_field.
+  /// Returns the library's class for this term, whose neighbor_field kernels call.
   template <class Lattice, class Term = cayspin::Exchange>
   Term term(Lattice const& lattice) const {
     return Term(lattice, constant);

@@ -9,8 +9,8 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// A function that an expression may call. `value` takes the two arguments of the call, and the
-/// values of the expression's variables. It may throw std::runtime_error with one line.
+/// A function that an expression may call. `value` is called with the two arguments and the values
+/// of the expression's variables. It may throw std::runtime_error with one line.
 struct ExpressionFunction {
   std::string name;
   std::function<double(double, double, double const*)> value;
@@ -31,8 +31,8 @@ class Expression {
   Expression& operator=(Expression other) noexcept;
   ~Expression();
 
-  /// Returns the value at `values`, one per variable in the constructor's order. Throws
-  /// std::runtime_error with one line when the result is not finite, or a function throws.
+  /// Returns the value of the formula. `values`: one for each variable, in the constructor's order.
+  /// Throws std::runtime_error with one line when the result is not finite, or a function throws.
   double operator()(double const* values) const;
 
   std::string const& text() const;

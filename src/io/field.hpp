@@ -21,13 +21,13 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// A part of the applied field, H = profile time(t).
+/// A part of the applied field: H = profile * time(t).
 struct Source {
   SiteVectors profile;
   AppliedComponent time = 1.0;
 };
 
-/// The table [field.in_time]: factors that are numbers, or expressions in t.
+/// The table [field.in_time]: factors on terms, each a number or an expression in t.
 struct InTime {
   AppliedComponent exchange = 1.0, anisotropy = 1.0, dmi = 1.0;
 
@@ -48,11 +48,12 @@ struct Field {
   std::optional<InterfacialDmi> dmi;
   std::optional<BulkDmi> bulk_dmi;
   std::optional<D2dDmi> d2d_dmi;
-  SiteVectors dmi_normals;  ///< instead of the normal of dmi; normalised when used
-  SiteNumbers exchange_factors, dmi_factors;  ///< multiply constants, which then are 1
+  SiteVectors dmi_normals;  ///< if set, replace the normal of dmi; normalised when used
+  SiteNumbers exchange_factors, dmi_factors;  ///< values per site; the constants are then 1
   std::vector<ExchangeBetween> exchange_between;
   std::vector<Interlayer> interlayers;
-  SiteNumbers exchange_at_faces;  ///< A between centre and face; empty: interlayers couple centres
+  /// Exchange between the centre of a cell and its faces. If empty, interlayers couple the centres.
+  SiteNumbers exchange_at_faces;
   std::vector<Anisotropy> anisotropies;
   std::vector<CrystalAnisotropy> crystal_anisotropies;
   InTime in_time;
@@ -79,8 +80,9 @@ struct Field {
 std::string_view key_in_time(Field const& field);
 inline bool depends_on_time(Field const& field) { return !key_in_time(field).empty(); }
 
-/// Returns the field without interlayers, and without exchange, DMI and uniaxial anisotropies that
-/// are site-dependent or have a second constant.
+/// Returns the field without interlayers, without exchange and DMI that are site-dependent, and
+/// without uniaxial anisotropies that are site-dependent or have a second constant. DMI of D2d
+/// counts as site-dependent.
 Field without_numbers_of_sites(Field field);
 
 /// Returns true if a current acts on the spins: their energy may then rise.

@@ -18,8 +18,9 @@ struct Given {
   std::map<std::string, GivenNumbers, std::less<>> numbers;  ///< for keys with { given = true }
 };
 
-/// Returns empty arrays for the keys with { given = true } of a scene's text, so that it can be
-/// parsed without the program's numbers. Call nothing that reads values per site of such a scene.
+/// Returns an empty array for each key with { given = true } of a scene's text, so that the text
+/// can be parsed without the program's numbers. Do not read values per site of such a scene. The
+/// result has no spins, so override initial.given.
 Given without_numbers(std::string const& scene_text);
 
 }  // namespace cayspin::inline v0_2::io

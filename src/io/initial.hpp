@@ -19,7 +19,8 @@ struct UniformStart {
 };
 /// An expression for each component; each spin is normalised.
 struct ExpressionStart {
-  std::array<std::string, 3> components;  ///< in x, y, z, i, j, k, and s for a crystal
+  /// Expressions in x, y, z, i, j, k; for a crystal also in s.
+  std::array<std::string, 3> components;
 };
 /// Random spins, distributed uniformly on the sphere.
 struct RandomStart {

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <variant>
 
-/// The named values of initial.state, with their keys; docs/reference/scene.md has the formulas.
-/// Lengths are in the unit of lattice.spacing, positions in fractions of the lattice.
+/// The states that initial.state can name, with their keys; docs/reference/scene.md has the
+/// formulas. Lengths are in the unit of lattice.spacing, positions in fractions of the lattice.
 namespace cayspin::inline v0_2::io {
 
 struct VortexState {
@@ -27,7 +27,7 @@ struct SkyrmionState {
 };
 
 struct TwoDomainsState {
-  std::size_t axis = 0;                   ///< across the wall
+  std::size_t axis = 0;                   ///< number of the axis across the wall
   std::array<Triple, 2> directions = {};  ///< unit vectors of both domains
   Triple wall = {};                       ///< unit vector: the spins in the middle of the wall
   double position = 0.5;
@@ -36,7 +36,7 @@ struct TwoDomainsState {
 
 struct HelixState {
   double period = 0;
-  Triple direction = {1, 0, 0};  ///< unit vector of the wave vector
+  Triple direction = {1, 0, 0};  ///< unit vector along the wave vector
   Triple normal = {1, 0, 0};     ///< unit vector about which the spins turn
   double phase = 0;
 };

@@ -18,11 +18,11 @@ struct Integrator {
   Generator generator = Generator::standard;
   Isotropy isotropy = Isotropy::zero;
   double sigma = 0;  ///< isotropy constant, added to A along m
-  double isotropy_cap = std::numeric_limits<double>::infinity();  ///< bound on |dt sigma|
+  double isotropy_cap = std::numeric_limits<double>::infinity();  ///< bound on |dt * sigma|
   Rotation rotation = Rotation::cayley;
   double dt = 0;                    ///< the step; if adaptive, the time between observations
   std::int64_t steps = 0;           ///< computed from `end` when the scene gives that
-  std::int64_t substeps = 1;        ///< steps of the method in each step, for an expensive field
+  std::int64_t substeps = 1;        ///< steps of the method in each dt, for an expensive field
   std::optional<double> tolerance;  ///< only for adaptive methods
   std::optional<double> error;      ///< for method "auto": largest error allowed
   /// Bounds on the internal steps of an adaptive method.

@@ -24,8 +24,8 @@ struct Lattice {
   std::array<Triple, 3> cell = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< in units of spacing
   std::vector<Triple> basis = {{0, 0, 0}};    ///< in fractions of the cell's vectors
   std::vector<double> moments, gyromagnetic;  ///< one for each site of the cell; empty: all 1
-  SiteNumbers moments_of_sites;               ///< instead of moments; 0: no spin
-  SiteNumbers gyromagnetic_of_sites;          ///< instead of gyromagnetic
+  SiteNumbers moments_of_sites;               ///< if set, replace `moments`; 0: no spin
+  SiteNumbers gyromagnetic_of_sites;          ///< if set, replace `gyromagnetic`
   SiteNumbers occupied, frozen;  ///< true where not 0; default: all occupied, none frozen
   SiteNumbers regions;           ///< whole numbers, starting at 0
   std::optional<Follow> follow;

@@ -15,19 +15,19 @@ enum class Trial { plain, in_chart, sigma, single_precision, compensated_single_
 /// Properties of a method that scenes may choose. src/simulation/method_list.hpp lists all methods.
 struct Method {
   std::string_view word;              ///< integrator.method
-  int order = 0;                      ///< order of the trajectories
+  int order = 0;                      ///< order of convergence of trajectories
   std::optional<int> evaluations{};   ///< per step; empty if it iterates or chooses its steps
   bool adaptive = false;              ///< chooses its steps by integrator.tolerance
-  bool automatic = false;             ///< stands for the method that is chosen by integrator.error
+  bool automatic = false;             ///< stands for a method chosen to meet integrator.error
   bool keeps_length = true;           ///< |m| = 1 to round-off
   bool compensated = false;           ///< accepts integrator.compensated
   bool stiff = false;                 ///< exchange does not limit its steps
   bool differentiates_field = false;  ///< refuses fields that depend on t
-  bool corrects_energy = false;       ///< accepts the isotropy energy on rigid bodies
+  bool corrects_energy = false;       ///< accepts Isotropy::energy for rigid bodies
   bool by_colour = false;             ///< moves the spins of one colour of a checkerboard at a time
-  SetOf<Rotation> rotations{};        ///< empty: a baseline
-  SetOf<Generator> generators{};      ///< empty: a baseline
-  SetOf<Isotropy> isotropies{};       ///< without Isotropy::energy
+  SetOf<Rotation> rotations{};        ///< empty for baselines and "auto"
+  SetOf<Generator> generators{};      ///< empty for baselines and "auto"
+  SetOf<Isotropy> isotropies{};       ///< apart from Isotropy::energy
   SetOf<Trial> trials{};
 
   /// Returns true for a baseline: a method that does not rotate spins, and so has no generator,

@@ -12,7 +12,7 @@
 /// The file of `cayspin modes` (HDF5; docs/reference/file_format.md has the layout).
 namespace cayspin::inline v0_2::io {
 
-/// Contents of the file. Vectors with numbers per site are in the order of initial_spins.
+/// Contents of a file of modes. Vectors with numbers per site are in the order of initial_spins.
 struct ModesContents {
   std::string scene_text, cayspin_version, git_commit, space;
   std::string precision = "double";
@@ -25,9 +25,9 @@ struct ModesContents {
 
   std::vector<double> spins;                           ///< sites x 3
   std::vector<double> frequencies, decays, residuals;  ///< one for each mode
-  std::vector<std::vector<double>> shapes;             ///< sites x 3 x 2
+  std::vector<std::vector<double>> shapes;             ///< per mode: sites x 3 x (real, imaginary)
   std::vector<double> curvatures;                      ///< empty if not computed
-  std::vector<std::vector<double>> curvature_vectors;  ///< sites x 3
+  std::vector<std::vector<double>> curvature_vectors;  ///< per curvature: sites x 3
 };
 
 /// Contents with spin waves instead of modes: `frequencies` and `decays` list all branches of the

@@ -14,10 +14,10 @@ namespace cayspin::inline v0_2::io {
 /// `relax` print them as warnings. Reads some of the files that the scene names. Throws SceneError.
 std::vector<std::string> notes(Scene const& scene);
 
-/// Returns the scene with lattice.occupied = { file = START }, so that sites with a zero vector in
-/// the start file have no spin. The scene is unchanged if its start is not a file, if it has
-/// lattice.occupied already, or if none or all of the vectors are zero. Reads the start file.
-/// Throws SceneError.
+/// Returns the scene with lattice.occupied = { file = START }, where START is the start file, so
+/// that sites with a zero vector in that file have no spin. The scene is unchanged if it has rigid
+/// bodies, if its start is not a file, if it has lattice.occupied already, or if none or all of the
+/// vectors are zero. Reads the start file. Throws SceneError.
 Scene with_shape_of_start(Scene scene);
 
 }  // namespace cayspin::inline v0_2::io

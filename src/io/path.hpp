@@ -19,8 +19,8 @@ struct SaddleOfPath {
 };
 
 /// Prefactors of rates in harmonic transition state theory, and in Langer's theory, which includes
-/// damping. A rate is prefactor T^((z0 - zs) / 2) exp(-barrier / kT). The initial state has z0 zero
-/// modes, and the saddle zs.
+/// damping. A rate is prefactor * T^((z0 - zs) / 2) * exp(-barrier / kT), where z0 and zs are the
+/// numbers of zero modes of the initial state and of the saddle.
 struct RatesOfPath {
   double prefactor_forward = 0, prefactor_backward = 0;  ///< reduced, or in 1/s with T in K
   double langer_forward = 0, langer_backward = 0;        ///< prefactors of Langer's theory
@@ -37,8 +37,8 @@ struct Path {
   std::vector<double> saddle;            ///< spins of the highest saddle
   std::vector<SaddleOfPath> saddles;     ///< highest first
   std::optional<RatesOfPath> rates;
-  double torque = 0;  ///< largest max |m x H| of the saddles; an upper bound if moments differ
-  double across = 0;  ///< largest part of H across the path, over all spins
+  double torque = 0;  ///< largest |m x H| at a saddle; an upper bound if moments differ
+  double across = 0;  ///< largest component of H across the path, over all spins
   std::int64_t evaluations = 0;
   bool converged = false;
   double wall_seconds = 0;

@@ -15,7 +15,7 @@ namespace cayspin::inline v0_2::io {
 struct RunOutputOptions {
   bool overwrite = false;
   TrajectoryStorage storage = {};
-  std::int64_t most_planes = 0;               ///< planes of a frame in memory, as in frame_pieces()
+  std::int64_t most_planes = 0;               ///< planes in memory at most, as for frame_pieces()
   bool xdmf = false;                          ///< FILE.xdmf, which describes FILE.h5 to viewers
   bool table = false;                         ///< FILE.txt, a line for each sample
   std::array<double, 3> spacing = {1, 1, 1};  ///< of the lattice, for the XDMF file
@@ -23,14 +23,14 @@ struct RunOutputOptions {
   std::vector<double> positions = {};
 };
 
-/// Writer of a run's files in a separate thread, which buffers up to two frames or pieces of
-/// frames. If writing fails, a later call throws the error, with a message like those of
-/// TrajectoryFile. All calls must come from one thread, which must not use HDF5 until finish(),
-/// close() or the destructor.
+/// Writes a run's files in a separate thread, and buffers up to two frames or pieces of frames. If
+/// writing fails, a later call throws the error, with a message like those of TrajectoryFile. All
+/// calls must come from one thread, which must not use HDF5 until finish(), close() or the
+/// destructor.
 class RunOutput {
  public:
-  /// Creates the files. Without `overwrite`, an existing file is an error, and no file is changed.
-  /// Throws std::invalid_argument for a wrong header or wrong options.
+  /// Creates the files. Without `overwrite`, it is an error if one of them exists, and none is
+  /// changed. Throws std::invalid_argument for a wrong header or wrong options.
   RunOutput(std::filesystem::path path, TrajectoryHeader const& header,
             RunOutputOptions const& options);
 

@@ -64,7 +64,7 @@ struct Scene {
   std::optional<Columns> columns;
   std::string text;            ///< the TOML text; re-serialised if changed, as by an override
   std::filesystem::path path;  ///< the scene file, or the name of a text without one
-  std::vector<std::filesystem::path> files;  ///< input files that its own tables name
+  std::vector<std::filesystem::path> files;  ///< input files named in its own tables, not in stages
   Given given;
   std::map<std::string, std::string, std::less<>>
       places;                 ///< key -> "FILE:LINE" or "--set key=value"
@@ -86,7 +86,7 @@ struct StageRelax {
   }
 };
 
-/// A table [[stage]]: the scene with all keys changed that this stage and earlier ones change.
+/// A table [[stage]]. Its scene has the changes of this stage and of all earlier ones.
 struct Stage {
   std::string name;                 ///< or empty
   std::optional<StageRelax> relax;  ///< if set, the stage takes no steps
@@ -105,8 +105,9 @@ Scene read_scene(std::filesystem::path const& path, std::vector<std::string> con
 Scene parse_scene(std::string text, std::filesystem::path const& name,
                   std::vector<std::string> const& overrides = {}, Given given = {});
 
-/// Returns a scene with more overrides, and its text with them. Later errors name the places of
-/// keys in `scene`, not the overrides, which its author has not typed. Throws SceneError.
+/// Returns the scene with more overrides, which its text then contains. Later errors give the
+/// places of keys in `scene`, not the overrides, because the author of the scene has not typed
+/// these. Throws SceneError.
 Scene with_overrides(Scene const& scene, std::vector<std::string> const& overrides);
 
 /// Returns a table of a scene's text as the override "NAME={...}" for another scene.
@@ -116,16 +117,16 @@ std::string as_override(std::string const& scene_text, std::string const& name);
 /// field, like read_scene. Throws SceneError.
 void check_combination(Scene const& scene);
 
-/// Returns a one-line error for a key found wrong after reading, such as a shape that does not fit
-/// in memory: "FILE:LINE: key: message".
+/// Returns the one-line error "FILE:LINE: key: message" for a fault that is found after the scene
+/// has been read, such as a shape that does not fit in memory.
 SceneError scene_error(Scene const& scene, std::string_view key, std::string_view message);
 
 /// Returns the number of spins, or of rigid bodies.
 std::int64_t sites(Scene const& scene);
 
 /// Opens every file that the scene reads, and checks the types and shapes of datasets. Checks
-/// values only in a unit-cell file, and where they say which sites have a spin: refuses a lattice
-/// in which none has. Throws SceneError.
+/// values only in a unit-cell file, and where they decide which sites have a spin: a lattice
+/// without any spin is refused. Throws SceneError.
 void check_files(Scene const& scene);
 
 /// Returns the initial spins on the host, sites x 3, normalised in double: component c of site (i,
@@ -133,7 +134,7 @@ void check_files(Scene const& scene);
 /// SceneError if a spin is zero or not finite.
 std::vector<double> initial_spins(Scene const& scene);
 
-/// Returns the initial spins of only these sites, in the same order. An OVF file is read
+/// Returns the initial spins of the sites in a box, in the same order. Reads an OVF file
 /// completely.
 std::vector<double> initial_spins(Scene const& scene, SiteBox const& box);
 
@@ -141,9 +142,9 @@ std::vector<double> initial_spins(Scene const& scene, SiteBox const& box);
 /// unit-cell file. Throws SceneError.
 std::vector<Coupling> couplings(Scene const& scene);
 
-/// Return 1 for the sites that hold a spin, or for those that are frozen, and 0 for the others, in
-/// the order of initial_spins. Empty if no key says so: all are occupied, none is frozen. Throw
-/// SceneError.
+/// Return 1 for each site that has a spin (occupied) or is frozen (frozen), and 0 for each other
+/// site, in the order of initial_spins. Return an empty vector if no key decides that: all sites
+/// are occupied, or none is frozen. Throw SceneError.
 std::vector<unsigned char> occupied(Scene const& scene, SiteBox const& box);
 std::vector<unsigned char> frozen(Scene const& scene, SiteBox const& box);
 
@@ -181,8 +182,8 @@ std::vector<double> vectors_of_sites(Scene const& scene, SiteVectors const& vect
 std::vector<double> directions_of_sites(Scene const& scene, SiteVectors const& vectors,
                                         std::string_view key, SiteBox const& box);
 
-/// Returns the two axes of each site, sites x 3, orthonormal; if they are uniform, only those of
-/// one site. Throws SceneError.
+/// Returns both axes of each site, each as sites x 3, orthonormal where there is a spin. If both
+/// are uniform, returns those of only one site. Throws SceneError.
 std::array<std::vector<double>, 2> crystal_axes(Scene const& scene, CrystalAnisotropy const& term,
                                                 SiteBox const& box);
 
@@ -227,27 +228,28 @@ bool has_linear_field(Scene const& scene);
 /// Returns numbers[site], a number of a site of the cell; 1 if `numbers` is empty.
 double of_cell_site(std::vector<double> const& numbers, std::size_t site);
 
-/// Returns `number` over the moment of a site of the cell; 0 where the moment is 0 (no spin).
+/// Returns number / moment for a site of the cell; 0 where the moment is 0 (no spin).
 double over_moment(Lattice const& lattice, std::size_t site, double number);
 
-/// Returns gyromagnetic ratio over moment for each site of the cell, which scales the thermal
-/// noise; 0 without a spin.
+/// Returns gyromagnetic ratio / moment for each site of the cell, which scales the thermal noise; 0
+/// without a spin.
 std::vector<double> noise_of_cell_sites(Scene const& scene);
 /// Returns true if the damping, temperature, moment or gyromagnetic ratio is site-dependent.
 bool has_noise_of_sites(Scene const& scene);
-/// Returns for each site the gyromagnetic ratio over the moment, times damping and temperature if
-/// these are site-dependent; 0 where no spin moves. In Gilbert's form with site-dependent
-/// damping, it is also divided by 1 + damping^2. Throws SceneError for a negative damping or
-/// temperature.
+/// Returns gyromagnetic ratio / moment for each site, multiplied by the damping if that is
+/// site-dependent, and by the temperature if that is; 0 where no spin moves. In Gilbert's form with
+/// site-dependent damping, it is also divided by 1 + damping^2. Throws SceneError for a negative
+/// damping or temperature.
 std::vector<double> noise_of_sites(Scene const& scene, SiteBox const& box);
 /// Returns the largest number of noise_of_sites if has_noise_of_sites, otherwise of
 /// noise_of_cell_sites.
 double largest_noise(Scene const& scene);
-/// Refuses a dt for which the noise of half a step would turn spins too far. `heat`: the largest
-/// product of damping, temperature, and gyromagnetic ratio over moment. Throws SceneError.
+/// Refuses a dt for which heat * dt is above 1: the noise of one step would erase all memory of a
+/// spin's direction. `heat`: the largest damping * temperature * gyromagnetic ratio / moment of a
+/// site. Throws SceneError.
 void require_moderate_noise(Scene const& scene, double heat);
 
-/// Returns a lattice's cell.
+/// Returns a lattice's cell, with the sites in it.
 Crystal crystal(Lattice const& lattice);
 
 /// Returns the inertia tensors of a rigid body scene, row by row: one when all bodies share it,

@@ -9,7 +9,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// A box of sites from `begin`, with a count along each axis.
+/// A box of sites: its first site (i, j, k), and the number of sites along each axis.
 struct SiteBox {
   std::array<std::int64_t, 3> begin{0, 0, 0}, extent{0, 0, 0};
 };
@@ -53,8 +53,9 @@ std::vector<Number> numbers_in(SiteBox const& box, std::array<std::int64_t, 3> c
   return chosen;
 }
 
-/// Reads `of_site` numbers for each site of the lattice, some planes at a time, and returns those
-/// of a box. read(first, planes) returns the numbers of `planes` planes from plane `first` on.
+/// Reads `of_site` numbers for each site of the lattice, `at_once` planes at a time, and returns
+/// those of a box. read(first, planes) returns the numbers of `planes` planes, from plane `first`
+/// on.
 template <class Read>
 std::vector<double> read_by_planes(SiteBox const& box, std::array<std::int64_t, 3> const& shape,
                                    std::int64_t of_site, std::int64_t at_once, Read const& read) {

@@ -23,7 +23,7 @@ struct SiteNumbers {
   double unit = 1;  ///< multiplies each number, which may be typed in SI
   std::string key;  ///< if set, the key that gives the numbers, for messages
   std::filesystem::path image = {};
-  std::vector<int> levels = {};  ///< grey values; a pixel's number is how many it reaches
+  std::vector<int> levels = {};  ///< grey values; a pixel's number is how many of them it reaches
 
   bool there() const {
     return !expression.empty() || !file.empty() || !image.empty() || !per_region.empty() || given;
@@ -38,7 +38,7 @@ struct SiteNumbers {
 /// regions.
 struct SiteVectors {
   Triple uniform = {};
-  std::array<SiteNumbers, 3> components = {};  ///< each replaces its number if not empty
+  std::array<SiteNumbers, 3> components = {};  ///< each, if set, replaces its number in `uniform`
   std::filesystem::path file;
   std::vector<Triple> per_region;
   double unit = 1;  ///< multiplies each number

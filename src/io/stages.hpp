@@ -20,19 +20,19 @@ StageBegin begin_after(Scene const& stage, std::int64_t step, Scene const& next)
 /// Sets the start of each stage after `first` to the end of the stage before it.
 void put_begins(std::vector<Stage>& stages, std::size_t first);
 
-/// Returns the last step of a stage; if it takes none, the step after which it starts.
+/// Returns the last step of a stage, or the step after which it starts if it takes no steps.
 std::int64_t end_of(Stage const& stage);
 
-/// "stage 1 (switch)"
+/// Returns the number of a stage with its name, if it has one: "stage 1 (switch)".
 std::string stage_text(Stage const& stage);
 
 /// Throws SceneError for a scene in stages. `who`: the command or function that accepts no stages,
 /// for the message.
 void require_no_stages(Scene const& scene, std::string_view who);
 
-/// Returns a scene with keys changed as a stage changes them, to continue from a state of this
-/// scene. The overrides are written as for `--set`; `given`: the numbers for keys with { given =
-/// true }. Throws SceneError, also for keys that no stage may change.
+/// Returns the scene with keys changed by the rules of [[stage]], for a run that continues from a
+/// state of `scene`. `given`: numbers for keys with { given = true }. The overrides are written as
+/// for `--set`. Throws SceneError, also for keys that no stage may change.
 Scene changed_on_the_way(Scene const& scene, std::vector<std::string> const& overrides,
                          Given const& given = {});
 

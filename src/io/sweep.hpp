@@ -27,7 +27,7 @@ struct SweptKey {
 /// quotes. Throws SceneError.
 SweptKey read_swept_key(std::string const& assignment);
 
-/// Identity of a sweep.
+/// Scene, grid and origin of a sweep.
 struct SweepHeader {
   std::string scene_text;  ///< of the first run
   std::vector<SweptKey> keys;
@@ -54,7 +54,7 @@ struct SweptRun {
   Scalars scalars{time, time, {time, time, time}};  ///< of the last frame
   RunCost cost;
   bool has_file = false;  ///< true if its file has a frame
-  bool is_new = false;    ///< just run: its file needs no trial before it is copied
+  bool is_new = false;    ///< the run has just ended: its file is copied without being read first
 };
 
 /// Contents of a sweep's file.
@@ -78,8 +78,9 @@ std::filesystem::path swept_run_file(std::filesystem::path const& file, std::int
 /// Writes PATH.partial and renames it, so that PATH is never incomplete. With `one_file` the runs'
 /// own files are copied into PATH, otherwise PATH links to them. Before copying, each file that is
 /// not new is read once; if one is damaged, the error names it. Throws std::invalid_argument for
-/// keys without values and for a wrong number of runs. `go_on` is called before each group of
-/// files; if it returns false, the old file stays and the result is false.
+/// keys without values, and for a wrong number of runs or of a key's numbers. `go_on` is called
+/// before each group of files; if it returns false, the old file stays, and write_sweep returns
+/// false.
 bool write_sweep(std::filesystem::path const& path, SweepInfo const& sweep,
                  std::function<bool()> const& go_on = {});
 

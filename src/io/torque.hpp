@@ -9,7 +9,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Zhang and Li 2004: t = -(u.grad) m + xi m x (u.grad) m.
+/// The torque of Zhang and Li 2004: t = -(u.grad) m + xi m x (u.grad) m.
 struct ZhangLi {
   std::array<AppliedComponent, 3> velocity = {};  ///< u
   double nonadiabaticity = 0;                     ///< xi
@@ -22,15 +22,16 @@ struct ZhangLi {
   }
 };
 
-/// Slonczewski 1996: t = a c m x (p x m) - b m x p, c = 2 L^2 / ((L^2 + 1) + (L^2 - 1) m.p).
+/// The torque of Slonczewski 1996:
+///   t = a c m x (p x m) - b m x p, c = 2 L^2 / ((L^2 + 1) + (L^2 - 1) m.p).
 struct Slonczewski {
   AppliedComponent damping_like = 0.0, field_like = 0.0;   ///< a, b
   Triple polarization = {};                                ///< unit vector p
   double lambda = 1;                                       ///< L
-  SiteNumbers damping_like_of_sites, field_like_of_sites;  ///< multiply a and b, if set
-  SiteVectors polarizations;  ///< instead of one vector; normalised when used
+  SiteNumbers damping_like_of_sites, field_like_of_sites;  ///< if set, multiply a and b
+  SiteVectors polarizations;  ///< if set, replace p; normalised when used
 
-  /// Returns true if a, b and p are uniform, and a does not depend on the angle.
+  /// Returns true if a, b and p are uniform, and c does not depend on the angle between m and p.
   bool is_plain() const {
     return lambda == 1 && !damping_like_of_sites.there() && !field_like_of_sites.there() &&
            !polarizations.there();

@@ -25,10 +25,10 @@ namespace cayspin::inline v0_2::io {
 
 /// Optional numbers of each sample, which follow its Scalars in this order.
 struct MoreScalars {
-  std::int64_t regions = 0;             ///< magnetizations of all regions, then their energies
+  std::int64_t regions = 0;  ///< number of regions: all magnetizations, then all energies
   std::vector<std::string> terms = {};  ///< energies of the terms with these names
-  bool shift = false;                   ///< cells by which the lattice has moved; also in frames
-  bool stage = false;                   ///< only in frames
+  bool shift = false;  ///< number of cells by which the lattice has moved; also in frames
+  bool stage = false;  ///< number of the stage; only in frames
 
   std::size_t count() const {
     return 4 * static_cast<std::size_t>(regions) + terms.size() + (shift ? 1 : 0) + (stage ? 1 : 0);
@@ -48,22 +48,22 @@ struct TrajectoryHeader {
   std::string git_commit;
   std::string kokkos_version;
   std::string space;                 ///< name of the execution space
-  std::string precision = "double";  ///< of the run and of /spins: "single" or "double"
+  std::string precision = "double";  ///< "single" or "double", for the run and for /spins
   int threads = 1;
   /// nx, ny, nz. For a crystal nz is cell_sites times the number of cells along z: plane k *
   /// cell_sites + s has site s of the cells with number k along z.
   std::array<std::int64_t, 3> shape{1, 1, 1};
-  std::int64_t cell_sites = 1;           ///< sites of a cell
-  Units units;                           ///< of the times and energies in the file
-  bool relaxes = false;                  ///< a search for an equilibrium: sets RunCost::relaxed
-  MoreScalars more = {};                 ///< numbers of samples, which have no `stage`
+  std::int64_t cell_sites = 1;  ///< sites of a cell
+  Units units;                  ///< of the times and energies in the file
+  bool relaxes = false;   ///< true for a search for an equilibrium, which sets RunCost::relaxed
+  MoreScalars more = {};  ///< optional numbers of samples; `stage` is not one of them
   std::optional<StageBegin> stage = {};  ///< for a run in stages: the stage of the first frame
 };
 
 /// Storage layout of /spins.
 struct TrajectoryStorage {
   int compression = 0;     ///< level of deflate with shuffle, 0 (none) to 9
-  std::int64_t chunk = 0;  ///< planes along z in a chunk; 0: the frame, or as many as 256 MiB hold
+  std::int64_t chunk = 0;  ///< planes along z in a chunk; 0: all, or as many as 256 MiB hold
   /// Number of planned frames. A kill loses no frame in the first 8180 chunks, so uncompressed
   /// chunks hold several frames if the planned ones would need more chunks than that.
   std::int64_t frames = 0;
@@ -75,7 +75,7 @@ struct TrajectoryStorage {
 struct FramePieces {
   std::int64_t planes = 0;
   std::size_t bytes = 0;   ///< memory for a piece
-  std::size_t copied = 0;  ///< bytes that HDF5 needs for its copies
+  std::size_t copied = 0;  ///< bytes of the copies made while a piece is written
 };
 
 /// Returns pieces of whole chunks with at most `most_planes` planes (0: all), but at least one
@@ -85,7 +85,7 @@ FramePieces frame_pieces(std::array<std::int64_t, 3> const& shape, std::size_t n
                          TrajectoryStorage const& storage, std::int64_t most_planes = 0,
                          std::int64_t cell_sites = 1);
 
-/// The observables of one instant, always in double.
+/// The observables at one time, always in double.
 struct Scalars {
   double energy = 0;                      ///< summed over the sites: reduced, or in J
   double norm_defect = 0;                 ///< max | |m| - 1 | over the sites
@@ -116,8 +116,8 @@ struct Relaxed {
 /// Cost of a run, known at its end.
 struct RunCost {
   std::int64_t evaluations = 0;  ///< evaluations of the generator over all sites
-  double wall_seconds = 0;       ///< the whole run
-  double step_seconds = 0;       ///< stepping without observers and writing
+  double wall_seconds = 0;       ///< of the whole run
+  double step_seconds = 0;       ///< of the steps, without observers and writing
   std::optional<Relaxed> relaxed = {};
 };
 
@@ -127,11 +127,11 @@ struct RunCost {
 class TrajectoryFile {
  public:
   /// Creates the file with everything but frames. Without `overwrite`, an existing file is an
-  /// error; with it, the file is replaced once the new one (PATH.partial) has its header. A failed
-  /// creation changes no existing file and leaves no new one. `positions`: three numbers for each
-  /// site in the order of the file, or empty. `before_named`: called before the new file takes its
-  /// name; if it throws, the creation fails. Throws std::invalid_argument for a wrong header,
-  /// storage or number of positions.
+  /// error. With it, the new file replaces the old one once its header is written; until then, it
+  /// is called PATH.partial. A failed creation changes no existing file and leaves no new one.
+  /// `positions`: x, y and z of each site, in the order of the sites in the file; or empty.
+  /// `before_named`: called before the new file takes its name; if it throws, the creation fails.
+  /// Throws std::invalid_argument for a wrong header, storage or number of positions.
   TrajectoryFile(std::filesystem::path path, TrajectoryHeader const& header, bool overwrite,
                  TrajectoryStorage const& storage = {}, std::vector<double> const& positions = {},
                  std::function<void()> const& before_named = {});
@@ -188,7 +188,7 @@ struct TrajectoryInfo {
   /// For crystals with several sites per cell, cell_sites entries for each frame. Entry s is the
   /// mean of m over the sites s of all cells that have a spin; zero if none has.
   std::vector<std::array<double, 3>> frame_sublattices;
-  std::vector<std::int64_t> frame_shifts;  ///< for lattices that follow
+  std::vector<std::int64_t> frame_shifts;  ///< for scenes with lattice.follow
   std::vector<std::int64_t> frame_stages;  ///< for a run in stages
   std::int64_t samples = 0;                ///< length of /scalars
   /// The last sample of /scalars, if the run is not complete or the samples have more than Scalars.
@@ -220,11 +220,11 @@ std::optional<bool> is_being_written(std::filesystem::path const& path);
 /// For `cell_sites`: accepts any number of sites per cell in the file that fits the lattice.
 inline constexpr std::int64_t any_cell_sites = 0;
 
-/// Reads dataset /spins of any HDF5 file for a lattice (nx, ny, nz): (nz, ny, nx, 3), or the last
-/// of (frame, nz, ny, nx, 3), or the last whole frame of a trajectory file. For a crystal also the
-/// last of (frame, cell_sites, nz / cell_sites, ny, nx, 3). The stored type is float or double, and
-/// numbers are not rounded. The result is packed as (nz, ny, nx, 3), in the order of
-/// TrajectoryHeader::shape.
+/// Reads dataset /spins of any HDF5 file for a lattice (nx, ny, nz): a state (nz, ny, nx, 3), or
+/// the last of the frames (frame, nz, ny, nx, 3), or the last whole frame of a trajectory file. For
+/// a crystal, frames may also be stored as (frame, cell_sites, nz / cell_sites, ny, nx, 3). The
+/// stored type is float or double, and numbers are not rounded. The result is packed as (nz, ny,
+/// nx, 3), in the order of TrajectoryHeader::shape.
 std::vector<double> read_spins(std::filesystem::path const& path,
                                std::array<std::int64_t, 3> const& shape);
 

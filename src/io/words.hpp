@@ -31,7 +31,8 @@ struct Word {
   Value value;
 };
 
-/// All names of a kind, in the order of the documentation. Specialised for every enum above.
+/// All names of the values of an enum, in the order of the documentation. Specialised for every
+/// enum above.
 template <class Value>
 std::span<Word<Value> const> words();
 

@@ -17,7 +17,8 @@ std::string hint_for_value_of_others(std::string_view value);
 /// is none.
 std::string hint_for_other_table(std::string_view key);
 
-/// Names the key of any table that differs only in case, '_' and '-': for MinDt, integrator.min_dt.
+/// Names a key, of any table, that differs from `key` only in case, '_' and '-': integrator.min_dt
+/// for MinDt. Empty if there is none.
 std::string hint_for_other_case(std::string_view key);
 
 /// Returns a word in lower case, without '_' and '-'.

@@ -9,7 +9,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// The first datum of a binary block, which identifies the byte order: big endian in OVF 1.0,
+/// The first value of a binary block, by which readers know the byte order: big endian in OVF 1.0,
 /// little endian in OVF 2.0.
 inline constexpr float check_value_4 = 1234567.0F;
 inline constexpr double check_value_8 = 123456789012345.0;

@@ -6,7 +6,8 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Identifies a bond: its two sites of the cell, and the offset of the second one's cell.
+/// Identifies a bond: its two sites of the cell, and the offset from the cell of the first site to
+/// that of the second.
 using BondKey = std::pair<std::array<int, 2>, std::array<int, 3>>;
 
 /// Returns the same bond seen from its other end.

@@ -62,7 +62,8 @@ bool same_sites(Scene const& before, Scene const& now, SiteNumbers Lattice::*num
 }
 
 // Returns numbers per site in the scene's own units, because the units of reduced numbers may
-// differ. `of_cell`: the numbers of the cell's sites, for scenes without any per site.
+// differ between scenes. `of_cell`: the numbers of the cell's sites, used if the scene has none per
+// site.
 std::vector<double> in_own_units(Scene const& scene, SiteBox const& box, OfSites<double> of_sites,
                                  std::vector<double> const& of_cell, double unit) {
   auto numbers = of_sites(scene, box);

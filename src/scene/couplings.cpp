@@ -57,8 +57,8 @@ std::array<double, 9> read_tensor(Item const& item, Scene& scene) {
   return tensor;
 }
 
-// Refuses a coupling whose bonds leave the lattice from every cell. (A bond that leaves it from
-// only some cells is left out there.)
+// Refuses a coupling whose bonds leave the lattice from every cell. (If they leave it only from
+// some cells, these cells have no such bond.)
 void refuse_beyond(Item const& item, Lattice const& lattice, std::array<int, 3> const& offset) {
   auto cells = lattice.shape;
   cells[2] /= static_cast<std::int64_t>(lattice.basis.size());
@@ -193,8 +193,8 @@ void add_bonds(std::vector<Coupling> const& more, std::vector<Coupling>& bonds) 
   }
 }
 
-// Returns the crystal with its vectors as lengths, in the unit of the spacing. The lattice has them
-// in multiples of the spacing.
+// Returns the crystal with its vectors as lengths, in the unit of the spacing. In Lattice::cell
+// they are multiples of the spacing.
 Crystal with_spacing(Lattice const& lattice) {
   auto made = crystal(lattice);
   for (auto& vector : made.cell)
@@ -210,7 +210,7 @@ std::vector<Coupling> read_shells(Item const& item, Scene& scene) {
   for (auto const& entry : entries(value, 1, 100, accepted))
     exchange.push_back(number(entry) * unit);
   auto const sites = static_cast<std::int64_t>(lattice.basis.size());
-  // An axis of one cell has no neighbours.
+  // Along an axis with one cell, there are no neighbours.
   std::array const repeats{lattice.shape[0] > 1, lattice.shape[1] > 1, lattice.shape[2] > sites};
   try {
     return couplings_of_shells(with_spacing(lattice), exchange, repeats);

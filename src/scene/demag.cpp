@@ -16,7 +16,7 @@ namespace cayspin::inline v0_2::io::detail {
 namespace {
 
 // Sets the default: infinitely many images along each periodic axis with several cells. With three
-// such axes, only the sum over dipoles is defined.
+// such axes, the sum is defined only for dipoles, so the field of cells is refused.
 void set_usual_images(Item const& item, Lattice const& lattice, Demagnetization& demag) {
   auto& images = demag.periodic_images;
   auto const basis = static_cast<std::int64_t>(lattice.basis.size());

@@ -109,7 +109,7 @@ void refuse_options(Scene const& scene) {
     if (is_set) refuse(scene, key, what, accepted);
 }
 
-// The seeds of replicas count up from the scene's.
+// The seeds of replicas count up from the scene's seed, and must not overflow.
 void require_seeds(Scene const& scene) {
   auto const most = std::numeric_limits<std::int64_t>::max() - (scene.ensemble.replicas - 1);
   auto const require = [&](std::string_view key, std::int64_t seed) {

@@ -185,7 +185,7 @@ SlabDemagnetization read_slab_demag(Item const& item, Scene& scene) {
   return slab;
 }
 
-// For units = "SI", [material] has these constants instead.
+// With units = "SI", [material] has the exchange and the DMI, and there is no mu0.
 void refuse_reduced_keys(Table const& table) {
   constexpr std::pair<std::string_view, std::string_view> replaced[] = {
       {"exchange", "material.A, or material.J of atomistic spins"},

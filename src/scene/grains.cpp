@@ -23,7 +23,8 @@ struct Search {
   std::array<bool, 3> periodic;
   std::array<double, 3> point;  // in units of tiles
   std::uint64_t seed;
-  double nearest = std::numeric_limits<double>::infinity();  // squared, of the seeds seen so far
+  // Square of the distance to the nearest seed so far.
+  double nearest = std::numeric_limits<double>::infinity();
   std::int64_t grain = 0;
 
   /// Searches a row of tiles (axis 0), a plane (1) or all of them (2), from the point outwards, as

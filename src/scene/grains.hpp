@@ -16,10 +16,10 @@ class Grains {
   /// `length`: converts lattice.spacing to the unit of `size` below.
   Grains(Lattice const& lattice, double length);
 
-  /// Returns the number 0, 1, .. of the grain at a point, in fractions of the lattice. The lattice
-  /// is divided into tiles with edges of about `size`, and each has one grain. An axis shorter than
-  /// 1.5 `size` is not divided: grains are columns along it. Throws std::runtime_error for an
-  /// invalid size or seed, and for more than 2^53 grains.
+  /// Returns the number 0, 1, .. of the grain at a point. `point`: in fractions of the lattice. The
+  /// lattice is divided into tiles with edges of about `size`, and each tile has one grain. An axis
+  /// shorter than 1.5 * size is not divided: grains are columns along it. Throws std::runtime_error
+  /// for an invalid size or seed, and for more than 2^53 grains.
   double at(std::array<double, 3> const& point, double size, double seed) const;
 
  private:

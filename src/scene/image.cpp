@@ -19,7 +19,8 @@ namespace {
 }
 
 #if defined(CAYSPIN_HAS_PNG)
-/// State of libpng. As a member, it is also freed if a constructor throws.
+/// State of libpng. PngFile has it as a member, so that it is freed even if PngFile's constructor
+/// throws.
 struct PngImage : png_image {
   PngImage() : png_image{} { version = PNG_IMAGE_VERSION; }
   PngImage(PngImage const&) = delete;

@@ -33,7 +33,7 @@ void check_image(std::filesystem::path const& path);
 /// Reads a PNG file. Colours are converted to grey, on a white background.
 Image read_image(std::filesystem::path const& path);
 
-/// Reads { image = "NAME.png", levels = [..] }, where only lattice.occupied may omit `levels`.
+/// Reads { image = "NAME.png", levels = [..] }. Only lattice.occupied may omit `levels`.
 void read_image_keys(Table const& table, SiteNumbers& numbers);
 
 /// For each site of a box, returns how many of the levels the grey value at the site reaches.

@@ -8,7 +8,7 @@
 
 namespace cayspin::inline v0_2::io::detail {
 
-/// Reads the named state of initial.state, with its keys. Call it after reading the lattice.
+/// Reads the state that initial.state names, with its keys. Call it after reading the lattice.
 InitialState read_initial_state(Table const& table, Item const& state);
 
 /// Returns the unnormalised spin of a site of the lattice.

@@ -79,8 +79,8 @@ void read_coordinates(Table const& table, Integrator& integrator) {
   }
 }
 
-// Reads the tolerance of an adaptive method. Other methods refuse it, and min_dt and max_dt; but
-// "auto" accepts max_dt.
+// Reads the tolerance of an adaptive method. Other methods refuse tolerance, min_dt and max_dt,
+// except that "auto" accepts max_dt.
 void read_tolerance(Table const& table, Integrator& integrator) {
   if (!integrator.method->adaptive) {
     bool const takes_max_dt = integrator.method->automatic;  // for the method that it chooses

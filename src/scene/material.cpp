@@ -81,7 +81,7 @@ void read_moments(Item const& item, Scene& scene, Material& material) {
 }
 
 // Reads the vector `name`, which belongs to the key `other`: the scene must have both or neither.
-// `present`: whether it has `other`.
+// `present`: whether the scene has `other`.
 Triple direction_with(Table const& table, std::string_view name, std::string_view other,
                       bool present) {
   if (present) return direction(table.required(name, "three numbers"));

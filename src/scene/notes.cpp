@@ -197,8 +197,8 @@ class Notes {
     return numbers == nullptr ? 0 : numbers->size();
   }
 
-  // Returns how many of the bonds belong to shells. They are the first, with the nearest shell
-  // first.
+  // Adds a note for each shell that does not fit into the lattice. Returns how many of the bonds
+  // belong to shells: these come first, nearest shell first.
   std::size_t look_at_shells(std::vector<Coupling> const& bonds) {
     auto const count = shells();
     std::size_t first = 0, next = 0;

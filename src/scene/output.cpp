@@ -23,7 +23,7 @@ CheckpointPeriod checkpoint_period(Item const& item) {
 }
 
 // Reads the interval between frames or samples, and returns it in steps. Without [integrator] there
-// are no steps, and a time counts as one.
+// are no steps, and any time counts as one step.
 std::int64_t period(Item const& item, Table const& root, Integrator const& integrator) {
   constexpr std::string_view accepted =
       "a whole number of steps >= 1, or { time = TIME }, a multiple of dt";

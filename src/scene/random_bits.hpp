@@ -16,7 +16,7 @@ inline std::uint64_t random_bits(std::uint64_t start, std::uint64_t counter) {
   return z ^ (z >> 31U);
 }
 
-/// Returns that value as a number in [0, 1).
+/// Returns random_bits(start, counter) as a number in [0, 1).
 inline double random_number(std::uint64_t start, std::uint64_t counter) {
   return std::ldexp(static_cast<double>(random_bits(start, counter) >> 11U), -53);
 }

@@ -50,12 +50,13 @@ toml::table parse(std::string const& text, std::filesystem::path const& path) {
   }
 }
 
-// The purpose for which tables are read. any: run or relax, whichever the scene is for. start: for
-// the scene's own tables, if stages follow and [integrator] is missing. rest: for a stage that
-// relaxes.
+// The purpose for which tables are read:
+// - any: to run or to relax, whichever the scene is for;
+// - start: the scene's own tables, if stages follow and [integrator] is missing;
+// - rest: a stage that relaxes.
 enum class Purpose { run, relax, any, start, rest };
 
-// Reads [integrator], which may be missing for purposes other than running.
+// Reads [integrator]. It may be missing unless the purpose is `run`, or `any` for rigid bodies.
 Integrator read_integrator_for(Purpose purpose, detail::Table const& root, SystemKind kind) {
   bool const is_for_bodies = purpose == Purpose::any && kind != SystemKind::llg;
   if (purpose == Purpose::run || is_for_bodies || root.contains("integrator"))
@@ -76,7 +77,7 @@ void check_purpose(Purpose purpose, Scene const& scene) {
   }
   if (scene.system.kind != SystemKind::llg)
     detail::refuse(scene, "system.kind", "rigid bodies have no equilibrium", "\"llg\"");
-  if (purpose == Purpose::start) return;  // it neither moves nor relaxes
+  if (purpose == Purpose::start) return;  // these tables neither take steps nor relax
   // `cayspin modes` accepts torques. relax and path, which read scenes for the same purpose, refuse
   // torques later.
   if (has_torque(scene.field) && purpose != Purpose::relax)
@@ -88,7 +89,7 @@ void check_purpose(Purpose purpose, Scene const& scene) {
                    "numbers");
 }
 
-// Writes the cell of a unit-cell file into the text, so that readers of the text know the lattice
+// Writes the cell of a unit-cell file into the document, so that the scene's text gives the lattice
 // without that file. Returns true if it did.
 bool write_cell(toml::table& document, Scene const& scene) {
   auto const& [lattice, places] = std::tie(scene.lattice, scene.places);
@@ -112,7 +113,8 @@ std::string text_of(toml::table const& document) {
   return stream.str();
 }
 
-// Returns the comments of a text that say which keys are functions of the program.
+// Returns the comments in a text that say which keys are functions of the program; the one about
+// field.applied only if `with_applied`.
 std::string notes_of_functions(std::string const& text, bool with_applied) {
   std::istringstream lines(text);
   std::string notes;

@@ -56,8 +56,8 @@ std::string hint_for_case(std::string_view word, std::span<std::string_view cons
   return found == known.end() ? std::string() : fmt::format(", did you mean \"{}\"?", *found);
 }
 
-// Words that exist come before similar spellings: first words of this table, then of other tables
-// and of other programs.
+// Words that exist, in any case, are suggested before similar spellings: first keys of this table,
+// then of other tables and words of other programs.
 std::string hint_for_key(std::string_view key, std::span<std::string_view const> known) {
   if (key.size() > longest_word) return {};
   if (auto hint = hint_for_case(key, known); !hint.empty()) return hint;
@@ -156,7 +156,8 @@ Table Table::table(std::string_view name, std::string_view accepted) const {
   return Table(required(name, accepted), *scene_);
 }
 
-// toml::node::value returns nothing for an integer that a double would round.
+// Converts integers itself, because toml::node::value returns nothing for one that a double would
+// round.
 double value_of(toml::node const& number) {
   auto const* const whole = number.as_integer();
   return whole ? static_cast<double>(whole->get()) : number.as_floating_point()->get();

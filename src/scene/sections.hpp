@@ -72,7 +72,8 @@ void require_occupied(Scene const& scene);
 /// Returns true if a cell has several sites, or if its vectors are not along the axes with the
 /// lengths of the spacing.
 bool is_crystal(Lattice const& lattice);
-/// In a crystal, refuses terms that need neighbours along the axes, where it may have none.
+/// In a crystal, refuses terms that need neighbours along x, y and z, because it may have none
+/// there.
 void check_crystal(Scene const& scene);
 /// Refuses the pairs of refused_pairs.hpp.
 void check_pairs(Scene const& scene);
@@ -93,7 +94,7 @@ std::int64_t whole_steps(Item const& time, double dt);
 void apply_override(toml::table& root, std::string const& assignment);
 
 /// Returns why a tensor is refused; nothing if it is finite, positive definite, and symmetric to
-/// `tolerance` times its largest entry.
+/// within `tolerance` times its largest entry.
 std::optional<std::string> inertia_fault(InertiaTensor const& tensor, double tolerance);
 
 }  // namespace cayspin::inline v0_2::io::detail

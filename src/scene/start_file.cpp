@@ -37,7 +37,7 @@ void check_start_file(std::filesystem::path const& path, Lattice const& lattice)
     check_ovf_of_sites(path, lattice, 3);
   } else {
     try_reading(path, [&] {
-      // The replicas would be mistaken for the sites of a cell.
+      // Otherwise, the replicas would be mistaken for the sites of a cell.
       if (is_ensemble(path))
         throw_failure(path, "cannot read the spins",
                       "it is the file of an ensemble; accepted: a file of one lattice");

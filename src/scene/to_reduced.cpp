@@ -13,7 +13,7 @@
 namespace cayspin::inline v0_2::io::detail {
 namespace {
 
-// Returns the formula for t in units of `time`, with its value in units of `field`.
+// Returns the formula rewritten for t in units of `time` and for a value in units of `field`.
 std::string scaled_expression(std::string const& text, double time, double field) {
   static std::regex const variable(R"(\bt\b)");
   return fmt::format("({})/{}", std::regex_replace(text, variable, fmt::format("({}*t)", time)),
@@ -35,7 +35,7 @@ double largest_coupling(std::vector<Coupling> const& couplings) {
 }
 
 // Returns the unit of energy: the magnitude of J, of the largest entry of the couplings, of K or of
-// D, whichever is the first that is uniform and not 0. If none is, 1 T times the moment.
+// D, whichever is the first that is uniform and not 0. If none is, moment * 1 T.
 double energy_unit(Material const& material, Field const& field) {
   auto const one = [](std::optional<double> const& value, SiteNumbers const& numbers) {
     return numbers.there() ? 0 : std::abs(value.value_or(0));
@@ -63,7 +63,7 @@ void convert_material(Scene& scene, auto const& units) {
   auto const exchange = [&](double A) { return units.exchange(A); };
   auto const anisotropy = [&](double K) { return units.anisotropy(K); };
   auto const dmi = [&](double D) { return units.dmi(D); };
-  // Ku2 gives H = 4 Ku2 (m.e)^3 e, with twice the factor of the first constant.
+  // The field of Ku is 2 Ku (m.e) e, and that of Ku2 is 4 Ku2 (m.e)^3 e: twice the factor.
   auto const anisotropy2 = [&](double K) { return 2 * units.anisotropy(K); };
   for (auto& term : field.anisotropies) {
     term.constant = constant(term.constant, term.factors, anisotropy);

@@ -91,8 +91,9 @@ ZhangLi read_zhang_li(Item const& item, Scene& scene) {
   return read;
 }
 
-// field_like is epsilon' times hbar j / (e Ms thickness). damping_like is the efficiency times half
-// of that quotient.
+// Sets damping_like and, if epsilon_prime is typed, field_like:
+//   damping_like = efficiency * hbar * j / (2 * e * Ms * thickness),
+//   field_like = epsilon_prime * hbar * j / (e * Ms * thickness).
 void read_current(Item const& current, Table const& table, Slonczewski& read) {
   auto& scene = table.scene();
   auto const efficiency = number(table.required("efficiency", "a number"));

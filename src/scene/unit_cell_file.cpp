@@ -26,7 +26,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// Lines of a file as words, without comments and empty lines.
+/// Reads a file as lines of words, without comments and empty lines.
 class Lines {
  public:
   explicit Lines(std::filesystem::path const& path) : path_(path), stream_(path) {

@@ -21,8 +21,8 @@ constexpr std::string_view accepted_unit_cell_file = "the name of a unit-cell fi
 /// Returns the cell with its atoms, scaled so that the first vector has length 1.
 Crystal read_unit_cell(std::filesystem::path const& path);
 
-/// Returns the bonds, each once, times `scale`. The atoms must be the sites of `crystal`, and each
-/// bond must be listed from both ends.
+/// Returns the bonds, each once, with their values multiplied by `scale`. The file's atoms must be
+/// the sites of `crystal`, and each bond must be listed from both ends.
 std::vector<Coupling> read_unit_cell_couplings(std::filesystem::path const& path,
                                                Crystal const& crystal, double scale);
 

@@ -7,8 +7,8 @@
 
 namespace cayspin::inline v0_2::io::detail {
 
-/// Calls on_numbers(SiteNumbers, key) and on_vectors(SiteVectors, key) for everything in a scene
-/// that can be site-dependent, even if it is not set.
+/// Calls on_numbers(SiteNumbers, key) or on_vectors(SiteVectors, key) for each value of a scene
+/// that can be site-dependent, whether or not it is set.
 template <class OnNumbers, class OnVectors>
 void for_each_value_of_sites(Scene const& scene, OnNumbers const& on_numbers,
                              OnVectors const& on_vectors) {

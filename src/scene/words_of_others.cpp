@@ -162,7 +162,8 @@ constexpr std::array foreign_commands{
 
 constexpr std::array names_of_simple_cubic{"sc", "cubic", "simple_cubic", "simple-cubic"};
 
-/// A key of a scene's table. If two tables have a key of the same name, the first in the list wins.
+/// A key of a scene's table. If several tables have a key of this name, hints suggest the first one
+/// in the list.
 struct OwnKey {
   std::string_view table, name;
 };

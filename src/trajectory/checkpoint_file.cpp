@@ -31,11 +31,11 @@ std::int64_t checksum(Fletcher32 const& sum) { return std::int64_t{1} + sum.valu
 
 }  // namespace
 
-/// Contents of a checkpoint, with only the checksums of its fields.
+/// Contents of a checkpoint; of its fields only the checksums.
 struct CheckpointContents {
   CheckpointHeader header;
   std::map<std::string, double> numbers;
-  std::map<std::string, std::int64_t> fields;  // their checksums
+  std::map<std::string, std::int64_t> fields;  // checksums of the fields
 
   std::int64_t checksum() const {
     Bytes bytes;
@@ -192,7 +192,7 @@ class CheckpointWriter::Implementation {
   GroupHandle numbers_;
   CheckpointContents contents_;
   bool has_spins_ = false, has_name_ = false;
-  DatasetHandle field_;  // a partly written field
+  DatasetHandle field_;  // the field being written
   std::string name_;
   hsize_t written_planes_ = 0;
   Fletcher32 sum_;

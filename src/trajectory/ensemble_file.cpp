@@ -77,8 +77,8 @@ void write_attributes(hid_t file, TrajectoryHeader const& header, std::int64_t r
   attributes.create(ensemble_format, ensemble_format_version);
   attributes.create("replicas", replicas);
   attributes.create("scene", header.scene_text);
-  // The name is not `cayspin_version`, because readers take a file with frames and such an
-  // attribute for a trajectory.
+  // The attribute is not called `cayspin_version`, because readers take a file that has frames and
+  // an attribute of that name for a trajectory.
   attributes.create("written_by", "cayspin " + header.cayspin_version);
   attributes.create("git_commit", header.git_commit);
   attributes.create("kokkos_version", header.kokkos_version);
@@ -151,8 +151,8 @@ DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header, hsize_t r
                                 std::move(properties), path, inner);
 }
 
-// Returns the bytes that a frame may take in the file: if chunks hold several frames, the first of
-// these takes the whole chunks.
+// Returns the bytes that a frame may take in the file. If chunks hold several frames, the first
+// frame of a chunk takes the space of the whole chunk.
 std::uint64_t bytes_of_chunks(hid_t spins, Extents const& inner, std::uint64_t number_bytes,
                               std::filesystem::path const& path) {
   PropertyHandle const properties(H5Dget_create_plist(spins));

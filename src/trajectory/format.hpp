@@ -18,7 +18,7 @@ inline constexpr char const* double_precision = "double";
 /// a part of it.
 inline constexpr std::uint64_t most_chunk_bytes = 256 << 20;
 inline constexpr std::uint64_t file_page_bytes = 4096;
-inline constexpr int most_pending = 512;  // samples written at once
+inline constexpr int most_pending = 512;  // most samples written at once
 inline constexpr char const* reduced_units = "reduced";
 inline constexpr char const* si_units = "SI";
 
@@ -31,12 +31,12 @@ inline constexpr UnitAttribute unit_attributes[] = {{"time_unit", &Units::time},
                                                     {"field_unit", &Units::field},
                                                     {"energy_unit", &Units::energy}};
 
-/// Largest number of chunks for which the blocks of HDF5's index fit into a page. Beyond it, a
-/// block has 512 elements of 8 bytes and a header, and a kill can leave it half written.
+/// Largest number of chunks for which each block of HDF5's chunk index fits into a page. With more
+/// chunks, a block has 512 elements of 8 bytes and a header, and a kill can leave it half written.
 inline constexpr std::int64_t most_chunks = 8180;
 
 /// Returns the number of frames in a chunk. `bytes`: size of one frame's part of the chunk.
-/// `chunks`: how many chunks there would be with one frame each; above `most_chunks`, chunks hold
+/// `chunks`: number of chunks if each held one frame. If that is above `most_chunks`, chunks hold
 /// more frames, up to about `most_chunk_bytes`. Chunks start on pages of the file, and at most a
 /// sixteenth of their pages stays empty.
 inline std::int64_t frames_of_chunk(std::uint64_t bytes, std::int64_t chunks) {
@@ -51,9 +51,9 @@ inline std::int64_t frames_of_chunk(std::uint64_t bytes, std::int64_t chunks) {
 }
 
 /// Returns the extents (1, z, y, x, 3) of the part of a frame that a chunk of /spins holds, for a
-/// lattice (nx, ny, nz). If a frame exceeds `limit` bytes, it is cut along z into equal parts, the
-/// last of which may be smaller; if a plane or a row does, along y or x, too. `planes`: the most
-/// along z; 0 for no bound.
+/// lattice (nx, ny, nz). A frame of more than `limit` bytes is cut along z into equal parts, the
+/// last of which may be smaller. A plane of more than `limit` bytes is also cut along y, and a row
+/// along x. `planes`: the most along z; 0 for no bound.
 inline std::array<hsize_t, 5> frame_chunk(std::array<std::int64_t, 3> const& shape,
                                           std::uint64_t bytes_per_component,
                                           std::int64_t planes = 0,

@@ -21,7 +21,7 @@ using Shape = std::array<std::int64_t, 3>;
 class SublatticeMean {
  public:
   // Adds the sum of one row. Rows are added in the order of the file, so that equal frames give
-  // equal bits.
+  // bitwise equal means.
   template <class Real>
   void add_row(Real const* spins, std::int64_t sites) {
     std::array<double, 3> row{};

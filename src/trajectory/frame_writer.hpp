@@ -23,10 +23,10 @@ class FrameWriter {
               std::filesystem::path path);
 
   /// Returns the bytes that a frame may take in the file: the first frame of a chunk takes the
-  /// whole chunk.
+  /// space of the whole chunk.
   std::uint64_t frame_bytes() const;
 
-  /// Starts frame number `frame`; a frame that was started before begins anew.
+  /// Starts frame number `frame`. If it was started before, all its planes must be added again.
   void begin(std::int64_t frame);
   /// Adds the next planes: those of whole chunks, or all that are left. Other numbers throw
   /// std::logic_error.

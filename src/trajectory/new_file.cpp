@@ -62,9 +62,9 @@ void create_with_room(fs::path const& written, fs::path const& path) {
 }
 
 // A kill can stop a write between two pages of memory, and HDF5 refuses a block of metadata whose
-// checksum is wrong. Therefore blocks smaller than a page are placed within one. The superblock has
-// version 2: in version 3, a flag marks files being written; a kill would leave it set, and other
-// programs would refuse the file.
+// checksum is wrong. Therefore each block smaller than a page is placed within one page. The
+// superblock has version 2: in version 3, a flag marks files being written; a kill would leave it
+// set, and other programs would refuse the file.
 FileHandle create_file(fs::path const& written, fs::path const& path, SyncedFile* synced) {
   PropertyHandle const creation(H5Pcreate(H5P_FILE_CREATE)), access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_attr_phase_change(creation.get(), 64, 0);
@@ -83,8 +83,8 @@ FileHandle create_file(fs::path const& written, fs::path const& path, SyncedFile
   return file;
 }
 
-// Renames `from` to `to`. Unless `replaces`, fails if a file has appeared under that name, where
-// the file system can tell. Returns errno, or 0.
+// Renames `from` to `to`. Unless `replaces`, fails if a file has appeared under the new name,
+// provided that the file system supports this check. Returns errno, or 0.
 int put_in_place(fs::path const& from, fs::path const& to, bool replaces) {
   if (!replaces) {
     if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;

@@ -9,9 +9,9 @@
 namespace cayspin::inline v0_2::io {
 
 /// An HDF5 file that is called PATH.partial until commit(), so that PATH is never incomplete. Until
-/// then an existing file PATH is only completed, if it has a journal; with `shared` other programs
-/// may have it open. With `synced`, HDF5 writes through that object, and PATH is complete even
-/// after a power cut.
+/// then, an existing file PATH is not changed, except that it is completed from its journal if it
+/// has one. It is an error if another program has PATH open, unless `shared`. With `synced`, HDF5
+/// writes through that object, and PATH is complete even after a power cut.
 class NewFile {
  public:
   NewFile(std::filesystem::path path, bool overwrite, bool shared = false,

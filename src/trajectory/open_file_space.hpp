@@ -10,8 +10,8 @@
 namespace cayspin::inline v0_2::io {
 
 /// Allocates disk space for the bytes from `begin` to `end` of a file. Returns 0, or the system's
-/// error number if the disk has too little, or if the process may not write files of that size. A
-/// file system that cannot allocate beforehand counts as having space.
+/// error number if the disk has too little space, or if the process may not write files of that
+/// size. A file system that cannot allocate beforehand counts as having space.
 int take_room(int descriptor, std::uint64_t begin, std::uint64_t end);
 
 /// Disk space of a file that HDF5 has open for writing.

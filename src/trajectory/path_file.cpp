@@ -36,8 +36,8 @@ void write_attributes(hid_t file, Path const& found, std::filesystem::path const
   attributes.create("scene", header.scene_text);
   attributes.create("from", found.from);
   attributes.create("to", found.to);
-  // The name is not `cayspin_version`, because readers take a file with frames and such an
-  // attribute for a trajectory.
+  // The attribute is not called `cayspin_version`, because readers take a file that has frames and
+  // an attribute of that name for a trajectory.
   attributes.create("written_by", "cayspin " + header.cayspin_version);
   attributes.create("git_commit", header.git_commit);
   attributes.create("space", header.space);

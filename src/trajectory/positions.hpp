@@ -10,8 +10,8 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Writes the dataset /positions: three numbers for each site. It has HDF5's own checksums, because
-/// the checksums of frames do not cover it.
+/// Writes the dataset /positions: x, y and z of each site. It has HDF5's own checksums, because the
+/// checksums of frames do not cover it.
 void write_positions(hid_t file, TrajectoryHeader const& header,
                      std::vector<double> const& positions, std::filesystem::path const& path);
 

@@ -18,8 +18,8 @@ inline void require_precision(std::string const& precision) {
     throw std::invalid_argument("precision is '" + precision + "'; accepted: single, double");
 }
 
-/// Throws std::invalid_argument unless all extents are at least 1, and 64 bytes per site fit into
-/// 63 bits.
+/// Throws std::invalid_argument unless all extents are at least 1, and 64 times the number of sites
+/// is below 2^63.
 inline void require_shape(std::array<std::int64_t, 3> const& shape) {
   std::int64_t room = std::numeric_limits<std::int64_t>::max() / 64;
   for (auto const extent : shape) {

@@ -84,7 +84,7 @@ class RunOutput::Implementation {
   ~Implementation() {
     try {
       if (!ended_) end({}, false);
-    } catch (std::exception const&) {  // of the writer thread; no later call can report it
+    } catch (std::exception const&) {  // writing failed; no later call can report it
     }
   }
 

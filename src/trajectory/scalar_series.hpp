@@ -56,7 +56,7 @@ class ScalarSeries {
 
   struct MoreColumn {
     char const* name;
-    Extents of_sample;  // extents of the data of one sample
+    Extents of_sample;  // extents after the first, which counts samples
     DatasetHandle dataset;
   };
 

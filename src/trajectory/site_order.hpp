@@ -9,9 +9,9 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Returns states in the order of files: all sites 0 of a crystal's cells, then all sites 1, and so
-/// on. The states follow each other in `spins`, each packed as (nz, ny, nx, 3) in the order of the
-/// header's shape.
+/// Returns states in the order of files: in each state, the sites 0 of all cells of a crystal, then
+/// all sites 1, and so on. The states follow each other in `spins`, each packed as (nz, ny, nx, 3)
+/// in the order of the header's shape.
 template <class Real>
 std::vector<Real> by_sites(std::vector<Real> const& spins, TrajectoryHeader const& header) {
   if (header.cell_sites == 1) return spins;

@@ -16,7 +16,7 @@
 namespace cayspin::inline v0_2::io {
 namespace {
 
-// Returns the observables of the frames; nothing for other files than trajectories. No other file
+// Returns the observables of the frames; nothing if the file is not a trajectory. No other file
 // with frames has the attribute `cayspin_version`.
 std::optional<ScalarSeries> open_series(hid_t file, std::int64_t cell_sites,
                                         std::filesystem::path const& path) {

@@ -28,7 +28,7 @@ class StoredSpins {
   std::vector<double> last() const;
   std::vector<double> last(SiteBox const& box) const;
 
-  /// Returns frame number `frame`. Throws also if there is no such whole frame.
+  /// Returns frame number `frame`. Throws also if no whole frame has this number.
   std::vector<double> frame(std::int64_t frame) const;
 
  private:

@@ -76,7 +76,8 @@ std::string_view kind_of_other(RootAttributes const& attributes) {
   return {};
 }
 
-// Reads the root attributes and the extents of /spins. `frames` is the number of frames in /spins.
+// Reads the root attributes and the extents of /spins. In the result, `frames` is the number of
+// frames in /spins.
 TrajectoryInfo read_header(hid_t file, std::filesystem::path const& path) {
   RootAttributes const attributes(file, path);
   TrajectoryInfo info;

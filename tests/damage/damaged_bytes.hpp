@@ -22,14 +22,14 @@ inline long number_from(char const* variable, long otherwise) {
 class Chance {
  public:
   explicit Chance(std::uint64_t seed) : engine_(seed) {}
-  /// Returns a number from 0 to `end` - 1.
+  /// Returns a random number from 0 to `end` - 1; 0 if `end` is 0.
   std::size_t below(std::size_t end) { return end == 0 ? 0 : engine_() % end; }
 
  private:
   std::mt19937_64 engine_;
 };
 
-/// Counts of each outcome, by what was tried.
+/// For each thing that was tried, the number of times that each outcome occurred.
 using OutcomeCounts = std::map<std::string, std::map<std::string, long>>;
 
 inline void print(OutcomeCounts const& tried) {

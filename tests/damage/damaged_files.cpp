@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Random damage to HDF5 files: each reading ends with a one-line error or returns what was written.
-// Files without checksums may give other values. CAYSPIN_DAMAGED_FILES is about the number of files
-// of a test, CAYSPIN_SEED the seed.
+// Files without checksums may give other values. CAYSPIN_DAMAGED_FILES sets the approximate number
+// of files of each test, CAYSPIN_SEED the seed.
 #include "damaged_bytes.hpp"
 #include "inertia_file.hpp"
 #include "io/scene.hpp"

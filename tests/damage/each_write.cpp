@@ -11,8 +11,8 @@
 
 namespace {
 
-// Moments before the kill; -1: no kill. A write has one moment before it, and one at each page
-// boundary within it.
+// Number of possible kill points to pass before the kill; -1: no kill. There is one kill point
+// before each write, and one at each page boundary within it.
 long moments_left = -1;
 
 }  // namespace
@@ -53,7 +53,7 @@ class Killed : public TrajectoryTest {
   }
   ~Killed() override { ::munmap(told_, sizeof(Told)); }
 
-  // Returns false if the run ended before that moment.
+  // Returns false if the run ended before that kill point.
   bool run_to(Course const& course, long moment) {
     *told_ = {};
     std::filesystem::remove_all(folder_);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// `cayspin run`, killed at random times, without disk space, or with its file cut. CAYSPIN_KILLS
-// and CAYSPIN_SEED: number of runs of each kind (plain SIGKILL: twice as many), and the seed.
+// `cayspin run`, killed at random times, without disk space, or with its file truncated.
+// CAYSPIN_KILLS and CAYSPIN_SEED: number of runs of each kind (plain SIGKILL: twice as many), and
+// the seed.
 #include "damaged_bytes.hpp"
 #include "program/program_test.hpp"
 
@@ -60,8 +61,8 @@ class Kills : public ProgramTest {
     }
   }
 
-  // Expects the file to be readable and to have every frame and sample that was seen, and a run to
-  // continue from it.
+  // Expects the file to be readable and to have every frame and sample that was seen, and expects a
+  // run to continue from it.
   void expect_nothing_lost(std::string const& name, io::TrajectoryInfo const& seen) {
     auto const path = in_folder(name);
     if (!fs::exists(path)) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A run in stages, killed at random times, continues in its stage with the bits of an uninterrupted
-// run. CAYSPIN_KILLS and CAYSPIN_SEED: a quarter of the number of kills, and the seed.
+// A run in stages, killed at random times, continues in its stage and gives bitwise the same spins
+// as an uninterrupted run. CAYSPIN_KILLS and CAYSPIN_SEED: a quarter of the number of kills, and
+// the seed.
 #include "damaged_bytes.hpp"
 #include "program/program_test.hpp"
 
@@ -87,7 +88,8 @@ TEST_F(KillsOfStages, GoOnToTheSameBits) {
       continue;
     }
     auto const outcome = start(into("on.h5", {"--restart", file}));
-    // Before its first checkpoint, a method that remembers steps cannot go on with the same bits.
+    // Before its first checkpoint, a method that remembers steps cannot be continued with bitwise
+    // the same results.
     if (outcome.errors.find("checkpoint.h5 is not there") != std::string::npos) {
       from.clear();
       continue;

@@ -15,7 +15,8 @@ void put(std::string& content, std::size_t offset, char const* bytes, std::size_
   content.replace(offset, count, bytes, count);
 }
 
-// A file of which a power cut may leave only part. Its events up to the last sync are certain.
+// A file of which a power cut may leave only part. Events up to the last sync are sure to be on the
+// disk.
 class CutFile {
  public:
   void add(DiskEvent const& event) {

@@ -176,7 +176,8 @@ TEST_F(PowerCuts, LoseAtMostTheFrameBeingWritten) {
             << " cut again while completed\n";
 }
 
-// Makes every possible sequence of choices in turn: advance() goes on to the next one.
+// A Choose that goes through every possible sequence of choices. advance() starts the next
+// sequence; it returns false after the last one.
 class AllChoices {
  public:
   std::size_t operator()(std::size_t end) {
@@ -206,7 +207,7 @@ TEST_F(PowerCuts, LoseNothingWhateverOfFewWritesIsThere) {
   double const most = std::getenv("CAYSPIN_POWER_CUTS") ? 4096 : 32;
   long histories = 0, cuts = 0;
   for (auto cut = recording.first_cut; cut <= recording.events.size() && !HasFailure(); ++cut) {
-    double count = 1;  // of choices, if all names are there
+    double count = 1;  // number of sequences of choices, if all names are there
     auto const counted = [&](std::size_t end) {
       count *= static_cast<double>(end);
       return end - 1;

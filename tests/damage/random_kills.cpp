@@ -34,7 +34,7 @@ struct Reported {
 };
 
 struct Course : KnownRun {
-  std::int64_t quick_frames = 0;  // before a kill becomes possible
+  std::int64_t quick_frames = 0;  // frames written before a kill becomes possible
 };
 
 [[noreturn]] void perform(fs::path const& path, Course const& course, Reported& reported) {

@@ -50,7 +50,7 @@ DiskEvent* add_event(DiskEvent::Kind kind, int file) {
   return &recorded.back();
 }
 
-// After a file is removed, another one may get the number of its inode.
+// After a file is removed, another one may get its inode number.
 void forget(char const* path) {
   struct stat status {};
   if (::stat(path, &status) == 0) numbers.erase(status.st_ino);

@@ -24,7 +24,7 @@ struct DiskEvent {
 /// Names of files, and their contents.
 using DiskState = std::map<std::string, std::string>;
 
-/// Records the calls of this process from now on that change files in `folder`, which holds
+/// Starts to record the calls of this process that change files in `folder`, which already holds
 /// `state`.
 void record_disk(std::filesystem::path const& folder, DiskState const& state = {});
 /// Adds an event `told` with this number. Returns the number of events, including this one.

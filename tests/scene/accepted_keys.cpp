@@ -75,7 +75,7 @@ TEST(AcceptedKeys, AreTheOnesOfThePage) {
   EXPECT_GE(lists, 15);
 }
 
-// A message describes values passed by a program, which have no key or file to name.
+// A message describes values that a program passes, because these have no key or file to name.
 TEST(AcceptedKeys, ArraysWhereNoneIsTakenAreNamed) {
   Given given;
   given.numbers["output"] = std::make_shared<std::vector<double> const>(3, 1.0);

@@ -39,7 +39,8 @@ std::vector<double> constants_along(Scene const& scene, Triple const& axis) {
   return sum;
 }
 
-// Each open side adds a constant of -D^2/A along the DMI vector of its bonds, where H = A Lap(m).
+// Each open side adds a constant of -D^2 / A along the DMI vector of its bonds. A is the scene's
+// exchange: H = A Lap(m).
 TEST(FreeBoundary, IsAHardAxisAtEachOpenSide) {
   auto const scene = scene_of(dmi_film);
   EXPECT_EQ(scene.field.anisotropies.size(), 2U);  // no DMI along the normal, z
@@ -57,8 +58,8 @@ TEST(FreeBoundary, IsAHardAxisAtEachOpenSide) {
                   .field.anisotropies.empty());
 }
 
-// By the boundary condition the spin beyond the end is m' = m + h D/A m x d. The field of its bond,
-// A/h^2 (m' - m) + D/h d x m', exerts the torque of this anisotropy.
+// With spacing h, the boundary condition gives the spin beyond the end: m' = m + (h D / A) m x d.
+// The field of its bond, A / h^2 (m' - m) + D / h d x m', exerts the torque of this anisotropy.
 TEST(FreeBoundary, IsTheTorqueOfATurnedSpin) {
   using cayspin::detail::scalar_product, cayspin::detail::vector_product;
   std::mt19937_64 random(13);

@@ -131,7 +131,7 @@ TEST(Images, GiveTheNumberOfLevelsThatAreReached) {
   std::vector<double> const plane{0, 0, 0, 1, 1, 2, 2, 0, 0, 0, 1, 2};
   EXPECT_EQ(std::vector<double>(numbers.begin(), numbers.begin() + 12), plane);
   EXPECT_EQ(std::vector<double>(numbers.begin() + 12, numbers.end()), plane);
-  // With `levels`, white pixels have a spin.
+  // With `levels`, bright pixels have a spin, and dark ones have none.
   EXPECT_EQ(occupied_by(folder, "{ image = 'mask.png', levels = [100] }", "shape = [4, 3]"),
             (std::vector<int>{0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 1, 1}));
 }

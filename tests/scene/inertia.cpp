@@ -9,7 +9,8 @@ namespace {
 
 constexpr InertiaTensor tensor = {2, 0.5, 0.25, 0.5, 3, -0.125, 0.25, -0.125, 4};
 
-// Expects the product of a tensor and its inverse, given as xx, yy, zz, xy, xz, yz, to be 1.
+// Expects the product of a tensor and its inverse, given as xx, yy, zz, xy, xz, yz, to be the
+// identity.
 void expect_inverse(InertiaTensor const& a, std::array<double, 6> const& b) {
   std::array<double, 9> const full = {b[0], b[3], b[4], b[3], b[1], b[5], b[4], b[5], b[2]};
   for (std::size_t row = 0; row < 3; ++row) {

@@ -37,7 +37,7 @@ TEST(InitialStates, VortexHasACoreOfThreeCellsInTheMiddle) {
   EXPECT_GT(state.at(15, 10)[2], 0.1);
 }
 
-// theta(r) falls from pi in the core to 0, and is pi/2 at the radius.
+// theta(r) falls from pi at r = 0 to 0, and is pi / 2 at r = radius.
 Triple skyrmion(bool bloch, double polarity, double chirality, std::array<double, 2> const& way) {
   double const radius = 6, width = 2, r = std::hypot(way[0], way[1]);
   double const theta = 2 * std::atan(std::sinh(radius / width) / std::sinh(r / width));

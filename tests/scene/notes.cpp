@@ -219,7 +219,7 @@ TEST(Demagnetization, OfCellsOfAnyShapeUpToALimit) {
         std::string::npos);
 }
 
-// A coupling is refused if no two cells of the lattice have its offset.
+// A coupling is refused if no two cells of the lattice are its offset apart.
 TEST(Couplings, ThatLeaveTheLatticeEverywhereAreRefused) {
   std::mt19937_64 random(3);
   auto const draw = [&](int least, int most) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Regions, and the values, vectors, moments, bonds, sources and temperatures they determine.
+// Regions, and the values, vectors, moments, bonds, sources and temperatures that they determine.
 #include "hdf5_file.hpp"
 #include "scene_file.hpp"
 

@@ -109,8 +109,8 @@ inline std::string replaced(std::string_view text, std::string_view from, std::s
   return result.replace(at, from.size(), to);
 }
 
-/// Parses a text as a scene (scene_of), or reads it from a folder that may contain the other files
-/// of the scene (read_text).
+/// scene_of() parses a text as a scene. read_text() first writes the text into a folder, which may
+/// contain the other files of the scene, and reads it from there.
 inline Scene scene_of(std::string_view text, std::vector<std::string> const& overrides = {}) {
   return parse_scene(std::string(text), "scene.toml", overrides);
 }

@@ -66,8 +66,8 @@ void expect_near(std::vector<double> const& values, std::vector<double> const& e
 TEST(SiCrystals, IronHasItsUnits) {
   auto const scene = iron_with({"thermal={temperature=300}", "material.alpha=0.1",
                                 "material.damping_form='landau_lifshitz'"});
-  // By hand: the unit of the field is 7.05e-21 J over 2.22 Bohr magnetons, and the temperature is
-  // k_B times 300 K, over 7.05e-21 J.
+  // By hand:
+  //   unit of the field = 7.05e-21 J / (2.22 mu_B), temperature = k_B * 300 K / 7.05e-21 J.
   EXPECT_NEAR(scene.units.field, 342.427, 1e-3);
   EXPECT_NEAR(scene.units.time, 1.65846e-14, 1e-19);
   EXPECT_NEAR(scene.thermal->temperature, 0.587510, 1e-6);
@@ -231,7 +231,8 @@ TEST(SiScenes, ConstantsOfSitesAreInSi) {
   EXPECT_EQ(field.anisotropies[0].constant, 1);
   EXPECT_EQ(scene.system.damping, 0);
   EXPECT_TRUE(scene.system.gilbert_of_sites);
-  expect_near(scene.units.time, 1 / (gamma * mu0 * 8e5));  // 1 + alpha^2 differs from site to site
+  // The unit has no factor 1 + alpha^2, because that differs from site to site.
+  expect_near(scene.units.time, 1 / (gamma * mu0 * 8e5));
   auto const landau_lifshitz =
       read_text(folder, replaced(text, "\"gilbert\"", "'landau_lifshitz'"));
   EXPECT_FALSE(landau_lifshitz.system.gilbert_of_sites);

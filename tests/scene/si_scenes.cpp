@@ -197,7 +197,7 @@ TEST(SiScene, OverridesAreInSi) {
   EXPECT_EQ(again.integrator.steps, 200);
 }
 
-// Another way of typing a number may have another unit.
+// A number that is typed in another way may be stored in another unit.
 TEST(SiScene, LatticesAreComparedInSi) {
   auto const changed = [](std::string const& before, std::string const& now) {
     std::string const regions = "lattice.regions='i<4'";

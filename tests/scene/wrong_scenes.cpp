@@ -4,7 +4,8 @@
 namespace cayspin::inline v0_2::io::test {
 namespace {
 
-// Faults other than a wrong key of a table; some take several lines.
+// Faults that expect_refused() cannot type, such as text that is not TOML, or values of several
+// lines.
 TEST(WrongScene, ThatIsNoTomlOrHasNoSuchTable) {
   for (auto const& [typed, instead, begins, holds] : std::vector<std::array<std::string_view, 4>>{
            {"damping = 0.05", "damping = = 0.05", ":3: not TOML", "TOML 1.0"},

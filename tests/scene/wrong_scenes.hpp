@@ -101,9 +101,10 @@ inline std::vector<std::string> rows_of(std::string_view table) {
 
 /// Each row has columns separated by " | ":
 /// - keys to type, "key = VALUE; ..", which make the scene wrong;
-/// - the message after file and line; if it starts with one of ".[:", it follows the last key;
+/// - start of the message, after file and line; if it begins with ".", "[" or ":", the
+///   last key stands before it;
 /// - text that the message contains;
-/// - any fourth column, for a message that does not say what is accepted; others must.
+/// - any text, if the message does not say what is accepted; without this column, it must.
 /// The message must be one line and name the line of the key.
 inline void expect_refused(std::string_view scene, std::string_view table) {
   for (auto const& row : rows_of(table)) {

@@ -87,8 +87,9 @@ void expect_stored(std::filesystem::path const& path, TrajectoryHeader const& he
 
 TEST_F(TrajectoryTest, CrystalsLieSiteBySiteAndComeBackAsTheyWere) {
   auto const path = folder_ / "a.h5";
-  // Uncompressed chunks that hold planes of a single frame bypass HDF5, among them those of the
-  // larger shape in double precision, whose planes are three pages. Other chunks do not.
+  // Uncompressed chunks of whole planes of a single frame bypass HDF5. In double precision, a plane
+  // of the larger shape fills three pages, so its chunks are among these. Other chunks do not
+  // bypass HDF5.
   for (std::array<std::int64_t, 3> const shape :
        {std::array<std::int64_t, 3>{4, 3, 9}, {32, 16, 9}})
     for (int const compression : {0, 1})

@@ -92,7 +92,8 @@ TEST_F(TrajectoryTest, PiecesAreWholeChunks) {
   constexpr std::size_t plane_bytes = 3 * 8 * 4 * 3;
   auto const last_is_short = frame_pieces(odd_shape, 8, {.chunk = 2});
   EXPECT_EQ(last_is_short.bytes, 8 * plane_bytes);
-  EXPECT_EQ(last_is_short.copied, 2 * 7 * 2 * plane_bytes);  // a page holds 7 frames
+  // A chunk holds two planes of each of 7 frames: about a page.
+  EXPECT_EQ(last_is_short.copied, 2 * 7 * 2 * plane_bytes);
   EXPECT_EQ(frame_pieces({64, 32, 7}, 8, {}).copied, 0U);
   EXPECT_EQ(frame_pieces(odd_shape, 8, {.compression = 1, .chunk = 2}).copied, 2 * 2 * plane_bytes);
 }

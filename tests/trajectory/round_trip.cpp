@@ -80,7 +80,7 @@ TYPED_TEST(RoundTrip, OtherPrecisionIsRefused) {
   EXPECT_EQ(file.frames(), 0);
 }
 
-// These are more samples than one chunk has, and more than may wait in memory.
+// These are more samples than one chunk holds, and more than may wait in memory.
 TEST_F(TrajectoryTest, ManySamples) {
   auto const path = folder_ / "a.h5";
   TrajectoryFile file(path, small_header(), false);

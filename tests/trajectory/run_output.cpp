@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The files of a run, written by a thread of their own.
+// The files of a run, written by a separate thread.
 #include "io/run_output.hpp"
 
 #include "trajectory/scalar_table.hpp"
@@ -212,7 +212,7 @@ TEST_F(TrajectoryTest, FilesBesideTheTrajectoryMayBeLinks) {
   EXPECT_EQ(read_bytes(folder_ / "table.txt").front(), '#');
 }
 
-// The XDMF file has frames to write at the end unless the last frames took a second.
+// At the end, the XDMF file still lacks frames, unless the last ten took more than a second.
 TEST_F(TrajectoryTest, TrajectoryIsCompleteIfItsXdmfFileCannotBeWritten) {
   auto const path = folder_ / "a.h5";
   RunOutput output(path, small_header(), {.xdmf = true});
@@ -287,7 +287,7 @@ TEST_F(TrajectoryTest, TableThatCannotBeOpenedAgain) {
               "");
 }
 
-// Beyond 1000 frames, the XDMF file is written once a second and at the end.
+// Beyond 1000 frames, the XDMF file is written at most once a second, and at the end.
 TEST_F(TrajectoryTest, XdmfDescribesTheLastOfManyFrames) {
 #if defined(__SANITIZE_ADDRESS__)
   GTEST_SKIP() << "it writes a file a thousand times: minutes with the sanitizer";

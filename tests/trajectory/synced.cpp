@@ -22,7 +22,8 @@ class Synced : public TrajectoryTest {
     return write_frames(path, frames, {.sync = true}, overwrite);
   }
 
-  // Returns a file as after a power cut, in which a sector that the last frame overwrites is zero.
+  // Returns a file with its journal as a power cut may leave them: a sector that the last frame
+  // overwrites is zero.
   fs::path half_written(std::string const& name, int frames) const {
     auto const whole = folder_ / ("whole_" + name), path = folder_ / name;
     auto file = begin(whole, frames);

@@ -22,7 +22,7 @@ using cayspin::test::read_bytes;
 using cayspin::test::write_bytes;
 
 /// A separate folder for each test, removed afterwards. Child processes of the test use it, too,
-/// even if they are started anew.
+/// even if they run the test program from its start.
 class TrajectoryTest : public testing::Test {
  protected:
   TrajectoryTest() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Wrong uses of the writers give one line, and leave the file unchanged.
+// Wrong uses of the writers give an error of one line, and leave the file unchanged.
 #include "../support/wrong_call.hpp"
 #include "io/checkpoint.hpp"
 #include "io/run_output.hpp"
