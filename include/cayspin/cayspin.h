@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception */
-/* Runs scenes from C, and from every language that can call C. The functions on simulations return
-   a cayspin_status, and write results through their pointers only if the status is CAYSPIN_OK. No
-   C++ exception leaves a function. Any thread may call them: calls on a simulation wait for each
-   other, and only one simulation computes at a time. cayspin_time and cayspin_steps do not wait, so
-   that they tell how far a run has come. No other call on a simulation may be in progress when
-   cayspin_close is called. No function starts a process. A damaged HDF5 file may crash HDF5, and
-   the program with it; `cayspin check` reads the files of a scene in a separate process. */
+/* Runs scenes from C, and from every language that can call C. All functions but cayspin_last_error
+   and cayspin_version return a cayspin_status, and write results through their pointers only if it
+   is CAYSPIN_OK. No function throws a C++ exception. Functions may be called from any thread: calls
+   for the same simulation wait for each other, and only one simulation computes at a time.
+   cayspin_time and cayspin_steps do not wait, so they can report the progress of a run. Call
+   cayspin_close only when no other call for that simulation is in progress. No function starts a
+   process. A damaged HDF5 file may crash HDF5, and the program with it; `cayspin check` reads the
+   files of a scene in a separate process. */
 #ifndef CAYSPIN_CAYSPIN_H
 #define CAYSPIN_CAYSPIN_H
 
@@ -41,15 +42,16 @@ typedef enum cayspin_precision CAYSPIN_AS_INT {
   CAYSPIN_DOUBLE = 8
 } cayspin_precision;
 
-/* Vectors of all sites in host memory. With `data` as a pointer to float or double, component c of
-   site (x, y, z) is data[z strides[0] + y strides[1] + x strides[2] + c strides[3]]. In a crystal
-   with n sites per cell, plane z = k n + s holds site s of the cells with index k along z, and nz
-   is n times the number of cells along z. */
+/* Vectors of all sites in host memory. With `data` cast to a pointer to float or double, component
+   c of site (x, y, z) is
+   data[z * strides[0] + y * strides[1] + x * strides[2] + c * strides[3]].
+   In a crystal with n sites per cell, plane z = k * n + s holds site s of the cells with index k
+   along z, and nz is n times the number of cells along z. */
 typedef struct cayspin_array {
   void const* data;
   cayspin_precision precision;
   int64_t shape[4];   /* nz, ny, nx, 3 */
-  int64_t strides[4]; /* in numbers, not bytes */
+  int64_t strides[4]; /* in elements, not bytes */
 } cayspin_array;
 
 /* The result of cayspin_relax, in the units of the scene. */
@@ -57,7 +59,7 @@ typedef struct cayspin_minimum {
   int converged;       /* 1, or 0 if round-off or the limit on evaluations ended the search */
   double torque;       /* max |m x H| */
   double energy;       /* summed over sites */
-  int64_t evaluations; /* of the field over all sites */
+  int64_t evaluations; /* evaluations of H at all sites */
 } cayspin_minimum;
 
 /* One line about the last call by this thread that failed; empty if none has failed. It is valid
@@ -73,35 +75,36 @@ char const* cayspin_version(void);
 cayspin_status cayspin_open_file(char const* path, cayspin_precision precision, char const* space,
                                  cayspin_simulation** simulation);
 
-/* Opens a scene given as text. Messages call it `name`, and the relative paths in it start in the
-   folder of `name`. If `name` is NULL, it is "scene". */
+/* Opens a scene given as text. Messages call the scene `name`, and relative paths in the text start
+   from the folder of `name`. NULL stands for "scene". */
 cayspin_status cayspin_open_text(char const* text, char const* name, cayspin_precision precision,
                                  char const* space, cayspin_simulation** simulation);
 
 /* Takes `count` steps. After CAYSPIN_NUMBERS_FAILED the spins are those that failed a check or, if
    the method failed, those before the failing step (with adaptive methods up to 1000 steps
-   earlier). CAYSPIN_WRONG_SCENE for a dt that integrator.refuse_unstable refuses. */
+   earlier). Returns CAYSPIN_WRONG_SCENE for a dt that integrator.refuse_unstable refuses. */
 cayspin_status cayspin_step(cayspin_simulation* simulation, int64_t count);
 
-/* Takes steps to the scene's end, and writes a file as `cayspin run` does: `output` or, if that is
-   NULL, the scene's output.file. It is an error if the file exists, unless `overwrite` is not 0,
-   and, as in cayspin_step, if dt is refused. */
+/* Takes steps to the scene's end, or until integrator.until_torque ends the run, and writes a file
+   as `cayspin run` does: `output` or, if that is NULL, the scene's output.file. Fails if the file
+   exists and `overwrite` is 0 and, as cayspin_step does, for a dt that is refused. */
 cayspin_status cayspin_run(cayspin_simulation* simulation, char const* output, int overwrite);
 
 /* Moves the spins to an equilibrium, as `cayspin relax` does: until max |m x H| is below `torque`,
-   or for at most `evaluations` evaluations of the field. `applied`, three numbers, replaces the
-   scene's field.applied; if it is NULL, H is that at the current time. Time and steps do not
-   change. */
+   or for about `evaluations` evaluations of the field. `applied`, three numbers, replaces the
+   scene's field.applied unless it is NULL. H is evaluated at the current time. The time and the
+   number of steps do not change. */
 cayspin_status cayspin_relax(cayspin_simulation* simulation, double torque, int64_t evaluations,
                              double const* applied, cayspin_minimum* found);
 
-/* The time that the run has reached, in reduced units or, for a scene in SI, in seconds; and the
-   number of steps so far. */
+/* The time that the run has reached, in reduced units or, for a scene in SI, in seconds; and how
+   many steps the run has taken. */
 cayspin_status cayspin_time(cayspin_simulation const* simulation, double* time);
 cayspin_status cayspin_steps(cayspin_simulation const* simulation, int64_t* steps);
 
-/* The spins: in their own memory if the run is on a host, otherwise a host copy. Valid until the
-   next call of cayspin_step, cayspin_run, cayspin_relax, cayspin_set_spins or cayspin_close. */
+/* The spins. If the run is on a host, `data` points to the memory of the run itself, otherwise to a
+   copy in host memory. Valid until the next call of cayspin_step, cayspin_run, cayspin_relax,
+   cayspin_set_spins or cayspin_close. */
 cayspin_status cayspin_borrow_spins(cayspin_simulation* simulation, cayspin_array* spins);
 
 /* H at every site at the current time, in the units of the scene, in host memory. Valid until the

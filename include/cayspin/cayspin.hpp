@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-// Parts of a run: lattice, field terms -> generator -> stepper (rotation, isotropy) -> observers.
+// A run is built in this order: lattice and field terms -> generator -> stepper (with a rotation
+// and an isotropy) -> observers.
 #include <cayspin/checkpoint.hpp>
 #include <cayspin/concepts.hpp>
 #include <cayspin/coupling.hpp>

@@ -9,8 +9,8 @@
 namespace cayspin::inline v0_2 {
 
 /// Named numbers and fields that a run carries from step to step in addition to its spins. If they
-/// are restored together with the spins, the run continues with the same bits as without a break,
-/// on any host space and with any number of threads.
+/// are restored together with the spins, the run continues bitwise as if it had not been
+/// interrupted, on any host space and with any number of threads.
 class Checkpoint {
  public:
   virtual ~Checkpoint() = default;
@@ -19,7 +19,7 @@ class Checkpoint {
   /// Stores or restores `value`. Counts and flags are passed as numbers, too.
   virtual void number(std::string const& name, double& value) = 0;
   /// Stores or restores the values of all sites: an array (sites, components) in row-major order;
-  /// the x index of sites varies fastest. Storing may move from `numbers`.
+  /// the x index of sites varies fastest. A call that stores may move from `numbers`.
   virtual void field(std::string const& name, std::vector<double>& numbers) = 0;
 };
 

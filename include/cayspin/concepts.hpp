@@ -31,7 +31,7 @@ using PreparedFor =
     decltype(prepare_term(std::declval<Term const&>(), std::declval<ExecutionOf<Spins> const&>(),
                           std::declval<Spins const&>(), 0.0));
 
-/// A generator with which the Stepper concept checks step().
+/// The generator that the Stepper concept passes to step() in its check.
 struct AnyGenerator {
   template <class Stencil>
   KOKKOS_FUNCTION typename Stencil::vector_type operator()(Stencil const& stencil) const {
@@ -68,14 +68,14 @@ int evaluations_of_next_step(Stepper const& stepper) {
 /// |---|---|---|
 /// | `Vec3<Value> field(stencil)` | H at the stencil's centre | required |
 /// | `Value energy_density(stencil)` | the site's share of E | required |
-/// | `Vec3<Value> add_field(stencil, h)` | h + H, if faster than a sum with field | h + field |
-/// | `Vec3<Value> add_turning_field(stencil, h)` | h + H plus any multiple of m | add_field |
+/// | `Vec3<Value> add_field(stencil, h)` | h + H, in fewer operations | h + field |
+/// | `Vec3<Value> add_turning_field(stencil, h)` | h + H, up to a multiple of m | add_field |
 /// | `static int degree` | 1: H does not depend on the spins, 2: H is linear in them | unknown |
 /// | `static bool is_local` | H depends only on the site's spin and t | false |
-/// | `Vec3<Value> neighbor_field(stencil)` | H that only the neighbours determine | see below |
+/// | `Vec3<Value> neighbor_field(stencil)` | part of H that the neighbours determine | see below |
 ///
 /// Choose between values with select(condition, yes, no). `if` does not work, because on the host a
-/// value is a pack of several sites. RedBlack calls neighbor_field in place of field. The result
+/// value is a pack of several sites. RedBlack calls neighbor_field instead of field. Its result
 /// must not depend on the spin m of the site itself, and may differ from H only by a multiple of m.
 /// If a non-local term has no neighbor_field, RedBlack evaluates the whole field for each iterate
 /// of a spin.
@@ -87,15 +87,15 @@ int evaluations_of_next_step(Stepper const& stepper) {
 /// | `check_spins(spins)` | throws for unsuitable spins or invalid values | accepts all spins |
 /// | `auto prepare(exec, spins, t)` | the term for kernels at time t | the term itself |
 /// | `static bool depends_on_time` | prepare's result depends only on t and stays valid | false |
-/// | `bool is_stationary(exec, spins)` | one prepare fits all t and spins | if it has no prepare |
+/// | `bool is_stationary(exec, spins)` | prepare ignores t and spins | if it has no prepare |
 /// | `bool needs_only_time(exec, spins)` | prepare ignores spins | see the two above |
 /// | `bool is_affine()` | H is affine in the spins | true if it has a degree |
-/// | `static bool is_conservative` | false: H has no energy, as for a torque | true |
+/// | `static bool is_conservative` | false if H is not -dE/dm, as for a torque | true |
 ///
 /// If a term has prepare, the device members belong to the returned object. A term made of other
 /// terms inherits the host members from Forwarding (field/forwarding.hpp), and its device members
-/// may include gather (field/parts.hpp). Some methods of the paper need derivatives of terms, which
-/// are in cayspin_paper.
+/// may include gather (field/parts.hpp). Some methods of the 2002 paper also need derivatives of
+/// terms; these members are described in cayspin_paper.
 template <class Term, class Spins = SpinField<double, Kokkos::HostSpace>>
 concept FieldTerm = requires {
   requires detail::has_field<detail::PreparedFor<Term, Spins>, detail::StencilOf<Spins>>;
@@ -107,9 +107,9 @@ concept FieldTerm = requires {
 /// | member | meaning | default |
 /// |---|---|---|
 /// | `Vec3<Value> operator()(stencil)` | A at the stencil's centre | required |
-/// | `Vec3<Value> turning_part(stencil)` | A plus any multiple of m | A |
+/// | `Vec3<Value> turning_part(stencil)` | A, up to a multiple of m | A |
 /// | `Value energy_density(stencil)` | the site's share of E | no energy |
-/// | `bool conserves_energy()` | host: E is conserved, A = -dE/dm + c m | no EnergyControl |
+/// | `bool conserves_energy()` | host: E is conserved, and A = -dE/dm + c * m | no EnergyControl |
 /// | `bool is_orthogonal()` | A has no component along m | false |
 template <class Type, class Spins = SpinField<double, Kokkos::HostSpace>>
 concept Generator =
@@ -126,14 +126,14 @@ concept Generator =
 /// | `int64 evaluations_done()` | generator evaluations so far | evaluations is required |
 /// | `int next_step_evaluations()` | generator evaluations in the next step | evaluations |
 /// | `static int order` | order of convergence | unknown |
-/// | `static int ghosts` | ghost layers that a step needs at inner ends of a part | refuses parts |
+/// | `static int ghosts` | ghost layers that a step needs where parts meet | refuses parts |
 /// | `reset()` | forgets the previous steps | nothing to forget |
 /// | `check_spins(spins)` | throws for spins of another lattice | checked by step |
 /// | `bool takes_batches(exec, generator, spins)` | batch may be called | false |
-/// | `batch(exec, generator, spins, t, dt, count)` | same bits as count steps | one by one |
-/// | `static int work_fields` | work fields, of three numbers per site | unknown |
+/// | `batch(exec, generator, spins, t, dt, count)` | like `count` steps, bit for bit | one by one |
+/// | `static int work_fields` | number of work fields with three numbers per site | unknown |
 /// | `size_t work_bytes()` | bytes of work memory | unknown |
-/// | `visit_exchanged(visit)` | visit(field) for fields that a step may swap with spins | none |
+/// | `visit_exchanged(visit)` | visits the fields that a step may swap with spins | none |
 ///
 /// integrate() uses visit_exchanged to leave the spins in their original memory.
 template <class Type>
@@ -152,9 +152,9 @@ concept Stepper =
 /// | `int64 evaluations_done()` | generator evaluations so far | required |
 /// | `int64 accepted_steps()` | internal steps accepted so far | required |
 /// | `int64 rejected_steps()` | internal steps rejected so far | required |
-/// | `reset()` | the next step starts from its t and spins | required |
+/// | `reset()` | the next step starts from the t and spins passed to it | required |
 /// | `step_towards(exec, generator, spins, t, dt, wanted)` | see below | step |
-/// | `bool has_reached(t, dt)` | internal steps reach t, but for round-off | step is called |
+/// | `bool has_reached(t, dt)` | internal steps have reached t, up to round-off | step is called |
 ///
 /// step_towards writes the spins only when the internal steps have reached the time `wanted`, which
 /// may be later than t + dt.
@@ -181,7 +181,8 @@ concept Observer = requires(Type& observer, detail::ExecutionOf<Spins> const& ex
                std::is_same_v<decltype(observer(exec, step, spins)), Next>;
 };
 
-/// Returns the number of generator evaluations per step; empty if the stepper does not declare it.
+/// Returns the number of generator evaluations per step; empty unless the stepper declares a
+/// positive one.
 template <class Stepper>
 constexpr std::optional<int> evaluations_per_step() {
   if constexpr (detail::has_evaluations<Stepper>) {
@@ -192,7 +193,7 @@ constexpr std::optional<int> evaluations_per_step() {
 
 namespace detail {
 
-/// An observer may also be a std::reference_wrapper of one.
+/// True if an observer, or the one that a std::reference_wrapper refers to, changes the spins.
 template <class Observer>
 inline constexpr bool changes_spins =
     requires { requires std::remove_cvref_t<std::unwrap_ref_decay_t<Observer>>::changes_spins; };

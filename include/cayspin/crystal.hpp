@@ -49,8 +49,8 @@ struct Crystal {
             {corner[0] + 0.5 * site[0], corner[1] + 0.5 * site[1], corner[2] + 0.5 * site[2]});
     return made;
   }
-  /// Hexagonal cells: two edges of length 1 at an angle of 60 degrees, the first along x, and c
-  /// along z. In hcp c = sqrt(8/3), the ideal ratio; otherwise c = 1.
+  /// Hexagonal cells: two edges of length 1 at an angle of 60 degrees, the first along x, and a
+  /// third of length c along z. In hcp c = sqrt(8/3), the ideal ratio; otherwise c = 1.
   static Crystal hcp() {
     auto cell = hexagonal();
     cell[2][2] = std::sqrt(8.0 / 3);

@@ -50,7 +50,8 @@ void evaluate_field(Exec const& exec, Field const& field, SpinField<Real, Memory
                                   std::move(prepared), spins.array(), output.output(false)});
 }
 
-/// Writes A of every site at time t, with m' = A x m, into `output`; otherwise like evaluate_field.
+/// Writes the A of m' = A x m at every site, at time t, into `output`; otherwise like
+/// evaluate_field.
 template <class Exec, class Generator, class Real, class MemorySpace>
 void evaluate_generator(Exec const& exec, Generator const& generator,
                         SpinField<Real, MemorySpace> const& spins, double t,

@@ -18,8 +18,8 @@
 
 namespace cayspin::inline v0_2 {
 
-/// Steps of length dt, up to step number `steps`; step n ends at time begin + (n - origin) dt. A
-/// continued run starts at the end of step `first`.
+/// Steps of length dt, up to step number `steps`; step n ends at time begin + (n - origin) * dt.
+/// The run starts at the end of step `first`, which is 0 unless it continues another run.
 struct Times {
   double begin = 0, dt = 0;
   std::int64_t steps = 0;
@@ -42,8 +42,8 @@ struct Summary {
 
 /// Observer that calls another one at steps whose number is a multiple of `period`, including 0
 /// (the initial state), and at the last step. If the other one has a due(Step), that must also be
-/// true. Every refers to an observer that is a variable; the variable must outlive Every. A
-/// temporary is moved into Every.
+/// true. If the observer is a variable, Every holds a reference to it, and the variable must
+/// outlive Every. A temporary is moved into Every.
 ///   Every(10, control)             refers to `control`
 ///   Every(10, Record(field, to))
 template <class Observer>
@@ -76,7 +76,7 @@ Every(std::int64_t, Observer&&) -> Every<Observer>;
 
 namespace detail {
 
-/// A stepper that can take several steps of few spins in a single kernel launch.
+/// A stepper that can take several steps in a single kernel launch if there are few spins.
 template <class Stepper, class Exec, class Generator, class Spins>
 concept has_batches =
     requires(Stepper& stepper, Exec const& exec, Generator const& generator, Spins& spins) {
@@ -111,11 +111,12 @@ Next observe(Exec const& exec, Observer& observer, Step const& step, Spins const
   }
 }
 
-/// True if an observer starts the next step, as thermal noise does.
+/// True if an observer already applies the first part of the next step, as ThermalNoise can.
 template <class Observer>
 inline constexpr bool begins_step = requires { requires Observer::begins_step; };
 
-/// Returns true if an observer may stop the run after an earlier observer has started a step.
+/// Returns true if an observer that may stop the run comes after one with begins_step in the
+/// argument list.
 template <class Exec, class Spins, class... Observers>
 constexpr bool may_stop_in_a_step() {
   bool begun = false, stops = false;
@@ -184,7 +185,7 @@ class Integration {
  private:
   /// Returns the next step after `number` at which an observer is due, or the last step, but at
   /// most number + 1000, so that observers whose due() depends on more than the step are soon asked
-  /// again. `known`: the previous result. If it is still ahead, only step number + 1 is asked
+  /// again. `known`: the previous result. If it is after `number`, only step number + 1 is asked
   /// about.
   std::int64_t next_due(Times const& times, std::int64_t number, std::int64_t known) {
     bool const is_known = known > number;
@@ -269,7 +270,8 @@ Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator co
     throw std::invalid_argument("cayspin::integrate: begin and dt must be finite");
   if (times.first < 0 || times.steps < times.first)
     throw std::invalid_argument("cayspin::integrate: the number of steps is negative");
-  // Done before an observer sees the spins, and even if there are no steps to take.
+  // These checks come before an observer sees the spins, and are made even if there are no steps to
+  // take.
   if constexpr (requires { stepper.check_spins(spins); }) stepper.check_spins(spins);
   check_spins_of_parts(generator, spins);
 
@@ -306,16 +308,16 @@ Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator co
 
 /// Advances `spins` over `times`, and returns statistics. Observers are called with the state
 /// before the first step and after each one. Steppers that remember steps forget those of previous
-/// runs, unless times.continues is true; with it, a run in pieces gives the bits of a single run.
+/// runs, unless times.continues is true; then a run in pieces is bitwise identical to a single run.
 ///
 /// On return the work has finished, and `spins` holds the final state. With every method this state
 /// is in the original memory of `spins`, so that copies of the handle see it, too. Lengths of spins
 /// are not checked: call require_unit_spins for your own spins.
 ///
-/// Throws std::invalid_argument when begin or dt is not finite, the number of steps is negative, or
-/// the stepper or a term of the field was made for another lattice than that of the spins. These
-/// checks come before the first call of an observer, and are made even if there are no steps to
-/// take.
+/// Throws std::invalid_argument when begin or dt is not finite, times.first or the number of steps
+/// is negative, or the stepper or a term of the field was made for another lattice than that of the
+/// spins. These checks come before the first call of an observer, and are made even if there are no
+/// steps to take.
 template <class Exec, class Stepper, class Generator, class Spins, class... Observers>
 Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator, Spins& spins,
                   Times const& times, Observers&&... observers) {

@@ -16,15 +16,16 @@ enum class Boundary { open, periodic };
 
 class Part;  // part.hpp
 
-/// Number of rows or planes at the ends of an axis that belong to other parts of a larger lattice.
+/// Numbers of rows or planes at the two ends of an axis that belong to other parts of a larger
+/// lattice.
 struct Ghosts {
   std::int64_t before = 0, after = 0;
   friend bool operator==(Ghosts const&, Ghosts const&) = default;
 };
 
-/// A simple lattice of sites in one, two or three dimensions, numbered with x fastest. Along an
-/// axis of extent 1, also a periodic one, sites have no neighbours; along a periodic axis of extent
-/// 2, the other site is both neighbours of a site.
+/// A rectangular lattice of sites in one, two or three dimensions; in their numbering, x varies
+/// fastest. Along an axis of extent 1, even a periodic one, sites have no neighbours; along a
+/// periodic axis of extent 2, the other site is both neighbours of a site.
 struct Lattice {
   std::array<std::int64_t, 3> shape{1, 1, 1};
   std::array<double, 3> spacing{1, 1, 1};
@@ -35,8 +36,8 @@ struct Lattice {
   /// Sites per cell of a crystal (crystal.hpp): successive planes along z hold the sites of a cell
   /// in turn.
   std::int64_t cell_sites = 1;
-  /// Independent copies of the lattice in one field, one after the other along z; `shape` is the
-  /// shape of one copy. No term sees a spin of another replica.
+  /// Number of independent copies of the lattice in one field. They follow each other along z, and
+  /// `shape` is the shape of one copy. No term sees a spin of another replica.
   std::int64_t replicas = 1;
 
   static Lattice chain(std::int64_t nx, double spacing = 1, Boundary boundary = Boundary::open) {
@@ -70,7 +71,8 @@ struct Lattice {
   friend bool operator==(Lattice const&, Lattice const&) = default;
 
   /// Throws std::invalid_argument for an invalid extent or spacing, an invalid number of ghosts, of
-  /// sites in a cell or of replicas, and more than 1e15 sites. The message names the first fault.
+  /// sites in a cell or of replicas, replicas of a part of a lattice, and more than 1e15 sites. The
+  /// message names the first fault.
   void validate() const {
     constexpr std::int64_t most_extent = std::numeric_limits<std::int32_t>::max() / 4;
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -17,15 +17,16 @@
 
 namespace cayspin::inline v0_2 {
 
-/// Minimises the energy of a field by L-BFGS on the product of spheres, with Newton steps where
+/// Minimises the energy of a field by L-BFGS on the product of spheres, with Newton steps when
 /// L-BFGS is slow. Spins move along great circles by the Cayley map; earlier steps and gradients
 /// are projected onto the current tangent planes.
 ///
 /// The preconditioner (K + c)^-1, with the exchange operator K and a constant c, is applied by a
-/// multigrid cycle. It makes the number of evaluations nearly independent of the lattice and of the
-/// strength of the exchange. K is measured on the field itself, so that user terms, vacancies and
-/// site-dependent coefficients need nothing more. c follows the curvature along the last step. Once
-/// all torques are below the mean field of parallel spins, c is at least that field.
+/// multigrid cycle. It makes the number of evaluations nearly independent of the size of the
+/// lattice and of the strength of the exchange. K is measured on the field itself, so that user
+/// terms, vacancies and site-dependent coefficients need nothing more. c follows the curvature
+/// along the last step. Once all torques are below the root mean square of H without exchange,
+/// measured on parallel spins, c is at least that value.
 ///
 /// If the torque vanishes but the Hessian has a negative eigenvalue, the state is a saddle, and the
 /// search moves on (unless options.keep_saddles). The energy decreases from iteration to iteration,
@@ -36,9 +37,10 @@ class Minimizer {
   using Memory = typename Spins::memory_space;
 
  public:
-  /// Allocated fields of three numbers per site, including the multigrid levels.
+  /// Number of allocated fields with three numbers per site, counting the memory of the multigrid
+  /// levels as fields, too.
   static constexpr int work_fields = 24;
-  /// Smallest accepted bound on the torque: squares of much smaller ones would underflow.
+  /// Smallest accepted bound on the torque: the squares of much smaller torques would underflow.
   static constexpr double least_bound = 1e-150;
 
   /// Throws std::invalid_argument for a part of a lattice and for more than one replica.
@@ -103,8 +105,8 @@ class Minimizer {
     if (!found.is_negative) return MinimizeEnd::converged;
     ++descent_.so_far.saddles;
     // Turns the spins along or against the vector by ever smaller angles, until the energy is
-    // lower. If the change of the energy is within round-off, the slope must show that it falls in
-    // the direction of the turn.
+    // lower. If the change of the energy is within round-off, the slope must show that the energy
+    // falls in the direction of the turn.
     auto const &vector = descent_.search.direction, &none = descent_.search.trial;
     detail::combine(exec, 0, vector, 0, vector, none);
     double const longest = detail::largest_difference(exec, vector, none);
@@ -125,7 +127,8 @@ class Minimizer {
     return MinimizeEnd::stagnated;
   }
 
-  /// Finds the lowest curvature, stores it in so_far, and writes its vector into search.direction.
+  /// Finds the lowest curvature, stores it in so_far, and writes its eigenvector into
+  /// search.direction.
   template <class Exec, class Field>
   detail::LowestCurvature find_curvature(Exec const& exec, Field const& field, Spins const& spins,
                                          MinimizeOptions const& options) {
@@ -138,8 +141,8 @@ class Minimizer {
     detail::Hessian hessian(exec, field, options.time, spins, descent_.is_mobile,
                             detail::HessianArrays<Spins>{descent_.search.trial, pairs.change(2),
                                                          descent_.lbfgs.scratch()});
-    // Only curvatures below -tolerance count as negative. With others, a turn by one radian would
-    // keep the torque below its bound, or within round-off.
+    // Only curvatures below -tolerance count as negative. For any other curvature, even a turn by
+    // one radian would keep the torque below its bound, or within round-off.
     auto const found = detail::find_lowest_curvature(
         hessian, exec, arrays,
         {.scale = descent_.first_shift(),
@@ -154,8 +157,8 @@ class Minimizer {
     return found;
   }
 
-  /// Leaves a saddle of small negative curvature along the vector of that curvature, which is in
-  /// search.direction. Returns false, with the spins unchanged, if the energy does not fall.
+  /// Leaves a saddle of small negative curvature along the eigenvector of that curvature, which is
+  /// in search.direction. If the energy does not fall, restores the spins and returns false.
   template <class Exec, class Field>
   bool leave_softly(Exec const& exec, Field const& field, Spins& spins, double longest,
                     MinimizeOptions const& options) {

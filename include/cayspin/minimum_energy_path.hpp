@@ -54,7 +54,7 @@ class PathFinder {
   using Real = typename Spins::value_type;
 
  public:
-  /// `evaluations`: those before this search, which count towards the limit.
+  /// `evaluations`: number of evaluations before this search; they count towards the limit.
   PathFinder(Exec const& exec, Field const& field, std::vector<Spins> const& images,
              PathOptions const& options, std::int64_t evaluations)
       : exec_(exec),
@@ -149,9 +149,9 @@ class PathFinder {
   }
 
   /// Relaxes the string until the gradient across it is below `bound` times the strongest field: at
-  /// the highest image if `of_highest`, otherwise at all images. If the gradient no longer falls,
-  /// gives up if `of_highest`; otherwise sweeps first, with shorter and shorter steps. Returns
-  /// nothing, or why the search ends.
+  /// the highest image if `of_highest`, otherwise at all images. Takes at most `most_steps` steps.
+  /// If the gradient no longer falls, gives up if `of_highest`; otherwise first tries sweeps, with
+  /// shorter and shorter steps. Returns why the whole search ends, or nothing if it goes on.
   std::optional<PathEnd> relax(double bound, bool of_highest,
                                int most_steps = std::numeric_limits<int>::max()) {
     double share = 1, least = std::numeric_limits<double>::infinity();
@@ -216,7 +216,7 @@ class PathFinder {
   }
 
   /// Adds a fixed image at a minimum of the energy along the path, where the path may turn a
-  /// corner. Returns whether it did.
+  /// corner. Returns true if an image was added.
   bool add_minimum(double smallest) {
     auto const valley = next_peak(-1, smallest);
     if (!valley) return false;
@@ -242,7 +242,7 @@ class PathFinder {
   }
 
   /// Climbs from a maximum of the energy along the path to a saddle, and adds the saddle as a fixed
-  /// image. Returns whether it did.
+  /// image. Returns true if it was added.
   bool add_saddle(Peak const& peak) {
     auto const& [image, fraction] = peak.place;
     auto const &before = string_.spins(image), &after = string_.spins(image + 1);
@@ -326,11 +326,12 @@ constexpr int path_work_fields(std::size_t images) {
 /// Finds a minimum energy path between two states, and the saddles on it.
 ///
 /// `minimize` relaxes the first and the last image; the images between them become the path. By
-/// default the start is a path along the great circle of each spin (through x or y, where the spins
-/// at the ends are opposite), with a disturbance of 0.1 rad without symmetry. The images descend
-/// perpendicular to the path by preconditioned L-BFGS. From the maxima of the energy along the
-/// path, Newton's method climbs to saddles until the torque is below its bound; then the images
-/// relax between them. `saddle` receives the highest saddle, if one is found.
+/// default, the search starts from a path on which each spin follows the great circle between its
+/// two ends (through x or y if these are opposite), with an asymmetric disturbance of up to 0.1
+/// rad. The images descend perpendicular to the path by preconditioned L-BFGS. From the maxima of
+/// the energy along the path, Newton's method climbs to saddles until the torque is below its
+/// bound; then the images relax between them. `saddle` receives the highest saddle, if one is
+/// found.
 ///   std::vector<Spins> images = ...;  // the first and the last are the states
 ///   Spins saddle("saddle", lattice);
 ///   auto const path = cayspin::minimum_energy_path(exec, field, images, saddle);

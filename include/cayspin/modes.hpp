@@ -135,9 +135,9 @@ class ModesAt {
   std::int64_t evaluations_ = 0;
 };
 
-/// Multiplies a mode, real + i imaginary, by a complex number, after which its longest vector has
-/// length 1 and the largest component of that vector is real and positive. If vectors or components
-/// differ only by round-off, the first counts.
+/// Multiplies a mode, real + i * imaginary, by a complex number such that its longest vector has
+/// length 1 and the largest component of that vector is real and positive. Of vectors or components
+/// that differ only by round-off, the first one is taken as the largest.
 template <class Exec, class Spins>
 void normalize_mode(Exec const& exec, Spins const& real, Spins const& imaginary) {
   auto const x = copy_to_host(real), y = copy_to_host(imaginary);
@@ -154,7 +154,7 @@ void normalize_mode(Exec const& exec, Spins const& real, Spins const& imaginary)
   while (square(component) < nearly * most) ++component;
   double const factor = 1 / std::sqrt(square(component) * longest);
   double const a = factor * x[component], b = -factor * y[component];
-  // (x + i y) (a + i b), from a copy because both change.
+  // Computes (x + i y) * (a + i b), with a copy of x because both parts change.
   Spins const before("modes::before", real.lattice());
   combine(exec, 1, real, 0, real, before);
   combine(exec, a, real, -b, imaginary, real);
@@ -249,8 +249,8 @@ Curvatures<Spins> lowest_curvatures(Exec const& exec, Field const& field, Spins 
 /// vector for each mobile site of a cell, up to four to compare the cells, and then the eigenvalues
 /// of a small matrix for each wave vector. A wave vector need not fit the lattice, unless the
 /// interaction reaches around the lattice. Bonds must not be longer than half the lattice. If there
-/// is only one cell along a periodic axis, bonds along it join the cell to itself, and waves have
-/// no phase along them.
+/// is only one cell along a periodic axis, bonds along it join the cell to itself, and a wave has
+/// the same phase at both ends of such a bond.
 /// `poll` is called before each product and each wave vector; after Next::stop the result is empty.
 /// Throws std::invalid_argument if cells differ, for a wave vector that must fit but does not or
 /// that has a component along an open axis, and for parts of a lattice and replicas.

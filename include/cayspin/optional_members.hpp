@@ -79,11 +79,11 @@ KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_turning_field(Term const& term
 template <class Term>
 inline constexpr bool depends_on_time = requires { requires Term::depends_on_time; };
 
-/// True for a local term: H at a site depends only on its spin and t.
+/// True for a local term: H at a site depends only on the spin of that site and t.
 template <class Term>
 inline constexpr bool is_local = requires { requires Term::is_local; };
 
-/// Base class of terms for which one prepare serves all t and spins.
+/// Base class of terms whose prepared form is the same for all t and spins.
 struct PreparedOnce {
   template <class Exec, class Spins>
   bool is_stationary(Exec const&, Spins const&) const {

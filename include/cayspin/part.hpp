@@ -14,7 +14,7 @@ struct FieldNumbers {
   void* data = nullptr;  // component 0 of site 0
   std::size_t number_bytes = 0;
   int components = 0;
-  std::ptrdiff_t row = 0, plane = 0, component = 0;  // strides
+  std::ptrdiff_t row = 0, plane = 0, component = 0;  // strides in elements
   std::int64_t nx = 0, ny = 0, nz = 0;
   bool on_device = false;
 
@@ -34,14 +34,14 @@ class Part {
   /// Return the number of parts, and the index of this one.
   virtual std::size_t parts() const = 0;
   virtual std::size_t index() const = 0;
-  /// Replaces words by their sums over the parts.
+  /// Replaces each word by its sum over the parts.
   virtual void sum(std::span<std::int64_t> words) const = 0;
-  /// Replaces words by their maxima over the parts.
+  /// Replaces each word by its maximum over the parts.
   virtual void maximum(std::span<std::int64_t> words) const = 0;
   /// Updates the ghosts of fields; waits. Work on the fields must have finished before the call.
   virtual void update_ghosts(std::span<FieldNumbers const> fields) const = 0;
-  /// Sends sent[i] to part i, and receives what it sends in received[i]; i may be this part. Waits.
-  /// Sender and receiver must give equal sizes, in multiples of 8 bytes.
+  /// Sends sent[i] to each part i, also to this one, and receives in received[i] what part i sends.
+  /// Waits. Sender and receiver must give equal sizes, in multiples of 8 bytes.
   virtual void exchange(std::span<std::span<std::byte const> const> sent,
                         std::span<std::span<std::byte> const> received) const = 0;
 };

@@ -53,7 +53,7 @@ void copy_between(Exec const& exec, SiteField<Real, Components, MemorySpace> con
 }  // namespace detail
 
 /// Copies one replica of a field into a field on the lattice of one replica. Does not wait. Throws
-/// std::invalid_argument for another lattice, and when there is no such replica.
+/// std::invalid_argument when `to` is on another lattice, and when there is no such replica.
 template <class Exec, std::floating_point Real, int Components, class MemorySpace>
 void copy_replica(Exec const& exec, SiteField<Real, Components, MemorySpace> const& from,
                   std::int64_t replica, SiteField<Real, Components, MemorySpace> const& to) {

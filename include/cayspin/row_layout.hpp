@@ -35,7 +35,7 @@ struct RowLayout {
   std::ptrdiff_t origin = 0;  // position of site 0 in the allocation; a pack may read before it
   RowRange own;               // all rows but the ghosts
   Part const* part = nullptr;
-  std::int32_t parity = 0;  // of y + z in the whole lattice where y + z is even in this part
+  std::int32_t parity = 0;  // of y + z in the whole lattice, for rows with an even y + z here
 
   template <class Real>
   static RowLayout of(Lattice const& lattice) {
@@ -107,8 +107,8 @@ struct RowLayout {
   std::size_t allocation(int components) const {
     return static_cast<std::size_t>(2 * origin + components * component_stride);
   }
-  /// Returns the offset of a site. Its number is ix + nx (iy + ny iz), with indices and an ny that
-  /// leave out the ghosts.
+  /// Returns the offset of the site with the number `site` = ix + nx * (iy + ny * iz), where the
+  /// indices and ny leave out the ghosts.
   KOKKOS_FUNCTION std::ptrdiff_t offset(std::int64_t site) const {
     std::int64_t row = site / nx;
     if (part != nullptr) row = (own.z_begin + row / own.ny()) * ny + own.y_begin + row % own.ny();
@@ -123,7 +123,8 @@ struct RowLayout {
 };
 
 /// A field as kernels and field terms hold it; terms read it with stencil.site().load(array).
-/// Component c of the site at RowLayout::offset is data[c * stride + offset].
+/// Component c of the site for which RowLayout::offset returns `offset` is data[c * stride +
+/// offset].
 template <class Real, int Components>
 struct SiteArray {
   using value_type = Real;
@@ -132,8 +133,8 @@ struct SiteArray {
   std::ptrdiff_t stride = 0;
 };
 
-/// A SiteArray that a kernel only writes. `streaming`: stores bypass the caches, for fields that do
-/// not fit into them.
+/// A SiteArray that a kernel only writes. `streaming`: if true, stores bypass the caches, for
+/// fields that do not fit into them.
 template <class Real, int Components>
 struct OutputArray : SiteArray<Real, Components> {
   bool streaming = false;

@@ -125,8 +125,8 @@ struct TorqueOfSites {
 
 }  // namespace detail
 
-/// An energy, summed over sites. `magnitude` is the sum of the absolute values of its terms; the
-/// round-off of `value` is proportional to it.
+/// An energy, summed over sites. `magnitude` is the sum of the absolute values of all summands (one
+/// per site and term); the round-off of `value` is proportional to it.
 struct Energy {
   double value = 0, magnitude = 0;
 };

@@ -54,7 +54,7 @@ class ExchangeMemory {
     }
     with_.field(prefix_ + name, numbers);
     if (!with_.restores()) return;
-    // The numbers of one replica would be copied to all.
+    // copy_from_host would accept the numbers of a single replica and copy them to all.
     if (static_cast<std::int64_t>(numbers.size()) != field.sites() * Components) refuse(name);
     copy_from_host(numbers, field);
   }

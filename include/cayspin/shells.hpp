@@ -23,7 +23,7 @@ struct BondOfLength {
 };
 
 /// Returns every bond once, shortest first, between sites at most `reach` cells apart along each
-/// vector that repeats.
+/// cell vector for which `repeats` is true.
 inline std::vector<BondOfLength> bonds_within(Crystal const& crystal, int reach,
                                               std::array<bool, 3> const& repeats) {
   std::vector<BondOfLength> bonds;

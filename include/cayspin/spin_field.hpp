@@ -133,7 +133,8 @@ class SiteField {
   /// Returns the array that kernels and field terms take.
   array_type array() const { return {data_.data() + layout_.origin, layout_.component_stride}; }
   OutputArray<Real, Components> output(bool streaming) const { return {array(), streaming}; }
-  /// Returns the allocation, for deep copies between fields on equal lattices.
+  /// Returns the whole memory of the field, padding included; use it for deep copies between fields
+  /// on equal lattices.
   Kokkos::View<Real*, MemorySpace> const& allocation() const { return data_; }
 
   /// Return or set the vector of one site; only for host code on fields in host memory. `site` is
@@ -231,25 +232,26 @@ void copy_sites(Exec const& exec, View const& view,
 
 }  // namespace detail
 
-/// Copies a View of extents (sites, Components), x fastest, into a field. Does not wait, unless the
-/// field is on a part of a lattice: then it updates ghosts and is collective. Throws
-/// std::invalid_argument when the extents differ.
+/// Copies a View of extents (sites, Components) into a field; the x index of the sites varies
+/// fastest. Does not wait, unless the field is on a part of a lattice: then this also updates
+/// ghosts, and all parts must call it. Throws std::invalid_argument when the extents differ.
 template <class Exec, class View, class Real, int Components, class MemorySpace>
 void copy(Exec const& exec, View const& from, SiteField<Real, Components, MemorySpace> const& to) {
   detail::copy_sites<true>(exec, from, to);
   detail::update_ghosts(exec, to.lattice(), to);
 }
 
-/// Copies a field into a View of extents (sites, Components), x fastest. Does not wait. Throws
-/// std::invalid_argument when the extents differ.
+/// Copies a field into a View of extents (sites, Components); the x index of the sites varies
+/// fastest. Does not wait. Throws std::invalid_argument when the extents differ.
 template <class Exec, class View, class Real, int Components, class MemorySpace>
 void copy(Exec const& exec, SiteField<Real, Components, MemorySpace> const& from, View const& to) {
   detail::copy_sites<false>(exec, to, from);
 }
 
-/// Copies numbers in host memory, (sites, Components) with x fastest, into a field; waits for all
-/// instances. If there are only as many as for one replica of the lattice, all replicas get them.
-/// Throws std::invalid_argument for any other count.
+/// Copies numbers in host memory into a field; waits for all instances. The components of a site
+/// are adjacent, and the x index of the sites varies fastest. If there are only enough numbers for
+/// one replica of the lattice, all replicas get these. Throws std::invalid_argument for any other
+/// count.
 template <class Number, class Real, int Components, class MemorySpace>
 void copy_from_host(std::vector<Number> const& from,
                     SiteField<Real, Components, MemorySpace> const& to) {
@@ -274,7 +276,7 @@ void copy_from_host(std::vector<Number> const& from,
   exec.fence("cayspin::copy_from_host");
 }
 
-/// Returns the field's numbers in host memory, (sites, Components) with x fastest; waits.
+/// Returns the field's numbers in host memory, in the order of copy_from_host; waits.
 template <class Real, int Components, class MemorySpace>
 std::vector<Real> copy_to_host(SiteField<Real, Components, MemorySpace> const& from) {
   using Exec = typename MemorySpace::execution_space;

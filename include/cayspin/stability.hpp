@@ -19,17 +19,18 @@
 #include <stdexcept>
 
 // The largest stable time step of a method for the Landau-Lifshitz equation, computed before a run.
-// The stages of the method are applied to one transverse mode of a nearly uniform state. Its
-// amplitude u obeys u' = s (-damping + i) u, where s is the effective field of the mode. sigma is
-// the part of the generator along the spins.
+// The stages of the method are applied to one transverse mode of a nearly uniform state. The
+// amplitude u of the mode obeys u' = s * (-damping + i) * u, where s is the effective field of the
+// mode. sigma is the component of the generator along the spins.
 namespace cayspin::inline v0_2 {
 
 namespace detail {
 
 using Complex = std::complex<double>;
 
-/// Lie-algebra coordinates of a spin near the direction of the uniform state: transverse (first
-/// order in the mode's amplitude) and parallel (zeroth order).
+/// Coordinates in the Lie algebra near the uniform state: the component transverse to the direction
+/// of that state (first order in the mode's amplitude), and the component parallel to it (zeroth
+/// order).
 struct NearAxis {
   Complex transverse{0, 0};
   double parallel = 0;
@@ -57,8 +58,8 @@ struct LinearUpdate<update::Lie<Cayley>> {
         y.transverse - 0.5 * transverse_cross(f, y) + 0.25 * f.parallel * y.parallel * f.transverse,
         y.parallel * (1 + 0.25 * f.parallel * f.parallel)};
   }
-  /// Returns by how much the rotation with coordinates f changes the amplitude, which is 1 before
-  /// it.
+  /// Returns the change of the amplitude by the rotation with coordinates f; before the rotation,
+  /// the amplitude is 1.
   static Complex growth(NearAxis const& f) {
     return Complex(0, -1) * f.transverse / Complex(1, -0.5 * f.parallel);
   }
@@ -120,8 +121,8 @@ Complex growth_to(int row, NearAxis const& first, Coordinates const& increments)
   return growth + Linear::growth(second);
 }
 
-/// Returns the factor by which one step multiplies the amplitude of the mode, minus 1. z = dt s
-/// (-damping + i), q = dt sigma.
+/// Returns the factor by which one step multiplies the amplitude of the mode, minus 1, for
+/// z = dt * s * (-damping + i) and q = dt * sigma.
 template <class Tableau, class Update>
 Complex mode_growth(Complex z, double q) {
   using Linear = LinearUpdate<Update>;
@@ -164,8 +165,8 @@ Complex growth_of_step(Complex z, double q) {
     return mode_growth<typename Stepper::tableau_type, typename Stepper::update_type>(z, q);
 }
 
-/// Returns true if the mode grows. `clearly`: only growth beyond round-off counts; otherwise growth
-/// that round-off could hide counts, too.
+/// Returns true if the mode grows. If `clearly` is true or sigma is not 0, only growth beyond
+/// round-off counts; otherwise growth that round-off could hide counts, too.
 template <class Stepper>
 bool amplifies(Complex rate, double dt, double sigma, bool clearly) {
   Complex const growth = growth_of_step<Stepper>(dt * rate, dt * sigma);
@@ -178,7 +179,7 @@ bool amplifies(Complex rate, double dt, double sigma, bool clearly) {
 }
 
 /// Returns the largest dt up to which a mode does not grow, but at most `limit`; 0 if the mode
-/// grows even at dt = 1e-9 `unit`. grows(dt, clearly) has the meaning of amplifies(), and `unit` is
+/// grows even at dt = 1e-9 * unit. grows(dt, clearly) has the meaning of amplifies(), and `unit` is
 /// the time scale of the mode. The search starts at dt = from * unit. If the mode grows clearly
 /// there, the search goes down, otherwise up. It does not start at a shorter step, where round-off
 /// hides the small growth that methods of high order cause.
@@ -243,11 +244,12 @@ struct StabilityOptions {
   double sigma = 0;  ///< of isotropy::Constant
 };
 
-/// Returns the largest dt at which no mode of a nearly uniform state grows by more than round-off:
-/// an a-priori bound that does not exceed the linear limit. Returns 0 when modes grow at every dt,
-/// infinity when no mode grows at any dt. `field_bound`: exchange_bound + |applied field| + sum of
-/// |anisotropy constants| + sum of |demag strengths|. Throws std::invalid_argument for a bound or a
-/// damping that is negative or not finite, and for a sigma that is not finite.
+/// Returns the largest dt at which no mode of a nearly uniform state grows by more than round-off.
+/// It is computed before a run, and never above the stability limit of the linearised equation.
+/// Returns 0 when modes grow at every dt, infinity when no mode grows at any dt. `field_bound`:
+/// exchange_bound + |applied field| + sum of |anisotropy constants| + sum of |demag strengths|.
+/// Throws std::invalid_argument for a bound or a damping that is negative or not finite, and for a
+/// sigma that is not finite.
 ///   largest_stable_step<Rkmk4<Spins>>(field_bound, damping, {.precession = false})
 template <class Stepper>
 double largest_stable_step(double field_bound, double damping,

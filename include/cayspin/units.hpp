@@ -51,10 +51,10 @@ class Damping {
   double alpha_ = 0, time_factor_ = 1;
 };
 
-/// dm/dt = -gamma m x B + alpha m x dm/dt. Throws std::invalid_argument when alpha is negative or
-/// not finite.
+/// dm/dt = -gamma * m x B + alpha * m x dm/dt. Throws std::invalid_argument when alpha is negative
+/// or not finite.
 inline Damping gilbert(double alpha) { return {alpha, 1 + alpha * alpha}; }
-/// dm/dt = -gamma m x B - alpha gamma m x (m x B). Throws like gilbert.
+/// dm/dt = -gamma * m x B - alpha * gamma * m x (m x B). Throws like gilbert.
 inline Damping landau_lifshitz(double alpha) { return {alpha, 1}; }
 
 /// A current through a magnet.
@@ -64,9 +64,10 @@ struct PolarizedCurrent {
   double Ms = 0;            ///< saturation magnetization, A/m
   double gamma = electron_gamma;
 };
-/// Returns the velocity of Zhang and Li's torque in m/s, as defined by Thiaville et al. (2005): u =
-/// -g mu_B P j / (2 e Ms) with g mu_B = gamma hbar. Electrons move against the current, and so do
-/// walls if P > 0. Throws std::invalid_argument when Ms is not positive and finite.
+/// Returns the velocity of Zhang and Li's torque in m/s, as defined by Thiaville et al. (2005):
+/// u = -g * mu_B * P * j / (2 * e * Ms), with g * mu_B = gamma * hbar. Electrons move against the
+/// current, and so do walls if P > 0. Throws std::invalid_argument when Ms is not positive and
+/// finite.
 ///   drift_velocity({.density = 1e12, .polarization = 0.4, .Ms = 8e5})
 inline double drift_velocity(PolarizedCurrent const& current) {
   return -current.gamma * reduced_planck * current.polarization * current.density /
@@ -80,9 +81,10 @@ struct LayerCurrent {
   double Ms = 0;          ///< saturation magnetization of the layer, A/m
   double thickness = 0;   ///< of the layer, m
 };
-/// Returns the damping-like torque of a current in T: hbar j efficiency / (2 e Ms thickness). If j
-/// times the efficiency is positive, spins turn towards the polarization. Throws
-/// std::invalid_argument when Ms or the thickness is not positive and finite.
+/// Returns the damping-like torque of a current in T:
+/// hbar * j * efficiency / (2 * e * Ms * thickness).
+/// If j * efficiency is positive, spins turn towards the polarization. Throws std::invalid_argument
+/// when Ms or the thickness is not positive and finite.
 ///   spin_torque({.density = 1e12, .efficiency = 0.1, .Ms = 8e5, .thickness = 3e-9})
 inline double spin_torque(LayerCurrent const& current) {
   return reduced_planck * current.efficiency * current.density /
@@ -97,9 +99,9 @@ class ReducedUnits {
   double length_unit() const { return length_; }  ///< m
   double field_unit() const { return field_; }    ///< T, of B = mu0 H
   double energy_unit() const { return energy_; }  ///< J
-  /// m/s, for ZhangLi: length_unit() over what time_unit() would be without the factor 1 + alpha^2
-  /// of Gilbert's form. The unit of time already applies that factor to the torque, as to all terms
-  /// of the equation.
+  /// m/s, for ZhangLi: length_unit() divided by what time_unit() would be without the factor of
+  /// Gilbert's form, 1 + alpha^2. The unit of time already applies that factor to the torque, as to
+  /// all terms of the equation.
   double velocity_unit() const { return velocity_; }
   double damping() const { return damping_; }  ///< of LandauLifshitz
 
@@ -134,8 +136,8 @@ class ReducedUnits {
   double time_, length_, field_, energy_, velocity_, damping_;
 };
 
-/// Units of micromagnetics: field Ms, energy mu0 Ms^2 times the volume of a cell, length the cell's
-/// extent along x.
+/// Units of micromagnetics. The unit of H is Ms, that of energy is mu0 * Ms^2 * (volume of a cell),
+/// and that of length is the cell's extent along x.
 class Micromagnetic : public ReducedUnits {
  public:
   /// Constants that define the units.
@@ -143,7 +145,7 @@ class Micromagnetic : public ReducedUnits {
     double Ms = 0;                    ///< saturation magnetization, A/m
     std::array<double, 3> cell = {};  ///< extents of a cell, m
     Damping damping = {};             ///< gilbert(alpha) or landau_lifshitz(alpha)
-    double gamma = electron_gamma;    ///< |gamma|, rad/(s T); gamma0 = mu0 gamma in m/(A s)
+    double gamma = electron_gamma;    ///< |gamma|, rad/(s T); gamma0 = mu0 * gamma in m/(A s)
   };
 
   /// Throws std::invalid_argument for values that are not positive and finite.
@@ -154,8 +156,8 @@ class Micromagnetic : public ReducedUnits {
 
   /// Returns the constant of Exchange, from A in J/m.
   double exchange(double A) const { return 2 * A / (pressure_ * length_unit() * length_unit()); }
-  /// Returns the constant of UniaxialAnisotropy, from Ku in J/m^3 with E = -Ku V (m.e)^2 for a cell
-  /// of volume V.
+  /// Returns the constant of UniaxialAnisotropy, from Ku in J/m^3 with E = -Ku * V * (m.e)^2 for a
+  /// cell of volume V.
   double anisotropy(double Ku) const { return 2 * Ku / pressure_; }
   /// Returns the constant of CubicAnisotropy, from Kc in J/m^3.
   double cubic_anisotropy(double Kc) const { return Kc / pressure_; }
@@ -175,12 +177,12 @@ class Micromagnetic : public ReducedUnits {
         pressure_(vacuum_permeability * Ms * Ms),
         spacing_{1, material.cell[1] / material.cell[0], material.cell[2] / material.cell[0]} {}
 
-  double pressure_;  // mu0 Ms^2
+  double pressure_;  // mu0 * Ms^2
   std::array<double, 3> spacing_;
 };
 
-/// Units of atomistic spins, with E = -J sum of S_i.S_j over pairs counted once - K sum of (S.e)^2
-/// - mu_s sum of S.B. Lattices have a spacing of 1.
+/// Units of atomistic spins with E = -J * sum(S_i.S_j) - K * sum((S.e)^2) - mu_s * sum(S.B), where
+/// the first sum counts each pair once. Lattices have a spacing of 1.
 class Atomistic : public ReducedUnits {
  public:
   /// Constants that define the units.
@@ -214,7 +216,7 @@ class Atomistic : public ReducedUnits {
   double demagnetization(double factor) const { return factor * dipolar_; }
 
  private:
-  double dipolar_;  // mu0 mu_s^2 / a^3, in units of energy
+  double dipolar_;  // mu0 * mu_s^2 / a^3, in units of energy
 };
 
 }  // namespace cayspin::inline v0_2::units

@@ -54,7 +54,7 @@ using ValueOf = typename Stencil::value_type;
 template <class Stencil>
 using VectorOf = Vec3<typename Stencil::value_type>;
 
-/// Returns s a + b.
+/// Returns s * a + b.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> multiply_add(Value const& s, Vec3<Value> const& a,
                                                      Vec3<Value> const& b) {

@@ -14,12 +14,12 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// The field of interactions between cells, by FFTs. Rows along x are transformed first. Each wave
-/// number along x is then transformed along y and z in one thread's memory, multiplied by the
-/// interactions and transformed back. So the spectrum needs no padding along y and z, and each of
-/// its numbers is read and written only once between the transforms along x. Each part of a lattice
-/// transforms its own rows and a share of the wave numbers; in between, the parts exchange their
-/// spectra. The results have the same bits for any numbers of threads and parts.
+/// The field of interactions between cells, by FFTs. Rows along x are transformed first. The values
+/// at each wave number along x are then transformed along y and z in one thread's memory,
+/// multiplied by the interactions and transformed back. So the spectrum needs no padding along y
+/// and z, and each of its values is read and written only once between the transforms along x. Each
+/// part of a lattice transforms its own rows and a share of the wave numbers; in between, the parts
+/// exchange their spectra. The results are bitwise identical for any number of threads and parts.
 ///
 /// `Kernel`: holds the transformed interactions, and multiplies the transforms of all sites of a
 /// cell by them.
@@ -52,8 +52,8 @@ class Convolution {
         plane_workers_("cayspin::DemagnetizingField: planes", spectrum_.own_waves(),
                        planes() * padded_plane_ + kernel_.work_numbers()) {}
 
-  /// Returns the bytes of the spectrum and the interactions. Each thread also has work memory:
-  /// three planes for each site of a cell, and some rows.
+  /// Returns the bytes of the spectrum and the interactions. The work memory of the threads is not
+  /// included: each has three planes for each site of a cell, and some rows.
   static std::int64_t work_bytes(Lattice const& lattice, Interactions const& interactions) {
     Parts const parts(lattice);
     std::int64_t const ny = interactions.cells()[1];
@@ -104,9 +104,9 @@ class Convolution {
 
  private:
   /// Neighbouring rows of a plane, which are transformed together. `y`, `z`: indices of the first
-  /// of them within the part. `slot`: its place among the rows of one transform. Each row has the
-  /// same place as on the whole lattice, because FFTW does not promise equal bits in different
-  /// places.
+  /// row within the part, without ghosts. `slot`: its place among the rows of one transform. Each
+  /// row has the same place as on the whole lattice, because FFTW does not promise bitwise equal
+  /// results in different places.
   struct BlockOfRows {
     std::int64_t y, z;
     int slot, count;
@@ -120,7 +120,7 @@ class Convolution {
   };
 
   /// Returns the distance in memory from row to row of a plane. If there are several rows, it is an
-  /// odd number of cache lines, so that the numbers of a column do not compete for the same cache
+  /// odd number of cache lines, so that the values of a column do not compete for the same cache
   /// sets.
   static int row_of(int ny, int nz) {
     constexpr int line = 64 / sizeof(Complex);
@@ -158,7 +158,7 @@ class Convolution {
     return spectrum_.of_own_lines(k) + std::int64_t(c) * own_.count() + rows.z * own_.ny + rows.y;
   }
 
-  /// Returns the plane that holds component c of one site of each cell.
+  /// Returns the plane that holds component c of site `site` of every cell.
   Complex* plane_of(Complex* planes, std::int64_t site, std::size_t c) const {
     return planes + (std::size_t(site) * 3 + c) * padded_plane_;
   }

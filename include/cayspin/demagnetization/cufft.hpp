@@ -43,13 +43,15 @@ inline void require_cufft(cufftResult result) {
 
 class CufftPlan {
  public:
-  /// Distances in memory from number to number of a transform, and from one transform to the next.
+  /// Distances in memory: `stride` between successive values of a transform, `distance` between
+  /// successive transforms.
   struct Places {
     int stride, distance;
   };
 
   CufftPlan(cufftType type, int length, int count, Places in, Places out) {
-    // cuFFT uses the strides only if `embed` is given. Its value is ignored in one dimension.
+    // cuFFT uses the strides only if `embed` is given. The value of `embed` is ignored in one
+    // dimension.
     int embed = length;
     cufftHandle plan{};
     require_cufft(cufftPlanMany(&plan, 1, &length, &embed, in.stride, in.distance, &embed,
@@ -72,8 +74,8 @@ class CufftPlan {
   std::unique_ptr<cufftHandle const, Destroy> plan_;
 };
 
-/// `count` complex transforms in place, unscaled. In memory, the numbers of a transform are
-/// `stride` apart, and the transforms `distance`.
+/// `count` complex transforms in place, unscaled. In memory, successive values of a transform are
+/// `stride` apart, and successive transforms are `distance` apart.
 template <class Real>
 class CufftComplexTransforms {
   using Functions = Cufft<Real>;

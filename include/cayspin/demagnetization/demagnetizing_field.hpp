@@ -15,9 +15,9 @@
 namespace cayspin::inline v0_2 {
 
 /// The demagnetising field of a lattice of uniformly magnetised cells whose edges are the lattice's
-/// spacings, averaged over each cell: H_i = -strength sum_j N_ij m_j, by FFTs. The energy per site
-/// is -m.H/2. DemagnetizingField is a solver for HostField, and the HostField can be put into a
-/// SlowField.
+/// spacings, averaged over each cell: H_i = -strength * sum_j N_ij m_j, by FFTs. The energy per
+/// site is -m.H/2. DemagnetizingField is a solver for HostField, and the HostField can be put into
+/// a SlowField.
 ///
 /// An axis with images is periodic: a cell sees the nearest image of another cell and
 /// `periodic_images` more on each side of it, whatever boundary the lattice has for other terms.
@@ -25,8 +25,8 @@ namespace cayspin::inline v0_2 {
 /// Real and MemorySpace are those of the spins; DemagnetizingField(spins) deduces both. The
 /// transforms use FFTW in host memory and cuFFT on CUDA; code for other devices does not compile.
 /// Copies share their work memory, so evaluate one at a time. On a part of a lattice (mpi::Domain,
-/// host only) the field is that of the spins of all parts, with the same bits as on the whole
-/// lattice. All parts construct and evaluate it together. Needs the target cayspin::fftw.
+/// host only) the field is that of the spins of all parts, bitwise identical to that on the whole
+/// lattice. All parts must construct and evaluate it together. Needs the target cayspin::fftw.
 template <class Real, class MemorySpace = Kokkos::HostSpace>
 class DemagnetizingField {
   static constexpr bool on_host = std::is_same_v<MemorySpace, Kokkos::HostSpace>;

@@ -68,7 +68,7 @@ struct TakeRows {
 template <class Real>
 struct PadPlanes {
   DeviceSpectrum at;
-  Kokkos::complex<Real> const* spectrum;  // from the first of these lines on
+  Kokkos::complex<Real> const* spectrum;  // starts at the first of these lines
   std::int64_t lines, all_lines;
   Kokkos::complex<Real>* planes;
 
@@ -102,7 +102,7 @@ struct CutPlanes {
 template <class Real>
 struct MultiplyPlanes {
   DeviceSpectrum at;
-  Real const* kernel;  // from the first of these wave numbers along x on
+  Real const* kernel;  // starts at the first of these wave numbers along x
   std::int64_t waves;
   Kokkos::complex<Real>* planes;
 
@@ -160,7 +160,8 @@ class DeviceConvolution {
     Kokkos::deep_copy(kernel_, kernel);
   }
 
-  /// Returns the bytes of all arrays kept, except the planes and the work memory of the transforms.
+  /// Returns the bytes of all arrays of a DeviceConvolution, except the planes and the work memory
+  /// of the transforms.
   static std::int64_t work_bytes(Lattice const&, InteractionsOfCells const& interactions) {
     auto const at = places(interactions, 0);
     return (at.numbers() + 2 * at.spectrum() + static_cast<std::int64_t>(kernel_size(at))) *

@@ -20,10 +20,10 @@ namespace cayspin::inline v0_2 {
 /// Returns an upper bound on the absolute eigenvalues of the matrix that turns the spins into H,
 /// for a DipolarField with strength 1 and demagnetising factors from 0 to 1, on an open or periodic
 /// lattice of any size. Stable steps depend on these eigenvalues; |H| at a site can be larger.
-/// `moments`: one for each site of a cell, by which its spin is multiplied. `periodic_images`:
+/// `moments`: one for each site of a cell; it multiplies the spin of that site. `periodic_images`:
 /// those of the field, needed only along axes with a single cell. The two parts of Ewald's sum are
-/// bounded separately, for several ways to split it, and the smallest result is returned. For large
-/// sc, bcc and fcc lattices it is about twice the largest eigenvalue.
+/// bounded separately, for several ways to split the sum, and the smallest result is returned. For
+/// large sc, bcc and fcc lattices it is about twice the largest eigenvalue.
 inline double dipolar_bound(Lattice const& lattice, Crystal crystal,
                             std::vector<double> const& moments,
                             std::array<int, 3> const& periodic_images = {}) {

@@ -14,17 +14,17 @@
 
 namespace cayspin::inline v0_2 {
 
-/// The field of point dipoles at the sites of a crystal, by FFTs: H_i = strength V sum_j (3 r
-/// (r.m_j) - m_j r^2) / (4 pi r^5), with the vector r from site j to site i. V is the product of
-/// the lattice's spacings, so that a dipole of 1 corresponds to a cell with these edges and
-/// magnetization 1. Far away, the dipole's field is that of such a cell in a DemagnetizingField.
-/// The energy per site is -m.H/2. DipolarField is a solver for HostField, and the HostField can be
-/// put into a SlowField. The spins passed in are taken as dipole moments: multiply them by the
-/// moments of their sites beforehand.
+/// The field of point dipoles at the sites of a crystal, by FFTs:
+/// H_i = strength * V * sum_j (3 * (r.m_j) * r - r^2 * m_j) / (4 * pi * r^5), with the vector r
+/// from site j to site i. V is the product of the lattice's spacings, so that a dipole of 1
+/// corresponds to a cell with these edges and magnetization 1. Far away, the dipole's field is that
+/// of such a cell in a DemagnetizingField. The energy per site is -m.H/2. DipolarField is a solver
+/// for HostField, and the HostField can be put into a SlowField. The spins passed in are taken as
+/// dipole moments: multiply them by the moments of their sites beforehand.
 ///
 /// Copies share their work memory, so evaluate one at a time. On a part of a lattice (mpi::Domain)
-/// the field is that of the dipoles of all parts, with the same bits as on the whole lattice. All
-/// parts construct and evaluate it together. Needs the target cayspin::fftw.
+/// the field is that of the dipoles of all parts, bitwise identical to that on the whole lattice.
+/// All parts must construct and evaluate it together. Needs the target cayspin::fftw.
 template <class Real>
 class DipolarField {
   using Convolution = detail::Convolution<Real, detail::KernelOfPairs<Real>>;

@@ -12,8 +12,8 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// A lattice with one to three periods a, b, c. It calls a function for all points r + i a + j b +
-/// k c that are within a given distance of the origin.
+/// A lattice of points with one to three periods a, b, c. for_each_within() visits all points
+/// r + i * a + j * b + k * c that are within a given distance of the origin.
 class PointsOfLattice {
  public:
   PointsOfLattice() = default;
@@ -34,13 +34,14 @@ class PointsOfLattice {
   }
 
   std::size_t dimensions() const { return count_; }
-  /// Returns the volume of a cell. With two periods it is the cell's area, with one its length.
+  /// Returns the volume of a cell. With two periods, this is the area of the cell; with one, its
+  /// length.
   double measure() const { return measure_; }
   /// Returns the unit normal of the plane of two periods.
   Point const& normal() const { return vectors_[2]; }
 
-  /// Returns the reciprocal lattice: the scalar product of its vector i with period j is 2 pi if i
-  /// = j, else 0.
+  /// Returns the reciprocal lattice: the scalar product of its vector i with period j is 2 * pi if
+  /// i = j, else 0.
   PointsOfLattice reciprocal() const {
     std::vector<Point> waves;
     for (std::size_t i = 0; i < count_; ++i)
@@ -48,7 +49,8 @@ class PointsOfLattice {
     return PointsOfLattice(waves);
   }
 
-  /// Calls work(point, {i, j, k}) for all points r + i a + j b + k c with |point| <= distance.
+  /// Calls work(point, {i, j, k}) for every point = r + i * a + j * b + k * c with a length of at
+  /// most `distance`.
   template <class Work>
   void for_each_within(Point const& r, double distance, Work const& work) const {
     std::array<int, 3> first{}, last{};
@@ -90,7 +92,7 @@ class PointsOfLattice {
 /// With two or three periods, Ewald's sums are used: C. Kittel, Introduction to Solid State
 /// Physics, appendix B; D. E. Parry, Surf. Sci. 49, 433 (1975). With one period, the nearest image
 /// and 32 more on each side are summed. An integral, corrected by differences over a period,
-/// replaces the others.
+/// replaces all other images.
 class DipoleImages {
  public:
   explicit DipoleImages(std::vector<Point> const& periods) : lattice_(periods) {
@@ -144,7 +146,7 @@ class DipoleImages {
       sum.add_product(factor * weight * std::cos(scalar_product(g, r)), g, g);
   }
 
-  /// Returns exp(g z) erfc(g / (2 alpha) + alpha z) without overflow: 0 where erfc almost
+  /// Returns exp(g * z) * erfc(g / (2 * alpha) + alpha * z) without overflow: 0 where erfc almost
   /// underflows, since the product is then negligible.
   double wave_beyond(double g, double z) const {
     double const at = g / (2 * alpha_) + alpha_ * z;
@@ -160,7 +162,7 @@ class DipoleImages {
       double const up = wave_beyond(length, z), down = wave_beyond(length, -z);
       double const factor = 2 * std::numbers::pi / (area * length), phase = scalar_product(g, r);
       double const c = factor * std::cos(phase), s = factor * std::sin(phase);
-      // d^2 (up + down) / dz^2
+      // The second derivative of up + down with respect to z.
       double const second = length * (length * (up + down) - 4 * alpha_ / root * gauss * of_z);
       sum.add_product(-c * (up + down), g, g)
           .add_product(-2 * s * length * (up - down), g, n)
@@ -188,8 +190,9 @@ class DipoleImages {
                          (images + 0.5 + n) * period_ + side * x, side, rho);
     return sum;
   }
-  /// Adds the integral of the tensor over a half-line of dipoles. It starts at the distance u along
-  /// the line from the point, on the side `side` (1 or -1); rho leads from the line to the point.
+  /// Adds `weight` times the integral of the tensor over a half-line of dipoles. The half-line
+  /// starts at the distance u along the line from the point, on the side `side` (1 or -1); rho
+  /// leads from the line to the point.
   void add_rest_of_line(DipoleTensor& sum, double weight, double u, int side,
                         Point const& rho) const {
     auto const& e = direction_;

@@ -29,8 +29,8 @@ struct DipolarOptions {
   /// combined only with itself or 0 along another.
   std::array<int, 3> periodic_images{};
   /// Demagnetising factors N along x, y and z of the body that the images fill: its mean
-  /// magnetization M adds the field -strength N M. The factors are used only with infinitely many
-  /// images along all three vectors. 0: the body has no poles on its surface.
+  /// magnetization M adds the field -strength * N * M. The factors are used only with infinitely
+  /// many images along all three vectors. 0: the body has no poles on its surface.
   std::array<double, 3> demagnetizing_factors{};
 };
 

@@ -10,7 +10,7 @@ namespace cayspin::inline v0_2::detail {
 
 using Point = std::array<double, 3>;
 
-/// A symmetric matrix T: the field of a dipole m is H = T m / (4 pi).
+/// A symmetric matrix T: the field of a dipole m is H = T m / (4 * pi).
 struct DipoleTensor {
   double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 
@@ -24,7 +24,7 @@ struct DipoleTensor {
     xx += weight, yy += weight, zz += weight;
     return *this;
   }
-  /// Adds weight (a b^T + b a^T) / 2.
+  /// Adds weight * (a b^T + b a^T) / 2.
   DipoleTensor& add_product(double weight, Point const& a, Point const& b) {
     xx += weight * a[0] * b[0], yy += weight * a[1] * b[1], zz += weight * a[2] * b[2];
     double const half = 0.5 * weight;
@@ -49,8 +49,8 @@ inline DipoleTensor dipole_tensor(Point const& r) {
   return sum.add_unit(-per_cube).add_product(3 * per_cube / r2, r, r);
 }
 
-/// The short-range part of Ewald's sum: second derivatives of erfc(alpha r) / r, which fall off
-/// like exp(-(alpha r)^2). `unit` is the factor of the identity, and `product` that of r r^T.
+/// The short-range part of Ewald's sum: second derivatives of erfc(alpha * r) / r, which fall off
+/// like exp(-(alpha * r)^2). `unit` is the factor of the identity, and `product` that of r r^T.
 struct ShortRangeDipole {
   ShortRangeDipole(double r2, double alpha) {
     double const r = std::sqrt(r2), two = 2 * alpha / std::sqrt(std::numbers::pi);
@@ -67,7 +67,7 @@ inline double self_field_of_ewald(double alpha) {
   return 4 * alpha * alpha * alpha / (3 * std::sqrt(std::numbers::pi));
 }
 /// Terms of Ewald's sums are below round-off at distances above ewald_reach / alpha, and at wave
-/// numbers above 2 alpha ewald_reach.
+/// numbers above 2 * alpha * ewald_reach.
 inline constexpr double ewald_reach = 6.2;
 
 }  // namespace cayspin::inline v0_2::detail

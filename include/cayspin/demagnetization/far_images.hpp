@@ -18,8 +18,8 @@ namespace cayspin::inline v0_2::detail {
 /// periodic axes, without the nearest images. Beyond 16 periods (or the nearest images, if there
 /// are more), lines of dipoles replace the images along the axis of the shorter period. Likewise,
 /// sheets replace the lines beyond 16 periods along the other axis. The fields of lines and sheets
-/// are integrals in closed form. Corrections by differences over a period, up to the sixth, turn
-/// the integrals into sums over images and average over the cells' edges along the axis of that
+/// are integrals in closed form. Corrections by differences over a period, of orders up to six,
+/// turn the integrals into sums over images, averaged over the cells' edges along the axis of that
 /// period; quadrature averages over the other edges. The error is below 1e-10, where 1 is the trace
 /// of a cell's own tensor.
 class FarImages {
@@ -92,8 +92,9 @@ class FarImages {
   }
 
   /// Returns the shifts and weights of the mean over both cells' edges along an axis. The edges are
-  /// divided into pieces of at most 1/24 of `distance`, at which the lines or sheets begin. For
-  /// each pair of pieces, a rule of three points is exact for polynomials up to degree 5.
+  /// divided into pieces of at most `distance` / 24; `distance` is that at which the lines or
+  /// sheets begin. For each pair of pieces, a rule of three points is exact for polynomials up to
+  /// degree 5.
   WeightedShifts over_an_edge(std::size_t axis, double distance) const {
     auto const pieces = static_cast<int>(std::ceil(24 * cell_[axis] / distance));
     double const piece = cell_[axis] / pieces, point = std::sqrt(0.4) * piece;

@@ -22,7 +22,7 @@ namespace cayspin::inline v0_2::detail {
 /// tensor.
 class FarImagesTable {
  public:
-  /// The distances 0, step, .. (distances - 1) step along an axis.
+  /// The distances 0, step, .. (distances - 1) * step along an axis.
   struct Axis {
     int distances = 1;
     double step = 1;

@@ -11,8 +11,8 @@
 #include <type_traits>
 
 // FFTs of the demagnetising field by FFTW, in both precisions. Plans use FFTW_ESTIMATE, which does
-// not measure times. So FFTW always chooses the same plan, and results have the same bits in every
-// run. Arrays are aligned to cache lines, as Kokkos allocates them.
+// not measure times. So FFTW always chooses the same plan, and results are bitwise identical in
+// every run. Arrays are aligned to cache lines, as Kokkos allocates them.
 namespace cayspin::inline v0_2::detail {
 
 template <class Real>
@@ -51,7 +51,8 @@ class FftwPlan {
   using Plan = typename Functions::Plan;
 
  public:
-  /// make(): returns a plan from an FFTW planner. Throws std::runtime_error if there is none.
+  /// `make`: a callable that returns a plan from an FFTW planner. Throws std::runtime_error if it
+  /// returns no plan.
   template <class Make>
   explicit FftwPlan(Make const& make) {
     std::scoped_lock const alone(fftw_planner);
@@ -82,8 +83,8 @@ auto as_std(Kokkos::complex<Real>* data) {
 // Members that take an execution space match those in cufft.hpp, so that host spaces can run device
 // code.
 
-/// `count` complex transforms in place, unscaled. In memory, the numbers of a transform are
-/// `stride` apart, and the transforms `distance`.
+/// `count` complex transforms in place, unscaled. In memory, successive values of a transform are
+/// `stride` apart, and successive transforms are `distance` apart.
 template <class Real>
 class ComplexTransforms {
  public:

@@ -36,7 +36,7 @@ struct DemagnetizationOptions {
 
 namespace detail {
 
-/// Interactions -strength N between the cells of a lattice, for the octant of non-negative
+/// Interactions -strength * N between the cells of a lattice, for the octant of non-negative
 /// distances. For a part of a lattice, they are the interactions of the whole lattice.
 class InteractionsOfCells {
  public:
@@ -76,8 +76,8 @@ class InteractionsOfCells {
   std::int64_t lines() const { return std::int64_t{octant(1)} * octant(2); }
 
   /// Returns the tensors, times -strength, of `count` lines from number `first` on, for all
-  /// distances of the octant along x. Order: x fastest, then y. Tensors are 0 for distances that no
-  /// two cells have.
+  /// distances of the octant along x. The distance along x varies fastest, then that along y.
+  /// Tensors are 0 for distances that no two cells have.
   DemagnetizingTensors of_lines(std::int64_t first, std::int64_t count) const {
     if (options_.kept && count == lines())
       return options_.kept([&] { return computed(first, count); });

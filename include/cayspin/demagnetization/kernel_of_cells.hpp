@@ -35,11 +35,11 @@ class KernelOfCells {
     transform_interactions(interactions, parts, values_);
   }
 
-  /// Returns the count of stored numbers for `waves` wave numbers along x.
+  /// Returns how many real numbers are stored for `waves` wave numbers along x.
   static std::int64_t numbers(Interactions const& interactions, std::int64_t waves) {
     return 6 * waves * interactions.lines();
   }
-  /// Returns how many numbers of work memory `multiply` needs after the planes.
+  /// Returns how many complex values of scratch memory `multiply` needs directly behind the planes.
   std::size_t work_numbers() const { return 0; }
 
   /// Multiplies the planes of one wave number along x by the interactions. `k` counts from the

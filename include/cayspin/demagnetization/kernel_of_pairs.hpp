@@ -17,9 +17,10 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// The Fourier transform of the interactions between the sites of a crystal's cells. It is real
-/// between equal sites of the cells, and complex between different sites a and b. The transform
-/// from a to b is the conjugate of that from b to a, so only one of them is stored.
+/// The Fourier transform of the interactions between the sites of a crystal's cells. For a site and
+/// the same site of other cells, the transform is real; for different sites a and b, it is complex.
+/// The transform from a to b is the conjugate of that from b to a, so only one of the two is
+/// stored.
 template <class Real>
 class KernelOfPairs {
   using Complex = std::complex<Real>;
@@ -37,12 +38,12 @@ class KernelOfPairs {
       for (std::size_t b = a; b < sites_; ++b) transform(interactions, parts, a, b);
   }
 
-  /// Returns the count of stored numbers for `waves` wave numbers along x.
+  /// Returns how many real numbers are stored for `waves` wave numbers along x.
   static std::int64_t numbers(Interactions const& interactions, std::int64_t waves) {
     auto const sites = static_cast<std::int64_t>(interactions.sites());
     return waves * interactions.period()[2] * 6 * sites * sites * interactions.period()[1];
   }
-  /// Returns how many numbers of work memory `multiply` needs after the planes.
+  /// Returns how many complex values of scratch memory `multiply` needs directly behind the planes.
   std::size_t work_numbers() const { return 3 * sites_ * row_length(); }
 
   /// Multiplies the planes of one wave number along x by the interactions. `k` counts from the
@@ -67,7 +68,8 @@ class KernelOfPairs {
   }
 
  private:
-  /// A row for each component of vectors, and the distance in memory from one row to the next.
+  /// Vectors stored as one row for each component. `next`: distance in memory from one row to the
+  /// next.
   struct Vectors {
     Complex* data;
     std::size_t next;

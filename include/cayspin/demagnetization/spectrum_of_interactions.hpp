@@ -16,7 +16,7 @@ namespace cayspin::inline v0_2::detail {
 
 /// The Fourier transform of the interactions, which is real: each component is even or odd along
 /// each axis, and odd along two axes or none. One octant of wave numbers is kept; along x, only
-/// this part's share of them.
+/// this part's share of the wave numbers.
 class SpectrumOfInteractions {
  public:
   SpectrumOfInteractions(InteractionsOfCells const& interactions, Parts const& parts)
@@ -29,7 +29,7 @@ class SpectrumOfInteractions {
         along_x_("cayspin::DemagnetizingField: spectrum of interactions", parts, octant_[0],
                  lines_) {}
 
-  /// Returns one component. Order: wave number along x, z, y.
+  /// Returns the transform of `component`. Order: wave number along x, z, y.
   std::vector<double> operator()(double DemagnetizingTensor::*component,
                                  std::array<bool, 3> const& is_odd) const {
     along(
@@ -56,7 +56,7 @@ class SpectrumOfInteractions {
             [&](std::int64_t line, std::int64_t i, double value) { number(line, i) = value; });
     }
     if (is_odd[0] || is_odd[1] || is_odd[2])
-      for (double& value : values) value = -value;  // i times i
+      for (double& value : values) value = -value;  // odd along two axes: i * i = -1
     return values;
   }
 
@@ -95,7 +95,7 @@ class SpectrumOfInteractions {
   }
 
   std::array<int, 3> octant_, period_;
-  std::vector<std::int64_t> lines_;  // on each part
+  std::vector<std::int64_t> lines_;  // number on each part
   std::int64_t own_lines_;
   std::vector<DemagnetizingTensor> tensors_;
   SpectrumOfParts<double> along_x_;

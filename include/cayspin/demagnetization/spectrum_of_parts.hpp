@@ -89,12 +89,12 @@ inline std::vector<RowsOfPart> rows_of_parts(Lattice const& lattice) {
 }
 
 /// A spectrum of lines, distributed over the parts of a lattice. A part holds all wave numbers of
-/// its own lines, and a share of the wave numbers of all lines. If there is only one part, both are
-/// the same memory.
+/// its own lines, and a share of the wave numbers of all lines. If there is only one part, both
+/// share the same memory.
 template <class Number>
 class SpectrumOfParts {
  public:
-  /// `lines`: one count for each part.
+  /// `lines`: the number of lines of each part.
   SpectrumOfParts(std::string const& label, Parts const& parts, std::int64_t waves,
                   std::vector<std::int64_t> const& lines)
       : parts_(parts),
@@ -124,19 +124,19 @@ class SpectrumOfParts {
   Number* of_own_lines(std::int64_t wave) const {
     return of_lines_.data() + static_cast<std::size_t>(wave) * own_lines_;
   }
-  /// Returns the values of the lines of `part` at wave number `wave`, counted from the first one of
-  /// this part's share.
+  /// Returns the values of the lines of `part` at wave number `wave`, counted from the first wave
+  /// number of this part's share.
   Number* of_own_wave(std::int64_t wave, std::size_t part) const {
     return of_waves_.data() + for_waves_[part] + static_cast<std::size_t>(wave) * lines_[part];
   }
 
   /// Sends the values of this part's lines to the parts whose shares contain the wave numbers.
-  /// Write all of_own_lines first.
+  /// Before the call, write the values that of_own_lines() points to, for every wave number.
   void lines_to_waves() const {
     if (parts_.count() > 1) parts_.exchange<Number>(of_lines(), of_waves());
   }
-  /// Sends the values of this part's share back to the parts with the lines. Write all of_own_wave
-  /// first.
+  /// Sends the values at this part's wave numbers back to the parts that hold the lines. Before the
+  /// call, write the values that of_own_wave() points to, for every wave number and part.
   void waves_to_lines() const {
     if (parts_.count() > 1) parts_.exchange<Number>(of_waves(), of_lines());
   }
@@ -149,9 +149,9 @@ class SpectrumOfParts {
 
   Parts parts_;
   std::size_t own_lines_, own_waves_;
-  std::vector<std::size_t> lines_;                  // on each part
+  std::vector<std::size_t> lines_;                  // number on each part
   std::vector<std::size_t> for_lines_, for_waves_;  // where each part's block begins
-  Memory of_lines_, of_waves_;                      // orders: wave, line; part, wave, line
+  Memory of_lines_, of_waves_;                      // orders: (wave, line) and (part, wave, line)
 };
 
 }  // namespace cayspin::inline v0_2::detail

@@ -27,7 +27,7 @@ using TensorOfCells = DemagnetizingTensor(std::array<double, 3> const& position,
                                           std::array<double, 3> const& cell);
 
 /// Largest ratio between edges of a cell that DemagnetizingField accepts; the tensor is tested up
-/// to it.
+/// to this ratio.
 inline constexpr double largest_edge_ratio = 1e9;
 
 namespace detail {
@@ -48,12 +48,13 @@ struct NewellFunctions {
   long double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 };
 
-/// Newell, Williams and Dunlop 1993, eqs. 27 and 32, which have asinh and atan terms in common.
+/// Returns the functions of Newell, Williams and Dunlop 1993, eqs. 27 and 32, computed together
+/// because they have asinh and atan terms in common.
 inline NewellFunctions newell_functions(long double x, long double y, long double z) {
   using Number = long double;
   Number const x2 = x * x, y2 = y * y, z2 = z * z, xyz = x * y * z;
   Number const r = std::sqrt(x2 + y2 + z2);
-  // Returns 0 where the denominator is 0: the factors of these terms are 0 there.
+  // These functions return 0 where the denominator is 0: the factors of the terms are 0 there.
   auto const asinh_of = [](Number a, Number b2) {
     return b2 > 0 ? std::asinh(a / std::sqrt(b2)) : 0;
   };
@@ -98,11 +99,12 @@ constexpr std::array<double, Size> factorials() {
   return result;
 }
 
-/// Returns coefficients of the Taylor series. The product of the second differences along x, y and
-/// z, each divided by the square of its edge, is d_x^2 d_y^2 d_z^2 times the sum of 8 h_x^2i h_y^2j
-/// h_z^2k / ((2i+2)! (2j+2)! (2k+2)!) d_x^2i d_y^2j d_z^2k. h_x is the edge along x, and d_x the
-/// derivative. This sum acts on derivatives of 1/r, so d_z^2 = -(d_x^2 + d_y^2). Element [m][i] is
-/// the coefficient of d_x^2i d_y^2j with j = m - i.
+/// Returns coefficients of the Taylor series of second differences. The product of the second
+/// differences along x, y and z, each divided by the square of its edge, is d_x^2 d_y^2 d_z^2 times
+/// a series, the sum over i, j and k of 8 h_x^2i h_y^2j h_z^2k / ((2i+2)! (2j+2)! (2k+2)!) d_x^2i
+/// d_y^2j d_z^2k. h_x is the edge along x, and d_x the derivative. The series acts on derivatives
+/// of 1/r, for which d_z^2 = -(d_x^2 + d_y^2). Element [m][i] of the result is the coefficient of
+/// d_x^2i d_y^2j with j = m - i in the series.
 template <std::size_t HalfOrder>
 std::array<std::array<double, HalfOrder + 1>, HalfOrder + 1> difference_series(Lengths const& h) {
   constexpr auto factorial = factorials<2 * HalfOrder + 3>();
@@ -272,10 +274,10 @@ inline DemagnetizingTensor slender_demagnetizing_tensor(Lengths const& position,
 /// edges) and 6 (from 50 edges). Where the differences would lose too many digits, long or flat
 /// cells are divided into pieces.
 ///
-/// For ratios of edges up to 1e6, the error is at most 3e-11 of the largest entry of N at this
-/// position, and at most 1e-12 of it from a distance of 4 longest edges on. For ratios from 1e6 to
-/// 1e9, it is at most 1e-8 of that entry, and also at most 1e-15 in absolute value. This needs a
-/// long double with a mantissa of 64 bits or more.
+/// For ratios of edges up to 1e6, the error is at most 3e-11 times the largest entry of N at this
+/// position, and at most 1e-12 times this entry from a distance of 4 times the longest edge on. For
+/// ratios from 1e6 to 1e9, the error is at most 1e-8 times that entry, and also at most 1e-15 in
+/// absolute value. This needs a long double with a mantissa of 64 bits or more.
 inline DemagnetizingTensor demagnetizing_tensor(std::array<double, 3> const& position,
                                                 std::array<double, 3> const& cell) {
   auto const [x, y, z] = position;

@@ -22,7 +22,8 @@ class Workers {
         numbers_(whole_lines(numbers)),
         memory_(label, static_cast<std::size_t>(count_) * numbers_) {}
 
-  /// Calls body(task, memory of the thread) for all tasks. The memory is 0 before the first call.
+  /// Calls body(task, memory of the thread) for all tasks. The memory is set to 0 at allocation
+  /// only: later tasks find in it what earlier ones left.
   template <class Body>
   void run(std::int64_t tasks, Body const& body) const {
     Kokkos::DefaultHostExecutionSpace const exec;

@@ -5,9 +5,9 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// A term that depends on the component of the spin along one axis: H = c (m.e) e,
-/// E = -c (m.e)^2 / 2. In packs of sites on the host, an axis along x, y or z costs one product
-/// instead of seven.
+/// A term that depends on the component of the spin along one axis:
+/// H = c * (m.e) * e, E = -c * (m.e)^2 / 2. In packs of sites on the host, an axis along x, y or z
+/// costs one product instead of seven.
 class AlongAxis {
  public:
   static constexpr int degree = 2;  // H is linear in the spins

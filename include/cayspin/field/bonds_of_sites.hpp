@@ -100,8 +100,8 @@ class BondLists {
   std::vector<Bond> bonds;
   std::vector<BondTensor> tensors;
   /// For lattices that are periodic along x: the wrapped offsets of all bonds of a site, at each of
-  /// the first reach.low[0] and the last reach.high[0] sites of a row. Sites whose bonds reach
-  /// farther along x than a pack of floats have none.
+  /// the first reach.low[0] and the last reach.high[0] sites of a row. A site of the cell has no
+  /// such offsets if its bonds reach farther along x than the length of a pack of floats.
   std::vector<OffsetInMemory> rounds;
   bool has_biquadratic = false;
   /// Upper bound of |H| at each site of a cell, for spins of length 1.
@@ -150,7 +150,7 @@ class BondLists {
              t[6] == 0 && t[7] == 0 && t[9] == 0;
     }
     /// Returns an upper bound of the bond's |H| for unit spins: |J| for exchange; otherwise the
-    /// Frobenius norm of T plus 2 |B|, with the biquadratic constant B.
+    /// Frobenius norm of T plus 2 * |B|, with the biquadratic constant B.
     double bound() const {
       if (is_exchange()) return std::abs(tensor.of[0]);
       double sum = 0;

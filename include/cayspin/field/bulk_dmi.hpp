@@ -47,7 +47,7 @@ class UniformBulkDmi {
   }
 
  private:
-  /// Returns h + (D / spacing) (m_next - m_previous) x e.
+  /// Returns h + (D / spacing) * (m_next - m_previous) x e.
   template <int Axis, class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector bonds(Stencil const& stencil, Vector const& h) const {
     using Value = typename Stencil::value_type;
@@ -66,11 +66,12 @@ class UniformBulkDmi {
 
 }  // namespace detail
 
-/// Dzyaloshinskii-Moriya interaction of a chiral crystal, with energy density D m . curl m. A bond
-/// from spin m along the axis e to its neighbour m' has E = -(D / spacing) (m x m') . e, so that H
-/// = sum over axes of (D / spacing) (m_next - m_previous) x e. A missing neighbour has no bond.
-/// With Exchange(lattice, A), a free spiral along e turns about e by atan(D spacing / A) from site
-/// to site. Reduced units. Bak and Jensen 1980.
+/// Dzyaloshinskii-Moriya interaction of a chiral crystal, with energy density D * m.(curl m). A
+/// bond from spin m along the axis e to its neighbour m' has
+/// E = -(D / spacing) * (m x m').e, so that
+/// H = sum over axes of (D / spacing) * (m_next - m_previous) x e. A missing neighbour has no bond.
+/// With Exchange(lattice, A), a free spiral along e turns about e by atan(D * spacing / A) from
+/// site to site. Reduced units. Bak and Jensen 1980.
 class BulkDmi : public detail::TermOnLattice<detail::UniformBulkDmi> {
  public:
   /// Throws std::invalid_argument when the constant is not finite or the lattice is invalid.

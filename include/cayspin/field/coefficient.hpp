@@ -13,7 +13,7 @@
 // A coefficient of a term: one number for all sites, or a field of numbers.
 namespace cayspin::inline v0_2::detail {
 
-/// Returns the coefficient for kernels.
+/// Returns a coefficient in the form that kernels use.
 inline double array_of(double number) { return number; }
 inline Vec3<double> array_of(Vec3<double> const& vector) { return vector; }
 template <class Real, int Components, class MemorySpace>

@@ -9,8 +9,8 @@
 namespace cayspin::inline v0_2 {
 
 /// Cubic anisotropy, with components a, b, c of m along the axes e1, e2 and e3 = e1 x e2:
-/// E = Kc (a^2 b^2 + b^2 c^2 + c^2 a^2) per site,
-/// H = -2 Kc [a (b^2 + c^2) e1 + b (c^2 + a^2) e2 + c (a^2 + b^2) e3].
+/// E = Kc * (a^2 * b^2 + b^2 * c^2 + c^2 * a^2) per site,
+/// H = -2 * Kc * [a * (b^2 + c^2) * e1 + b * (c^2 + a^2) * e2 + c * (a^2 + b^2) * e3].
 /// In reduced units, Kc is an energy per site. Aharoni 2000, Sec. 5.1.2.
 class CubicAnisotropy {
  public:
@@ -69,7 +69,7 @@ class CubicAnisotropy {
     return {dot(v, as_value<Value>(axes_[0])), dot(v, as_value<Value>(axes_[1])),
             dot(v, as_value<Value>(axes_[2]))};
   }
-  /// Returns the vector with these components.
+  /// Returns the vector whose components a, b and c are those of `v`.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> sum(Vec3<Value> const& v) const {
     if (along_coordinates_) [[likely]]

@@ -65,7 +65,7 @@ class EffectiveField<First, Rest...>
   explicit EffectiveField(First first, Rest... rest)
       : first_(std::move(first)), rest_(std::move(rest)...) {}
 
-  // For stages over rows.
+  // Called by stages that go row by row (detail/row_fields.hpp).
   static constexpr int row_fields = detail::row_fields<First> + EffectiveField<Rest...>::row_fields;
   template <class Real>
   void begin_row(detail::RowOfSpins<Real> const& row, std::int32_t begin, std::int32_t end,
@@ -74,7 +74,7 @@ class EffectiveField<First, Rest...>
     rest_.begin_row(row, begin, end, fields.after(detail::row_fields<First>));
   }
 
-  // For Forwarding.
+  // Called by Forwarding.
   template <class Make>
   auto with_parts(Make const& make) const {
     return join(make(first_), rest_.with_parts(make));

@@ -50,8 +50,8 @@ class UniformExchange {
     if (couples_[2]) h = second_difference<2>(stencil, h);
     return h;
   }
-  /// Adds H up to a multiple of the spin itself: for each axis, the sum of the two neighbours,
-  /// times A / spacing^2. Past an open end, the spin replaces the missing neighbour.
+  /// Adds H up to a multiple of the spin itself: for each axis, A / spacing^2 times the sum of the
+  /// two neighbours. Past an open end, the spin replaces the missing neighbour.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_turning_field(Stencil const& stencil,
                                                                   VectorOf<Stencil> h) const {
@@ -67,8 +67,8 @@ class UniformExchange {
     return h;
   }
 
-  /// Returns H up to a multiple of the spin itself: for each axis, the sum of the existing
-  /// neighbours, times A / spacing^2.
+  /// Returns H up to a multiple of the spin itself: the sum over the axes of A / spacing^2 times
+  /// the sum of the existing neighbours.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
@@ -100,8 +100,8 @@ class UniformExchange {
     return stencil.template previous<Axis>() + stencil.template next<Axis>();
   }
 
-  // Adds A / spacing^2 (previous + next - 2 center), in a form that is exactly zero where the three
-  // are equal.
+  // Adds (A / spacing^2) * (previous + next - 2 * center), in a form that is exactly zero where the
+  // three are equal.
   template <int Axis, class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector second_difference(Stencil const& stencil,
                                                        Vector const& sum) const {
@@ -136,14 +136,14 @@ class UniformExchange {
 
   double coefficient_[3];
   bool couples_[3];  // true if the axis has a nonzero coefficient
-  bool is_cubic_;    // equal, nonzero coefficients along all axes
+  bool is_cubic_;    // true if all axes have the same nonzero coefficient
 };
 
 }  // namespace detail
 
-/// Exchange with the nearest neighbours along each axis: H = A Lap(m). Lap is the sum over the axes
-/// of the second difference over existing neighbours, divided by the spacing squared. E = sum over
-/// bonds between sites n and q of (A/2) |m_q - m_n|^2 / spacing^2.
+/// Exchange with the nearest neighbours along each axis, with the constant A:
+/// H_n = sum over existing neighbours q of A * (m_q - m_n) / spacing^2,
+/// E = sum over bonds between sites n and q of (A / 2) * |m_q - m_n|^2 / spacing^2.
 class Exchange : public detail::TermOnLattice<detail::UniformExchange> {
  public:
   /// Throws std::invalid_argument when the constant is not finite or the lattice is invalid.

@@ -18,7 +18,7 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// FieldOfMoments at one time, for kernels.
+/// A FieldOfMoments prepared for one time, for kernels.
 template <class Field>
 class FieldTimesNumbers : public ForwardingEnergy<FieldTimesNumbers<Field>, Field> {
  public:
@@ -29,7 +29,7 @@ class FieldTimesNumbers : public ForwardingEnergy<FieldTimesNumbers<Field>, Fiel
 
   KOKKOS_FORCEINLINE_FUNCTION Field const& part() const { return field_; }
 
-  // For stages over rows.
+  // Called by stages that go row by row (detail/row_fields.hpp).
   static constexpr int row_fields = detail::row_fields<Field>;
   template <class Real>
   void begin_row(RowOfSpins<Real> const& row, std::int32_t begin, std::int32_t end,
@@ -79,12 +79,12 @@ struct AppliedToMoments {
 }  // namespace detail
 
 /// The field of spins whose moment mu and gyromagnetic ratio g depend on the site of a crystal's
-/// cell: H = -(g / mu) dE/dm, with the energy E of the terms inside. All terms must be inside; for
-/// an applied field use ZeemanOfMoments. Sites without a spin have H = 0. Their spins must be zero
-/// vectors, which contribute nothing to PairCouplings. Terms like Exchange, which use the lattice's
-/// nearest neighbours, must be in a FieldWithVacancies to leave these sites out. Without damping, E
-/// is conserved as usual. But H is not -dE/dm. So EnergyControl, and all other code that needs H =
-/// -dE/dm, refuses this field; it accepts the field inside.
+/// cell: H = -(g / mu) * dE/dm, with the energy E of the terms in `field`. All terms must be in
+/// `field`; for an applied field use ZeemanOfMoments. Sites without a spin have H = 0. Their spins
+/// must be zero vectors, which contribute nothing to PairCouplings. Terms like Exchange, which use
+/// the lattice's nearest neighbours, must be in a FieldWithVacancies to leave these sites out.
+/// Without damping, E is conserved as usual. But H is not -dE/dm, so EnergyControl, and all other
+/// code that needs H = -dE/dm, refuses a FieldOfMoments. It accepts `field` itself.
 template <class Field, class MemorySpace>
 class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Field> {
  public:
@@ -100,7 +100,7 @@ class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Fie
                   "FieldOfMoments was made for spins in another memory space.");
     require_lattice("cayspin::FieldOfMoments", moments_.lattice(), spins.lattice());
   }
-  // For Forwarding.
+  // Called by Forwarding.
   template <class Make>
   auto with_parts(Make const& make) const {
     using Prepared = decltype(make(field_));
@@ -116,8 +116,8 @@ class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Fie
   CellMoments<MemorySpace> moments_;
 };
 
-/// A uniform field `applied` to the moments of a crystal's sites: E = -mu m.applied per site. Use
-/// it in a FieldOfMoments.
+/// A uniform field `applied` to the moments of a crystal's sites: E = -mu * (m.applied) per site.
+/// Use it in a FieldOfMoments.
 template <class MemorySpace>
 class ZeemanOfMoments : public detail::PreparedOnce {
  public:

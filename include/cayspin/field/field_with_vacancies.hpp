@@ -67,7 +67,7 @@ class StencilAmongVacancies {
   template <int Axis, int Direction>
   KOKKOS_FORCEINLINE_FUNCTION vector_type unless_vacant(vector_type const& neighbor,
                                                         vector_type const& missing) const {
-    value_type const zero(0);  // along x on hosts, also the occupation past an open end
+    value_type const zero(0);  // on hosts also the result past an open end along x
     auto const vacant = site().template neighbor<Axis, Direction>(occupation_, zero) == zero;
     return select<value_type>(vacant, missing, neighbor);
   }
@@ -76,7 +76,7 @@ class StencilAmongVacancies {
   SiteArray<Real, 1> const& occupation_;
 };
 
-/// FieldWithVacancies at one time, for kernels.
+/// A FieldWithVacancies prepared for one time, for kernels.
 template <class Field, class Real>
 class FieldAmongVacancies {
   template <class Stencil>
@@ -136,8 +136,8 @@ class FieldAmongVacancies {
 /// A field on a lattice with vacancies. `occupation` is 1 on sites that hold a spin and 0 on vacant
 /// ones. A vacant site has no field and no energy, so steps leave its spin unchanged; its
 /// neighbours see a missing spin, as past an open end. User terms that use the stencil need no
-/// change. Every term must be inside: a term outside still rotates the spins of vacant sites. A
-/// HostField's solver receives these spins too, and must leave them out.
+/// change. Every term must be in `field`: a term outside of it still rotates the spins of vacant
+/// sites. A HostField's solver receives these spins too, and must leave them out.
 template <class Field, class Real, class MemorySpace>
 class FieldWithVacancies : public Forwarding<FieldWithVacancies<Field, Real, MemorySpace>, Field> {
   static_assert(!detail::holds<PairCouplings, Field>(),
@@ -162,7 +162,7 @@ class FieldWithVacancies : public Forwarding<FieldWithVacancies<Field, Real, Mem
   void check_spins(Spins const& spins) const {
     detail::require_lattice_of(spins, occupation_, "cayspin::FieldWithVacancies");
   }
-  // For Forwarding.
+  // Called by Forwarding.
   template <class Make>
   auto with_parts(Make const& make) const {
     using Prepared = decltype(make(field_));

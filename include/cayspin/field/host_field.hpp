@@ -38,8 +38,8 @@ struct StoredField {
 ///
 /// Solver: a callable void(SpinField<Real, HostSpace> const& spins, SpinField<Real, HostSpace>
 /// const& field, double t) with a member `degree`: 1 when H does not depend on m (E = -m.H), 2 when
-/// it is linear in m and symmetric (E = -m.H/2). A solver callable as solver(exec, spins, field,
-/// t), with fields in the memory space of the spins, is called that way without copies.
+/// H is a symmetric linear function of m (E = -m.H/2). A solver callable as solver(exec, spins,
+/// field, t), with fields in the memory space of the spins, is called that way without copies.
 template <class Spins, class Solver>
 class HostField {
   using Real = typename Spins::value_type;

@@ -13,8 +13,8 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// InterfacialDmi for kernels, with (D / spacing) n x e of each axis e; 0 along an axis of one
-/// site.
+/// InterfacialDmi for kernels, with the vector (D / spacing) * (n x e) of each axis e; 0 along an
+/// axis of one site.
 class UniformInterfacialDmi {
  public:
   static constexpr int degree = 2;  // H is linear in the spins
@@ -72,10 +72,11 @@ class UniformInterfacialDmi {
 }  // namespace detail
 
 /// Interfacial Dzyaloshinskii-Moriya interaction of a film with unit normal n, with energy density
-/// D (m_n div m - m . grad m_n). A bond from spin m along the axis e to its neighbour m' has E = (D
-/// / spacing) (m x m') . (n x e), so that H = sum over axes of (D / spacing) (n x e) x (m_next -
-/// m_previous). A missing neighbour has no bond. With Exchange(lattice, A), a free spiral along an
-/// axis e in the film turns by atan(D spacing / A) from site to site. Rohart and Thiaville 2013.
+/// D * (m_n div m - m.grad m_n). A bond from spin m along the axis e to its neighbour m' has
+/// E = (D / spacing) * (m x m').(n x e), so that
+/// H = sum over axes of (D / spacing) * (n x e) x (m_next - m_previous). A missing neighbour has no
+/// bond. With Exchange(lattice, A), a free spiral along an axis e in the film turns by atan(D *
+/// spacing / A) from site to site. Rohart and Thiaville 2013.
 class InterfacialDmi : public detail::TermOnLattice<detail::UniformInterfacialDmi> {
  public:
   /// `normal` is normalised. Throws std::invalid_argument when it is zero or not finite, the

@@ -12,7 +12,8 @@ namespace cayspin::inline v0_2::detail {
 inline constexpr std::size_t most_multirate_values = 5;
 using MultirateWeights = std::array<double, most_multirate_values>;
 
-/// Returns the weights of the values at `nodes` in the polynomial through them, at x.
+/// Returns weights for values at `nodes`: the weighted sum is the value at x of the polynomial
+/// through these values.
 inline MultirateWeights interpolating_weights(double x, std::span<double const> nodes) {
   MultirateWeights weights{};
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -35,9 +36,9 @@ inline double with_mean(double mean, double slope, double curvature, double x) {
 // both. The polynomials below satisfy the conditions of order 4: they interpolate exactly to degree
 // 1 (predictor) or 2 (corrector), and the factor of the next difference (`second` or `third`) has
 // the right mean. Their other 10 numbers come from a search over linear modes
-// m' = (i - damping) (w + D) m, where D is the expensive field and w the rest. D may differ between
-// the two directions across the spin. The search was for long steps at which no such mode grows,
-// and for small changes of linewidths.
+// m' = (i - damping) * (w + D) * m, where D is the expensive field and w the rest. D may differ
+// between the two directions normal to the spin. The chosen numbers allow long steps at which no
+// such mode grows, and change linewidths little.
 
 /// Returns the predictor's weights of the values at x = 0, -1, -2, -3.
 inline MultirateWeights damping_predictor(double x, std::span<double const> /*nodes*/) {

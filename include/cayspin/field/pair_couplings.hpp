@@ -15,17 +15,19 @@
 
 namespace cayspin::inline v0_2 {
 
-/// Bonds between any sites of a crystal: E = -m.T m' - B (m.m')^2 of each Coupling, so that H = T
-/// m' + 2 B (m.m') m' at m, and H = T^T m + 2 B (m.m') m at m', where T^T is the transpose of T.
-/// Bonds past an open end are omitted. A bond may be longer than a periodic axis, and then wraps
-/// around it. On a part of a lattice (mpi::Domain) every evaluation throws std::invalid_argument,
-/// because between the stages of a step the ghosts are not updated as far out as bonds may reach.
+/// Bonds between any sites of a crystal:
+/// E = -m.(T m') - B * (m.m')^2 for each Coupling, so that
+/// H = T m' + 2 * B * (m.m') * m' at m, and H = T^T m + 2 * B * (m.m') * m at m', where T^T is the
+/// transpose of T. Bonds past an open end are omitted. A bond may be longer than a periodic axis,
+/// and then wraps around it. On a part of a lattice (mpi::Domain) every evaluation throws
+/// std::invalid_argument, because between the stages of a step the ghosts are not updated as far
+/// out as bonds may reach.
 template <class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class PairCouplings {
  public:
-  /// Throws std::invalid_argument for an invalid lattice, a coupling of a site that no cell has or
-  /// of a site with itself, a non-finite number, and a part of a lattice whose ghosts do not cover
-  /// the reach of the bonds.
+  /// Throws std::invalid_argument for an invalid lattice, a coupling with a site number that the
+  /// cell does not have or of a site with itself, a non-finite number, and a part of a lattice
+  /// whose ghosts do not cover the reach of the bonds.
   PairCouplings(Lattice const& lattice, std::vector<Coupling> const& couplings)
       : PairCouplings(lattice, detail::BondLists(detail::validated(lattice), couplings)) {}
 

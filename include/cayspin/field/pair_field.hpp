@@ -14,7 +14,7 @@
 namespace cayspin::inline v0_2::detail {
 
 /// PairCouplings for kernels. Sums the bonds of a site in the order of their table, spin by spin or
-/// along a row, with equal bits.
+/// along a row, with bitwise equal results.
 template <class Real>
 class PairField {
  public:

@@ -16,8 +16,8 @@
 //   energy_terms, energy_densities(stencil, energies)    number of terms; energy of each
 //   energy_magnitude(stencil)    sum of absolute energies; default: over these terms
 //   local_field_varies()         true if the local part of H changes with the spin
-// The local part of H at a site depends only on its spin and t; the rest is the neighbour field.
-// RedBlack uses each of the two separately.
+// The local part of H at a site depends only on the spin of that site and t; the rest is the
+// neighbour field. RedBlack uses each of the two separately.
 namespace cayspin::inline v0_2::detail {
 
 /// Type list of the parts of a term or generator. It is empty unless the term derives from
@@ -55,7 +55,7 @@ constexpr bool has_local_part() {
 }
 
 // These structs select a quantity of each part. `add` returns `h` plus the quantity of one part.
-// `skips` is true for parts where it is zero.
+// `skips` is true for parts whose quantity is zero.
 
 struct WholeField {
   template <class Term>

@@ -20,7 +20,7 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// SiteDependentExchange for kernels: H_n = sum of A_nq (m_q - m_n) / spacing^2. `bonds`: A_nq /
+/// SiteDependentExchange for kernels: H_n = sum of A_nq * (m_q - m_n) / spacing^2. `bonds`: A_nq /
 /// spacing^2 of the bond from each site to the next one, for each axis; an array without data
 /// stands for no bonds along that axis.
 template <class Real>
@@ -41,7 +41,7 @@ struct ExchangeOfSites {
     return h;
   }
 
-  /// Returns H up to a multiple of the spin itself: the sum of A_nq m_q / spacing^2.
+  /// Returns H up to a multiple of the spin itself: the sum of A_nq * m_q / spacing^2.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
     auto h = zero<ValueOf<Stencil>>();
@@ -124,7 +124,7 @@ struct FindBonds {
     Value const all = own + other, product = own * other,
                 factor = as_value<Value>(2 * inverse_square);
     Value const sum = select<Value>(all == Value(0), Value(1), all);
-    // Where the product is beyond the range of Real.
+    // For products that overflow or almost underflow.
     Value const far = factor * (own * (other / sum));
     Value const near = select<Value>(product < Value(most), factor * product / sum, far);
     return select<Value>(Value(least) < product, near, far);
@@ -134,10 +134,10 @@ struct FindBonds {
 }  // namespace detail
 
 /// Exchange whose constant A differs from site to site. The constant of the bond between sites n
-/// and q is the harmonic mean A_nq = 2 A_n A_q / (A_n + A_q), as for two half cells in series: it
-/// keeps A dm/dx continuous where A jumps, and a site with A = 0 has no bonds.
-/// H_n = sum over neighbours of A_nq (m_q - m_n) / spacing^2,
-/// E = sum over bonds of (A_nq / 2) |m_q - m_n|^2 / spacing^2. A_nq / spacing^2 is stored as a
+/// and q is the harmonic mean A_nq = 2 * A_n * A_q / (A_n + A_q), as for two half cells in series:
+/// it keeps A * dm/dx continuous where A jumps, and a site with A = 0 has no bonds.
+/// H_n = sum over neighbours q of A_nq * (m_q - m_n) / spacing^2,
+/// E = sum over bonds of (A_nq / 2) * |m_q - m_n|^2 / spacing^2. A_nq / spacing^2 is stored as a
 /// Real.
 template <class Real, class MemorySpace>
 class SiteDependentExchange : public detail::PreparedOnce {
@@ -173,10 +173,10 @@ class SiteDependentExchange : public detail::PreparedOnce {
     return prepared;
   }
 
-  /// Multiplies the constant of the bond from each site to the next one along an axis, also for the
-  /// copies of this term. `factors` has one number for each site except ghosts, x fastest. Throws
-  /// std::invalid_argument for another number of factors. Along an axis of one site, it does
-  /// nothing.
+  /// Multiplies the constants of the bonds along an axis: `factors` has one number for each site
+  /// except ghosts, with x varying fastest, and it multiplies the constant of the bond from that
+  /// site to the next one. The copies of this term change, too. Throws std::invalid_argument for
+  /// another number of factors. Does nothing along an axis of one site.
   void scale_bonds(int axis, std::vector<double> const& factors) {
     if (!bonds_[axis]) return;
     auto const& bonds = *bonds_[axis];

@@ -29,7 +29,7 @@ struct NotUnitOfSites {
   }
 };
 
-/// H = K (m.e) e. K and e may each be one value for all sites, or an array.
+/// H = K * (m.e) * e. K and e may each be one value for all sites, or an array.
 template <class Constant, class Axis>
 struct UniaxialAnisotropyOfSites {
   static constexpr int degree = 2;  // H is linear in the spins
@@ -55,7 +55,7 @@ struct UniaxialAnisotropyOfSites {
 }  // namespace detail
 
 /// Uniaxial anisotropy whose constant, axis, or both differ from site to site:
-/// H = K_n (m.e_n) e_n, E = -K_n (m.e_n)^2 / 2.
+/// H = K_n * (m.e_n) * e_n, E = -K_n * (m.e_n)^2 / 2.
 /// Constant is double or a ScalarField, Axis a Vec3<double> or a SiteField of three components;
 /// only a field takes memory.
 template <class Constant, class Axis>

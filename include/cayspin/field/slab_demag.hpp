@@ -5,8 +5,8 @@
 
 namespace cayspin::inline v0_2 {
 
-/// The demagnetising field of an infinite slab, spin by spin: H = -strength (m.n) n,
-/// E = strength (m.n)^2 / 2 per site. The normal n is normalised.
+/// The demagnetising field of an infinite slab, for each spin from that spin only:
+/// H = -strength * (m.n) * n, E = strength * (m.n)^2 / 2 per site. The normal n is normalised.
 class SlabDemag : public detail::AlongAxis {
  public:
   /// Throws std::invalid_argument when the strength is not finite, or the normal is zero or not

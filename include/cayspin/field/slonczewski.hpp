@@ -5,11 +5,12 @@
 
 namespace cayspin::inline v0_2 {
 
-/// The torque of a current polarised along the unit vector p, t = a m x (p x m) - b m x p. It is
-/// written as a field in which precession gives t: H = a m x p + b p, which equals m x t up to a
-/// multiple of m. With damping, LandauLifshitz turns it into t + damping m x t. The strengths a
-/// (damping-like, turns m towards p) and b (field-like) are fields in reduced units. There is no
-/// energy: energy_density is 0, and code that needs an energy refuses the term. Slonczewski 1996.
+/// The torque of a current polarised along the unit vector p, t = a * m x (p x m) - b * m x p. It
+/// is written as a field in which precession gives t: H = a * m x p + b * p, which equals m x t up
+/// to a multiple of m. With damping, LandauLifshitz turns H into the torque t + damping * m x t.
+/// The strengths a (damping-like, turns m towards p) and b (field-like) are fields in reduced
+/// units. There is no energy: energy_density is 0, and code that needs an energy refuses the term.
+/// Slonczewski 1996.
 class Slonczewski {
  public:
   static constexpr bool is_local = true;
@@ -34,7 +35,7 @@ class Slonczewski {
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     return damping_like_field(stencil) + as_value<ValueOf<Stencil>>(field_like_);
   }
-  /// Returns the part of H that is linear in m: a m x p.
+  /// Returns the part of H that is linear in m: a * m x p.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> damping_like_field(Stencil const& stencil) const {
     return cross(stencil.center(), as_value<ValueOf<Stencil>>(damping_like_));
@@ -48,7 +49,7 @@ class Slonczewski {
   }
 
  private:
-  Vec3<double> damping_like_, field_like_;  // a p and b p
+  Vec3<double> damping_like_, field_like_;  // a * p and b * p
 };
 
 }  // namespace cayspin::inline v0_2

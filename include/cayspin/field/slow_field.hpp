@@ -61,11 +61,11 @@ double energy_factor_of(Term const& term) {
 
 }  // namespace detail
 
-/// A field term that costs more than the rest, for example a demagnetising field by FFTs. After its
-/// first step, Multirate evaluates it once a step and interpolates it in time for the other
-/// evaluations. Everywhere else it behaves as the term itself: every evaluation of the energy
-/// recomputes it. It is a handle: the copies in an EffectiveField and in a Multirate share their
-/// memory.
+/// A field term that costs more than the rest, for example a demagnetising field by FFTs. In its
+/// first step, Multirate evaluates it in every stage; afterwards only once a step, and interpolates
+/// it in time for the stages. Outside of Multirate it behaves like the term itself; for example,
+/// every evaluation of the energy recomputes it. A SlowField is a handle: the copies in an
+/// EffectiveField and in a Multirate share their memory.
 ///
 /// Term: HostField, or a term with a static `degree`, 1 or 2 (concepts.hpp).
 template <class Spins, class Term>
@@ -123,7 +123,7 @@ class SlowField {
     return false;  // the stored field depends on the spins
   }
   bool is_affine() const { return true; }  // by the term's degree
-  /// Returns true while an Interpolated replaces evaluations.
+  /// Returns true while an Interpolated exists, so that the term is not evaluated.
   bool is_interpolated() const { return state_->count > 0; }
 
   friend auto parts_of(SlowField const*) {
@@ -137,7 +137,7 @@ class SlowField {
   /// Returns how often the term was evaluated so far, by all copies.
   std::int64_t evaluations_done() const { return state_->evaluations; }
 
-  // For Multirate.
+  // The members below are for Multirate.
 
   /// Writes the term's field into `output`, ghosts included.
   template <class Exec>

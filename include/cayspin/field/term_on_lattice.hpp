@@ -8,7 +8,7 @@
 namespace cayspin::inline v0_2::detail {
 
 /// A term made for one lattice, constant in time. Prepared: the kernel version, made from the
-/// lattice and the term's numbers.
+/// lattice and the term's parameters.
 template <class Prepared>
 class TermOnLattice : public Prepared, public PreparedOnce {
  public:

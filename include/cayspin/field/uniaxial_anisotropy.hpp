@@ -5,7 +5,7 @@
 
 namespace cayspin::inline v0_2 {
 
-/// Uniaxial anisotropy: H = K (m.e) e, E = -K (m.e)^2 / 2 per site. The axis e is normalised.
+/// Uniaxial anisotropy: H = K * (m.e) * e, E = -K * (m.e)^2 / 2 per site. The axis e is normalised.
 class UniaxialAnisotropy : public detail::AlongAxis {
  public:
   /// Throws std::invalid_argument when the constant is not finite, or the axis is zero or not

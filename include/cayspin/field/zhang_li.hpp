@@ -11,7 +11,7 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// ZhangLi for kernels, with velocity / (2 spacing) of each axis; 0 along an axis of one site.
+/// ZhangLi for kernels, with velocity / (2 * spacing) for each axis; 0 along an axis of one site.
 class UniformZhangLi {
  public:
   static constexpr bool is_conservative = false;  // H is the derivative of no energy
@@ -53,13 +53,13 @@ class UniformZhangLi {
 
 }  // namespace detail
 
-/// The torque of a current that flows through a magnetic texture, t = -(u.grad) m + xi m x (u.grad)
-/// m. It is written as a field in which precession gives t: H = (u.grad) m x m - xi (u.grad) m,
-/// which equals m x t up to a multiple of m. With damping, LandauLifshitz turns it into t + damping
-/// m x t. (u.grad) m is the central difference over 2 spacings, where the spin itself replaces a
-/// missing neighbour. The velocity u is in units of length over units of time; xi has no unit.
-/// There is no energy: energy_density is 0, and code that needs an energy refuses the term. Zhang
-/// and Li 2004.
+/// The torque of a current that flows through a magnetic texture,
+/// t = -d + xi * m x d with d = (u.grad) m. It is written as a field in which precession gives t:
+/// H = d x m - xi * d, which equals m x t up to a multiple of m. With damping, LandauLifshitz turns
+/// H into the torque t + damping * m x t. d is computed from central differences across 2 spacings;
+/// the spin itself replaces a missing neighbour. The velocity u is in units of length per unit of
+/// time; xi has no unit. There is no energy: energy_density is 0, and code that needs an energy
+/// refuses the term. Zhang and Li 2004.
 class ZhangLi : public detail::TermOnLattice<detail::UniformZhangLi> {
  public:
   /// Throws std::invalid_argument when a number is not finite or the lattice is invalid.

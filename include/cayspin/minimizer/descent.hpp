@@ -19,7 +19,7 @@
 namespace cayspin::inline v0_2::detail {
 
 /// Descent of a Minimizer until the torque is below its bound, by line searches along L-BFGS
-/// directions, and by Newton steps where these searches are slow.
+/// directions, and by Newton steps when these searches are slow.
 template <class Spins>
 class Descent {
   using Real = typename Spins::value_type;
@@ -79,7 +79,8 @@ class Descent {
     so_far.torque = point.torque;
   }
 
-  /// Returns nothing once the torque is below the bound, or the reason why it stopped earlier.
+  /// Moves the spins downhill. Returns nothing once the torque is below the bound, otherwise the
+  /// reason why it stopped earlier.
   template <class Exec, class Field>
   std::optional<MinimizeEnd> descend(Exec const& exec, Field const& field, Spins& spins,
                                      MinimizeOptions const& options) {
@@ -112,7 +113,7 @@ class Descent {
   }
 
   /// Makes the next iterations Newton steps, until they have taken more than 250 evaluations. If
-  /// many modes are soft, these do not suffice, and L-BFGS resumes.
+  /// many modes are soft, 250 evaluations do not suffice, and L-BFGS resumes.
   void begin_newton() {
     takes_newton_ = true;
     newton_until_ = so_far.evaluations + 250;
@@ -132,7 +133,7 @@ class Descent {
   /// true once the energy is lower than before or, where round-off hides the difference of
   /// energies, the torque is lower. Otherwise tries up to two shorter turns, then restores the
   /// spins and returns false. `slope`: the derivative of the energy along search.direction.
-  /// `longest`: the length of its longest vector.
+  /// `longest`: the length of the longest vector in search.direction.
   template <class Exec, class Field>
   bool move_and_correct(Exec const& exec, Field const& field, Spins& spins, double slope,
                         double longest, MinimizeOptions const& options) {
@@ -235,8 +236,8 @@ class Descent {
     return false;
   }
 
-  /// Takes a Newton step to lower energy; returns false if none is found. Where L-BFGS is slow,
-  /// soft modes are left, along which Newton steps are faster.
+  /// Takes a Newton step to lower energy; returns false if it finds no lower energy. When L-BFGS is
+  /// slow, soft modes are left, along which Newton steps are faster.
   template <class Exec, class Field>
   bool take_newton_step(Exec const& exec, Field const& field, Spins& spins,
                         MinimizeOptions const& options) {
@@ -273,7 +274,7 @@ class Descent {
   double strongest_field_ = 0, first_step_ = 1;
   double newton_error_ = 1e-2;  // relative error of the next Newton step
   bool takes_newton_ = false;
-  std::int64_t newton_until_ = 0;  // the evaluations at which Newton steps end
+  std::int64_t newton_until_ = 0;  // Newton steps end after this number of evaluations
 };
 
 }  // namespace cayspin::inline v0_2::detail

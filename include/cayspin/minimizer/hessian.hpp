@@ -12,10 +12,10 @@
 #include <limits>
 #include <utility>
 
-// Hessian of the energy on the tangent planes of mobile spins, P (-dH/dm) P + (H.m), where P
-// projects onto these planes. Its product with a tangent vector comes from the field at shifted
-// spins: the spins plus a multiple of the vector. Tangent vectors are 0 at immobile spins, which
-// include the zero vectors of vacant sites. So immobile spins never change.
+// Hessian of the energy on the tangent planes of mobile spins, P * (-dH/dm) * P + H.m, where P
+// projects onto these planes. The product of the Hessian with a tangent vector comes from the field
+// at shifted spins: the spins plus a multiple of the vector. Tangent vectors are 0 at immobile
+// spins, which include the zero vectors of vacant sites. So immobile spins never change.
 namespace cayspin::inline v0_2::detail {
 
 /// Functor that computes the tangent part of v on mobile sites, and sets 0 on the others.
@@ -97,7 +97,7 @@ class Hessian {
   };
 
   /// Linearises at `spins`, which must not change afterwards. A field that is not affine in the
-  /// spins is differentiated by central differences. Evaluates the field once.
+  /// spins is differentiated by central differences. The constructor evaluates the field once.
   Hessian(Exec const& exec, Field const& field, double time, Spins const& spins,
           Mobile const& is_mobile, HessianArrays<Spins> const& arrays)
       : exec_(exec),
@@ -142,7 +142,7 @@ class Hessian {
     return {along, square};
   }
 
-  /// Sets v to its tangent part on mobile sites.
+  /// Replaces v by its tangent part on mobile sites, and by 0 on the others.
   void keep_tangent(Spins const& v) const {
     for_each_site<Real>(
         exec_, "cayspin::minimize::keep_tangent", spins_.layout(),

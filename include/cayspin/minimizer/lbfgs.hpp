@@ -100,8 +100,8 @@ class Lbfgs {
                                   static_cast<int>(pairs_.count())});
   }
 
-  /// Returns the factor by which the preconditioner P is multiplied: s.y / y.P y, with the step s
-  /// and the change y of the gradient of the last pair; 1 if that is not a positive number.
+  /// Returns the factor by which the preconditioner P is multiplied: s.y / (y.P y), with the step s
+  /// and the gradient change y of the last pair; 1 if this ratio is not a positive number.
   template <class Exec>
   double scale_of_preconditioner(Exec const& exec, Spins const& spins) {
     std::size_t const last = pairs_.count() - 1;

@@ -55,7 +55,7 @@ struct CurvatureArrays {
 
 struct LowestCurvature {
   double value = std::numeric_limits<double>::infinity();  // upper bound
-  bool is_negative = false;                                // beyond round-off
+  bool is_negative = false;                                // below -tolerance
 };
 
 struct CurvatureSearch {
@@ -86,8 +86,8 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
   Spins const &x = arrays.vector, &hx = arrays.product, &w = arrays.residual,
               &hw = arrays.its_product, &p = arrays.direction, &hp = arrays.direction_product;
   auto const multiply = [&](double factor, Spins const& v) { combine(exec, factor, v, 0, v, v); };
-  // Makes v of length 1 and normal to x and, if wanted, to p. Returns false if little but round-off
-  // is left.
+  // Makes v of length 1 and normal to x and, if `to_p`, also to p. Returns false if little but
+  // round-off is left.
   auto const make_normal = [&](Spins const& v, bool to_p) {
     for (int round = 0; round < 2; ++round) {
       double const before = length(exec, v);
@@ -130,7 +130,8 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
     hessian.keep_tangent(w);
     combine(exec, -inner_product(exec, w, x), x, 1, w, w);
     double const decrease = inner_product(exec, hw, w);
-    // An eigenvalue is within `rest` of the quotient. Near an instability several may be close.
+    // An eigenvalue is within `rest` of the quotient. Near an instability other eigenvalues may be
+    // close to it, so a small quotient does not count.
     bool const is_positive = found.value > 1e-2 * scale && rest < 0.3 * found.value;
     bool const is_clear = is_exact
                               ? rest < error
@@ -155,7 +156,7 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
     auto const [of_x, of_w, of_p] = lowest.vector;
     double const sideways = std::hypot(of_w, of_p);
     if (!std::isfinite(lowest.value) || !(sideways > 0)) break;
-    // Sets x to of_x x + (of_w w + of_p p), and p normal to it.
+    // Sets x to of_x * x + (of_w * w + of_p * p), and makes p normal to this.
     for (auto const& [x_or_hx, w_or_hw, p_or_hp] : {std::tie(x, w, p), std::tie(hx, hw, hp)}) {
       if (has_p)
         combine(exec, of_w, w_or_hw, of_p, p_or_hp, w_or_hw);

@@ -45,7 +45,7 @@ struct Minimum {
   MinimizeEnd end = MinimizeEnd::evaluation_limit;
   double torque = std::numeric_limits<double>::infinity();  ///< max |m x H|
   Energy energy = {};
-  std::int64_t iterations = 0, evaluations = 0;  ///< evaluations of the field over all sites
+  std::int64_t iterations = 0, evaluations = 0;  ///< evaluations of the field at all sites
   std::int64_t saddles = 0;                      ///< saddles met on the way
   /// For a converged state, an upper bound of the least eigenvalue of the energy's Hessian on the
   /// tangent planes of mobile spins; with lowest_curvature, the eigenvalue. With keep_saddles and

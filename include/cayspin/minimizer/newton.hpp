@@ -28,9 +28,10 @@ struct NewtonStep {
   bool is_cut = false;            // by negative curvature or the longest turn
 };
 
-/// Writes p, an approximation of -H^-1 g with the Hessian H and the gradient g, into `step`. Ends
-/// where the curvature along a direction is not positive, after going along that direction if it is
-/// the first or if options.follows_negative. Calls `precondition(from, to)`.
+/// Writes p, an approximation of -H^-1 g with the Hessian H and the gradient g, into `step`. The
+/// iteration ends at a direction along which the curvature is not positive. If this is the first
+/// direction, or if options.follows_negative, the step first moves along it. Calls
+/// `precondition(from, to)`.
 template <class AnyHessian, class Exec, class Spins, class Precondition>
 NewtonStep find_newton_step(AnyHessian& hessian, Exec const& exec, Spins const& gradient,
                             Spins const& step, NewtonArrays<Spins> const& arrays,

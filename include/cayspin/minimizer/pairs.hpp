@@ -68,7 +68,7 @@ struct ProductsOfPairs {
   }
 };
 
-/// Functor that writes the tangent part of g - sum of weights y.
+/// Functor that writes the tangent part of g - sum(weights_i * y_i).
 template <class Real>
 struct WithoutChanges {
   SiteArray<Real, 3> spins, gradient;
@@ -103,8 +103,8 @@ struct ProductsWithChanges {
   }
 };
 
-/// Functor that computes d, the tangent part of -(scale z + sum of weights s), or 0 where the spin
-/// is not mobile. Also computes g.d and max |d|^2. z: `vectors`.
+/// Functor that computes d, the tangent part of -(scale * z + sum(weights_i * s_i)) with z =
+/// `vectors`, or 0 where the spin is not mobile. Also computes g.d and max |d|^2.
 template <class Real>
 struct DirectionWithSteps {
   SiteArray<Real, 3> spins, gradient, vectors;
@@ -138,7 +138,7 @@ class Pairs {
       : steps_(numbered_fields<Spins, pairs_kept + 1>(name + "::step", lattice)),
         changes_(numbered_fields<Spins, pairs_kept + 1>(name + "::change", lattice)) {}
 
-  /// Return memory for a pair that may be kept or discarded.
+  /// Return the memory for the next pair, which may be kept or discarded.
   Spins const& next_step() const { return steps_[count_]; }
   Spins const& next_change() const { return changes_[count_]; }
 

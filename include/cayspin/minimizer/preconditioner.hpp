@@ -11,7 +11,8 @@
 #include <limits>
 #include <optional>
 
-// First approximation of the inverse Hessian: (K + c)^-1 with the measured exchange K of a field.
+// First approximation of the inverse Hessian: (K + c)^-1, with the measured exchange K of a field
+// and a constant c.
 namespace cayspin::inline v0_2::detail {
 
 template <class Spins>
@@ -35,10 +36,10 @@ class Preconditioner {
 
   /// Sets c, within limits, to the part of the curvature along the last step s that exchange does
   /// not explain. `product`: s.y, with the change y of the gradient. `exchange_energy`: s.K s.
-  /// `step_square`: s.s. Far from equilibrium a small c gives long steps. Waves as long as the
-  /// lattice then vanish before walls and vortices form, which would move by only a cell per
-  /// iteration. Near equilibrium a small c slows the convergence of the stiffest long waves. There,
-  /// c is at least its first value.
+  /// `step_square`: s.s. Far from equilibrium a small c gives long steps. With these, waves as long
+  /// as the lattice vanish before walls and vortices form from them, which would then move by only
+  /// a cell per iteration. Near equilibrium a small c slows the convergence of the stiffest long
+  /// waves, so there c is at least its first value.
   void follow_curvature(double product, double exchange_energy, double step_square, double torque) {
     double const rest = (product - exchange_energy) / step_square;
     if (!std::isfinite(rest)) return;
@@ -49,7 +50,7 @@ class Preconditioner {
   void forget_curvature() { shift_ = first_shift_; }
   double first_shift() const { return first_shift_; }
 
-  /// Computes to = (K + c + more)^-1 from.
+  /// Computes `to` = (K + c + more)^-1 `from`.
   template <class Exec>
   void apply(Exec const& exec, Spins const& from, Spins const& to, double more = 0) {
     exchange_->solve(exec, shift_ + more, Real(1), from, to);

@@ -129,7 +129,7 @@ struct FieldAlongSpins {
 
 /// Measured strengths of a field.
 struct FieldStrengths {
-  /// Mean J of a bond along each axis: H = J (m' - m). All negative ones are replaced by 0 if any
+  /// Mean J of a bond along each axis: H = J * (m' - m). All negative J are replaced by 0 if any
   /// periodic axis has an odd number of sites and a negative J. Spins cannot alternate there, and
   /// the pattern of their order is not known beforehand.
   std::array<double, 3> couplings{};
@@ -144,10 +144,11 @@ struct FieldStrengths {
   }
 };
 
-/// Returns the mean |H|^2 of parallel spins, from sums over `sites`. Couplings H = J m' give
-/// parallel spins a field along m, which turns no spin; couplings H = J (m' - m) give no field. So
-/// if H looks like the field of the former, that field is subtracted. `isotropic`: the sum of m.H
-/// that the former would give.
+/// Returns the mean |H|^2 of parallel spins without exchange. `square`, `along_square`, `along`:
+/// sums of |H|^2, (m.H)^2 and m.H over `sites` sites. Couplings H = J * m' give parallel spins a
+/// field along m, which turns no spin; couplings H = J * (m' - m) give no field. So if H looks like
+/// a field of the former kind, that field is subtracted. `isotropic`: the sum of m.H that couplings
+/// of the former kind would give.
 inline double rest_of_parallel(double square, double along_square, double along, double isotropic,
                                double sites) {
   bool const is_along = square - along_square < 0.1 * square;
@@ -159,8 +160,8 @@ inline double rest_of_parallel(double square, double along_square, double along,
 
 /// Evaluates the field for parallel spins and for spins that alternate along each axis in turn, on
 /// occupied sites: where `spins` is not the zero vector. Overwrites `pattern`. If some spins see no
-/// field so far, also evaluates it for random spins. Sets `is_mobile` to 1 where a spin sees a
-/// field. Waits.
+/// field so far, also evaluates it for random spins. Sets `is_mobile`, which must be 0 before, to 1
+/// where a spin sees a field. Waits.
 template <class Exec, class Field, class Spins>
 FieldStrengths probe(
     Exec const& exec, Field const& field, double time, Spins const& spins, Spins const& pattern,
@@ -193,7 +194,7 @@ FieldStrengths probe(
     auto const i = static_cast<std::size_t>(axis);
     auto const opposed = sample_at(AlternatingSigns::along_axis(axis));
     rests = opposed[Sample::rests];
-    // Each bond between opposite spins takes 4 J from the sum of m.H.
+    // Each bond between opposite spins lowers the sum of m.H by 4 * J.
     double const bonds = opposed[Sample::opposed_neighbors];
     double const difference = parallel[Sample::along] - opposed[Sample::along];
     double const coupling = difference / (4 * bonds);

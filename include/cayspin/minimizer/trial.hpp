@@ -13,7 +13,7 @@
 #include <cmath>
 #include <utility>
 
-// A point along the path m(a) = cay(a m x d) m of a line search, and what one evaluation of the
+// A point on the path m(a) = cay(a * m x d) m of a line search, and what one evaluation of the
 // field gives there. Each spin turns on the great circle from m towards d.
 namespace cayspin::inline v0_2::detail {
 
@@ -41,7 +41,7 @@ struct TurnTowards {
   }
 };
 
-/// Functor that computes at m(a) the energy, the gradient g = -(H - (H.m) m), and a pair for
+/// Functor that computes at m(a) the energy, the gradient g = -(H - (H.m) * m), and a pair for
 /// L-BFGS: the step and the change of the gradient, both transported to m(a) along the path.
 template <class Field, class Real>
 struct LookAtTrial {

@@ -22,8 +22,8 @@
 #include <utility>
 #include <vector>
 
-// Spin waves with given wave vectors. If all cells of a periodic lattice are equal, they follow
-// from small matrices.
+// Spin waves with given wave vectors. If all cells of a periodic lattice are equal, these waves
+// follow from small matrices.
 namespace cayspin::inline v0_2::detail {
 
 /// Division of a lattice's sites into cells along its periodic axes. Along the other axes, a cell
@@ -105,7 +105,7 @@ class BlochProblem {
  public:
   struct Block {
     CellsOfLattice::Cell distance;
-    Eigen::MatrixXd hessian;  // two axes for each mobile part
+    Eigen::MatrixXd hessian;  // two rows and columns for each mobile part
   };
   std::vector<Block> blocks;
   Eigen::MatrixXd turning;
@@ -114,10 +114,10 @@ class BlochProblem {
   double round_off = 0;  // of elements of the matrices, relative to the largest
 
   /// Returns the complex rates of waves with this wave vector (in cycles per cell): a wave grows as
-  /// e^(rate t). Only the half with the higher frequencies is returned, the lowest of these first.
-  /// If rates are real, their frequencies are 0, and those that decay least are in that half, the
-  /// least first. Throws std::invalid_argument for a wave vector that does not fit the lattice
-  /// along an axis where the interaction reaches around, or is not finite.
+  /// e^(rate * t). Only the half with the higher frequencies is returned, the lowest of these
+  /// first. If rates are real, their frequencies are 0, and those that decay least are in that
+  /// half, the least first. Throws std::invalid_argument for a wave vector that is not finite, or
+  /// that does not fit the lattice along an axis where the interaction reaches around.
   std::vector<std::complex<double>> rates(std::array<double, 3> const& wave) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double const around = wave[axis] * static_cast<double>(cells[axis]);
@@ -137,7 +137,7 @@ class BlochProblem {
       sum += std::polar(1.0, -2 * std::numbers::pi * turns) * hessian;
     }
     Eigen::ComplexEigenSolver<Eigen::MatrixXcd> const found(turning * sum, false);
-    // For a wave e^(i (k.r - w t)), the imaginary part of the rate is -w.
+    // For a wave e^(i * (k.r - w * t)), the imaginary part of the rate is -w.
     std::vector<std::complex<double>> rates(found.eigenvalues().begin(), found.eigenvalues().end());
     double largest = 0;
     for (auto const& rate : rates) largest = std::max(largest, std::abs(rate));
@@ -170,7 +170,7 @@ struct PartOfCell {
 
 /// Compares the products of the Hessian with a random vector and with the same vector shifted by
 /// one cell along each periodic axis. Throws std::invalid_argument if they differ by more than
-/// round-off and by more than spins that differ by `spread` explain.
+/// round-off plus the effect of spins that differ by `spread` between cells.
 template <class Hessian, class Spins, class Stops>
 void require_equal_cells(Hessian& hessian, CellsOfLattice const& cells,
                          std::vector<PartOfCell> const& parts, Spins const& vector,
@@ -234,8 +234,9 @@ void require_equal_cells(Hessian& hessian, CellsOfLattice const& cells,
 }
 
 /// Returns the problem, from products of the Hessian with the tangent axes of one cell. `stops`:
-/// returns true to end early, with an incomplete problem. Throws std::invalid_argument where cells
-/// differ in their spins, `precession`, `damping`, mobile sites or Hessian.
+/// returns true to end early, with an incomplete problem. Throws std::invalid_argument if cells
+/// differ in their spins, `precession`, `damping`, mobile sites or Hessian, or if the field is not
+/// finite.
 template <class Exec, class Field, class Spins, class Numbers, class Stops>
 BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Spins const& spins,
                            Numbers const& precession, Numbers const& damping, Stops const& stops,

@@ -14,8 +14,8 @@ namespace cayspin::inline v0_2 {
 
 /// Why a search for modes ended.
 enum class ModesEnd {
-  converged,         ///< the modes are as accurate as requested
-  stagnated,         ///< round-off prevents that accuracy
+  converged,         ///< the modes are as accurate as requested, or as round-off allows
+  stagnated,         ///< the search no longer improves the modes; mostly round-off
   evaluation_limit,  ///< the largest number of evaluations was reached
   interrupted        ///< poll returned Next::stop
 };
@@ -34,7 +34,8 @@ constexpr std::string_view to_string(ModesEnd end) {
   return "";
 }
 
-/// A normal mode dm = e^(-decay t) (real cos(frequency t) - imaginary sin(frequency t)).
+/// A normal mode
+/// dm = e^(-decay * t) * (real * cos(frequency * t) - imaginary * sin(frequency * t)).
 template <class Spins>
 struct NormalMode {
   double frequency = 0;   ///< angular, not negative
@@ -46,8 +47,8 @@ struct NormalMode {
 template <class Spins>
 struct NormalModes {
   ModesEnd end = ModesEnd::evaluation_limit;
-  std::vector<NormalMode<Spins>> modes;  ///< the slowest first, by |decay + i frequency|
-  std::int64_t evaluations = 0;          ///< evaluations of the field over all sites
+  std::vector<NormalMode<Spins>> modes;  ///< the slowest first, by |decay + i * frequency|
+  std::int64_t evaluations = 0;          ///< evaluations of the field at all sites
 };
 
 /// An eigenvalue of the energy's Hessian on the tangent planes, and its eigenvector.
@@ -79,7 +80,7 @@ struct ModesOptions {
 
 /// A wave of a periodic lattice.
 struct Wave {
-  double frequency = 0;  ///< angular, of e^(i (k.r - frequency t)); not negative at stable states
+  double frequency = 0;  ///< angular, of e^(i * (k.r - frequency * t)); >= 0 at stable states
   double decay = 0;
 };
 
@@ -88,8 +89,8 @@ struct BlochModes {
   std::int64_t evaluations = 0;
 };
 
-/// Coefficients of dm/dt = -precession m x H - damping m x (m x H), one number for each site, with
-/// H = -dE/dm. They must not both be 0 where a spin moves.
+/// Coefficients of dm/dt = -precession * m x H - damping * m x (m x H), one number for each site,
+/// with H = -dE/dm. The two must not both be 0 where a spin moves.
 template <class Real, class MemorySpace>
 struct Turning {
   ScalarField<Real, MemorySpace> precession, damping;

@@ -13,7 +13,7 @@
 #include <limits>
 #include <vector>
 
-// Eigenvalue problems B c = rate S c in a small subspace. B (`hessian`) is the Hessian there. S
+// Eigenvalue problems B c = rate * S c in a small subspace. B (`hessian`) is the Hessian there. S
 // (`turning`) is the inverse of the operator G by which spins turn (vectors.hpp).
 namespace cayspin::inline v0_2::detail {
 

@@ -19,10 +19,10 @@
 #include <type_traits>
 #include <vector>
 
-// Solves B v = rate G^-1 v, with the Hessian B and the operator G by which spins turn. The subspace
-// of the solution is extended by preconditioned residuals (Davidson 1975; Morgan and Scott 1986).
-// When the subspace is full, the search restarts with the current approximate modes and those of
-// the previous step (Stathopoulos 2007).
+// Solves B v = rate * G^-1 v, with the Hessian B and the operator G by which spins turn
+// (vectors.hpp). The subspace of the solution is extended by preconditioned residuals (Davidson
+// 1975; Morgan and Scott 1986). When the subspace is full, the search restarts with the current
+// approximate modes and those of the previous step (Stathopoulos 2007).
 namespace cayspin::inline v0_2::detail {
 
 struct ModeSearchOptions {
@@ -99,7 +99,7 @@ class ModeSearch {
   // be those of products with the Hessian, which no search can reduce: returns true if all are that
   // small.
   bool is_as_good_as_products() const {
-    constexpr double bound = std::is_same_v<Real, double> ? 1.5e-7 : 3.5e-3;  // 10 sqrt(epsilon)
+    constexpr double bound = std::is_same_v<Real, double> ? 1.5e-7 : 3.5e-3;  // 10 * sqrt(epsilon)
     return std::ranges::all_of(errors_, [](double error) { return error < bound; });
   }
 
@@ -162,7 +162,8 @@ class ModeSearch {
     std::size_t added = 0;
     std::size_t const from = first_;
     first_ = improve_modes(from, added);
-    if (added == 0 && from > 0) first_ = improve_modes(0, added);  // their order may have changed
+    // The order of the modes may have changed.
+    if (added == 0 && from > 0) first_ = improve_modes(0, added);
     return added;
   }
 
@@ -273,9 +274,10 @@ class ModeSearch {
     }
   }
 
-  /// Orthonormalises the appended vectors and returns how many are left. Repeats once, since the
-  /// first pass leaves round-off of the components that it removes. Repeats again if less than 1e6
-  /// epsilon of the square of a vector is left.
+  /// Makes the appended vectors orthonormal among themselves and to the subspace, and returns how
+  /// many are left. Makes two passes, since the first leaves round-off of the components that it
+  /// removes, and a third one if the first leaves less than 1e6 * epsilon of the square of a
+  /// vector.
   std::size_t make_orthonormal(std::size_t added) {
     constexpr double epsilon = std::numeric_limits<Real>::epsilon();
     int rounds = 2;

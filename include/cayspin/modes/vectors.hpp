@@ -85,8 +85,8 @@ Eigen::MatrixXd inner_products(Exec const& exec, std::span<Spins const> x,
   return products;
 }
 
-/// Functor that computes to_j = sum of from_i c_ij; `to` may alias `from`. Rows of coefficients are
-/// padded to whole tiles.
+/// Functor that computes to_j = sum over i of c_ij * from_i; `to` may alias `from`. Rows of the
+/// coefficients c are padded to whole tiles.
 template <class Real, class Table, class Numbers>
 struct CombineVectors {
   Table from, to;
@@ -134,7 +134,8 @@ void combine_vectors(Exec const& exec, std::span<Spins const> from,
   exec.fence(label);  // the tables are destroyed at the end
 }
 
-/// Functor that computes G^-1 v = -p m x v - q v, where spins turn by G = a (m x) - b.
+/// Functor that computes G^-1 v = -p * m x v - q * v, the inverse of the operator G v = a * m x v -
+/// b * v by which spins turn.
 template <class Real>
 struct InverseTurning {
   SiteArray<Real, 1> sideways, along;  // p = a / (a^2 + b^2) and q = b / (a^2 + b^2)
@@ -147,7 +148,7 @@ struct InverseTurning {
   }
 };
 
-/// Functor that computes the skew and the symmetric part of G^-1 v.
+/// Functor that computes G^-1 v as two vectors, from the skew and the symmetric part of G^-1.
 template <class Real>
 struct TurnBack {
   InverseTurning<Real> inverse;
@@ -163,8 +164,9 @@ struct TurnBack {
   }
 };
 
-/// Functor that computes the residuals B x - rate G^-1 x of modes x = sum of vectors_i c_i. Each
-/// mode has two columns of coefficients: for its real and its imaginary part.
+/// Functor that computes the residuals B x - rate * G^-1 x of modes
+/// x = sum over i of c_i * vectors_i. Each mode has two columns of coefficients c: for its real and
+/// its imaginary part.
 template <class Real, class Table, class Numbers>
 struct ResidualsOfModes {
   static constexpr int most = 4;

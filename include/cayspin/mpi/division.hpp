@@ -10,13 +10,14 @@
 
 namespace cayspin::inline v0_2::mpi {
 
-/// Number of parts along y and z. Rows along x are not divided.
+/// Numbers of parts along y and z. Rows along x are not divided.
 struct Division {
   int y = 1, z = 1;
   friend bool operator==(Division const&, Division const&) = default;
 };
 
-/// Ghost rows along y and ghost planes along z that a part has from each neighbour.
+/// Numbers of ghost rows along y and ghost planes along z that a part has at the border to each
+/// neighbour.
 struct Depth {
   int y, z;
   Depth(int of_both) : y(of_both), z(of_both) {}
@@ -51,8 +52,8 @@ inline std::string to_text(Depth const& depth) {
 }
 
 /// Returns the division into this many parts that repeats the least work on ghosts, estimated as if
-/// the depths along y and z were equal; of equal ones, the one with the most parts along z. Throws
-/// std::invalid_argument when there is none.
+/// the depths along y and z were equal; of equally good ones, the one with the most parts along z.
+/// Throws std::invalid_argument when no division is possible.
 inline Division divide(Lattice const& lattice, Depth const& depth, int parts) {
   Division best{0, 0};
   double least = 0;
@@ -74,7 +75,7 @@ inline Division divide(Lattice const& lattice, Depth const& depth, int parts) {
 }
 
 /// Throws std::invalid_argument unless the depth is positive and the division gives `parts` parts
-/// that are large enough for it.
+/// that are large enough for this depth.
 inline void require_division(Lattice const& lattice, Depth const& depth, Division const& division,
                              int parts) {
   if (depth.y < 1 || depth.z < 1)

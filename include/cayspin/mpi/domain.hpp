@@ -21,10 +21,10 @@ namespace cayspin::inline v0_2::mpi {
 
 /// A lattice divided among the ranks of a communicator, along y and z. Each rank holds its part,
 /// with `depth` ghosts at each end that borders another part. Fields on local() work like any
-/// others with sums, and with all steppers and terms that do not refuse parts; results have the
-/// same bits as on a single rank. A step needs a depth of Stepper::ghosts: with most methods, one
-/// layer for each stage. Parts of a crystal, and their ghosts along z, hold whole cells. The Domain
-/// must outlive its fields and steppers.
+/// others in sums over sites, and in all steppers and terms that do not refuse parts; results are
+/// bitwise identical to those on a single rank. A step needs a depth of Stepper::ghosts: with most
+/// methods, one layer for each stage. Parts of a crystal, and their ghosts along z, hold whole
+/// cells. The Domain must outlive its fields and steppers.
 class Domain final : public Part {
  public:
   /// Collective on `comm`. Throws std::invalid_argument on every rank when the lattices or depths

@@ -41,7 +41,7 @@ struct EnergyAndSlope {
   }
 };
 
-/// Functor that sets m to cay(kappa axis) m.
+/// Functor that sets m to cay(kappa * axis) m.
 template <class Real>
 struct TurnAboutAxes {
   SiteArray<Real, 3> spins, axes;
@@ -63,15 +63,15 @@ struct EnergyControlOptions {
   std::int64_t period = 1;  // steps between corrections
   /// Largest turn of a spin in a correction, as a fraction of its turn in a step.
   double largest_fraction = 0.1;
-  std::optional<double> energy = {};  // the energy to hold; default: that of the first call
+  std::optional<double> energy = {};  // the energy to hold; default: that at the first call
 };
 
 /// Lagged energy control: an observer for undamped runs with any one-step or multistep method,
 /// called at the end of steps. A correction turns all spins towards the field or away from it, m <-
-/// cay(kappa m x A) m with the same kappa = (E - E_0) / sum |A_o|^2, where A_o is the part of A
-/// normal to m. This is a Newton step to E_0, the energy to hold, so that energy errors do not
-/// accumulate. The generator A must conserve an energy and not depend on t. kappa is of the order
-/// of the method's error, so the method keeps its order.
+/// cay(kappa * m x A) m, where kappa = (E - E_0) / sum |A_o|^2 is the same for all spins and A_o is
+/// the part of A normal to m. This is a Newton step to E_0, the energy to hold, so that energy
+/// errors do not accumulate. The generator A must conserve an energy and not depend on t. kappa is
+/// of the order of the method's error, so the method keeps its order.
 ///
 /// Each correction costs one evaluation of the generator and two passes over the spins. The memory
 /// cost is one field.

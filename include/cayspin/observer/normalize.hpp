@@ -31,9 +31,9 @@ struct NewtonNormalize {
 
 }  // namespace detail
 
-/// Takes one Newton step towards |m| = 1 for every spin, m <- m (3 - m.m) / 2, without a root or a
-/// division: a length 1 + d becomes 1 - 3/2 d^2, to leading order. Repeated calls converge to 1
-/// from lengths between 0 and sqrt(3); non-finite spins stay non-finite.
+/// Takes one Newton step towards |m| = 1 for every spin, m <- m * (3 - m.m) / 2, without a root or
+/// a division: a length of 1 + d becomes 1 - 1.5 * d^2, to leading order. Repeated calls converge
+/// to 1 from lengths between 0 and sqrt(3); non-finite spins stay non-finite.
 template <class Exec, class Real, class MemorySpace>
 void normalize(Exec const& exec, SpinField<Real, MemorySpace> const& spins) {
   detail::check_access<Exec, MemorySpace>();

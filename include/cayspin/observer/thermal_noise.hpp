@@ -24,12 +24,12 @@ namespace cayspin::inline v0_2 {
 
 /// Options of ThermalNoise.
 struct ThermalNoiseOptions {
-  double temperature = 0;  ///< in units of moment times field: kB T over the energy unit of a site
+  double temperature = 0;  ///< in units of moment times field: kB * T / (energy unit of a site)
   std::uint64_t seed = 0;  ///< replica r of the lattice uses seed + r
-  /// Gyromagnetic ratio over moment for each site of a crystal's cell; 0 where there is no spin.
-  /// Empty: all 1.
+  /// Gyromagnetic ratio divided by the moment, for each site of a crystal's cell; 0 where there is
+  /// no spin. Empty: all 1.
   std::vector<double> cell_sites = {};
-  /// Factor of damping times temperature for each replica of the lattice. Empty: all 1.
+  /// Factor that multiplies damping * temperature in each replica of the lattice. Empty: all 1.
   std::vector<double> replicas = {};
   /// If true, the columns (sites with equal x) are independent lattices whose first axis is y.
   /// Column x gets the random numbers of such a lattice with seed + x, and `replicas` has a factor
@@ -39,17 +39,17 @@ struct ThermalNoiseOptions {
 
 /// Thermal noise for LandauLifshitz with damping and any one-step method: half of it is applied
 /// before each step and half after. A half turns each spin by a random rotation vector, whose
-/// components have the variance s^2 = u - u^2/12 with u = damping * temperature * dt. Spins without
-/// a field then diffuse with an error of third order in u. Together with the step this is a
-/// splitting of second order, which samples Boltzmann's distribution exp(-E / temperature).
+/// components have the variance u - u^2 / 12 with u = damping * temperature * dt. Spins without a
+/// field then diffuse with an error of third order in u. Together with the step this is a splitting
+/// of second order, which samples Boltzmann's distribution exp(-E / temperature).
 ///   ThermalNoise const noise(spins, damping, {.temperature = 0.5, .seed = 1});
 ///   integrate(exec, stepper, generator, spins, times, noise.after_steps(times), observers...,
 ///             noise.before_steps());
 /// Without observers in between, noise.between_steps(times) applies both halves at once. Random
-/// numbers come from Philox by seed, site and step: the bits do not depend on threads, host spaces
-/// or ranks, nor on where a run is interrupted, and each replica gets the bits that it would get as
-/// a separate lattice. Costs two passes per step (one with between_steps), and no memory per site.
-/// Does not compile with an AdaptiveStepper. Multistep methods lose their order.
+/// numbers come from Philox, keyed by seed, site and step: results are bitwise independent of
+/// threads, host spaces and ranks, and of where a run is interrupted, and each replica moves as it
+/// would as a separate lattice. Costs two passes per step (one with between_steps), and no memory
+/// per site. Does not compile with an AdaptiveStepper. Multistep methods lose their order.
 template <class Spins>
 class ThermalNoise {
   using Real = typename Spins::value_type;
@@ -60,7 +60,7 @@ class ThermalNoise {
   /// Throws std::invalid_argument for a temperature, damping or factor that is negative or not
   /// finite, and if options.cell_sites or options.replicas is neither empty nor of the right size.
   /// With options.columns_are_replicas, also throws on a lattice with replicas, on a part of a
-  /// lattice, and if there are options.cell_sites.
+  /// lattice, and if options.cell_sites is not empty.
   ThermalNoise(Spins const& like, double damping, ThermalNoiseOptions const& options)
       : lattice_(like.lattice()), damping_(damping), options_(options) {
     if (!(damping >= 0) || !std::isfinite(damping))
@@ -80,11 +80,11 @@ class ThermalNoise {
           "a cell's sites");
     make_room_for_turns();
   }
-  /// Multiplies damping times temperature at each site by a factor, which may contain the damping,
-  /// the temperature, or one over the moment; 0 where a spin does not move. If there are factors
-  /// other than 0 and 1, options.cell_sites and options.replicas must be empty. Throws
-  /// std::invalid_argument if that rule is broken, if columns are to be replicas, for factors on
-  /// another lattice, for a negative or non-finite factor, and like the other constructor.
+  /// Multiplies damping * temperature at each site by a factor, which may contain the damping, the
+  /// temperature, or 1 / moment; 0 where a spin does not move. If there are factors other than 0
+  /// and 1, options.cell_sites and options.replicas must be empty. Throws std::invalid_argument if
+  /// that rule is broken, if columns are to be replicas, for factors on another lattice, for a
+  /// negative or non-finite factor, and like the other constructor.
   ThermalNoise(Spins const& like, double damping, ThermalNoiseOptions const& options,
                ScalarField<Real, typename Spins::memory_space> const& factors)
       : ThermalNoise(like, damping, options) {
@@ -129,8 +129,8 @@ class ThermalNoise {
     turn_between(exec, after ? step : step - 1, after, !after, dt, spins);
   }
 
-  /// Applies the noise after step number `step` and before the next one, in one pass, with the bits
-  /// of two calls of turn. Throws like turn.
+  /// Applies the noise after step number `step` and before the next one, in one pass, bitwise like
+  /// two calls of turn. Throws like turn.
   template <class Exec>
   void turn_between_steps(Exec const& exec, std::int64_t step, double dt,
                           Spins const& spins) const {
@@ -189,7 +189,8 @@ class ThermalNoise {
         double const of_replica = options_.replicas.empty() ? 1 : options_.replicas[number / sites];
         double const of_site =
             options_.cell_sites.empty() ? 1 : options_.cell_sites[number % sites];
-        // In the order of a lattice of its own, whose temperature is this product: equal bits.
+        // Multiplied in the same order as for a separate lattice at this temperature, so that
+        // results are bitwise identical.
         double const temperature = options_.temperature * of_replica;
         double const of_all = damping_ * temperature * std::abs(dt) * of_site;
         turns(number) = {turn_of<Exec>(of_all), of_all == 0};
@@ -281,7 +282,7 @@ class ThermalNoise {
   struct BetweenSteps {
     static constexpr bool changes_spins = true, begins_step = Before;
     ThermalNoise noise;
-    std::int64_t first = 0;  // the step number at which the run starts, where no step ends
+    std::int64_t first = 0;  // the run starts at this step number: no step ends here
 
     template <class Exec>
     void operator()(Exec const& exec, Step const& step, Spins const& spins) const {

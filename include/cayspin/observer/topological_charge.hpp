@@ -42,9 +42,9 @@ KOKKOS_FORCEINLINE_FUNCTION Value half_solid_angle(SpinAndLength<Value> const& a
                        Value(Kokkos::atan2(volume, rest)));
 }
 
-/// Functor that adds the halves of the solid angles of two triangles at a site: one with the next
-/// neighbours along x and y, and one with the previous neighbours. All sites together cover each
-/// plaquette with one triangle of either kind.
+/// Functor that computes half the sum of the solid angles of two triangles at a site: one with the
+/// next neighbours along x and y, and one with the previous neighbours. All sites together cover
+/// each plaquette with one triangle of either kind.
 template <class Real>
 struct SolidAngleOfSites {
   SiteArray<Real, 3> spins;
@@ -78,11 +78,11 @@ double charge_of(Exec const& exec, SpinField<Real, MemorySpace> const& spins,
 
 }  // namespace detail
 
-/// Returns the topological charge of the planes (x, y), Q = sum m.(d_x m x d_y m) / (4 pi), where
-/// the sum is over all sites of all planes. Q is computed from the solid angles of triangles of
-/// neighbouring spins, two in each plaquette, as their sum over 4 pi (Berg and Luescher 1981). Axes
-/// and planes are those of the lattice, also for a crystal. Lengths of spins do not matter; a spin
-/// of length 0 encloses no angle.
+/// Returns the topological charge of the planes (x, y), Q = sum m.(d_x m x d_y m) / (4 * pi), where
+/// the sum is over all sites of all planes. Q is computed as the sum of the solid angles of
+/// triangles of neighbouring spins, two in each plaquette, divided by 4 * pi (Berg and Luescher
+/// 1981). Axes and planes are those of the lattice, also for a crystal. Lengths of spins do not
+/// matter; a spin of length 0 encloses no angle.
 ///
 /// A skyrmion of Neel or Bloch type with its core down among spins up has Q = -1; an antiskyrmion
 /// with that core has +1. The charge of a periodic plane is an integer, to round-off. There are no

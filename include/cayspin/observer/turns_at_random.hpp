@@ -17,7 +17,7 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// A single turn for all sites.
+/// One RandomTurn for all sites; random bits choose each spin's rotation from it.
 template <class Real, bool OnHost>
 struct OneTurn {
   RandomTurn<Real, OnHost> turn;
@@ -32,10 +32,11 @@ struct OneTurn {
   }
 };
 
-/// One turn for each column (sites with equal x); no turn in columns whose temperature is 0.
+/// One RandomTurn for each column (sites with equal x). Spins in columns whose temperature is 0 do
+/// not turn.
 template <class Real>
 struct TurnOfColumn {
-  Real const* numbers;  // those of RandomTurn, each for `stride` columns
+  Real const* numbers;  // number i of column x's RandomTurn is at i * stride + x
   std::int64_t stride;
 
   template <class Site>
@@ -64,8 +65,8 @@ struct TurnOrNone {
   bool is_none;
 };
 
-/// One turn for each site of a crystal's cell; replicas may have different turns. No turn where a
-/// spin does not move.
+/// One RandomTurn for each site of a crystal's cell; replicas may have different ones. Spins that
+/// do not move keep their direction.
 template <class Real, bool OnHost>
 struct TurnOfCellSite {
   TurnOrNone<Real, OnHost> const* turns;
@@ -94,7 +95,7 @@ struct TurnOfCellSite {
   }
 };
 
-/// One turn for each site of a lattice.
+/// One random rotation for each site of a lattice, of a variance that depends on the site.
 template <class Real>
 struct TurnOfSite {
   Real u;
@@ -124,8 +125,8 @@ struct LargestNumber {
   }
 };
 
-/// A table of turns for the u (damping temperature dt) that was requested last. A copy has its own
-/// table.
+/// A table of random rotations for the value of u = damping * temperature * dt that was requested
+/// last. A copy has its own table.
 template <class Entry, class MemorySpace>
 class TableOfTurns {
  public:
@@ -187,7 +188,7 @@ struct NumbersOfSites {
   }
 
  private:
-  // One extent is enough, because ghosts are less than a lattice away.
+  // Adding or subtracting the extent once is enough, because ghosts are less than a lattice away.
   KOKKOS_FORCEINLINE_FUNCTION static std::int64_t wrapped(std::int64_t at, std::int64_t extent) {
     return at < 0 ? at + extent : at < extent ? at : at - extent;
   }

@@ -65,7 +65,7 @@ struct MinimumEnergyPath {
   std::vector<PathSaddle> saddles;  ///< highest first
   /// Largest |g| of a spin, for the gradient g of the energy without its part along the path.
   double across = std::numeric_limits<double>::infinity();
-  std::int64_t evaluations = 0;  ///< of the field over all sites
+  std::int64_t evaluations = 0;  ///< of the field at all sites
 
   PathSaddle const& saddle() const { return saddles.front(); }
   double barrier_forward() const { return saddle().energy - energy.front(); }

@@ -134,9 +134,9 @@ Along find_direction(Exec const& exec, Spins const& spins, Spins const& before, 
   return {square, slope};
 }
 
-/// Turns the images of a path along a tangent vector, fully at a point of the path and by less and
-/// less towards the next fixed images. `fraction`: place of the point between image `after` and the
-/// next one.
+/// Turns the images of a path along a tangent vector, fully at one point of the path, and by less
+/// and less towards the nearest fixed images on both sides. The point is at `fraction` of the way
+/// from image `after` to the next one.
 template <class Exec, class Path, class Spins>
 void bend(Exec const& exec, Path const& path, Spins const& vector, std::size_t after,
           double fraction) {

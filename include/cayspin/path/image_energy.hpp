@@ -8,7 +8,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Functor that computes the energy of an image of a path, and g = -(H - (H.m) m).
+/// Functor that computes the energy of an image of a path, and g = -(H - (H.m) * m).
 template <class Field, class Real>
 struct LookAtImage {
   enum { energy, magnitude, torque, values };

@@ -12,7 +12,7 @@
 // The last steps s of all images of a path, and the changes y of their gradients across the path.
 // From these, L-BFGS makes the next steps of all images together. Where s and y are used, they are
 // projected onto the current tangent planes and across the current path. Passes over the sites
-// compute inner products; the recursion then needs only numbers.
+// compute inner products, and the recursion uses only these.
 namespace cayspin::inline v0_2::detail {
 
 inline constexpr std::size_t path_pairs = 4;
@@ -77,7 +77,7 @@ struct ProductsOfPath {
   }
 };
 
-/// Functor that computes the tangent part of factor v + along t + sum of weights_i others_i.
+/// Functor that computes the tangent part of factor * v + along * t + sum(weights_i * others_i).
 template <class Real>
 struct SumOfPath {
   SiteArray<Real, 3> spins, vectors, direction;

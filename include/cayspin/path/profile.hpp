@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-// The energy along a path, and the positions of its images: host arithmetic.
+// The energy along a path, and the positions of its images, computed on the host.
 namespace cayspin::inline v0_2::detail {
 
 struct PointOfProfile {
@@ -53,9 +53,9 @@ inline std::array<double, 2> slopes_between(PointOfProfile const& a, PointOfProf
 }
 
 /// Returns the maxima of the energy between fixed images, highest first, from cubics between the
-/// images. On either side of a maximum, the lowest energy is found, up to a point above the maximum
-/// or to a fixed image. The prominence is the height of the maximum above the higher of these two
-/// energies.
+/// images. On either side of a maximum, the lowest energy is searched for as far as the first fixed
+/// image or the first point higher than the maximum. The prominence is the height of the maximum
+/// above the higher of these two lowest energies.
 inline std::vector<Peak> peaks_of(std::vector<PointOfProfile> const& points) {
   constexpr std::size_t pieces = 50;
   struct Sample {
@@ -100,8 +100,8 @@ inline std::vector<Peak> peaks_of(std::vector<PointOfProfile> const& points) {
   return peaks;
 }
 
-/// Returns the images at which the fixed nodes of a path should be, so that all images are about
-/// equally spaced.
+/// Returns which images the fixed nodes of a path should become, so that all images are about
+/// equally spaced. `fixed`: indices of these nodes. `arcs`: distances between successive nodes.
 inline std::vector<std::size_t> places_of(std::vector<std::size_t> const& fixed,
                                           std::vector<double> const& arcs, std::size_t images) {
   double total = 0;
@@ -120,8 +120,8 @@ inline std::vector<std::size_t> places_of(std::vector<std::size_t> const& fixed,
   return places;
 }
 
-/// Returns where an image is among the nodes, when the nodes `fixed` become the images `places` and
-/// the others are spaced evenly between these.
+/// Returns where an image is among the nodes, if the nodes `fixed` become the images `places` and
+/// the other images are spaced evenly between these.
 inline PlaceOnPath point_of_image(std::size_t image, std::vector<std::size_t> const& fixed,
                                   std::vector<std::size_t> const& places,
                                   std::vector<double> const& arcs) {

@@ -78,7 +78,8 @@ class SaddleSearch {
   Spins& spins() { return fields_[0]; }
   Spins const& vector() const { return fields_[1]; }
 
-  /// Returns where the search ended. `proceeds(SaddleFound)`: returns false to stop.
+  /// Searches from spins(), and returns where the search ended. `proceeds(SaddleFound)`: returns
+  /// false to stop.
   template <class Exec, class Field, class Proceed>
   SaddleFound find(Exec const& exec, Field const& field, Mobile const& is_mobile,
                    Preconditioner<Spins>& preconditioner, SaddleSearchOptions const& options,
@@ -140,7 +141,7 @@ class SaddleSearch {
         found.next_curvature = next.value;
         if (!next.is_negative || ++falls > 4) {
           found.is_saddle = now.torque < options.torque && !next.is_negative &&
-                            found.curvature < tolerance;  // 0 on a plateau
+                            found.curvature < tolerance;  // the curvature is 0 on a plateau
           return found;
         }
         combine(exec, 0.3 / largest_length(exec, step()), step(), 0, step(), step());
@@ -164,7 +165,8 @@ class SaddleSearch {
     return {vector, fields_[7], fields_[8], fields_[9], fields_[10], fields_[11]};
   }
 
-  /// Writes a Newton step: down across the vector, and up along it.
+  /// Writes into step() a Newton step that lowers the energy across vector() and raises it along
+  /// vector().
   template <class Exec, class Beside, class Precondition>
   void find_step(Exec const& exec, Beside& beside, double curvature, double torque, double turn,
                  SaddleSearchOptions const& options, Precondition const& precondition) {

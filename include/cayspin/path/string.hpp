@@ -34,7 +34,7 @@ class PathString {
   using Products = ProductsOfPath<Real>;
 
  public:
-  /// Fields per image, in addition to its spins.
+  /// Number of fields per image, in addition to its spins.
   static constexpr int fields_per_image = 3 + 2 * (static_cast<int>(pairs) + 1);
 
   explicit PathString(std::vector<Spins> const& images) {
@@ -71,7 +71,8 @@ class PathString {
     return points;
   }
 
-  /// Evaluates the images that are not fixed. Returns the largest gradient across the path, or NaN.
+  /// Evaluates the images that are not fixed. Returns the largest gradient across the path; NaN if
+  /// an energy or a gradient is not finite.
   template <class Exec, class Field>
   double look(Exec const& exec, Field const& field, double time) {
     for (auto& image : images_) {
@@ -180,10 +181,10 @@ class PathString {
   }
 
   bool sweeps() const { return share_ > 0; }
-  /// From the next step on, replaces L-BFGS by sweeps down the energy: where an image moves across
-  /// the path, the direction at its lower neighbour turns, so the lower image follows. L-BFGS takes
-  /// this curvature for symmetric, and fails where the energy falls steeply between close images.
-  /// `share`: part of each step that is taken; 0 returns to L-BFGS.
+  /// From the next step on, replaces L-BFGS by sweeps from high to low energy. If an image moves,
+  /// the path turns at its lower neighbour, and the sweep makes that one follow. L-BFGS assumes
+  /// such couplings to be symmetric, and fails where the energy falls steeply between close images.
+  /// `share`: fraction of each step that is taken; 0 returns to L-BFGS.
   void sweep(double share) {
     share_ = share;
     forget_pairs();
@@ -195,8 +196,7 @@ class PathString {
   }
 
   /// Adds a state as a fixed image between image `after` and the next one. The number of images
-  /// stays the same: those that are not fixed shift along the path. Returns false if none is left
-  /// for the state.
+  /// stays the same: those that are not fixed shift along the path. Returns false if all are fixed.
   template <class Exec>
   bool insert(Exec const& exec, Spins const& state, Energy const& energy, std::size_t after) {
     std::vector<Spins> nodes;
@@ -248,7 +248,7 @@ class PathString {
 
   Spins const& next_step(Image const& image) const { return image.steps[count_]; }
 
-  /// Returns the images that are not fixed; for sweeps, each after its higher neighbour.
+  /// Returns the images that are not fixed; for sweeps, sorted by energy, highest first.
   std::vector<std::size_t> order() const {
     std::vector<std::size_t> images;
     for (std::size_t k = 0; k < size(); ++k)
@@ -258,8 +258,8 @@ class PathString {
     return images;
   }
 
-  /// Adds to the gradient of an image the change that comes from the step of its higher neighbour.
-  /// Returns the curvature of the image across the path that comes from its direction.
+  /// Adds to the gradient of an image the change due to the step of its higher neighbour, which
+  /// turns the path. Returns the curvature that this turning of the path adds at the image.
   template <class Exec>
   double follow_higher(Exec const& exec, std::size_t k, Spins const& gradient) const {
     auto const higher = energy(k - 1) > energy(k + 1) ? k - 1 : k + 1;
@@ -318,7 +318,7 @@ class PathString {
     }
   }
 
-  /// Returns the factor of the preconditioner P: s.y / y.P y of the last pair, within limits.
+  /// Returns the factor of the preconditioner P: s.y / (y.P y) of the last pair, within limits.
   template <class Exec, class Product>
   double scale_of(Exec const& exec, Preconditioner<Spins>& preconditioner,
                   std::array<bool, pairs> const& use, Product const& product) {

@@ -8,7 +8,8 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// -1 where the sum of the indices along the axes in `along` is odd, 1 elsewhere.
+/// Signs of sites: -1 where the sum of the indices along the axes selected by `along` is odd, 1
+/// elsewhere.
 struct AlternatingSigns {
   bool along[3] = {false, false, false};
 

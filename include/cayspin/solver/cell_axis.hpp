@@ -32,7 +32,7 @@ class CellAxis {
     return coarse;
   }
 
-  /// The second difference at a cell is to_previous (u_previous - u) + to_next (u_next - u).
+  /// The second difference at a cell is to_previous * (u_previous - u) + to_next * (u_next - u).
   double to_next(std::size_t i) const {
     if (cells() == 1 || (!periodic_ && i + 1 == cells())) return 0;
     return 2 / (widths_[i] * (widths_[i] + widths_[(i + 1) % cells()]));
@@ -67,8 +67,9 @@ class CellAxis {
     return {beside, 2 * std::abs(way) / (coarse_width(own) + coarse_width(beside))};
   }
 
-  /// Restriction is the transpose of the interpolation, scaled by widths. A coarse value is the
-  /// weighted sum over `reach` cells, from cell 2 coarse - 1 on, wrapping around.
+  /// Restriction is the transpose of the interpolation, scaled by widths. The value of coarse cell
+  /// number `coarse` is the weighted sum over `reach` cells, from cell 2 * coarse - 1 on, wrapping
+  /// around.
   static constexpr std::size_t reach = 5;
   std::vector<std::array<double, reach>> restriction() const {
     std::vector<std::array<double, reach>> weights(coarse_cells(), std::array<double, reach>{});

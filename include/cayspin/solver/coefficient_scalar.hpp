@@ -25,7 +25,7 @@ using real_part_t = typename RealPart<Scalar>::type;
 template <class Scalar>
 inline constexpr int real_parts = std::floating_point<Scalar> ? 1 : 2;
 
-/// Adds a x to sum, for a real or complex a and x.
+/// Adds a * x to sum, for a real or complex a and x.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION void multiply_add_to(scalar_t<Value> a, Value const (&x)[1],
                                                  Value (&sum)[1]) {

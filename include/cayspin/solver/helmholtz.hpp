@@ -14,12 +14,13 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Solver that approximates z = (c + b K)^-1 r for fields of vectors, with K = -J Lap over the
-/// neighbours of a lattice, b >= 0 and c > 0. Along an axis with J < 0, K has |J| and adds
-/// neighbours instead of subtracting them, so that K >= 0: this is -|J| Lap for vectors whose sign
-/// alternates along the axis. If at most one axis couples, z is the exact solution. Otherwise z is
-/// the result of one multigrid cycle V(2, 2) in single precision, which leaves a fifth to a half of
-/// the residual. A cycle is a linear map, symmetric to round-off, and positive definite.
+/// Solver that approximates z = (c + b * K)^-1 r for fields of vectors, with b >= 0 and c > 0. K u
+/// is the sum over the neighbours u' of a site of J * (u - u'), with the J of each axis. Along an
+/// axis with J < 0, the sum is over |J| * (u + u') instead, so that K >= 0; alternating the sign of
+/// all vectors along this axis turns K into that of |J|. If at most one axis couples, z is the
+/// exact solution. Otherwise z is the result of one multigrid cycle V(2, 2) in single precision,
+/// which leaves a fifth to a half of the residual. A cycle is a linear map, symmetric to round-off,
+/// and positive definite.
 template <class Real, class MemorySpace>
 class Helmholtz {
  public:

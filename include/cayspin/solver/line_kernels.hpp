@@ -12,11 +12,12 @@
 namespace cayspin::inline v0_2::detail {
 
 /// Coefficients of lines that are solved from both ends, with equal factors for both halves. In
-/// each half, i counts from its end of the line: y_i = inverse_i r_i + ratio_i y_(i-1) towards the
-/// middle, z_i = y_i + ratio_i z_(i+1) back. The z next to the half is same y + other y' + middle
-/// r, where y and y' are the last ones of this half and of the other half, and r is that of the
-/// site in the middle of a line with an odd number of sites. A periodic line finally adds closing_i
-/// (z_0 + sign z_0'), where z_0' is at the other end.
+/// each half, i counts from its end of the line: y_i = inverse_i * r_i + ratio_i * y_(i-1) towards
+/// the middle, z_i = y_i + ratio_i * z_(i+1) back. The first z beyond the half is
+/// same * y + other * y' + middle * r, where y and y' are the last ones of this half and of the
+/// other half, and r is that of the site in the middle of a line with an odd number of sites
+/// (otherwise 0). On a periodic line, closing_i * (z_0 + sign * z_0') is finally added, where z_0'
+/// is at the other end.
 template <class Scalar>
 struct LineFactors {
   Scalar const *inverse = nullptr, *ratio = nullptr, *closing = nullptr;
@@ -83,7 +84,7 @@ struct LineEnds {
       for (auto& value : ends.values) value[1] = Value(sign) * value[1];
     return ends;
   }
-  /// Adds a x.
+  /// Adds a * x.
   template <class Scalar, int XParts>
   KOKKOS_FORCEINLINE_FUNCTION void add(Scalar const& a, LineEnds<Value, XParts, InLanes> const& x) {
     for (int i = 0; i < count; ++i) multiply_add_to(a, x.values[i], values[i]);

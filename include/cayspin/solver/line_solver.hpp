@@ -28,9 +28,10 @@ inline std::optional<int> only_coupled_axis(Lattice const& lattice,
   return count <= 1 ? std::optional(only) : std::nullopt;
 }
 
-/// Solver for z = (c + b K)^-1 r, with K as in Helmholtz, where at most one axis couples. There is
-/// a tridiagonal system for each line along it. The formula of Sherman and Morrison adds the bond
-/// that closes a periodic line. Keeps the factors of the last four pairs (c, b).
+/// Solver for z = (c + b * K)^-1 r, with K as in Helmholtz, for lattices that couple along at most
+/// one axis. There is a tridiagonal system for each line along this axis. The formula of Sherman
+/// and Morrison adds the bond that closes a periodic line. Keeps the factors of the last four pairs
+/// (c, b).
 template <class Scalar, class MemorySpace>
 class LineSolver {
   using Real = real_part_t<Scalar>;
@@ -135,8 +136,8 @@ class LineSolver {
       factors.same = scalar(last * other);
     }
     if (periodic_) {
-      // c + b K = T + e w w^T, with T of an open line and w = (1, 0, .., 0, -sign). T^-1 w is even
-      // or odd like w.
+      // c + b * K = T + e * w w^T, with the matrix T of an open line and w = (1, 0, .., 0, -sign).
+      // T^-1 w is even or odd like w.
       closing[0] = inverse[0];
       for (std::size_t i = 1; i < half; ++i) closing[i] = ratio[i] * closing[i - 1];
       Number after = count_ % 2 == 1 ? 0 : -sign * closing.back() / (1.0 + sign * last);

@@ -15,7 +15,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Functor that writes e_z + amplitude sign e_x where there is a spin, and 0 on vacant sites.
+/// Functor that writes e_z + amplitude * sign * e_x where there is a spin, and 0 on vacant sites.
 template <class Real>
 struct FillWaves {
   AlternatingSigns signs;
@@ -76,8 +76,8 @@ struct ResponseToWaves {
   }
 };
 
-/// The exchange in a generator A = precession H + damping m x H, measured by the response to the
-/// shortest waves along each axis on uniform spins. H is taken to be a sum over the axes of a
+/// The exchange in a generator A = precession * H + damping * m x H, measured by the response to
+/// the shortest waves along each axis on uniform spins. H is taken to be a sum over the axes of a
 /// coupling times the second difference of the spins; local terms cancel. If the exchange depends
 /// on the site, the couplings are means over the bonds between spins. (For minimisers `probe` uses
 /// m.H of a field instead, and finds couplings of either sign.)
@@ -132,8 +132,8 @@ struct MeasuredExchange {
     return counts;
   }
 
-  // Half the difference of the responses to waves of opposite sign, in which terms that are even in
-  // the wave cancel.
+  // Returns the sums over the sites of the values of ResponseToWaves, averaged over waves of
+  // opposite sign: contributions to A that are even in the wave cancel.
   template <class Exec, class Generator, class Spins>
   static std::array<double, 2> response(Exec const& exec, std::string const& label,
                                         Generator const& generator, Spins const& spins,

@@ -20,7 +20,7 @@ namespace cayspin::inline v0_2::detail {
 /// One multigrid cycle on cell-centred grids for an Operation (ShiftedExchange or ShiftedSpinWaves)
 /// in precision Real. It relaxes after the coarse-grid correction and, if IsSymmetric, equally
 /// often before it, which makes the cycle a symmetric map. On hosts, the small grids share one
-/// kernel on the calling thread. Results have the same bits for any number of threads and in any
+/// kernel on the calling thread. Results are bitwise identical for any number of threads and in any
 /// host space.
 template <class Operation, int Relaxations, bool IsSymmetric, class Real, class MemorySpace>
 class Multigrid {
@@ -49,11 +49,12 @@ class Multigrid {
     while (!levels_.back().coarsened.empty());
   }
 
-  /// Returns the right side, which the caller fills. The padding of its rows is zero, and must stay
-  /// so.
+  /// Returns the right-hand side, which the caller fills. The padding of its rows is zero, and must
+  /// stay so.
   Right const& right() const { return levels_.front().right; }
 
-  /// `same_directions`: coarse grids keep their directions from the previous call. Does not wait.
+  /// `same_directions`: coarse grids keep the directions (of ShiftedSpinWaves) from the previous
+  /// call. Does not wait.
   template <class Exec, class OutReal>
   void solve(Exec const& exec, Coefficient b, CellArray<OutReal, 3> const& out,
              bool same_directions = false) const {

@@ -8,10 +8,10 @@
 #include <cstddef>
 #include <cstdint>
 
-// Relaxation on one grid. K = -J Lap >= 0 over the neighbours of a lattice.
+// Relaxation on one grid. K >= 0 is -J times the discrete Laplacian.
 namespace cayspin::inline v0_2::detail {
 
-/// The operator 1 + b K, and the weight of a relaxation.
+/// The operator 1 + b * K, and the weight of a relaxation.
 template <class Real>
 struct ShiftedExchange {
   using Coefficient = double;
@@ -44,9 +44,10 @@ struct ShiftedExchange {
   }
 };
 
-/// The operator 1 + b K on vectors normal to m, with a complex b whose i stands for m x: spin waves
-/// about directions m, which are stored after the right side. On coarse grids m is a mean, and
-/// short where directions differ. The shorter it is, the closer the operator is to 1 + |b| K.
+/// The operator 1 + b * K on vectors normal to m, with a complex b, in which i stands for the
+/// operator m x: spin waves about directions m. These are stored in components 3 to 5 of the
+/// right-hand side. On coarse grids m is a mean, and shorter than 1 where directions differ. The
+/// shorter m is, the closer the operator is to 1 + |b| * K.
 template <class Real>
 struct ShiftedSpinWaves {
   using Coefficient = std::complex<double>;
@@ -177,8 +178,8 @@ struct RelaxZero {
   }
 };
 
-/// Functor that writes scale r, times the alternating signs, to `to`, which may be r. It does not
-/// write to the padding, which stays zero.
+/// Functor that writes scale * sign * r, with the alternating signs, to `to`, which may be r. It
+/// does not write to the padding, which stays zero.
 template <class FromReal, class Real>
 struct ScaleCells {
   CellArray<FromReal, 3> r;
@@ -204,10 +205,10 @@ struct ScaleCells {
   }
 };
 
-/// Functor that writes (r x m, m), with m of length 1, or 0 where there is no spin: a right side of
-/// ShiftedSpinWaves. If d is the solution for this right side, m x d is the solution for r. Six
-/// components of r stand for r' + sign m x r''. `same_directions`: `to` holds m already, and m is
-/// not written.
+/// Functor that writes (r x m, m), with m of length 1, or 0 where there is no spin: a right-hand
+/// side of ShiftedSpinWaves. If d is the solution for this right-hand side, m x d is the solution
+/// for r. If r has six components (r', r''), it stands for r' + sign * m x r''. `same_directions`:
+/// `to` holds m already, and m is not written.
 template <int Components, class FromReal, class Real>
 struct TurnRightSide {
   std::int32_t nx;

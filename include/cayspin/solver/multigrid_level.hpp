@@ -20,7 +20,7 @@ struct MultigridLevel {
   using Field = SiteField<Real, 3, MemorySpace>;
 
   /// Replaces `lattice` and `axes` by those of the next level, which coarsens the axes whose
-  /// strength (J over the squared width of the cells) is at least half the largest.
+  /// strength (J divided by the squared width of the cells) is at least half the largest strength.
   MultigridLevel(std::string const& name, Lattice& lattice, std::array<double, 3> const& couplings,
                  std::vector<CellAxis>& axes, bool smooths_only_after)
       : layout(RowLayout::of<Real>(lattice)),
@@ -62,7 +62,7 @@ struct MultigridLevel {
   std::vector<int> coarsened;     // axes, in the order of coarsening
   Right right;
   Field one, other;
-  std::vector<Right> rights_between;  // right sides with only some axes coarsened
+  std::vector<Right> rights_between;  // right-hand sides with only some axes coarsened
   std::vector<Field> between;
 };
 

@@ -14,15 +14,15 @@
 namespace cayspin::inline v0_2::detail {
 
 struct SpinWaveOptions {
-  bool conjugated = false;       ///< a right side (r', r'') stands for (r', -r'')
+  bool conjugated = false;       ///< a right-hand side (r', r'') stands for (r', -r'')
   bool same_directions = false;  ///< m is close to that of the previous call, whose copy is reused
 };
 
-/// Solver that approximates v in v + b K v = r, for vectors normal to the directions m. The i of
-/// the complex b stands for m x, and K = -J Lap over the neighbours of a lattice. If at most one
-/// axis couples, it solves lines, which is exact for parallel m. Otherwise it runs one multigrid
-/// cycle in single precision, which takes the m of each site into account and leaves 0.1 to 0.3 of
-/// the residual.
+/// Solver that approximates the v with v + b * K v = r, for vectors normal to the directions m. In
+/// the complex b, i stands for the operator m x. K u is the sum over the neighbours u' of a site of
+/// J * (u - u'). If at most one axis couples, it solves lines, which is exact for parallel m.
+/// Otherwise it runs one multigrid cycle in single precision, which takes the m of each site into
+/// account and leaves 0.1 to 0.3 of the residual.
 template <class Real, class MemorySpace>
 class SpinWaveSolver {
   using Vectors = SiteField<Real, 3, MemorySpace>;
@@ -47,8 +47,8 @@ class SpinWaveSolver {
   /// Returns true if v' is zero in all solutions; solve() then does not write it.
   bool solves_only_rotated_part() const { return !lines_; }
 
-  /// Computes z = (v', v''), where v = v' + m x v''. A right side of 6 components is likewise (r',
-  /// r''). Does not wait.
+  /// Computes z = (v', v''), where v = v' + m x v''. A right-hand side of 6 components is likewise
+  /// (r', r''). Does not wait.
   template <class Exec, int RightComponents>
   void solve(Exec const& exec, std::complex<double> b,
              SiteField<Real, RightComponents, MemorySpace> const& r, Vectors const& m,

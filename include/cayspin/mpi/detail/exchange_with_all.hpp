@@ -14,8 +14,8 @@
 
 namespace cayspin::inline v0_2::mpi::detail {
 
-/// Returns the number of 8-byte words. Throws std::length_error for a message of 16 GiB or more,
-/// whose length MPI's int cannot hold.
+/// Returns the number of 8-byte words in a message. Throws std::length_error for a message of 16
+/// GiB or more, whose length MPI's int cannot hold.
 inline int words_of_message(std::size_t bytes) {
   auto const words = bytes / sizeof(std::int64_t);
   if (words > static_cast<std::size_t>(std::numeric_limits<int>::max()))

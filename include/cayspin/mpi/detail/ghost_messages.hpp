@@ -77,7 +77,8 @@ class GhostMessages {
     std::array<MPI_Request, 4> requests;
     requests.fill(MPI_REQUEST_NULL);
     std::array<int, 2> received_words{}, sent_words{};
-    // All before the first message: after an error, none may be under way.
+    // All that can fail comes before the first message: after an error, no message may be under
+    // way.
     for (std::size_t side = 0; side < 2; ++side) {
       if (neighbor[side] == MPI_PROC_NULL) continue;
       auto const in = bytes(fields, faces.received[side]), out = bytes(fields, faces.sent[side]);
@@ -118,8 +119,8 @@ class GhostMessages {
     return sum * static_cast<std::size_t>(box.rows() * box.extent(0));
   }
 
-  /// Returns the number of 4-byte words. Throws std::length_error for a message of 8 GiB or more,
-  /// whose length MPI's int cannot hold.
+  /// Returns the number of 4-byte words in a message. Throws std::length_error for a message of 8
+  /// GiB or more, whose length MPI's int cannot hold.
   static int words_of(std::size_t size) {
     auto const words = size / sizeof(std::int32_t);
     if (words > static_cast<std::size_t>(std::numeric_limits<int>::max()))
