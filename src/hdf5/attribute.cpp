@@ -49,7 +49,7 @@ std::vector<std::string> read_names(hid_t object, char const* name,
   DataspaceHandle const space(check(H5Aget_space(attribute.get()), path, action("read", name)));
   auto const count = H5Sget_simple_extent_npoints(space.get());
   auto const length = H5Tget_size(type.get());
-  constexpr hssize_t most = 65536;  // largest size of an attribute
+  constexpr hssize_t most = 65536;  // bytes; HDF5's limit on an attribute
   if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0 || count < 1 ||
       count > most || length < 1 || length > most)
     throw_failure(path, action("read", name), "it is not a list of names");

@@ -10,7 +10,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Returns the type of variable-length UTF-8 strings.
+/// Returns the HDF5 datatype of variable-length UTF-8 strings.
 DatatypeHandle text_type();
 
 /// Writes an attribute that is a list of names. They are strings of fixed length, because HDF5's
@@ -29,18 +29,18 @@ class RootAttributes {
   void create(char const* name, std::int64_t value) const;
   void create(char const* name, double value) const;
 
-  /// Overwrites a number in place, without allocating space on the disk.
+  /// Overwrites the value of a numeric attribute in place, without allocating space on the disk.
   void replace(char const* name, std::int64_t value) const;
   void replace(char const* name, double value) const;
 
   bool has(char const* name) const;
   std::string read_text(char const* name) const;
-  /// Returns true if the text of an attribute is `yes`, and false if it is `no`. Another text
-  /// throws.
+  /// Returns true if the text of an attribute is `yes`, and false if it is `no`. Throws for any
+  /// other text.
   bool read_word(char const* name, char const* yes, char const* no) const;
   std::int64_t read_integer(char const* name) const;
   double read_real(char const* name) const;
-  /// Throws std::runtime_error("PATH: ACTION: REASON") unless the attribute `name`, which is a
+  /// Throws std::runtime_error("PATH: ACTION: REASON") unless the attribute `name`, which holds the
   /// version of the file layout, has the value `accepted`.
   void require_version(char const* name, std::int64_t accepted, char const* action) const;
 

@@ -47,7 +47,7 @@ void write_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents
 void append_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents const& extents,
                   void const* values, std::filesystem::path const& path);
 
-/// Grows a dataset along its first extent without writing.
+/// Sets the first extent of a dataset to `first_extent`, without writing.
 void grow(hid_t dataset, hsize_t first_extent, std::filesystem::path const& path);
 
 /// Writes the chunk that starts at `begin`. `stored`: its bytes as in the file, after all filters.

@@ -10,8 +10,8 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// While in scope, no other thread of the library uses HDF5, which may be built without thread
-/// safety, and HDF5 does not print its error stack.
+/// While in scope, HDF5 does not print its error stack, and no other thread of the library uses
+/// HDF5, which may be built without thread safety.
 class QuietErrors {
  public:
   QuietErrors();
@@ -26,14 +26,15 @@ class QuietErrors {
 };
 
 /// Returns why the last HDF5 call failed: the system's message if there is one, otherwise the
-/// innermost line of HDF5's error stack. Call it before any other HDF5 function.
+/// innermost line of HDF5's error stack. Call it directly after the failed call, because other HDF5
+/// functions clear the error stack.
 std::string failure_reason();
 
 /// Throws std::runtime_error("PATH: ACTION: REASON").
 [[noreturn]] void throw_failure(std::filesystem::path const& path, std::string const& action,
                                 std::string const& reason);
 
-/// Returns the result of an HDF5 call; throws if it signals failure.
+/// Returns `result`, the result of an HDF5 call. Throws if it is negative, which means failure.
 template <class Result>
 Result check(Result result, std::filesystem::path const& path, std::string const& action) {
   if (result < 0) throw_failure(path, action, failure_reason());

@@ -19,8 +19,8 @@ void try_reading(std::filesystem::path const& path, std::function<void()> const&
 /// file instead.
 [[noreturn]] void rethrow_reading(std::filesystem::path const& path);
 
-/// Runs `reading` in a trial, then directly, and returns its result. `reading` must open the file
-/// itself, so that it runs the same code on the same bytes both times.
+/// Runs `reading` in a trial if one is set, then directly, and returns its result. `reading` must
+/// open the file itself, so that it runs the same code on the same bytes both times.
 template <class Reading>
 auto read_guarded(std::filesystem::path const& path, Reading const& reading) {
   QuietErrors const quiet;

@@ -9,7 +9,7 @@
 namespace cayspin::inline v0_2::io {
 namespace {
 
-thread_local int depth_of_turns = 0;  // how many scopes this thread is in
+thread_local int depth_of_turns = 0;  // number of TurnOfHdf5 scopes of this thread
 
 std::mutex& one_at_a_time() {
   static auto& mutex = *new std::mutex;  // never destroyed: it may be used while the program ends
@@ -30,7 +30,7 @@ namespace {
 
 FileHandle open_with(PropertyHandle const& access, std::filesystem::path const& path) {
   std::string const action = "cannot open the file";
-  // HDF5 would open a pipe and then wait for a process at its other end.
+  // HDF5 would open a pipe, and then wait for a process at the pipe's other end.
   std::error_code ignored;
   auto const status = std::filesystem::status(path, ignored);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))

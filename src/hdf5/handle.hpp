@@ -9,7 +9,7 @@
 namespace cayspin::inline v0_2::io {
 
 /// While in scope, no other thread of the library uses HDF5. Scopes may be nested. A child process
-/// that is forked in scope owns the lock, too. With std::recursive_mutex it would not.
+/// forked in a scope holds the lock, too; it would not hold a std::recursive_mutex.
 class TurnOfHdf5 {
  public:
   TurnOfHdf5();
@@ -53,8 +53,8 @@ using DatatypeHandle = Handle<H5Tclose>;
 using AttributeHandle = Handle<H5Aclose>;
 using PropertyHandle = Handle<H5Pclose>;
 
-/// Whether a file that is read is locked against writers. Without the lock, data that another
-/// process is writing may be read half written.
+/// Whether a file that is read is locked against writers. Without the lock, a reader may see data
+/// of which another process has written only a part.
 enum class Locking { on, off };
 
 /// Opens an existing file for reading. Completes it first if a power cut or a kill has left a
@@ -63,7 +63,7 @@ FileHandle open_file(std::filesystem::path const& path, Locking locking = Lockin
 /// Reads all of a small file into memory and opens it there. No process may be writing it.
 FileHandle open_file_in_memory(std::filesystem::path const& path);
 
-// Creates a group in the file `path`.
+// Create or open a group. `path`: the file, for error messages.
 GroupHandle create_group(hid_t parent, char const* name, std::filesystem::path const& path);
 GroupHandle open_group(hid_t parent, char const* name, std::filesystem::path const& path);
 

@@ -11,7 +11,7 @@
 namespace cayspin::inline v0_2::io {
 
 /// A dataset of type float or double in any HDF5 file, read as double. Its members throw
-/// std::runtime_error with one line that starts with the file.
+/// std::runtime_error with a one-line message that starts with the file's path.
 class RealDataset {
  public:
   RealDataset(std::filesystem::path path, std::string name);
@@ -24,7 +24,7 @@ class RealDataset {
   double epsilon() const { return epsilon_; }
 
   /// Reads all of the dataset, or the block of these extents that starts at `begin`; the last index
-  /// is the fastest.
+  /// varies fastest.
   std::vector<double> read() const;
   std::vector<double> read(Extents const& begin, Extents const& extents) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// File driver for SyncedFile, for HDF5 1.10 to 1.14.
+// HDF5 file driver for SyncedFile. It works with HDF5 1.10 to 1.14.
 #include "synced_file.hpp"
 
 #include <fcntl.h>
@@ -83,7 +83,8 @@ herr_t write(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t offset, size_t bytes, void
   return report(file_of(file).write(offset, data, bytes));
 }
 
-// Reserved space is kept; closing truncates the file.
+// Does nothing, so that reserved space beyond the end is kept. SyncedFile::close() truncates the
+// file.
 herr_t truncate(H5FD_t*, hid_t, hbool_t) { return 0; }
 
 herr_t change_lock(H5FD_t* file, int operation) {

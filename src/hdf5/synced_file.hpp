@@ -25,7 +25,8 @@ class SyncedFile {
   SyncedFile(SyncedFile const&) = delete;
   SyncedFile& operator=(SyncedFile const&) = delete;
 
-  /// Makes HDF5 open and close a file through this object, which must outlive it.
+  /// Sets the file driver of an access property list, so that HDF5 opens, reads, writes and closes
+  /// its file through this object. The object must outlive the open file.
   void use_in(hid_t file_access);
 
   /// Returns a random number of 8 bytes that identifies the file. It must be stored in the file
@@ -39,14 +40,16 @@ class SyncedFile {
   // The functions below, except descriptor(), return 0 or the system's error number. After an error
   // of commit() or write(), nothing more is committed.
 
-  /// Makes all data written so far survive a power cut. Call H5Fflush before.
+  /// Makes all data written so far survive a power cut. Call H5Fflush first. Does nothing before
+  /// begin().
   int commit();
 
-  // For HDF5's driver.
+  // The HDF5 driver uses the members below.
   int open(char const* name, int flags);
   int read(std::uint64_t offset, void* data, std::size_t bytes) const;
   int write(std::uint64_t offset, void const* data, std::size_t bytes);
-  /// Commits, truncates the file to its end and removes the journal.
+  /// Commits, truncates the file to `end`, removes the journal and closes the file. Keeps the
+  /// journal if an error has left a commit half done.
   int close();
   int* descriptor() { return &file_; }
   std::uint64_t end = 0;          ///< end of the space that HDF5 has allocated

@@ -59,7 +59,7 @@ void FieldInPass<Spins>::Terms::add_axes(io::Scene const& scene, io::SiteBox con
       one.axes = keep_axes(io::directions_of_sites(scene, term.axes, "field.anisotropy", box));
   }
   anisotropies_in_time_ = static_cast<std::int32_t>(axes.size());
-  if (auto const slab = slab_of_moments(scene)) {  // E = mu0 strength (moment m.n)^2 / 2
+  if (auto const slab = slab_of_moments(scene)) {  // E = mu0 * strength * (moment * m.n)^2 / 2
     std::vector<double> constants(moments.size());
     std::ranges::transform(moments, constants.begin(), [&](double moment) {
       return -scene.field.mu0 * slab->strength * moment * moment;

@@ -14,10 +14,11 @@
 
 namespace cayspin::simulation {
 
-/// The uniform field mu0 applied(t) of a scene, or another vector of numbers and expressions in t.
+/// The uniform field mu0 * applied(t) of a scene, or another vector whose components are numbers or
+/// expressions in t.
 class AppliedField {
  public:
-  /// `units`: of the scene, for messages.
+  /// `units`: the scene's, for error messages.
   explicit AppliedField(io::Field const& field, io::Units const& units = {});
   AppliedField(std::array<io::AppliedComponent, 3> const& components, std::string key,
                io::Units const& units = {});
@@ -25,7 +26,7 @@ class AppliedField {
   bool present() const { return present_; }
   bool depends_on_time() const { return depends_on_time_; }
 
-  /// Returns mu0 applied(t). Throws NumbersFailed if a component is not finite at t.
+  /// Returns mu0 * applied(t). Throws NumbersFailed if a component is not finite at t.
   Vec3<double> operator()(double t) const;
 
  private:

@@ -35,8 +35,8 @@ void FieldInPass<Spins>::Terms::add_exchange_at_faces(io::Scene const& scene,
   std::vector<double> per_exchange(constants.size());
   for (std::size_t site = 0; site < constants.size(); ++site)
     per_exchange[site] = constants[site] > 0 ? 1 / constants[site] : 0;
-  // At faces with other spacings or constants, this bound may exceed the ratio that the plan
-  // allows.
+  // The three maxima may belong to different faces, so this bound may exceed most_at_faces, to
+  // which the plan limits the ratio at each face.
   double const bound = largest_of_parts(lattice_, per_exchange) * strongest * spacing / 2;
   double const ratio = std::min(bound, most_at_faces);
   double const epsilon = std::numeric_limits<Real>::epsilon();

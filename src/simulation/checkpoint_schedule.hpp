@@ -26,7 +26,7 @@ class CheckpointSchedule {
   }
   /// Returns true if the steps with a checkpoint are known in advance.
   bool is_by_steps() const { return period_.steps > 0; }
-  /// Call it after storing a checkpoint.
+  /// Starts the next period. Call it after storing a checkpoint.
   void wait() {
     if (period_.seconds == 0) return;
     std::chrono::duration<double> const period(period_.seconds);

@@ -19,8 +19,8 @@
 // Code that the main functions of the programs share.
 namespace cayspin::simulation {
 
-/// Returns an exit status if the command line only asked for help or the version. Throws UsageError
-/// for an invalid command line.
+/// Parses the command line. Returns an exit status if it only asked for help or the version. Throws
+/// UsageError for an invalid command line.
 inline std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
@@ -62,7 +62,8 @@ inline void require_output_written() {
                                        errno == 0 ? "some of it was lost" : std::strerror(errno)));
 }
 
-/// Returns the exit status of perform(argc, argv). If it throws, reports the error.
+/// Calls perform(argc, argv) and returns the exit status. If `perform` throws, or standard output
+/// cannot be written, reports the error.
 inline int perform_and_report(int (*perform)(int, char**), int argc, char** argv) {
   try {
     int const status = perform(argc, argv);

@@ -122,7 +122,7 @@ SceneLatticeTerms FieldInPass<Spins>::Terms::lattice_terms_at(Factors const& fac
 template <class Spins>
 auto FieldInPass<Spins>::Terms::in_stages(SceneFieldNow<Real> const& usual, double t) const
     -> std::optional<SceneFieldNow<Real>> {
-  // For terms that reach far, ranks compute the whole H in memory, and a run on one rank has to sum
+  // If terms reach far, several ranks compute the whole H in memory. A run on one rank has to sum
   // the terms in the same order.
   if (lattice_.cell_sites > 1 || reaches_far() || per_moments_) return std::nullopt;
   auto const& site = cell_[0];
@@ -155,8 +155,9 @@ SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::evaluate_with(
     Exec const& exec, SceneFieldNow<Real> const& usual, Spins const& spins, double t,
     FieldFor purpose, bool adds_applied) const {
   Kokkos::Profiling::ScopedRegion const region("cayspin::FieldInPass");
-  // Bonds may reach further than the ghosts that the previous stage has updated. H on ghost sites
-  // is never used: each stage's result there is replaced before it is read.
+  // All ghosts are updated, because bonds may reach further than the ghosts that the previous stage
+  // has updated. H is not computed on ghost sites: each stage's result there is replaced before it
+  // is read.
   cayspin::detail::update_ghosts(exec, terms_->lattice_, spins);
   EvaluateInPass<Real> kernel{.terms = terms_->at(exec, usual, spins, t, purpose),
                               .spins = spins.array(),
@@ -189,7 +190,8 @@ SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::along_rows(
     Exec const& exec, SceneFieldNow<Real> const& usual, Spins const& spins, double t,
     FieldFor purpose) const {
   if constexpr (cayspin::detail::is_host_execution<Exec>) {
-    // Bonds may reach further than the ghosts that a stage has updated.
+    // On a part of a lattice, distant bonds may need ghosts that no stage updates; evaluate_with()
+    // below updates all.
     bool const reaches_ghosts = terms_->reaches_far() && terms_->lattice_.part != nullptr;
     if (!reaches_ghosts && purpose == FieldFor::generator) {
       auto& last = terms_->last_along_rows_;

@@ -13,8 +13,9 @@
 
 #include <limits>
 
-// Converts a row of the list of methods into its variants: one for each choice of options, except
-// the rotation, that changes the type of the stepper.
+// Compiles each row of the list of methods into its variants: one for each combination of options
+// that changes the type of the stepper. The rotation also changes that type, but each variant
+// contains the steppers of all its rotations.
 namespace cayspin::simulation {
 
 /// Template parameters that distinguish the variants of a row.
@@ -26,8 +27,8 @@ struct VariantKey {
 template <std::size_t Number>
 inline constexpr io::Method const& method_at = std::get<Number>(method_list);
 
-/// The stepper whose bound on dt is used: the method's own, or the one that its family names as
-/// StableAs.
+/// The stepper whose bound on dt is used: Family::StableAs if it exists, otherwise the method's own
+/// stepper.
 template <class Family, class Spins, class Own>
 struct BoundedStepper {
   using type = Own;
@@ -91,7 +92,7 @@ class Compiled {
   }
   template <class Work>
   static auto with_rotation(io::Rotation rotation, Work const& work) {
-    // If a method has only one rotation, its stepper type already contains it.
+    // Unless both rotations are possible, the only one is Cayley, or the stepper ignores this type.
     if constexpr (rotations() == sets::both_rotations) {
       if (rotation == io::Rotation::exponential) return work(Exponential{});
     }

@@ -9,14 +9,15 @@
 namespace cayspin::simulation {
 
 /// Anisotropy of a crystal with optionally site-dependent constants and axes. With components a, b,
-/// c of m along the axes e1, e2 and e1 x e2, E = constant (a^2 b^2 + b^2 c^2 + c^2 a^2) + second
-/// a^2 b^2 c^2 for a cubic crystal, and E = constant Re (b + i c)^6 for a hexagonal one.
+/// c of m along the axes e1, e2 and e1 x e2, a cubic crystal has
+///   E = constant * (a^2 b^2 + b^2 c^2 + c^2 a^2) + second * a^2 b^2 c^2,
+/// and a hexagonal one has E = constant * Re (b + i c)^6.
 template <class Real>
 struct CrystalAnisotropyOfSites {
   bool hexagonal = false;
   cayspin::SiteArray<Real, 1> constants = {};
   cayspin::SiteArray<Real, 1> second = {};            // without data: 0
-  Vec3<double> axes[2] = {};                          // orthogonal
+  Vec3<double> axes[2] = {};                          // e1 and e2, orthonormal
   cayspin::SiteArray<Real, 3> axes_of_sites[2] = {};  // replace `axes` if they have data
 
   template <class Stencil>

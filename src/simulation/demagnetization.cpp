@@ -22,10 +22,11 @@ namespace cayspin::simulation {
 #if defined(CAYSPIN_HAS_FFTW)
 namespace {
 
-/// Describes everything that the tensors depend on, to identify them in a cache file.
+/// Returns a description of everything that the tensors depend on. It identifies the tensors in a
+/// cache file.
 std::string text_of(Lattice const& lattice, DemagnetizationOptions const& options) {
-  // Tensors of cells whose edges differ by more than 1000 : 1 have a version number, because caches
-  // of older versions hold other values.
+  // If the longest edge of a cell is more than 1000 times the shortest one, the description has a
+  // version number, because cache files from older versions of the program hold other values.
   auto const [shortest, longest] = std::ranges::minmax(lattice.spacing);
   return fmt::format("cells {}, spacing {:a}, images {}, strength {:a}{}",
                      fmt::join(lattice.shape, " "), fmt::join(lattice.spacing, " "),

@@ -10,8 +10,8 @@
 namespace cayspin::simulation {
 
 /// While in scope, this thread and those that it starts treat denormal numbers as zero, if the
-/// processor is x86 with SSE2 or 64-bit ARM. Components that keep decaying become denormal, and
-/// arithmetic on denormal numbers is about ten times slower.
+/// processor is x86 with SSE2 or 64-bit ARM. Components of spins that keep decaying become
+/// denormal, and arithmetic on denormal numbers is about ten times slower.
 class FlushDenormals {
  public:
   FlushDenormals() : before_(control()) { set_control(before_ | flush_bits); }

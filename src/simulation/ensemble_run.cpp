@@ -220,7 +220,7 @@ void EnsembleRun::check_columns() {
 
 void EnsembleRun::leave_columns() {
   require_memory_of_all(scene_, first().scene(), settings_.precision, false);
-  // If an exception interrupts this, the columns remain. The first run stays where it is, because
+  // If an exception is thrown here, the columns stay in use. The first run is not replaced, because
   // other threads read it.
   std::vector<std::unique_ptr<SceneRun>> others;
   for (std::size_t number = 1; number < replicas(); ++number) {

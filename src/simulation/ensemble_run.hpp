@@ -20,14 +20,14 @@ namespace cayspin::simulation {
 
 /// The replicas of a scene with [ensemble], which advance together. If possible they are the
 /// columns of a few lattices (ReplicaColumns); otherwise each is a separate run, and small ones run
-/// side by side on the threads of the host. Replica r is bit-identical to a run of
-/// io::replica_of(scene, r). Calls from several threads take turns, as with SceneRun; steps() and
-/// time() do not wait for a turn.
+/// side by side on the threads of the host. The results of replica r are bitwise identical to those
+/// of a run of io::replica_of(scene, r). Calls from several threads take turns, as with SceneRun;
+/// steps() and time() do not wait for a turn.
 class EnsembleRun {
  public:
-  /// Opens the replicas for `cayspin run`, or with `relaxes` for `cayspin relax`. settings.restart
-  /// must be empty. Throws what SceneRun::open throws, also if there is too little memory for all
-  /// replicas.
+  /// Opens the replicas for `cayspin run` or, if `relaxes` is true, for `cayspin relax`.
+  /// settings.restart must be empty. Throws what SceneRun::open throws, also if there is too little
+  /// memory for all replicas.
   EnsembleRun(io::Scene const& scene, RunSettings const& settings, bool relaxes);
   EnsembleRun(EnsembleRun const&) = delete;
   EnsembleRun& operator=(EnsembleRun const&) = delete;
@@ -38,14 +38,15 @@ class EnsembleRun {
   SceneRun const& first() const { return *runs_.front(); }
   /// Continues from the last frame of an ensemble's file. If the scene of the file differs
   /// unexpectedly, returns one line that names the differences. Throws UsageError for a file that
-  /// does not fit, and for a method that remembers more than the spins.
+  /// does not fit the scene, and if the run needs more than the spins to continue exactly.
   std::optional<std::string> continue_from(std::filesystem::path const& file);
 
   /// Returns the first warning of a replica about its steps, with the replica's number. If the
   /// replicas are columns with different temperatures, only the hottest is asked.
   std::optional<std::string> warning() const;
 
-  /// Returns the number of steps that every replica has taken, except those that ended early.
+  /// Returns the number of steps that every replica has taken, not counting replicas that ended
+  /// early. If all did, returns the largest number of steps.
   std::int64_t steps() const { return steps_; }
   std::int64_t last_step() const { return first().last_step(); }
   double time() const { return first().time_at(steps_); }  // at steps()
@@ -56,8 +57,8 @@ class EnsembleRun {
 
   /// Returns when advance() checks the replicas: at its last step, and before that only every 100
   /// steps, because a check of a small lattice takes as long as a step. If `until_torque` is true
-  /// and the scene has that key, it checks after every step, or for more than 4096 sites after
-  /// every tenth step.
+  /// and the scene has that key, it checks after every step, or after every tenth step if a replica
+  /// has more than 4096 sites.
   Looks looks(bool until_torque, std::function<bool()> interrupted) const;
 
   /// Throws UsageError if the replicas cannot take `count` more steps, as SceneRun does. Some
@@ -81,7 +82,7 @@ class EnsembleRun {
  private:
   Advanced advance_runs(std::int64_t target, Looks const& looks);
   Advanced advance_columns(std::int64_t target, Looks const& looks);
-  /// Computes steps() from the runs.
+  /// Computes the value of steps() from the steps of the runs.
   std::int64_t steps_of_all() const;
   void check_columns();
   /// Replaces the columns by a run for each replica, which continues from the replica's state.
@@ -89,10 +90,10 @@ class EnsembleRun {
 
   io::Scene scene_;
   RunSettings settings_;
-  std::vector<std::unique_ptr<SceneRun>> runs_;  // with columns: only the first one
+  std::vector<std::unique_ptr<SceneRun>> runs_;  // if there are columns: only the first one
   std::optional<ReplicaColumns> columns_;
-  std::vector<Guard> guards_;    // of columns
-  std::vector<Sample> samples_;  // of columns, at steps(); or empty
+  std::vector<Guard> guards_;    // one for each replica in columns
+  std::vector<Sample> samples_;  // one for each replica in columns, at steps(); or empty
   std::vector<bool> at_rest_;
   double seconds_of_columns_ = 0;  // step_seconds() of columns that runs have replaced
   std::atomic<std::int64_t> steps_ = 0;

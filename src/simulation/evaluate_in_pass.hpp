@@ -9,12 +9,14 @@
 
 namespace cayspin::simulation {
 
-/// Functor that writes H and E of every site.
+/// Functor that writes the field and the energy of every site. The field is H times the
+/// gyromagnetic ratio, or H if `is_field` is true, or -dE/dm if terms.is_gradient is true. It is
+/// zero at sites that do not move.
 template <class Real>
 struct EvaluateInPass {
   PassTerms<Real> terms;
   cayspin::SiteArray<Real, 3> spins;
-  cayspin::SiteArray<Real, 1> moves;  // without data: all move
+  cayspin::SiteArray<Real, 1> moves;  // 0 or 1; without data: all move
   cayspin::OutputArray<Real, 3> field;
   cayspin::OutputArray<Real, 1> energies;
   bool is_field = false;  // write H, not H times the gyromagnetic ratio

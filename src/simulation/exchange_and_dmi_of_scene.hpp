@@ -34,7 +34,7 @@ void FieldInPass<Spins>::Terms::add_exchange_of_sites(io::Scene const& scene,
   }
 }
 
-// A DMI with site-dependent normals becomes a sum of three, with the normals x, y and z.
+// A DMI with site-dependent normals becomes a sum of three DMI terms, with the normals x, y and z.
 template <class Spins>
 void FieldInPass<Spins>::Terms::add_dmi_of_sites(io::Scene const& scene, io::SiteBox const& box) {
   constexpr std::string_view key = "field.dmi";

@@ -22,8 +22,8 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Thrown on all other ranks when one rank fails, which then reports the error. `status`: the exit
-/// status of the rank that failed.
+/// Thrown on all other ranks when one rank fails. The failed rank reports the error. `status`: the
+/// exit status of the rank that failed.
 struct OtherRankFailed : std::runtime_error {
   explicit OtherRankFailed(int status_of_it)
       : std::runtime_error("another rank failed"), status(status_of_it) {}

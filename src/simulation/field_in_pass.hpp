@@ -15,16 +15,16 @@ struct Scene;
 
 namespace cayspin::simulation {
 
-/// The purpose of a field. generator: H times the gyromagnetic ratio of the site of the cell, for
-/// the generator that turns the spins; itself: H, for output; energy: -dE/dm, for searches that
-/// lower the energy, and for modes. The last two are zero at frozen spins.
+/// The purpose of a field. generator: H times the gyromagnetic ratio that the scene lists for this
+/// site of the cell, for the generator that turns the spins; itself: H, for output; energy: -dE/dm,
+/// for searches that lower the energy, and for modes. The last two are zero at frozen spins.
 enum class FieldFor { generator, itself, energy };
 
 /// The field of a scene with rarely used terms, such as couplings, sublattices, currents and
 /// vacancies. A separate pass evaluates all terms into memory before each stage, and the kernels of
-/// the methods load the result. On a host, a Runge-Kutta stage instead evaluates them, or only the
-/// rare ones, row by row (along_rows). So the rare terms need not be compiled again for each
-/// method. Compiled by field_in_pass_double.cpp and field_in_pass_single.cpp for the spaces of
+/// the methods load the result. On a host, a Runge-Kutta stage instead evaluates all terms, or only
+/// the rare ones, row by row (along_rows). Either way, the rare terms are not compiled again for
+/// each method. Compiled by field_in_pass_double.cpp and field_in_pass_single.cpp for the spaces of
 /// space.hpp. A handle: copies share their data.
 template <class Spins>
 class FieldInPass {
@@ -35,15 +35,15 @@ class FieldInPass {
   FieldInPass(io::Scene const& scene, Lattice const& lattice);
 
   /// Evaluates H and E of all sites into memory, and returns a field that loads them. `usual`: the
-  /// scene's other terms.
+  /// terms that SceneField has prepared.
   template <class Exec>
   SceneFieldNow<Real> evaluate(Exec const& exec, SceneFieldNow<Real> const& usual,
                                Spins const& spins, double t, FieldFor purpose) const;
 
   /// Prepares the terms for a loop over rows on a host. The loop evaluates either all terms, or
   /// only those that are not compiled into stages; it computes no energies. On devices, for a
-  /// purpose other than the generator, and if terms reach beyond the ghosts of a part, it works
-  /// like evaluate.
+  /// purpose other than the generator, and if terms reach beyond the ghosts of a part, H, including
+  /// the applied field, is evaluated into memory instead.
   template <class Exec>
   SceneFieldNow<Real> along_rows(Exec const& exec, SceneFieldNow<Real> const& usual,
                                  Spins const& spins, double t, FieldFor purpose) const;

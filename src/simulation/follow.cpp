@@ -40,7 +40,7 @@ struct WallOfSites {
   }
 };
 
-/// Functor that sums half the solid angle at each site, and its product with the position.
+/// Functor that sums half the solid angle of each site, and that half times the site's position.
 template <class Real>
 struct PlaceOfCharge {
   cayspin::detail::SolidAngleOfSites<Real> angle;
@@ -83,7 +83,8 @@ struct TakeNeighbor {
 
 namespace {
 
-constexpr double least_step = 0.2;  // between the means at the two ends; less is no wall
+// Smallest difference between the means at the two ends of a wall.
+constexpr double least_step = 0.2;
 constexpr double least_charge = 0.25;
 
 std::vector<double> places(Lattice const& lattice, int axis) {
@@ -107,7 +108,7 @@ template <class Spins>
 Follower<Spins>::Follower(io::Scene const& scene, Lattice const& lattice)
     : follow_(*scene.lattice.follow),
       extent_(whole(lattice).shape[static_cast<std::size_t>(follow_.axis)]),
-      // With an adaptive method, the scene's steps may be far apart: look after every step.
+      // With an adaptive method, the scene's steps may be far apart: check after every step.
       period_(scene.integrator.tolerance ? 1 : Guard::period_of(io::sites(scene))),
       moved_("Follower::moved", lattice),
       places_("Follower::places", lattice) {

@@ -12,7 +12,7 @@
 namespace cayspin::simulation {
 
 /// Keeps the object that lattice.follow names, such as a domain wall, in the middle of the lattice,
-/// by moving all spins along the axis by whole cells. Cells that enter at an end are copies of the
+/// by moving all spins along an axis by whole cells. Cells that enter at an end are copies of the
 /// last cell at that end. Compiled in follow.cpp, for the spaces of space.hpp.
 template <class Spins>
 class Follower {
@@ -23,8 +23,8 @@ class Follower {
 
   bool due(Step const& step) const { return step.number % period_ == 0; }
 
-  /// Returns by how many cells the object is off the middle, at most half the lattice; 0 if it is
-  /// off by less than one, or if there is no object.
+  /// Returns the position of the object along the axis, in cells from the middle, rounded towards 0
+  /// and limited to half the lattice; 0 if there is no object.
   template <class Exec>
   std::int64_t cells_off(Exec const& exec, Spins const& spins) const;
 
@@ -33,7 +33,7 @@ class Follower {
   template <class Exec>
   void move(Exec const& exec, Spins const& spins, std::int64_t cells);
 
-  /// Returns the cells by which the lattice has moved since the start of the run.
+  /// Returns by how many cells the lattice has moved since the start of the run.
   std::int64_t shift() const { return shift_; }
   void go_on_from(std::int64_t shift) { shift_ = shift; }
 

@@ -28,7 +28,7 @@ struct FoundCurvatures {
 
 /// Spin waves of given wave vectors, in the units of FoundModes.
 struct FoundBands {
-  std::vector<std::vector<double>> frequencies, decays;  // for each wave vector its branches
+  std::vector<std::vector<double>> frequencies, decays;  // of the branches of each wave vector
   std::int64_t evaluations = 0;
   bool is_interrupted = false;
 };

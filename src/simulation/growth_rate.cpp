@@ -17,8 +17,8 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
 /// Returns B = G^-1, with a 2 x 2 block for each spin, where G maps the field on a spin to the
-/// velocity of that spin. With the Hessian H, a motion x exp(rate t) about a state obeys rate x =
-/// -G H x, that is, (H + rate B) x = 0.
+/// velocity of that spin. With the Hessian H, a motion x * exp(rate * t) about a state obeys
+/// rate * x = -G H x, that is, (H + rate * B) x = 0.
 Matrix inverse_turning(io::Scene const& scene, StateHessian const& state) {
   auto const [precession, damping] = turning_of_sites(scene);
   auto const n = static_cast<Eigen::Index>(state.size());
@@ -33,9 +33,9 @@ Matrix inverse_turning(io::Scene const& scene, StateHessian const& state) {
   return found;
 }
 
-/// Estimates the rate of growth: the positive root of det(H + rate B), with both matrices
-/// restricted to two vectors, the unstable mode and that mode turned by 90 degrees in each tangent
-/// plane.
+/// Estimates the rate of growth: the positive root of det(H + rate * B), with both matrices
+/// restricted to the span of two vectors, the unstable mode and that mode turned by 90 degrees in
+/// each tangent plane. Without such a root, returns a rougher estimate.
 double growth_of_two(Matrix const& hessian, Matrix const& inverse, Vector const& mode) {
   Matrix two(mode.size(), 2);
   two.col(0) = mode;

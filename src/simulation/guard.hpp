@@ -22,18 +22,19 @@ inline bool energy_must_fall(io::Scene const& scene, bool all_damped) {
          scene.integrator.energy_guard && scene.integrator.method->keeps_length;
 }
 
-/// Check of the state of a run. All numbers must be finite. If the method conserves lengths, they
-/// must be 1 within 64 epsilon at step 0, and later within 64 epsilon times the number of steps (at
-/// least a million), but at most 0.01. An energy that can only fall must not rise by more than
-/// round-off: 64 epsilon times Energy::magnitude. If the tolerance of an adaptive method (an angle
-/// of the spins) exceeds 64 epsilon, it replaces that factor in the bound on the energy.
+/// Check of the state of a run. All numbers must be finite. If the method conserves the lengths of
+/// spins, these must be 1 within 64 * epsilon at step 0. Later they must be 1 within
+/// 64 * epsilon * max(step, 1e6), and always within 0.01. An energy that can only fall must not
+/// rise from one check to the next by more than 64 * epsilon * Energy::magnitude. In this bound,
+/// the tolerance of an adaptive method, which is an angle, replaces 64 * epsilon if it is larger.
 class Guard {
  public:
-  /// `epsilon`: of the run's precision. A check is due after every step for up to 4096 sites, and
-  /// after every tenth step for more.
+  /// `epsilon`: the machine epsilon of the run's precision. A check is due after every step for up
+  /// to 4096 sites, and after every tenth step for more.
   Guard(io::Scene const& scene, double epsilon) : Guard(scene, epsilon, all_are_damped(scene)) {}
 
-  /// Returns a guard that has seen no state. `scene`: with the same damping.
+  /// Returns a guard for `scene` that has seen no state. The damping of `scene` must be that of
+  /// this guard's scene.
   Guard made_again(io::Scene const& scene) const { return Guard(scene, epsilon_, all_damped_); }
 
   static constexpr std::int64_t period_of(std::int64_t sites) { return sites <= 4096 ? 1 : 10; }
@@ -44,8 +45,8 @@ class Guard {
   /// time.
   std::optional<std::string> judge(Step const& step, Energy const& energy, double norm_defect);
 
-  /// Call it after spins were replaced. `change`: the resulting change of the energy, which no step
-  /// has caused.
+  /// Adds `change` to the energies of earlier checks. Call it after spins were replaced, with the
+  /// resulting change of the energy, which no step has caused.
   void add_to_energies(double change) {
     if (first_) first_->energy += change;
     if (last_) last_->energy += change;
@@ -73,7 +74,7 @@ class Guard {
   }
 
  private:
-  // Dampings of sites, which may be in a file, are read only once.
+  // The dampings of sites may be in a file. made_again() does not read them again.
   Guard(io::Scene const& scene, double epsilon, bool all_damped)
       : all_damped_(all_damped),
         energy_must_fall_(energy_must_fall(scene, all_damped)),

@@ -9,8 +9,8 @@
 
 namespace cayspin::simulation {
 
-/// Cache file for a demagnetising field's tensors, which can take long to compute: a line that
-/// identifies them, the numbers, and a checksum.
+/// Cache file for a demagnetising field's tensors, which can take long to compute. It holds a line
+/// that identifies the tensors, their values, and a checksum.
 class InteractionsFile {
  public:
   /// `of`: one line with everything that the tensors depend on.

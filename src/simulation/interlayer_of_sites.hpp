@@ -12,29 +12,31 @@
 
 namespace cayspin::simulation {
 
-/// Bonds of sites to those at `offset` from them, with only vacant sites in between.
+/// Bonds from each site to the site at `offset` from it, with only vacant sites in between.
 template <class Real>
 struct DistantBonds {
   std::int32_t offset[3] = {};
   cayspin::SiteArray<Real, 1> bilinear, biquadratic;  // 0 where there is no bond
-  cayspin::SiteArray<Real, 1> exchange = {};  // of the site at the other end; or without data
-  double per_square = 0;                      // 2 over the spacing squared
+  cayspin::SiteArray<Real, 1> exchange = {};          // A at the other end; may have no data
+  double per_square = 0;                              // 2 / spacing^2
 };
 
-/// Bonds to the next and the previous site along each axis, and the `distant` ones,
-/// E = -J s.s' - B (s.s')^2, where s and s' are the spins on the two sides of the face between the
-/// cells. `bilinear` and `biquadratic` hold the bonds to next sites; without data, there are none
-/// along that axis. In the half cell between the centre and the face, exchange A adds the energy
-/// k (1 - m.s), where k = 2 A over the spacing squared; s and s' minimise the total energy. This
-/// boundary condition of exchange at the face makes thick layers accurate to second order in the
-/// spacing (as in Suess et al., PRB 107, 104424, 2023). Where A is 0, or without A, s is m.
+/// Bonds to the next and the previous site along each axis, and the `distant` ones. The energy of a
+/// bond is E = -J * s.s' - B * (s.s')^2, where s and s' are the spins on the two sides of the face
+/// between the cells. `bilinear` (J) and `biquadratic` (B) hold the bonds to the next sites along
+/// each axis; without data there are none along that axis. In the half cell between the centre and
+/// the face, exchange A adds the energy k * (1 - m.s), where m is the spin of the cell and
+/// k = 2 A / spacing^2. The spins s and s' minimise the total energy of the bond and its two half
+/// cells. This boundary condition of exchange at the face makes thick layers accurate to second
+/// order in the spacing (as in Suess et al., PRB 107, 104424, 2023). Where A is 0, and if
+/// `exchange` has no data, s is m.
 template <class Real>
 struct InterlayerOfSites {
   cayspin::detail::DistantSites<Real> spins;
   cayspin::SiteArray<Real, 1> bilinear[3] = {}, biquadratic[3] = {};
-  cayspin::SiteArray<Real, 1> exchange = {};  // or without data
-  double per_square[3] = {};                  // 2 over the spacing squared
-  std::int32_t sweeps = 0;                    // after which s is exact to rounding
+  cayspin::SiteArray<Real, 1> exchange = {};  // A; may have no data
+  double per_square[3] = {};                  // 2 / spacing^2
+  std::int32_t sweeps = 0;                    // number of sweeps after which s is exact to rounding
   DistantBonds<Real> const* distant = nullptr;
   std::int32_t distant_count = 0;
 
@@ -132,9 +134,9 @@ struct InterlayerOfSites {
         energy = energy + Value(0.5) * select<Value>(has_none, none, bond);
       }
     }
-    /// Returns a better approximation of the s that minimises k (1 - m.s) - J s.s' - B (s.s')^2;
-    /// for B = 0 it is exact at the given s'. Without exchange (k = 0) returns m, the
-    /// spin of the cell.
+    /// Returns a better approximation of the s that minimises
+    /// k * (1 - m.s) - J * s.s' - B * (s.s')^2; for B = 0 it is exact at the given s'. Without
+    /// exchange (k = 0) returns m, the spin of the cell.
     KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> at_face(Value const& k, Vec3<Value> const& m,
                                                            Value const& J, Value const& B,
                                                            Vec3<Value> const& s,

@@ -28,14 +28,14 @@ bool has_name(std::string const& word) {
          (word == "serial" && cayspin::detail::is_host_execution<Space>);
 }
 
-/// Returns true if this is the name of a host execution space.
+/// Returns true if `space` is the name of a host execution space.
 bool is_on_host(std::string const& space);
 
 /// Returns the requested name, or that of Kokkos' default space. Throws UsageError for a space
 /// that is not compiled in, and for "serial" if Kokkos already runs with more than one thread.
 std::string chosen_space(std::optional<std::string> const& asked);
 
-/// Returns the number of threads; 1 on devices.
+/// Returns the number of threads of `exec`; 1 on devices.
 template <class Space>
 int threads_of(Space const& exec) {
   return cayspin::detail::is_host_execution<Space> ? exec.concurrency() : 1;

@@ -22,8 +22,8 @@
 namespace cayspin::simulation {
 namespace {
 
-// Returns the largest length of a vector, at 1001 equally spaced times of the run or among the
-// features, which include pulses between these times.
+// Returns the largest length of a vector at 1001 equally spaced times of the run, or that of its
+// time features if it is larger by more than 0.1 %. Features include pulses between these times.
 double largest(AppliedField const& vector, std::string_view key, io::Scene const& scene,
                Times const& times, TimeFeatures const& features) {
   if (!vector.present()) return 0;
@@ -139,7 +139,7 @@ double largest_anisotropy(io::Scene const& scene, io::Anisotropy const& term) {
          3 * largest_constant(scene, term.constant2, term.factors2);
 }
 
-// Both neighbours along each axis count; a biquadratic bond counts like a bilinear one of four
+// Both neighbours along each axis count; a biquadratic bond counts like a bilinear one with four
 // times its constant.
 double largest_interlayer(io::Scene const& scene, Lattice const& lattice) {
   double largest = 0, faces = 0;
@@ -150,14 +150,14 @@ double largest_interlayer(io::Scene const& scene, Lattice const& lattice) {
   return faces * largest / least_moment(scene);
 }
 
-// The factors bound the second derivatives of E on the sphere.
+// The factors of the constants are bounds on the second derivatives of E on the sphere.
 double largest_crystal_anisotropy(io::Scene const& scene, io::CrystalAnisotropy const& term) {
   double const of_first = term.hexagonal ? 36 : 2;
   return of_first * largest_constant(scene, term.constant, term.factors) +
          largest_constant(scene, term.constant2, term.factors2);
 }
 
-/// Largest |factors| of [field.in_time].
+/// Largest magnitudes of the factors in [field.in_time].
 struct LargestFactors {
   double exchange = 1, anisotropy = 1, dmi = 1;
 };
@@ -172,7 +172,7 @@ LargestFactors largest_factors(io::Scene const& scene, Times const& times,
           of(dmi, "field.in_time.dmi")};
 }
 
-// Returns a bound of |H| for the terms with site-dependent constants, and for interlayers.
+// Returns an upper bound on |H| due to the terms with site-dependent constants and to interlayers.
 double bound_of_numbers(io::Scene const& scene, Lattice const& lattice,
                         LargestFactors const& factors) {
   auto const& field = scene.field;
@@ -220,9 +220,9 @@ double largest_gyromagnetic(io::Lattice const& lattice) {
   return largest;
 }
 
-// Returns the largest bound at any site of a cell, whose sites may have different terms. `of_all`:
-// the bound for terms that all sites have; `of_moments`: the bound for fields that the moments
-// themselves create.
+// Returns an upper bound on |H| times the gyromagnetic ratio at any site of a cell, without applied
+// fields. `of_all`: the bound on -dE/dm due to terms that all sites have. `of_moments`: the bound
+// on the field that moments of 1 create.
 double bound_of_sites(io::Scene const& scene, Lattice const& lattice, double of_all,
                       double of_moments, LargestFactors const& factors) {
   auto const field = io::without_numbers_of_sites(scene.field);
@@ -246,7 +246,7 @@ double bound_of_sites(io::Scene const& scene, Lattice const& lattice, double of_
   return largest;
 }
 
-// Returns the largest |mu0 profile| of a source.
+// Returns the largest |mu0 * profile| of a source.
 double largest_profile(io::Scene const& scene, io::SiteVectors const& profile) {
   double largest = 0;
   io::for_each_box_of_planes(scene.lattice.shape, 3 * sizeof(double), [&](io::SiteBox const& box) {
@@ -257,7 +257,7 @@ double largest_profile(io::Scene const& scene, io::SiteVectors const& profile) {
   return std::abs(scene.field.mu0) * largest;
 }
 
-// `features` has an entry for each source that depends on t, in their order.
+// features.largest has an entry for each source that depends on t, in the order of the sources.
 double bound_of_sources(io::Scene const& scene, Times const& times, TimeFeatures const& features) {
   constexpr auto key = "field.sources";
   auto const is_of_source = [](auto const& entry) { return entry.first == key; };
@@ -301,7 +301,7 @@ double torque_bound(io::Scene const& scene, Lattice const& lattice, Times const&
     bound *= std::hypot(1, of->nonadiabaticity);
   }
   if (auto const& of = torque.slonczewski) {
-    // If gamma differs from site to site, strengths in T turn spins by the site's own.
+    // If gamma differs from site to site, strengths in T turn each spin by the gamma of its site.
     bool const are_fields = scene.material && scene.material->gamma_factors.there();
     bound += (are_fields ? largest_gyromagnetic_of_sites(scene) : 1) *
              slonczewski_bound(scene, *of, times, features);

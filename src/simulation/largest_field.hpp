@@ -12,17 +12,17 @@ namespace cayspin::simulation {
 /// Returns the largest damping of any site. Throws io::SceneError if one is negative.
 double largest_damping(io::Scene const& scene);
 
-/// Returns an upper bound of |H| at any site, at 1001 times of a run and at its features, including
-/// torques and multiplied by gyromagnetic ratios. For a demagnetising field it bounds the
-/// eigenvalues, which |H| at a single site may exceed. A program's own nonlocal field does not
-/// count. Throws io::SceneError for an invalid applied field or site-dependent constant.
+/// Returns an upper bound on |H| times the gyromagnetic ratio at any site, including torques, at
+/// 1001 times of a run and at its time features. For a demagnetising field, the bound is one on its
+/// eigenvalues, which |H| at a single site may exceed. A program's own nonlocal field is not
+/// included. Throws io::SceneError for an invalid applied field or site-dependent constant.
 double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& times,
                    TimeFeatures const& features);
 
-/// Returns the part of the bound due to point dipoles; 0 without them.
+/// Returns an upper bound on |H| due to point dipoles; 0 without them.
 double bound_of_dipoles(io::Scene const& scene, Lattice const& lattice);
 
-/// Returns an upper bound of |A|, from field_bound; for rigid bodies the largest row sum of |I^-1|,
+/// Returns an upper bound on |A|, from field_bound; for rigid bodies the largest row sum of |I^-1|,
 /// or 0 if the inertia is in a file.
 double largest_rate(io::Scene const& scene, Lattice const& lattice, Times const& times,
                     TimeFeatures const& features);

@@ -89,8 +89,8 @@ struct LatticeTerms {
   }
 };
 
-/// Returns a scene's term for kernels; with default values if the scene does not have it. Lattice
-/// terms do not depend on the space, the spins or t, so they are prepared only once.
+/// Returns a scene's term for kernels, with default values if the scene does not have the term.
+/// Lattice terms do not depend on the space, the spins or t, so they are prepared only once.
 template <class OfScene>
 auto library_term(std::optional<OfScene> const& term, Lattice const& lattice) {
   return term.value_or(OfScene{}).term(lattice).prepare(nullptr, nullptr, 0);

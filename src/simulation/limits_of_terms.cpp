@@ -15,8 +15,8 @@
 namespace cayspin::simulation {
 namespace {
 
-// Returns the largest strength of an interlayer over that of the exchange in a half cell beside it.
-// The cells of `box` come first along the axis.
+// Returns the largest ratio of an interlayer's strength to that of the exchange in the half cell
+// beside it, for bonds along `axis` that start at the cells of `box`.
 double largest_at_faces(io::Scene const& scene, io::SiteBox const& box, std::size_t axis,
                         std::int64_t range, double spacing) {
   constexpr auto key = "field.exchange";

@@ -97,8 +97,8 @@ struct OfOrder {
   using Stepper = Of<Spins, Order>;
 };
 
-/// A Runge-Kutta method in space instead of on the sphere. Spins leave the sphere unless each step
-/// is projected onto it.
+/// A Runge-Kutta method in R^3 instead of on the sphere. Spins leave the sphere unless the method
+/// projects them onto it after each step.
 template <template <class, class> class Of, class Tableau>
 struct InSpace {
   using tableau_type = Tableau;
@@ -132,8 +132,8 @@ struct AdaptiveGroup {
   using Chart = AdaptiveStereographic<Spins, Tableau>;
 };
 
-/// The series. Spins and rigid bodies have separate variants, and the isotropy "energy" is only for
-/// the latter.
+/// The methods of Series4. Spins and rigid bodies have separate variants, and the isotropy "energy"
+/// is only for rigid bodies.
 template <class Of>
 struct Series {
   template <class Spins, class Isotropy, class>
@@ -141,7 +141,7 @@ struct Series {
                           std::conditional_t<std::is_same_v<Isotropy, isotropy::Energy>,
                                              isotropy::Energy, isotropy::Zero>,
                           Of>;
-  /// Without a sigma and for linear equations, its steps equal those of RKMK4.
+  /// Without a sigma and for linear equations, steps of Series4 equal those of RKMK4.
   template <class Spins>
   using StableAs = Rkmk4<Spins, isotropy::Zero, Cayley>;
   static constexpr bool distinguishes_rigid_bodies = true;
@@ -194,7 +194,7 @@ constexpr Row<Family> row(io::Method method) {
   return {method};
 }
 
-/// The rows of a method in space and of "auto", for which the program chooses a method.
+/// Return the rows of a method in R^3, and of "auto", for which the program chooses a method.
 template <template <class, class> class Of, class Tableau>
 constexpr Row<family::InSpace<Of, Tableau>> baseline(io::Method const& method) {
   return {method};

@@ -11,7 +11,8 @@ namespace cayspin::simulation {
 
 /// Returns true for the field (not the gradient) of a scene with site-dependent moments and
 /// otherwise only the usual terms of micromagnetics: exchange (uniform or site-dependent), uniform
-/// DMI, uniaxial anisotropies, the demagnetising field and an applied field.
+/// DMI, uniaxial anisotropies, the demagnetising field and an applied field. The factors of
+/// exchange and anisotropy in time must be 1.
 template <class Real>
 bool has_few_beside_moments(PassTerms<Real> const& terms) {
   return terms.per_moments.data && !terms.has_pairs && !terms.has_torques() && !terms.is_gradient &&
@@ -20,8 +21,8 @@ bool has_few_beside_moments(PassTerms<Real> const& terms) {
          terms.anisotropy_factor == 1;
 }
 
-/// Computes H along a row if has_few_beside_moments; like PassTerms, but without tests for other
-/// terms.
+/// Functor that computes H times the gyromagnetic ratio along a row, for terms that
+/// has_few_beside_moments() accepts. Like PassTerms, but without tests for other terms.
 template <class Real, bool ExchangeOfSites, bool Vacancies>
 struct LoopOfMoments {
   PassTerms<Real> const& terms;

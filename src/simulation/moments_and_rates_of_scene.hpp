@@ -27,9 +27,9 @@ void FieldInPass<Spins>::Terms::add_moments_of_sites(std::vector<double> const& 
   largest_moment_ = largest_of_parts(lattice_, moments);
 }
 
-// Exchange that is compiled into stages takes a vacancy, which is the zero vector, for a neighbour
-// m', and adds A (m' - m). Stores the sum of A over the vacancies beside each site, to correct
-// this.
+// Exchange that is compiled into stages treats a vacancy, which is the zero vector, as a neighbour
+// m' and adds c * (m' - m), where c is the strength of the bond. To correct this, stores for each
+// site the sum of c over the vacancies beside it.
 template <class Spins>
 void FieldInPass<Spins>::Terms::add_vacancies(io::Scene const& scene) {
   auto const field = io::without_numbers_of_sites(scene.field);
@@ -47,7 +47,8 @@ void FieldInPass<Spins>::Terms::add_vacancies(io::Scene const& scene) {
   exec.fence("cayspin::FieldInPass: missing neighbours found");
 }
 
-// Adds dampings, gyromagnetic ratios and frozen spins. `moves`: 0 for a frozen spin, otherwise 1.
+// Stores the dampings of sites, and the factors by which A of each site is multiplied. `moves`: 0
+// for a frozen spin, otherwise 1.
 template <class Spins>
 void FieldInPass<Spins>::Terms::add_rates(io::Scene const& scene, io::SiteBox const& box,
                                           std::vector<double> moves) {

@@ -15,11 +15,11 @@ namespace cayspin::simulation {
 
 inline constexpr int regions_at_once = 4;
 
-/// Functor that sums the weights (moments) in each region of a group, which starts at region
-/// `first`.
+/// Functor that sums the weights (moments) in each region of a group: the regions from `first` to
+/// first + regions_at_once - 1.
 template <class Real>
 struct WeightsOfRegions {
-  cayspin::SiteArray<Real, 1> regions, moments;  // without moments: 1
+  cayspin::SiteArray<Real, 1> regions, moments;  // moments without data: all 1
   double first;
 
   template <class Site, class Value>
@@ -35,7 +35,8 @@ struct WeightsOfRegions {
   }
 };
 
-/// Functor that sums the weighted spins and the energy in each region of a group.
+/// Functor that sums the weighted spins and the energy in each region of the group that starts at
+/// region of.first.
 template <class Source, class Real>
 struct SumsOfRegions {
   WeightsOfRegions<Real> of;
@@ -59,7 +60,7 @@ struct SumsOfRegions {
 
 namespace {
 
-// Calls work(first) with the first region of each group.
+// Calls work(first) for each group, where `first` is the group's first region.
 template <class Work>
 void for_each_some(std::size_t count, Work const& work) {
   for (std::size_t first = 0; first < count; first += regions_at_once) work(first);

@@ -40,7 +40,8 @@ class RegionSums {
   RegionSums(io::Scene const& scene, Lattice const& lattice);
 
   /// Returns the magnetizations of all regions, followed by their energies. A region without a spin
-  /// has a magnetization of zero. `source`: gives the energy.
+  /// has a magnetization of zero. `source`: the generator or field from which the energies are
+  /// computed.
   template <class Exec, class Source>
   std::vector<double> operator()(Exec const& exec, Source const& source, Step const& step,
                                  Spins const& spins) const;

@@ -115,7 +115,8 @@ bool is_multirate(io::Demagnetization const& demag, io::Scene const& scene) {
 }  // namespace
 
 int order_of_multirate(io::Scene const& scene, Variant const& variant) {
-  constexpr double small = 0.015;  // above it, order 3 widens resonance lines by less than 1 %
+  // For larger damping, order 3 widens resonance lines by less than 1 %.
+  constexpr double small = 0.015;
   return variant.order >= (scene.system.damping < small ? 4 : 5) ? 4 : 3;
 }
 

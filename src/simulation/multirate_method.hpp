@@ -23,7 +23,8 @@ bool has_slow_field(io::Scene const& scene);
 /// or chooses its steps.
 void require_slow_field_fits(io::Scene const& scene, Variant const& variant);
 
-/// Returns an override of a key with which no term of the scene is multirate.
+/// Returns an override, KEY=VALUE, with which the scene's slab_demag, demag or dipoles is not
+/// multirate.
 std::string without_multirate(io::Scene const& scene);
 
 /// Returns the order in time to which an expensive field is interpolated: 4 for methods of order 5

@@ -60,7 +60,7 @@ class Sum {
  private:
   decltype(io::OwnField::nonlocal) own_;
   FieldOnHost<Real> other_;
-  std::vector<double> moments_;  // empty: 1 each
+  std::vector<double> moments_;  // empty: all are 1
   HostSpins sources_, field_;
 };
 

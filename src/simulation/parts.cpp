@@ -47,7 +47,8 @@ std::array<int, 2> read_parts(std::string const& text, cayspin::Lattice const& l
 
 double repeated_share(cayspin::Lattice const& lattice, int ghosts,
                       std::array<int, 2> const& parts) {
-  // Extents of a part in the middle along y and z, and how many of its ends are inside the lattice.
+  // Extents along y and z of a part in the middle of the lattice, and how many of its ends along
+  // each axis are inside the lattice.
   std::array<double, 2> extent{}, ends{};
   for (std::size_t i = 0; i < 2; ++i) {
     extent[i] = static_cast<double>(lattice.shape[i + 1]) / parts[i];

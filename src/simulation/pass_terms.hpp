@@ -24,8 +24,9 @@ struct CellSite {
   std::int32_t first_cubic = 0, last_cubic = 0;
 };
 
-/// H = (K (m.e) + K2 (m.e)^3) e with site-dependent K, K2 and e. If `axes` has no data, all sites
-/// have the same axis; if `second` has none, K2 is 0.
+/// Uniaxial anisotropy H = (K * m.e + K2 * (m.e)^3) * e with site-dependent K (`constants`), K2
+/// (`second`) and axis e (`axes`). If `axes` has no data, all sites have the same axis; if `second`
+/// has none, K2 is 0.
 template <class Real>
 struct AnisotropyOfSites {
   cayspin::SiteArray<Real, 1> constants;
@@ -89,10 +90,11 @@ struct FindMissing {
   }
 };
 
-/// Dzyaloshinskii-Moriya interaction with a site-dependent constant. A bond along the axis e has
-/// the mean D of its ends: H = sum of D v x m' over next and -D v x m' over previous neighbours. v
-/// is n x e / spacing for an interface and -e / spacing for the bulk; for D2d symmetry it is x /
-/// spacing along x, -y / spacing along y and zero along z.
+/// Dzyaloshinskii-Moriya interaction with a site-dependent constant. The D of a bond along the axis
+/// e is the mean of the constants at its ends. H is the sum of D * (v x m') over next neighbours
+/// and of -D * (v x m') over previous ones. The vector v is (n x e) / spacing for an interface and
+/// -e / spacing for the bulk. For D2d symmetry, v is x / spacing along x, -y / spacing along y and
+/// zero along z.
 template <class Real>
 struct DmiOfSites {
   cayspin::SiteArray<Real, 1> constants;
@@ -183,14 +185,13 @@ struct PassTerms {
   AnisotropyOfSites<Real> const* anisotropies_of_sites;
   CrystalAnisotropyOfSites<Real> const* crystals_of_sites;
   std::int32_t dmis, anisotropies, crystals, cubics_of_cell;
-  std::int32_t anisotropies_in_time;          // how many, from the first on, have the factor
+  std::int32_t anisotropies_in_time;          // number with anisotropy_factor; they come first
   double exchange_factor, anisotropy_factor;  // uniform exchange already includes its factor
   cayspin::SiteArray<Real, 1> moments;        // 0 where there is no spin
   SourcesNow<Real> sources;
-  cayspin::SiteArray<Real, 1> per_moments;  // without data: the same in every cell
-  cayspin::SiteArray<Real, 1>
-      per_gyromagnetic;                       // for torques, if all of A is scaled; or without data
-  cayspin::detail::StoredField<Real> of_all;  // acts on moments like an applied field
+  cayspin::SiteArray<Real, 1> per_moments;       // without data: the same in every cell
+  cayspin::SiteArray<Real, 1> per_gyromagnetic;  // for torques; may have no data
+  cayspin::detail::StoredField<Real> of_all;     // acts on moments like an applied field
   Vec3<double> applied_in_field;  // zero if the kernels of the methods add the applied field
   bool has_usual, has_pairs, has_zhang_li, has_slonczewski, has_slonczewski_of_sites;
   bool has_vacancies, has_of_all;
@@ -233,8 +234,8 @@ struct PassTerms {
   }
   bool has_local_of_sites() const { return anisotropies > 0 || crystals > 0 || cubics_of_cell > 0; }
   /// Returns true if there are only couplings, anisotropy axes of the cell's sites, and an applied
-  /// field, as in most scenes of crystals. Their kernels need no tests for other terms at each
-  /// site.
+  /// field, as in most scenes of crystals. The kernels for these terms need no tests for other
+  /// terms at each site.
   bool has_few() const {
     return !has_usual && !has_torques() && !is_gradient && !has_bonds_of_sites() &&
            !has_local_of_sites() && !per_moments.data && sources.count == 0 &&
@@ -271,7 +272,7 @@ struct PassTerms {
                                                 FieldAndEnergy<Value>& sum) const {
     for (std::int32_t i = 0; i < crystals; ++i) sum.add(crystals_of_sites[i], stencil);
   }
-  /// Adds all anisotropies, if they change in time.
+  /// Adds all anisotropies, for an anisotropy_factor other than 1.
   template <class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void add_anisotropy_in_time(Stencil const& stencil,
                                                           QuadraticTerms const& quadratic,
@@ -303,8 +304,8 @@ struct PassTerms {
     return sites[pairs.site_of_plane(z)];
   }
 
-  /// Returns H on a site's moment times the gyromagnetic ratio. `h`: -dE/dm without the applied
-  /// field.
+  /// Returns the H that acts on a site's moment, multiplied by the gyromagnetic ratio. `h`: -dE/dm
+  /// without the applied field.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> seen_by_moment(CellSite const& site,
                                                                 Vec3<double> const& applied,
@@ -327,7 +328,7 @@ struct PassTerms {
       Stencil const& stencil, FieldAndEnergy<Value> const& of_pairs) const {
     auto const& m = stencil.center();
     auto const& mine = site_of_plane(stencil.site().z());
-    // -dE/dm, from which each moment gets its H.
+    // -dE/dm and E, without applied fields. H is computed from -dE/dm below.
     auto sum = of_pairs;
     if (has_usual) sum.add(usual, stencil);
     add_bonds_of_sites(stencil, sum);

@@ -17,8 +17,8 @@ struct EndOfPath {
   std::variant<std::filesystem::path, io::HostVectors> state;
 };
 
-/// Finds a path of least energy between two states, in the scene, space and precision of a run,
-/// whose own spins do not change. `interrupted` is asked between steps of the search. Throws what
+/// Finds a minimum energy path between two states, in the scene, space and precision of a run. The
+/// run's own spins do not change. `interrupted` is polled between steps of the search. Throws what
 /// require_path, require_memory and find_scene_path throw, and UsageError for an end that is not a
 /// state of the scene.
 ScenePath path_of_run(SceneRun const& run, EndOfPath const& from, EndOfPath const& to,

@@ -108,14 +108,16 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
     memory.field += field_bytes<Real>(lattice, 6);
     start += 8 * (9 + 6 + 6) * all.sites();
   }
-  // Two queued frames, or pieces of frames, and HDF5's copies of a chunk.
+  // Memory for output: two queued frames or pieces of frames, HDF5's copies of a chunk, the
+  // positions, and a copy of a rank's own spins.
   auto const pieces = io::frame_pieces(all.shape, sizeof(Real), storage_of(scene), planes_at_once,
                                        std::ssize(scene.lattice.basis));
   std::int64_t const positions = writes && has_positions(scene.lattice) ? 8 * numbers_of_all : 0;
   std::int64_t const frames =
       (writes ? static_cast<std::int64_t>(2 * pieces.bytes + pieces.copied) : 0) + positions +
       (is_part ? static_cast<std::int64_t>(sizeof(Real)) * numbers : 0);
-  // A field being written to a checkpoint, in double.
+  // Memory for a checkpoint: the field being written, in double, and planes of the whole lattice on
+  // the first rank.
   bool const stores = !scene.output.checkpoint_every.is_never();
   std::int64_t const of_number = sizeof(Real) == sizeof(double) ? 8 : 12;
   std::int64_t const of_planes =
@@ -237,7 +239,8 @@ Plan make_plan(io::Scene const& scene, Precision precision,
   if (has_positions(scene.lattice))
     plan.file_bytes += static_cast<double>(position_bytes(scene.lattice)) +
                        24 * frames * static_cast<double>(scene.lattice.basis.size());
-  // The field that a step must resolve. Exchange has the fastest modes, which the stable dt covers.
+  // The scene with the field that a step must resolve. The modes of exchange and couplings are the
+  // fastest; the stable dt, or a stiff method, already takes care of them.
   io::Scene followed = scene;
   if (plan.variant.method->stiff || std::isfinite(plan.stable_dt)) {
     followed.field.exchange.reset();

@@ -20,7 +20,7 @@ struct Memory {
   std::int64_t spins = 0;  // the state
   std::int64_t work = 0;   // of the method
   std::int64_t field = 0;  // of terms and inertia stored per site
-  std::int64_t files = 0;  // the start while it is read, and frames being written
+  std::int64_t files = 0;  // to read the start, or to write frames and checkpoints
 
   std::int64_t simulation() const { return spins + work + field; }
   std::int64_t total() const { return simulation() + files; }
@@ -32,7 +32,7 @@ struct Plan {
   Variant const& variant;
   MethodOptions options;
   Times times;
-  double stable_dt;  // infinity without a limit, 0 when every dt amplifies
+  double stable_dt;  // infinity without a limit, 0 if errors grow at every dt
   // Bound on a spin's turn in `substep`, in radians; without exchange and couplings if stable_dt is
   // finite or the method is stiff.
   double turn;
@@ -46,23 +46,24 @@ struct Plan {
   static constexpr double most_noise = 0.5;  // radians per step
 };
 
-/// Returns the number of frames, or of samples, of so many steps: the first, the last, and those
-/// after every `every` steps.
+/// Returns the number of frames, or of samples, in `steps` steps: one at the start, one at the end,
+/// and one after every `every` steps.
 inline std::int64_t frames_of(std::int64_t steps, std::int64_t every) {
   return steps / every + (steps % every != 0) + 1;
 }
 
-/// Throws io::SceneError, for example for an invalid lattice. `features`: the scene's, if they are
-/// already known.
+/// Plans a run of a scene. Throws io::SceneError, for example for an invalid lattice. `features`:
+/// the scene's time features, if they are already known.
 Plan make_plan(io::Scene const& scene, Precision precision,
                std::shared_ptr<TimeFeatures const> features = nullptr);
 
 /// Returns why dt is too large, if it is: it is above the stable dt, turns spins by more than 2
 /// radians in a substep (3 if a stable dt is known), has substeps longer than a feature of a field,
-/// or lets noise turn spins by more than most_noise. Returns nothing for adaptive methods.
+/// or lets noise turn spins by more than most_noise. Returns nothing for adaptive methods and for
+/// runs without steps.
 std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units);
-/// Returns the same as a line that names the scene's key; throws it as io::SceneError if the scene
-/// sets refuse_unstable.
+/// Returns why dt is too large as a line that names the scene's key. If the scene sets
+/// refuse_unstable, throws that line as io::SceneError.
 std::optional<std::string> dt_warning(io::Scene const& scene, Plan const& plan);
 
 /// Returns true if there is memory for the run.

@@ -62,7 +62,8 @@ class Ranks {
   /// Replaces the text by that of the first rank.
   virtual void tell(std::string& text) const = 0;
   /// Gathers `planes` planes along z of the whole lattice, from plane `first` on, into `gathered`,
-  /// which is used only on the first rank. `own`: the numbers of this part's own sites, x fastest.
+  /// which is used only on the first rank. `own`: the values of this part's own sites, with x
+  /// varying fastest.
   virtual void gather(cayspin::Lattice const& local, std::size_t bytes_of_site, std::int64_t first,
                       std::int64_t planes, void const* own, void* gathered) const = 0;
 
@@ -73,8 +74,8 @@ class Ranks {
     return !any({of_first != text, false})[0];
   }
 
-  /// Returns the result of work(). If work() throws on one rank, throws on all: that exception
-  /// there, OtherRankFailed elsewhere.
+  /// Calls work() on all ranks, and returns its result. If it throws on a rank, throws on all
+  /// ranks: that exception on the first rank that failed, OtherRankFailed on the others.
   template <class Work>
   auto together(Work const& work) {
     using Result = std::invoke_result_t<Work>;
@@ -93,10 +94,11 @@ class Ranks {
     if constexpr (!std::is_void_v<Result>) return std::move(*result);
   }
 
-  /// Ends all ranks. Call it on a rank with an exception that the others do not know of, after
-  /// reporting it.
+  /// Ends all ranks with `status`. Call it on a rank that has an exception of which the other ranks
+  /// do not know, after reporting that exception.
   virtual void leave_by(int status) = 0;
-  /// Returns true if together() has thrown on several ranks, which then all know of the failure.
+  /// Returns true if together() has thrown on all of several ranks, so that each knows of the
+  /// failure.
   bool agreed() const { return agreed_; }
 
  protected:

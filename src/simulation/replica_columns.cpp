@@ -65,7 +65,7 @@ std::int64_t columns_on_a_thread(std::int64_t sites) {
 }
 
 // Returns how many columns each lattice gets: enough that its rows are not short, and otherwise few
-// enough that each thread has a lattice.
+// enough that its kernels stay on one thread and that each thread has a lattice.
 std::int64_t columns_of_a_lattice(std::int64_t replicas, std::int64_t sites, int threads) {
   auto const parts_of = [](std::int64_t all, std::int64_t part) { return (all + part - 1) / part; };
   std::int64_t const each = parts_of(parts_of(replicas, threads), lanes) * lanes;

@@ -13,9 +13,10 @@
 namespace cayspin::simulation {
 
 /// The replicas of a scene with [ensemble] as the columns of a few lattices: x counts replicas, y
-/// and z are the axes of the scene's lattice. A kernel then advances as many replicas at once as a
-/// register has lanes, and one launch serves all replicas of a lattice. The spacing along x is so
-/// large that exchange along x vanishes. Each replica is bit-identical to a separate run.
+/// and z are the (at most two) axes of the scene's lattice. A kernel then advances as many replicas
+/// at once as a register has lanes, and one launch serves all replicas of a lattice. The spacing
+/// along x is so large that exchange along x vanishes. The results of each replica are bitwise
+/// identical to those of a separate run.
 class ReplicaColumns {
  public:
   /// `one`: the scene of the first replica. Returns nothing if separate runs would be faster, or if
@@ -38,7 +39,7 @@ class ReplicaColumns {
   struct Ended {
     bool interrupted = false;
     std::vector<std::int64_t> failed;  // replicas of the lattices that failed
-    std::exception_ptr error = {};     // of the first of these
+    std::exception_ptr error = {};     // of the first lattice that failed
   };
   /// Advances to step `target`. A lattice in which a replica fails stays where SceneRun::advance
   /// leaves it.

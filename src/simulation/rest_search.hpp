@@ -14,10 +14,10 @@
 namespace cayspin::simulation {
 
 /// Detects when a run with integrator.until_torque has reached a minimum of the energy. A small
-/// torque is not enough, since maxima and saddles have none either, and spins leave them slowly. So
-/// the torque must not have grown since the previous check, the energy must have fallen (or the
-/// last change of the field must be over), and the search of `cayspin relax`, on a copy of the
-/// spins, must find no descent direction. On several ranks there is no such search.
+/// torque is not enough, since it also vanishes at maxima and saddles, and spins leave these
+/// slowly. So the torque must not have grown since the previous check, the energy must have fallen
+/// (or the last change of the field must be over), and the search of `cayspin relax`, on a copy of
+/// the spins, must find no descent direction. On several ranks there is no such search.
 template <class Real, class Space>
 class RestSearch {
   using Spins = SpinField<Real, typename Space::memory_space>;
@@ -29,9 +29,10 @@ class RestSearch {
 
   RestSearch(io::Scene const& scene, double bound) : scene_(scene), bound_(bound) {}
 
-  /// `torque`: max |m x H|. `fell`: the energy is below that of the first check or, if the field
-  /// changes in time, the last change is over. `field`: made for FieldFor::energy. With `at_end`,
-  /// reports a saddle even if no search is due.
+  /// Tells whether the spins are at a minimum or at a saddle. `torque`: max |m x H|. `fell`: the
+  /// energy is below that of the first check or, if the field changes in time, the last change is
+  /// over. `field`: made for FieldFor::energy. With `at_end`, reports a saddle even if no search is
+  /// due.
   Found look(Space const& exec, Step const& step, Spins const& spins,
              SceneField<Spins> const& field, double torque, bool fell, bool at_end) {
     bool const grew = torque > last_torque_;
@@ -50,7 +51,7 @@ class RestSearch {
     return {.at_saddle = true};
   }
 
-  /// Call after the spins were replaced.
+  /// Call it after the spins were replaced.
   void begin_again() {
     last_torque_ = std::numeric_limits<double>::infinity();
     next_ = wait_ = 0;
@@ -75,7 +76,8 @@ class RestSearch {
     }
     // With site-dependent moments or gyromagnetic ratios, the search's own measure of the torque
     // may exceed the bound. The search would then only descend, because it looks for a way off a
-    // saddle only below its bound. So the bound is raised until it looks for one.
+    // saddle only if its torque is below the bound. So the bound is raised until the search looks
+    // for one.
     double bound = bound_;
     for (int attempt = 0; attempt < 30; ++attempt, bound *= 4) {
       Kokkos::deep_copy(exec, trial_.allocation(), spins.allocation());
@@ -91,7 +93,7 @@ class RestSearch {
   io::Scene scene_;  // for messages
   double bound_;
   double last_torque_ = std::numeric_limits<double>::infinity();
-  std::int64_t next_ = 0, wait_ = 0;  // earliest step of the next search; steps until then
+  std::int64_t next_ = 0, wait_ = 0;  // earliest step of the next search; interval in steps
   std::optional<SceneMinimizer<Real, Space>> minimizer_;
   Spins trial_;
 };

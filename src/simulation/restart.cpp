@@ -46,8 +46,8 @@ bool remembers(io::Scene const& scene, Variant const& variant) {
          scene.lattice.follow.has_value();
 }
 
-// Returns true if the scene ran with the plan's method, and if the keys that need a memory of steps
-// have not changed.
+// Returns true if the earlier run, of the scene `before`, used the plan's method, and if its memory
+// of steps has what the keys of `scene` need.
 bool ran_alike(io::Scene const& before, io::Scene const& scene, Plan const& plan) {
   return io::has_integrator(before) && !before.integrator.method->automatic &&
          &find_variant(before) == &plan.variant &&
@@ -58,8 +58,8 @@ bool ran_alike(io::Scene const& before, io::Scene const& scene, Plan const& plan
          has_slow_field(before) == has_slow_field(scene);
 }
 
-// Returns the key of the lattice that differs in the file; empty if none does, or if that is
-// unknown.
+// Returns the key of the lattice that differs in the file; empty if none does, or if the lattices
+// cannot be compared.
 std::string other_lattice_key(io::Scene const& before, io::Scene const& scene) {
   try {
     return io::changed_lattice_key(before, scene);
@@ -246,7 +246,7 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
   if (stored != to_string(precision))
     refuse(fmt::format("its spins are in {} precision", stored),
            fmt::format("--precision {}", stored));
-  // Computed like the times in the file, so that times of the same scene have equal bits.
+  // Times are computed as for the file, so that those of the same scene are bitwise equal.
   double const dt = scene.integrator.dt * units.time;
   auto const is_at = [&](std::int64_t step) {
     double const round_off = 8 * std::numeric_limits<double>::epsilon() * time;

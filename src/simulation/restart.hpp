@@ -15,7 +15,8 @@
 
 namespace cayspin::simulation {
 
-/// Returns true if a run of this plan needs more than its spins to continue with the same bits.
+/// Returns true if a run of this plan needs more than its spins to continue exactly, that is, with
+/// bitwise identical results.
 bool remembers(io::Scene const& scene, Plan const& plan);
 
 /// The last frame of a run: the start of its stage, and its step, which is -1 if there is no frame.
@@ -39,7 +40,8 @@ struct EarlierRun {
 
   /// Returns the scene as it ran, with the chosen method if its own method is "auto".
   std::string const& scene_as_run() const;
-  /// Returns the scene as typed; resolved_scene is empty unless its method is "auto".
+  /// Return the scene as typed, and the scene with the chosen method. The latter is empty unless
+  /// the scene's own method is "auto".
   std::string const& scene_text() const;
   std::string const& resolved_scene() const;
 
@@ -51,12 +53,12 @@ struct EarlierRun {
   std::filesystem::path path;
   std::optional<io::TrajectoryInfo> trajectory;
   std::unique_ptr<io::CheckpointReader> checkpoint;
-  bool at_begin = false;  // at the start of a stage, the method has no memory
+  bool at_begin = false;  // continues at the start of a stage, where the method has no memory
   bool is_ensemble = false;
 };
 
-/// The state from which a run of a scene, or of a stage, continues with the same bits as an
-/// uninterrupted run.
+/// The state from which a run of a scene, or of a stage, continues. If the scene has not changed,
+/// the results are bitwise identical to those of an uninterrupted run.
 class Restart {
  public:
   /// Throws UsageError when there is no such state: the files hold no frame, the lattice, the

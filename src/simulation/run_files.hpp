@@ -24,8 +24,8 @@ io::TrajectoryHeader run_header(io::Scene const& scene, Precision precision,
 io::CheckpointHeader checkpoint_header(io::Scene const& scene, Precision precision,
                                        std::int64_t step, double time);
 
-/// Returns true if files store the positions of the sites, because these do not form a rectangular
-/// grid.
+/// Returns true if files store the positions of the sites, because the sites do not form a
+/// rectangular grid.
 bool has_positions(io::Lattice const& lattice);
 /// Returns the bytes of /positions in a file; 0 without them.
 std::int64_t position_bytes(io::Lattice const& lattice);

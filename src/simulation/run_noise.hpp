@@ -27,7 +27,7 @@ class RunNoise {
 
   /// Applies the noise after step `step`, calls look() if `wanted`, and applies the noise before
   /// the next step, unless look() returns stop or the step is the last. `first`: the step from
-  /// which the run continues; the noise after this step is not applied.
+  /// which the run continues; the noise after step `first` is not applied.
   template <class Exec, class Look>
   Next operator()(Exec const& exec, Step const& step, std::int64_t first, Spins const& spins,
                   bool wanted, Look const& look) {
@@ -47,14 +47,14 @@ class RunNoise {
     return Next::proceed;
   }
 
-  /// Call when the spins are replaced: no half of the noise has been applied to them.
+  /// Call it after the spins were replaced: no half of the noise has been applied to the new spins.
   void reset() { begun_ = -1; }
   /// Calls visit(name, number) for the state that a run needs to continue after a failed step.
   template <class Visit>
   void visit_memory(Visit const& visit) {
     visit("noise.begun", begun_);
   }
-  /// Call it if the run goes on from the spins of another one, at the same step.
+  /// Call it if the run goes on from the spins of another run, at the same step.
   void go_on_from(RunNoise const& other) { begun_ = other.begun_; }
   /// Returns the time spent on noise since the last call.
   double take_seconds() { return std::exchange(seconds_, 0.0); }
@@ -87,7 +87,7 @@ class RunNoise {
     return {like, damping, options};
   }
 
-  // Applies the noise before the next step and, if `ends`, also that after this one.
+  // Applies the noise before the next step and, if `ends` is true, also the noise after this step.
   template <class Exec>
   void turn(Exec const& exec, Step const& step, bool ends, Spins const& spins) {
     // A step that failed is repeated from spins that already have their noise.
@@ -111,7 +111,7 @@ class RunNoise {
 
   ThermalNoise<Spins> noise_;
   TemperatureInTime temperature_;
-  std::int64_t begun_ = -1;  // the step after which the next one's noise was applied
+  std::int64_t begun_ = -1;  // step after which the noise before the next step was applied
   double seconds_ = 0;
 };
 

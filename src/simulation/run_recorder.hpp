@@ -37,7 +37,8 @@ class RunRecorder {
 
  private:
   SceneRun& run_;
-  std::int64_t first_, end_, written_ = -1, sampled_ = -1;  // steps; the last frame and sample
+  // Steps. written_ and sampled_ are those of the last frame and the last sample.
+  std::int64_t first_, end_, written_ = -1, sampled_ = -1;
   std::int64_t evaluations_before_;
   double seconds_before_;
   Kokkos::Timer clock_;

@@ -86,7 +86,8 @@ class RunningScene : public Simulation<Real, Space> {
     return ending;
   }
 
-  /// Sets the step to which this call of advance() and later ones go on, if past the scene's end.
+  /// Sets the step at which the run will end, in the next call of advance() or in a later one. It
+  /// matters only beyond the scene's end.
   void set_run_end(std::int64_t step) { run_end_ = step; }
 
   Guard const& guard() const { return guard_; }
@@ -96,7 +97,8 @@ class RunningScene : public Simulation<Real, Space> {
   void go_on_from(std::int64_t shift) {
     if (follower_) follower_->go_on_from(shift);
   }
-  /// Call it if the spins are those of `before`, at the same step.
+  /// Takes over the shift and the state of the noise from `before`. The spins must be those of
+  /// `before`, at the same step.
   void go_on_from(RunningScene const& before) {
     go_on_from(before.shift());
     if (noise_ && before.noise_) noise_->go_on_from(*before.noise_);
@@ -109,8 +111,8 @@ class RunningScene : public Simulation<Real, Space> {
     return numbers;
   }
 
-  /// Samples and checks the spins. Searches for an equilibrium if the scene has until_torque and
-  /// `for_rest` is true; with `at_end` also reports saddles.
+  /// Samples and checks the spins. Also checks whether they are at equilibrium, if the scene has
+  /// until_torque and `for_rest` is true. With `at_end`, reports a saddle even if no search is due.
   Found look(Space const& exec, Step const& step, Spins const& spins, bool for_rest = true,
              bool at_end = false) {
     bool const with_torque = torque_ && for_rest;
@@ -140,8 +142,9 @@ class RunningScene : public Simulation<Real, Space> {
     if (noise_) noise_->reset();
   }
 
-  /// Stores or restores everything that a run needs to continue from a step with the same bits.
-  /// `continues`: true if the method keeps its memory.
+  /// Stores or restores everything that a run needs to continue exactly from a step. `continues`,
+  /// which is stored or restored as well: true if the method continues with its memory of earlier
+  /// steps.
   void exchange(Checkpoint& checkpoint, bool& continues) {
     this->exec.fence("cayspin::RunningScene: exchange");
     cayspin::detail::ExchangeMemory const visit(checkpoint);
@@ -188,7 +191,7 @@ class RunningScene : public Simulation<Real, Space> {
 
     /// Returns true if the run stopped to move the lattice.
     bool moves() const { return cells_ != 0; }
-    /// Moves the lattice, and returns the step after which it did.
+    /// Moves the lattice, and returns the step after which the run stopped for that.
     std::int64_t move() {
       scene_.move(stopped_, std::exchange(cells_, 0));
       return moved_ = stopped_.number;
@@ -203,8 +206,8 @@ class RunningScene : public Simulation<Real, Space> {
       return scene_.follower_ && !step.last && scene_.follower_->due(step);
     }
     Next look(Space const& exec, Step const& step, Spins const& spins) {
-      // Also if only the follower is due: should a later step fail, an adaptive method keeps the
-      // spins of this one.
+      // Calls the run's observer even if only the follower is due. If a later step fails, an
+      // adaptive method keeps the spins of this step, so the observer must know this step.
       if (looks_(exec, step, spins) == Next::stop) return Next::stop;
       if (!follows(step)) return Next::proceed;
       cells_ = scene_.follower_->cells_off(exec, spins);
@@ -218,13 +221,14 @@ class RunningScene : public Simulation<Real, Space> {
     std::int64_t cells_ = 0, moved_ = -1;
   };
 
-  // Returns the time after which the field is constant: never, if that is unknown because the run
-  // goes on past the scene's end.
+  // Returns the time after which the field is constant, or infinity if that time is unknown because
+  // the run goes on past the scene's end.
   double last_change() const {
     return run_end_ > features_end_ ? std::numeric_limits<double>::infinity() : last_change_;
   }
 
-  // Tells the guard how the move changes the energy, since no step has caused that change.
+  // Moves the lattice, and tells the guard how that changes the energy, since no step has caused
+  // the change.
   void move(Step const& step, std::int64_t cells) {
     auto const energy = [&] {
       return cayspin::energy(this->exec, this->generator, this->spins, step.time).value;
@@ -258,7 +262,7 @@ class RunningScene : public Simulation<Real, Space> {
 
   std::unique_ptr<OpenMethod> method_;
   Guard guard_;
-  double last_change_;  // of fields and torques that depend on t, up to step features_end_
+  double last_change_;  // time of the last change of the field up to step features_end_
   std::int64_t features_end_, run_end_ = 0;
   std::optional<SceneGenerator<Spins>> torque_;
   std::optional<RestSearch<Real, Space>> rest_;

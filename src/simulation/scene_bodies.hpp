@@ -32,7 +32,7 @@ struct SceneBodiesNow : cayspin::detail::BodyGenerator<SceneBodiesNow<Many>> {
 };
 
 /// The generator of rigid bodies, for methods that treat them differently from spins; with or
-/// without the component along the spin, selected at run time.
+/// without the component of A along the spin, selected at run time.
 template <class Bodies>
 struct RigidBodiesNow {
   static constexpr bool is_local = true;

@@ -21,8 +21,9 @@ namespace {
 
 using Components = std::array<io::AppliedComponent, 3>;
 
-// Returns the numbers in the expressions, with the sums and differences of the first 16: they may
-// be times at which something switches. In SI they are typed in s.
+// Returns the numbers in the expressions, and the sums and differences of pairs of the first 16.
+// Any of these may be a time at which something switches. In SI, times in expressions are in s; the
+// result is in reduced units.
 std::vector<double> events_of(Components const& components, double time_unit) {
   static std::regex const number(R"((\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)");
   constexpr std::size_t most_paired = 16;

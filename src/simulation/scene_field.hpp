@@ -83,8 +83,8 @@ class SceneField {
     return !stored_ && !slow_ && (!pass_ || pass_->rows_need_only_time());
   }
 
-  /// Prepares dH/dt for given rates of spins, with the applied field's rate of change in place of
-  /// the field.
+  /// Prepares dH/dt for given rates of change of the spins. The time derivative of the applied
+  /// field takes the place of the applied field.
   template <class Exec>
   SceneFieldNow<Real> prepare_rate(Exec const& exec, Spins const& rates, double t,
                                    double dt) const {

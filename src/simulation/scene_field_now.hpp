@@ -16,8 +16,9 @@
 
 namespace cayspin::simulation {
 
-/// All terms quadratic in one spin as one symmetric matrix M: H = M m, E = -m.M m / 2. Includes any
-/// number of anisotropy axes, and a slab's local demagnetising field.
+/// All terms that are quadratic in a single spin, as one symmetric matrix M: H = M m and
+/// E = -m.(M m) / 2. These are any number of anisotropy axes, and a slab's local demagnetising
+/// field.
 class QuadraticTerms {
  public:
   void add(double constant, io::Triple const& axis) {
@@ -50,7 +51,7 @@ class QuadraticTerms {
   KOKKOS_FORCEINLINE_FUNCTION Value energy(Vec3<Value> const& m) const {
     return Value(-0.5) * dot(m, field(m));
   }
-  /// Sum of |energy| over the terms.
+  /// Returns the sum of |energy| over the terms.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Value magnitude(Vec3<Value> const& m) const {
     return Value(0.5) * dot(m, magnitude_.template matrix<Value>() * m);
@@ -90,8 +91,8 @@ class QuadraticTerms {
 };
 
 /// A function that computes H along a piece of a row, and is compiled once for all methods;
-/// `evaluate` is null if there is none. `is_whole`: stages add nothing to its result, except, if
-/// `lacks_local`, anisotropy axes and the applied field.
+/// `evaluate` is null if there is none. `is_whole`: the function computes the whole H or, if
+/// `lacks_local` is true, all of H but the anisotropy axes and the applied field, which stages add.
 template <class Real>
 struct FieldAlongRows {
   using Fields = cayspin::detail::RowFields<Real>;
@@ -115,7 +116,7 @@ struct SceneFieldNow {
 
   // Set by begin_row, for its row.
   cayspin::detail::RowInput<Real> row = {};  // H found so far
-  std::ptrdiff_t compiled_sites = 0;         // sites whose packs are neither the first nor the last
+  std::ptrdiff_t compiled_sites = 0;  // number of sites in packs other than the first and last
   bool adds_row = false, adds_more = false;
 
   static constexpr int row_fields = 1;
@@ -158,7 +159,7 @@ struct SceneFieldNow {
                                lattice_terms.add_turning_field(stencil, local_field(stencil)));
   }
 
-  /// Returns true if the on-site part depends on the spin.
+  /// Returns true if the on-site part of H depends on the spin.
   KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return quadratic.present(); }
 
   /// Returns the part of H that is linear in the spins: H without the applied field.
@@ -184,7 +185,7 @@ struct SceneFieldNow {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Spin const& spin) const {
     return quadratic.add_field(spin.center(), zeeman.field(spin));
   }
-  /// Returns dH/dt along rates, from the result of prepare_rate.
+  /// Returns dH/dt for spins that change at `rates`. Call it on the result of prepare_rate.
   template <class Value, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const&,
                                                      Stencil const& rates) const {
@@ -246,11 +247,11 @@ struct SceneFieldNow {
 /// Site-dependent numbers that change how spins turn in H.
 template <class Real>
 struct OwnOfSites {
-  cayspin::SiteArray<Real, 1> dampings = {}, rates = {};  // or without data
+  cayspin::SiteArray<Real, 1> dampings = {}, rates = {};  // may have no data
   bool precession = true;
 
   KOKKOS_FORCEINLINE_FUNCTION bool any() const { return rates.data || dampings.data; }
-  /// Returns A, where `h` is the sum of all terms of H.
+  /// Returns A. `h`: H if `dampings` has data, otherwise A without site-dependent values.
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> of(Site const& site, Vec3<Value> const& m,
                                              Vec3<Value> const& h) const {

@@ -69,7 +69,7 @@ struct SceneGeneratorNow {
     return own.of(rates.site(), m, is_llg ? rate_of(llg, m, rates) : rate_of(bodies, m, rates));
   }
 
-  /// Returns the generator with its component along the spin.
+  /// Returns the generator without the removal of the component of A along the spin.
   SceneGeneratorNow bare() const {
     auto other = *this;
     other.orthogonal = false;

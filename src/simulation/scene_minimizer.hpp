@@ -24,14 +24,14 @@ class SceneMinimizer {
 
   explicit SceneMinimizer(Spins const& like) : minimizer_(like) {}
 
-  /// Calls cayspin::minimize, in reduced units, where the field is -dE/dm: H times the moment.
-  /// Throws NumbersFailed for a field that is not finite.
+  /// Searches for a minimum of the energy, in reduced units. `field` computes -dE/dm, which is H
+  /// times the moment. Throws NumbersFailed for a field that is not finite.
   Minimum minimize(Space const& exec, io::Scene const& scene, SceneField<Spins> const& field,
                    Spins& spins, MinimizeOptions const& options);
 
-  /// Like minimize, but options.torque and Minimum::torque are max |m x H|. If the scene has
-  /// moments, it searches with other bounds, up to 20 times in all, until max |m x H| is at most
-  /// options.torque.
+  /// Like minimize, but options.torque is a bound on max |m x H|, and Minimum::torque is its value.
+  /// If the scene has moments, repeats the search with smaller bounds, up to 20 times in all, until
+  /// max |m x H| is at most options.torque.
   Minimum relax(Space const& exec, io::Scene const& scene, SceneField<Spins> const& field,
                 Spins& spins, MinimizeOptions const& options);
 

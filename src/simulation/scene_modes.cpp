@@ -202,7 +202,7 @@ FoundCurvatures find_curvatures(
 
 namespace {
 
-// Along open axes, a cell extends over the whole lattice.
+// Returns the number of sites in a cell. Along open axes, a cell extends over the whole lattice.
 std::int64_t sites_of_a_cell(io::Lattice const& lattice) {
   auto const sites = static_cast<std::int64_t>(lattice.basis.size());
   std::int64_t count = 1;
@@ -211,7 +211,7 @@ std::int64_t sites_of_a_cell(io::Lattice const& lattice) {
   return lattice.boundary[2] == io::BoundaryKind::periodic ? count * sites : count;
 }
 
-// Returns a lower bound of how many cells the terms of a scene reach along an axis.
+// Returns a lower bound on the number of cells over which the terms of a scene reach along an axis.
 std::int64_t reach_along(io::Scene const& scene, std::size_t axis) {
   auto const& field = scene.field;
   std::int64_t reach = field.exchange || field.has_dmi() || !field.exchange_between.empty() ||

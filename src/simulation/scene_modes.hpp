@@ -21,9 +21,9 @@ io::Scene without_torque(io::Scene scene);
 Plan make_plan_of_modes(io::Scene const& scene, Precision precision, ModesOptions const& options,
                         bool with_hessian);
 
-/// Finds a state of rest of a scene with torques, starting at `spins`, and stores it there; with
-/// `at_rest`, only checks the start. Sets only the torque, the evaluations and the end of the
-/// result.
+/// Finds a state of rest of a scene with torques, starting at `spins`, and stores it in `spins`. If
+/// `at_rest` is true, only checks the start. Sets only the torque, the evaluations and the end of
+/// the result.
 template <class Real, class Space>
 Minimum find_rest_with_torques(Space const& exec, io::Scene const& scene,
                                SpinField<Real, typename Space::memory_space> const& spins,

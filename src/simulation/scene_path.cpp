@@ -22,8 +22,9 @@
 namespace cayspin::simulation {
 namespace {
 
-// Torques of the search are |m x dE/dm|, and those of a scene are |m x H| with H = -dE/dm over the
-// moment. Over the least moment they are upper bounds.
+// Torques of the search are |m x dE/dm|, and those of a scene are |m x H|, where H is -dE/dm
+// divided by the moment. So the former, divided by the least moment, are upper bounds on the
+// latter.
 double least_moment(io::Scene const& scene, Lattice const& lattice) {
   double least = std::numeric_limits<double>::infinity();
   for (double const moment : io::all_moments(scene, own_sites(lattice)))

@@ -17,16 +17,16 @@ namespace cayspin::simulation {
 /// Options of a search for a path, in the units of the scene.
 struct ScenePathOptions {
   std::int64_t images = 16;
-  double torque = 1e-6;  // bound for the ends and the saddles
+  double torque = 1e-6;  // bound on max |m x H| at the ends and the saddles
   std::int64_t evaluations = 1000000;
   bool rates = false;
   std::function<Next(PathProgress const&)> observer = {};
 };
 
-/// Largest number of sites for rates, which need several matrices of (2 sites)^2 numbers.
+/// Largest number of sites for rates, which need several matrices of (2 * sites)^2 numbers.
 inline constexpr std::int64_t most_sites_for_rates = 4096;
 
-/// Throws io::SceneError for scenes that have no path of least energy or are too large for rates,
+/// Throws io::SceneError for scenes that have no minimum energy path or are too large for rates,
 /// and UsageError for invalid options, with a message that begins with the option's name.
 void require_path(io::Scene const& scene, ScenePathOptions const& options);
 
@@ -34,14 +34,15 @@ void require_path(io::Scene const& scene, ScenePathOptions const& options);
 Plan make_plan_of_path(io::Scene const& scene, Precision precision,
                        ScenePathOptions const& options);
 
-/// A path of least energy, and why the search for it ended.
+/// A minimum energy path, and why the search for it ended.
 struct ScenePath {
   PathEnd end;
   io::Path path;
 };
-/// Finds a path between two states, sites x 3 as from io::initial_spins. Fills all members of the
-/// path except `from` and `to`. Throws io::SceneError if a frozen spin differs between the states,
-/// NumbersFailed for a field that is not finite and, with rates, what rates_between throws.
+/// Finds a minimum energy path between two states, each given as sites x 3 numbers in the order of
+/// io::initial_spins. Fills all members of the path except `from` and `to`. Throws io::SceneError
+/// if a frozen spin differs between the states, NumbersFailed for a field that is not finite and,
+/// with rates, what rates_between throws.
 ScenePath find_scene_path(io::Scene const& scene, std::vector<double> const& from,
                           std::vector<double> const& to, std::string const& space,
                           Precision precision, ScenePathOptions const& options,

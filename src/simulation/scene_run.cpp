@@ -151,7 +151,7 @@ bool SceneRun::remembers() const { return simulation::remembers(scene_, plan());
 
 std::optional<std::string> SceneRun::warning() const {
   auto plan = *held_plan_;
-  if (scene_.integrator.steps == 0) plan.times.steps = plan.times.first + 1;  // no end
+  if (scene_.integrator.steps == 0) plan.times.steps = plan.times.first + 1;  // steps = 0: no end
   return dt_warning(scene_, plan);
 }
 

@@ -43,7 +43,7 @@ struct Looks {
   bool until_torque = false;               // may end early by the scene's until_torque
   std::function<bool()> interrupted = {};  // called between steps, about twenty times a second
   bool at_end = false;                     // the guard also checks the last of the steps
-  std::int64_t run_end = 0;                // step to which later calls go on, if any do
+  std::int64_t run_end = 0;                // last step of later calls, if there will be any
 };
 
 enum class Advanced { whole, interrupted, at_rest };
@@ -61,7 +61,7 @@ struct RelaxSettings {
 /// if they are for different runs; steps() and time() never wait. Kokkos starts with the first run
 /// of a process, unless the program has started it, and ends with the process.
 ///
-/// N calls of advance(1) give the same bits as advance(N), and as `cayspin run`.
+/// N calls of advance(1) give bitwise the same results as advance(N), and as `cayspin run`.
 class SceneRun {
  public:
   /// Opens a run. The functions of the calling program in scene.field.own take and return numbers
@@ -75,7 +75,8 @@ class SceneRun {
   SceneRun& operator=(SceneRun const&) = delete;
 
   io::Scene const& scene() const { return scene_; }
-  /// Returns the scene for another run, with the fields of the program in the scene's units.
+  /// Returns the current scene in the form that open() takes: with the calling program's fields in
+  /// the scene's units.
   io::Scene typed_scene() const;
   Precision precision() const { return precision_; }
   std::string const& space() const { return space_; }
@@ -95,7 +96,8 @@ class SceneRun {
   std::int64_t rejected_steps() const { return rejected_; }
   double step_seconds() const { return step_seconds_; }  // time spent stepping only
 
-  /// Returns true if the run needs more than its spins to continue with the same bits.
+  /// Returns true if the run needs more than its spins to continue exactly, that is, with bitwise
+  /// identical results.
   bool remembers() const;
 
   /// Returns the warning of `cayspin run` about a dt that is too large. Throws it as io::SceneError
@@ -109,7 +111,7 @@ class SceneRun {
 
   /// Throws what advance(count) would throw before its first step.
   void require_reachable(std::int64_t count) const { require_reachable(count, number_); }
-  /// The check for `count` more steps after step `step`.
+  /// Throws what advance(count) would throw before its first step, if the run were at step `step`.
   void require_reachable(std::int64_t count, std::int64_t step) const;
 
   /// Takes `count` more steps, or fewer if the run ends early. Throws UsageError for a negative
@@ -136,22 +138,23 @@ class SceneRun {
     Minimum minimum = {};
     std::exception_ptr error = {};  // what relax would have thrown
   };
-  /// Calls relax of each of these runs, side by side like advance_all, and interrupts them alike:
-  /// those that have not begun end as interrupted, too.
+  /// Calls relax() of each of these runs, side by side as in advance_all. If one is interrupted, or
+  /// throws anything but NumbersFailed, all that have not finished end as interrupted, even those
+  /// that have not begun.
   static std::vector<Relaxed> relax_all(std::span<SceneRun* const> runs,
                                         RelaxSettings const& settings);
 
   /// Continues from the spins of one column in a run of ReplicaColumns, and from the step of that
   /// run.
   void continue_from_column(SceneRun const& columns, std::int64_t column);
-  /// The run of the columns, and a run of a single replica. Sampling overwrites the spins of the
-  /// latter.
+  /// A run of `count` columns, and a run of a single replica, whose spins are overwritten by
+  /// sampling.
   struct ColumnsToSample {
     SceneRun const* columns;
     SceneRun* one;
     std::int64_t count;
   };
-  /// Returns a sample of each column of these runs, which are sampled side by side like
+  /// Returns a sample of each column of these runs. The runs are sampled side by side, as in
   /// advance_all.
   static std::vector<std::vector<Sample>> sample_columns(std::span<ColumnsToSample const> all);
 
@@ -182,13 +185,13 @@ class SceneRun {
   /// UsageError for a zero or non-finite spin, or another shape.
   void set_spins(io::HostVectors const& from);
 
-  /// Continues after step `step` from unit vectors, sites x 3 with x fastest, which are not
-  /// normalised again. Multistep methods restart.
+  /// Continues after step `step` from unit vectors, sites x 3, which are not normalised again. The
+  /// three components of a site are adjacent, and the index along x varies fastest from site to
+  /// site. Multistep methods restart.
   void continue_from(std::int64_t step, std::vector<double> const& spins);
 
-  /// Stores everything that another run needs to continue from here with the same bits
-  /// (RunSettings::restart). Replaces an existing file; throws std::runtime_error if the file
-  /// cannot be written.
+  /// Stores everything that another run needs to continue exactly from here (RunSettings::restart).
+  /// Replaces an existing file; throws std::runtime_error if the file cannot be written.
   void save(std::filesystem::path const& checkpoint);
 
   /// Returns the current energy, norm defect and magnetization.

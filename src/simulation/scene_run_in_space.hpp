@@ -103,7 +103,8 @@ class SceneRunInSpace final
     return Next::stop;
   }
 
-  // Counts periods from the begin of the scene, like Guard::due, wherever the last look was.
+  // Returns the step of the first check after `step`. Periods are counted from the start of the
+  // scene, as in Guard::due, not from the last check.
   std::int64_t look_after(std::int64_t step) const {
     return step + looks_.period - (step - scene_.begin.step) % looks_.period;
   }
@@ -274,7 +275,7 @@ class SceneRunInSpace final
   Advanced ended_ = Advanced::whole;
   bool continues_ = false;
   std::int64_t looked_ = -1, next_look_ = 0;  // steps of the guard's checks
-  mutable std::int64_t seen_ = 0;             // the step of the spins if a later step fails
+  mutable std::int64_t seen_ = 0;             // step whose spins are kept if a later step fails
   static constexpr std::int64_t most_unseen = 1000;
 };
 

@@ -13,7 +13,8 @@
 namespace cayspin::simulation {
 namespace {
 
-// Returns a function that tells whether any of several runs was interrupted; it also calls asked().
+// Returns a function that returns true if any of several runs was interrupted, or if asked() has
+// returned true.
 std::function<bool()> or_asked(std::atomic<bool>& interrupted, std::function<bool()> const& asked) {
   return [&] {
     if (!interrupted && asked && asked()) interrupted = true;
@@ -59,8 +60,8 @@ std::vector<SceneRun::Relaxed> SceneRun::relax_all(std::span<SceneRun* const> ru
   std::atomic<bool> interrupted = false;
   auto asking = settings;
   asking.interrupted = or_asked(interrupted, settings.interrupted);
-  // With these terms a search frees memory on the way. Kokkos then waits for all kernels, also for
-  // the one in which runs are side by side.
+  // With these terms a search frees memory. Kokkos then waits for all kernels, and would wait for
+  // ever for the kernel in which the runs are side by side.
   bool const frees_memory = std::ranges::any_of(runs, [](SceneRun const* run) {
     return io::needs_pass(run->scene_) || io::is_nonlocal(run->scene_.field);
   });

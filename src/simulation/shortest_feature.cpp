@@ -13,8 +13,8 @@ namespace {
 
 using Points = std::vector<std::pair<double, double>>;  // t and value, ascending in t
 
-// Returns the extremes at which values turn back by more than `height`, with the first point and
-// the extreme that the values reach last.
+// Returns the indices of the extremes after which the values turn back by more than `height`,
+// preceded by the index of the first point and followed by that of the last extreme.
 std::vector<std::size_t> turning_points(Points const& points, double height) {
   std::vector<std::size_t> turns{0};
   std::size_t extreme = 0;
@@ -36,7 +36,8 @@ std::vector<std::size_t> turning_points(Points const& points, double height) {
   return turns;
 }
 
-// Returns the time after or before `from` at which the value crosses a level, if it does.
+// Returns the time nearest to point `from` at which the value crosses `level`, if it does: after
+// that point, or before it if `direction` is negative.
 std::optional<double> crossing(Points const& points, std::size_t from, int direction,
                                double level) {
   bool const above = points[from].second > level;

@@ -9,9 +9,9 @@ namespace cayspin::simulation {
 
 class TimeSamples;
 
-/// Returns the shortest pulse or half period of any component, by its width at half height. Ignores
-/// features lower than a thousandth of the component's range. Empty if all components are
-/// monotonic.
+/// Returns the shortest pulse or half period of any component. Its length is its width at half
+/// height. Ignores features lower than a thousandth of the component's range. Empty if all
+/// components are monotonic.
 std::optional<TimeFeatures::Shortest> shortest_feature(TimeSamples const& samples);
 
 }  // namespace cayspin::simulation

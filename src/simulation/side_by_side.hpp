@@ -29,8 +29,8 @@ void for_each_small_run(std::string const& space, std::int64_t sites, std::size_
   Host const host;
   if (count > 1 && is_on_host(space) && host.concurrency() > 1 &&
       cayspin::detail::runs_on_calling_thread<Host>(sites)) {
-    // Uses another instance of the space, because the runs fence the default instance, which a
-    // kernel on it would keep locked.
+    // Uses another instance of the execution space. The runs fence the default instance, and a
+    // kernel on that instance would keep it locked.
     auto const other = Kokkos::Experimental::partition_space(host, 1).front();
     Kokkos::parallel_for("cayspin::advance_all",
                          Kokkos::RangePolicy<Host, Kokkos::Schedule<Kokkos::Dynamic>,

@@ -15,7 +15,7 @@ namespace cayspin::simulation {
 namespace {
 
 // The constants of some anisotropies (free boundaries of DMI) are computed from other terms, which
-// a scene with one term does not have. Stores their numbers instead.
+// a scene with one term does not have. Stores the values of these constants instead.
 void keep_numbers_of_free_sides(io::Scene const& scene, std::vector<io::Anisotropy>& terms) {
   for (auto& term : terms) {
     if (!io::is_of_free_sides(term.factors)) continue;

@@ -8,11 +8,13 @@
 
 namespace cayspin::simulation {
 
-/// The field of cayspin::Slonczewski, H = a c m x p + b p, with the angular dependence c = 2 L^2 /
-/// ((L^2 + 1) + (L^2 - 1) m.p). If an array has no data, that quantity (a, b or p) is uniform.
+/// The field of cayspin::Slonczewski, H = a * c * (m x p) + b * p, with the angular dependence
+/// c = 2 L^2 / ((L^2 + 1) + (L^2 - 1) * m.p). If an array has data, it multiplies a or b, or
+/// replaces p, at each site.
 template <class Real>
 struct SlonczewskiOfSites {
-  cayspin::SiteArray<Real, 1> damping_like_of_sites = {}, field_like_of_sites = {};  // factors
+  // Factors of a and b.
+  cayspin::SiteArray<Real, 1> damping_like_of_sites = {}, field_like_of_sites = {};
   cayspin::SiteArray<Real, 3> polarizations = {};
   double damping_like = 0, field_like = 0;  // a, b
   Vec3<double> polarization{0, 0, 1};       // p

@@ -14,7 +14,8 @@
 // The sources of a scene's applied field, for FieldInPass. Included by compile_field_in_pass.hpp.
 namespace cayspin::simulation {
 
-// Sums the profiles of sources with equal time factors. The plan has refused too many factors.
+// Sums the profiles of sources with equal time factors. The plan has already refused scenes with
+// too many different factors.
 template <class Spins>
 void FieldInPass<Spins>::Terms::add_sources(io::Scene const& scene, io::SiteBox const& box) {
   std::vector<std::pair<io::AppliedComponent, std::vector<double>>> profiles;

@@ -11,8 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// H along a piece of a row, in the first-level cache, by loops that are compiled once for all
-// methods.
+// H along a piece of a row, in the L1 cache, by loops that are compiled once for all methods.
 namespace cayspin::simulation {
 
 /// Sites begin .. end - 1 of a row, and the memory for their H.
@@ -54,8 +53,9 @@ struct RowPiece {
   }
 };
 
-/// Correction of exchange that takes vacancies for neighbours: such exchange lacks H = A m for each
-/// vacancy.
+/// Correction of exchange that treats vacancies as neighbours: for each vacancy beside a site, such
+/// exchange lacks H = c * m, where c is the strength of the bond. `exchange` holds the sum of c for
+/// each site.
 template <class Real>
 struct MissingNeighbors {
   cayspin::SiteArray<Real, 1> exchange;
@@ -168,7 +168,8 @@ struct AddedTerms {
   }
 };
 
-/// The whole H of scenes with couplings, several sites per cell, or a moment for each site.
+/// The whole H of scenes with couplings, distant interlayers, several sites per cell, or a moment
+/// for each site.
 template <class Real>
 struct WholeTerms {
   PassTerms<Real> terms;

@@ -32,8 +32,8 @@
 // compile_field_in_pass.hpp includes all these headers.
 namespace cayspin::simulation {
 
-// Returns the largest magnitude over all parts. Parts compare the bits of doubles as integers,
-// which have the same order for doubles >= 0.
+// Returns the largest |value| over all parts of the lattice. Parts compare the bits of doubles as
+// integers, which have the same order for doubles >= 0.
 inline double largest_of_parts(Lattice const& lattice, std::vector<double> const& values) {
   double largest = 0;
   for (double const value : values) largest = std::max(largest, std::abs(value));
@@ -54,7 +54,7 @@ ScalarField<Real, Memory> scalar_field_of(char const* name, Lattice const& latti
                                           std::vector<double> const& numbers) {
   ScalarField<Real, Memory> made(std::string("FieldInPass::") + name, lattice);
   copy_from_host(numbers, made);
-  // Terms read the numbers of neighbours, too.
+  // Terms also read the values at neighbours.
   cayspin::detail::update_ghosts(typename Memory::execution_space(), lattice, made);
   return made;
 }
@@ -120,7 +120,8 @@ class FieldInPass<Spins>::Terms {
   // In sources_of_scene.hpp.
   void add_sources(io::Scene const& scene, io::SiteBox const& box);
   SourcesNow<Real> sources_at(double t) const;
-  /// Returns a bound of a site's |energy| in the applied field and in the fields of the sources.
+  /// Returns an upper bound on a site's |energy| in the applied field and in the fields of the
+  /// sources.
   double applied_magnitude(Vec3<double> const& applied, SourcesNow<Real> const& sources) const;
 
   // In torques_of_scene.hpp.
@@ -161,7 +162,8 @@ class FieldInPass<Spins>::Terms {
   Table<CubicAnisotropy> cubics_;
   bool has_lattice_terms_ = false, has_pairs_, has_vacancies_, is_affine_;
   std::optional<ScalarField<Real, Memory>> moves_, dampings_;
-  // moves_ times gyromagnetic ratios, divided by Gilbert's 1 + damping^2.
+  // Site-dependent factors of A: moves_ * (gyromagnetic ratio), divided by 1 + damping^2 for
+  // Gilbert dampings.
   std::optional<ScalarField<Real, Memory>> rates_;
   std::optional<ScalarField<Real, Memory>> per_gyromagnetic_;  // for torques; or empty
   std::optional<SiteDependentExchange<Real, Memory>> exchange_of_sites_;
@@ -188,7 +190,7 @@ class FieldInPass<Spins>::Terms {
   std::int32_t anisotropies_in_time_ = 0;
   bool precession_;
   std::vector<CellSite> cell_;
-  SceneLatticeTerms seen_;  // lattice terms times gyromagnetic ratio over moment
+  SceneLatticeTerms seen_;  // lattice terms * gyromagnetic ratio / moment
   std::optional<ScalarField<Real, Memory>> missing_;
   double largest_moment_ = 0;
   Spins field_;
@@ -254,7 +256,7 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
   add_crystal_axes(scene, box);
   add_sources(scene, box);
 
-  // Sums none_.magnitude, to which the round-off of a site's energy is proportional.
+  // Completes none_.magnitude, to which the round-off of a site's energy is proportional.
   auto const uniform = io::without_numbers_of_sites(scene.field);
   io::for_each_lattice_term(uniform, [&](auto const& term) {
     if (!term) return;
@@ -263,7 +265,8 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
   });
   none_.magnitude += 0.5 * std::ranges::max(pairs_.field_bounds());
   none_.magnitude += 0.5 * largest_moment_ * bound_of_dipoles(scene, lattice);
-  // If each site has its own moment, it multiplies both a field and its energy.
+  // If each site has its own moment, the demagnetising field is proportional to the moments, and
+  // its energy to their squares.
   double const square = per_moments_ ? largest_moment_ * largest_moment_ : 1;
   auto const add_demagnetization = [&](double strength) {
     none_.magnitude += 0.5 * square * std::abs(scene.field.mu0 * strength);

@@ -24,7 +24,8 @@ std::string cells_text(std::array<std::int64_t, 3> const& shape, std::int64_t ce
 std::string sites_text(std::array<std::int64_t, 3> const& shape, std::int64_t cell_sites);
 /// Returns a number with a decimal prefix: "12.3 M" for 12300000.
 std::string rate_text(double per_second);
-/// Returns a time or an energy in the units of the scene; in SI the text ends with the unit.
+/// Returns a time or an energy, given in reduced units, in the units of the scene. In SI the text
+/// ends with the unit.
 std::string time_text(io::Units const& units, double time, int digits = 9);
 std::string energy_text(io::Units const& units, double energy, int digits = 9);
 /// Returns one word of a command line, quoted if a shell would change it.

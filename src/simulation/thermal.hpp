@@ -23,17 +23,18 @@ inline bool is_thermal(io::Scene const& scene) {
   return scene.thermal && scene.thermal->temperature > 0;
 }
 
-/// Returns the temperature in the scene's units, reduced or in kelvin; without its factors that
+/// Returns the temperature in the scene's units (reduced, or kelvin), without the factors that
 /// depend on the site or on t.
 inline double typed_temperature(io::Scene const& scene) {
   double const reduced = scene.thermal->temperature;
   return scene.units.si ? reduced * scene.units.energy / units::boltzmann : reduced;
 }
 
-/// The common temperature of the sites at t. Throws NumbersFailed if it is negative or not finite.
+/// The temperature at t in reduced units, without its factors that depend on the site. Throws
+/// NumbersFailed if it is negative or not finite.
 class TemperatureInTime {
  public:
-  /// `units`: of the scene, for messages.
+  /// `units`: the scene's, for error messages.
   TemperatureInTime(io::Thermal const& thermal, io::Units const& units)
       : temperature_(thermal.temperature), units_(units) {
     if (auto const* const text = std::get_if<std::string>(&thermal.in_time))

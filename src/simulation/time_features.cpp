@@ -19,12 +19,12 @@ struct Jump {
   double before, after;
 };
 
-/// Returns the jump between two samples; nothing if bisecting the largest change shows a continuous
-/// function.
+/// Returns the jump between times `a` and `b`, located by bisection: each halving keeps the half
+/// with the larger change. Returns nothing if the function proves to be continuous.
 std::optional<Jump> bisect(TimeSamples& samples, std::size_t component, double a, double b) {
   double const end = samples.end();
   double at_a = samples.value(a, component), at_b = samples.value(b, component);
-  int between = 0;  // halvings whose middle value is like neither end
+  int between = 0;  // halvings whose middle value is close to neither end's
   while (b - a > 2 * epsilon * std::abs(b) + 1e-18 * end) {
     double const middle = a + 0.5 * (b - a);
     if (middle <= a || middle >= b) break;
@@ -80,8 +80,8 @@ class Parts {
     }
   }
 
-  /// Appends the bounds of a time span without jumps. Returns false if the vectors change too
-  /// often.
+  /// Appends bounds on the steps in a time span without jumps. Returns false if the vectors change
+  /// too often.
   bool divide(double a, double b, std::vector<StepBound>& bounds) {
     std::vector<std::pair<double, double>> open{{a, b}};
     while (!open.empty()) {
@@ -116,11 +116,12 @@ class Parts {
       bounds.push_back(bound);
   }
 
-  // Bounds the rest of a span by a single length: the shortest bound so far, halved until there are
-  // no features at any of 256 places. Returns false if that fails.
+  // Bounds the steps in the rest of a span by a single length: the shortest bound so far, halved
+  // until there are no features at any of 256 places. Returns false if that fails.
   bool bound_the_rest(double begin, double end, std::vector<StepBound>& bounds) {
     constexpr int places = 256, halvings = 12;
-    if (samples_.evaluations() > 2 * search_.most_evaluations) return false;  // used up before
+    // Earlier spans have used up the evaluations.
+    if (samples_.evaluations() > 2 * search_.most_evaluations) return false;
     double length = end - begin;
     for (auto const& bound : bounds)
       if (bound.max_dt > 0) length = std::min(length, bound.max_dt);

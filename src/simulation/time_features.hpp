@@ -23,8 +23,8 @@ namespace cayspin::simulation {
 /// evaluations.
 struct TimeFeatures {
   struct Shortest {
-    double length, time;  // of the shortest pulse or half period: its width at half height
-    std::string key;      // of the scene
+    double length, time;  // width at half height, and time of the extreme
+    std::string key;      // of the vector, in the scene
   };
 
   std::vector<StepBound> bounds;  // steps within these bounds miss no feature
@@ -51,14 +51,14 @@ struct FeatureSearch {
   std::int64_t most_evaluations = 5'000'000;
 };
 
-/// Samples the vectors at equally spaced times and near their events, bisects jumps, and divides
-/// the time between jumps until polynomials follow the vectors in each part.
+/// Samples the vectors at equally spaced times and near their events, locates jumps by bisection,
+/// and divides the time between jumps until polynomials follow the vectors in each part.
 TimeFeatures find_features(std::span<TimeDependent const> vectors, FeatureSearch const& search);
 
-/// Returns the features of a scene's fields and currents up to its end, for adaptive steps with
-/// error `error`, or for the scene's constant steps if it is not given. Empty if nothing depends on
-/// t, for rigid bodies, for scenes without steps, and if a vector is not finite. Later calls for
-/// the same fields are fast, unless a function of the program is among them.
+/// Returns the features of a scene's fields and currents up to the scene's end, for adaptive steps
+/// with the tolerance `error` or, if `error` is empty, for the scene's constant steps. Empty if
+/// nothing depends on t, for rigid bodies, for scenes without steps, and if a vector is not finite.
+/// Later calls for the same fields are fast, unless a function of the program is among them.
 std::shared_ptr<TimeFeatures const> features_of(io::Scene const& scene,
                                                 std::optional<double> error);
 

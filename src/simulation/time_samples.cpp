@@ -31,8 +31,8 @@ TimeSamples::TimeSamples(std::span<TimeDependent const> vectors, FeatureSearch c
   later_.clear();
 }
 
-// Returns times ever closer to each event, so that no pulse that starts, ends or has its middle
-// there is missed.
+// Returns times that come ever closer to each event, so that no pulse that starts, ends or has its
+// middle there is missed.
 std::vector<double> TimeSamples::times_near_events() const {
   constexpr int halvings = 45;
   std::vector<double> times;

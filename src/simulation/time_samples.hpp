@@ -13,7 +13,7 @@
 namespace cayspin::simulation {
 
 /// Values of vectors that depend on t: at equally spaced times, at times near their events, and at
-/// times evaluated later, of which the first are kept: up to 8 million numbers.
+/// times evaluated later. The first 8 million numbers of the latter are kept.
 class TimeSamples {
  public:
   TimeSamples(std::span<TimeDependent const> vectors, FeatureSearch const& search);
@@ -31,11 +31,12 @@ class TimeSamples {
   bool changes_unusually(std::size_t i, std::size_t component) const;
   /// Returns the time from which on no component changes; 0 if none changes at all.
   double last_change() const;
-  /// Returns the number of the first sample between two times, and the number after the last one.
+  /// Returns the index of the first sample between two times, and the index after that of the last
+  /// one.
   std::pair<std::size_t, std::size_t> within(double begin, double end) const;
 
-  /// Returns all components at t, and keeps them. A vector that is not finite at t is replaced by
-  /// its value very close to t or, if that is not finite either, by 0.
+  /// Returns all components at t, and keeps them if there is room. A vector that is not finite at t
+  /// is replaced by its value very close to t or, if that is not finite either, by 0.
   std::vector<double> const& evaluate(double t);
   double value(double t, std::size_t component) { return evaluate(t)[component]; }
   std::int64_t evaluations() const { return evaluations_; }

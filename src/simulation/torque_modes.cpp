@@ -78,8 +78,8 @@ double largest_torque_of(TorqueMotion const& motion, Vectors const& rates) {
   return largest;
 }
 
-/// Moves each spin by its tangent vector; all vectors are shortened by one factor if one is longer
-/// than `most`.
+/// Returns the spins, each moved by its tangent vector. If a vector is longer than `most`, all are
+/// shortened by the same factor.
 Vectors moved(TangentBasis const& basis, Vector const& by, double most) {
   double longest = 0;
   for (Eigen::Index i = 0; i < by.size(); i += 2)
@@ -118,7 +118,8 @@ RestWithTorques find_rest_with_torques(TorqueMotion const& motion, Vectors const
       found.is_interrupted = true;
       break;
     }
-    // Takes the shortest step that solves the equations: none along modes without stiffness.
+    // Takes the shortest step that solves the equations. It has no component along modes without
+    // stiffness.
     Eigen::CompleteOrthogonalDecomposition<Matrix> factors;
     factors.setThreshold(1e3 * motion.epsilon);
     factors.compute(linear.matrix);

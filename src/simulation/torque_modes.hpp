@@ -17,8 +17,8 @@ using Vectors = std::vector<double>;
 
 struct TorqueMotion {
   std::function<Vectors(Vectors const& spins)> rates;
-  std::vector<unsigned char> frozen;  ///< as io::frozen
-  double epsilon = 0;                 ///< round-off of the rates, relative
+  std::vector<unsigned char> frozen;  ///< as returned by io::frozen
+  double epsilon = 0;                 ///< relative round-off of the rates
   std::vector<double> turning;  ///< of each site: |dm/dt| / |m x H|, with the torque's field in H
   std::function<bool()> is_interrupted;
 };

@@ -60,7 +60,7 @@ class State {
             static_cast<Eigen::Index>(state.size()))) {
     hessian_ = (0.5 * (hessian_ + hessian_.transpose())).eval();
     auto const n = hessian_.rows();
-    // An upper bound of the eigenvalues.
+    // An upper bound on the eigenvalues.
     double const largest = hessian_.cwiseAbs().rowwise().sum().maxCoeff();
     Matrix rest = hessian_;
     if (unstable < 0) {
@@ -112,14 +112,15 @@ class State {
                       "rotations of all spins",
                       name_, count == most_zeros && hessian_.rows() > most_zeros ? "at least " : "",
                       counted(count, "zero mode")));
-    constexpr std::array volumes{2 * pi, 4 * pi, 8 * pi * pi};  // of all angles
+    // Volumes of all rotations about one, two and three axes.
+    constexpr std::array volumes{2 * pi, 4 * pi, 8 * pi * pi};
     return volumes[rotated.size() - 1] * volume_of(rotated);
   }
 
  private:
-  /// Returns the `count` eigenvectors of a matrix that inverse iteration with `inverse` (the
-  /// inverse of the matrix, or of the shifted matrix) converges to, with their eigenvalues in
-  /// ascending order.
+  /// Returns the `count` eigenvectors of `matrix` to which inverse iteration converges, and their
+  /// eigenvalues in ascending order. `inverse`: a factorisation of `matrix` plus a multiple of the
+  /// identity.
   static std::pair<Matrix, Vector> near_vectors(Matrix const& matrix, auto const& inverse,
                                                 Eigen::Index count) {
     auto const n = matrix.rows();
@@ -189,7 +190,8 @@ class State {
         return Eigen::Vector3d::Unit(axis).cross(at(state_.spins, site));
       });
     Matrix const beside = turned - zeros_ * (zeros_.transpose() * turned);
-    // Axes for which most of the rotation is not a zero mode come last.
+    // Axes in order of the part of the rotation that is not a zero mode, smallest first. For a
+    // single zero mode: only the axis of symmetry, if there is one.
     Eigen::Matrix3d const axes =
         zero_modes() == 1
             ? axes_of_symmetry()
@@ -228,8 +230,8 @@ class State {
   double log_determinant_ = 0;
 };
 
-/// Returns the gyromagnetic ratio divided by the moment, in reduced units, for each site that has
-/// coordinates; 0 without precession.
+/// Returns the gyromagnetic ratio divided by the moment, in reduced units, for each site of
+/// state.sites; 0 without precession.
 Numbers mobilities(io::Scene const& scene, StateHessian const& state) {
   if (!scene.system.precession) return Numbers(state.sites.size(), 0.0);
   auto const& lattice = scene.lattice;

@@ -21,16 +21,16 @@ namespace cayspin::simulation {
 /// An equilibrium and the Hessian of its energy.
 struct StateHessian : TangentBasis {
   std::vector<double> numbers;  // matrix elements, row by row
-  /// Sums of m x (-dE/dm) in states far from the equilibrium. Their components along an axis vanish
-  /// if turning all mobile spins about it does not change the energy.
+  /// Sums of m x (-dE/dm) in states far from the equilibrium. The components of the sums along an
+  /// axis vanish if turning all mobile spins about this axis does not change the energy.
   std::vector<std::array<double, 3>> torques;
 
   using TangentBasis::TangentBasis;
 
-  /// Returns the spins after a random rotation of all that are not frozen, and a random change of
-  /// each. `sample`: the seed of the random numbers.
+  /// Returns the spins after a random rotation, common to all that are not frozen, and a random
+  /// change of each of these. `sample`: the seed of the random numbers.
   std::vector<double> far_state(unsigned sample) const;
-  /// Appends the sum of a state. `field`: -dE/dm there.
+  /// Appends the sum for one state to `torques`. `field`: -dE/dm in that state.
   void add_torque(std::vector<double> const& state, std::vector<double> const& field);
 };
 
@@ -43,8 +43,9 @@ io::RatesOfPath rates_between(io::Scene const& scene, StateHessian const& start,
                               StateHessian const& saddle, StateHessian const& end,
                               double saddle_curvature);
 
-/// Computes the Hessian, one column at a time, by products of the Hessian and a vector. Calls
-/// poll() before each column; it throws to interrupt the work.
+/// Computes the Hessian and the torques of a state. The Hessian is computed one column at a time,
+/// as its product with a vector. Calls poll() before each column; poll() may throw to interrupt the
+/// work.
 template <class Exec, class Field, class Spins>
 StateHessian hessian_of(Exec const& exec, Field const& field, Spins const& spins,
                         std::vector<unsigned char> const& frozen,

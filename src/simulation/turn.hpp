@@ -20,7 +20,8 @@ class Turn {
   Turn(Turn const&) = delete;
   Turn& operator=(Turn const&) = delete;
 
-  /// Keeps other threads from taking a turn, while its own thread still may.
+  /// Keeps other threads from taking a turn. The thread that created this object may still take
+  /// one.
   class Reserved {
    public:
     Reserved() : lock_(mutex_of_others()) { require_free(); }

@@ -8,7 +8,7 @@
 namespace cayspin::simulation {
 
 /// How spins turn in H = -dE/dm, given their moments, gyromagnetic ratios and damping: dm/dt =
-/// -precession m x H - damping m x (m x H).
+/// -precession * (m x H) - damping * (m x (m x H)).
 struct TurningOfSites {
   std::vector<double> precession, damping;
 };

@@ -37,7 +37,7 @@ Variant const& find_variant(io::Scene const& scene) {
            variant.in_chart == (integrator.generator == io::Generator::tangent) &&
            variant.compensated == integrator.compensated;
   };
-  // If a method has a separate variant for rigid bodies, these take it; otherwise that of spins.
+  // Rigid bodies use their own variant of a method if there is one; otherwise that of spins.
   bool const bodies = scene.system.kind == io::SystemKind::rigid_body;
   Variant const* found = nullptr;
   for (auto const& variant : variants())

@@ -22,7 +22,8 @@ struct MethodOptions {
   StepOptions steps = {};     // of adaptive methods
 };
 
-/// A stepper for one simulation, which must outlive the stepper. It keeps the memory of its method.
+/// A stepper for one simulation, which must outlive the stepper. The stepper keeps the memory of
+/// its method.
 class OpenMethod {
  public:
   virtual ~OpenMethod() = default;
@@ -32,14 +33,14 @@ class OpenMethod {
   virtual void serialize(Checkpoint& checkpoint) = 0;
 };
 
-/// One compiled integrator: a method with all options, except the rotation, that change the type of
-/// its stepper.
+/// One compiled integrator: a method with one choice of each option that changes the type of its
+/// stepper, except that it contains the steppers of all `rotations`.
 struct Variant {
   io::Method const* method;
   io::Isotropy isotropy = io::Isotropy::zero;  // zero also stands for a constant
   bool in_chart = false;                       // generator "tangent"
   bool compensated = false;
-  bool of_rigid_bodies = false;            // if these have a separate stepper
+  bool of_rigid_bodies = false;            // if they have a separate stepper
   io::SetOf<io::Rotation> rotations = {};  // empty: a baseline
 
   int order = 0;

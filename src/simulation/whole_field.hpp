@@ -28,8 +28,8 @@ io::HostVectors host_vectors(HostSpins const& spins) {
           {layout.plane, layout.pitch, 1, array.stride}};
 }
 
-/// A scene's field that is computed on the host: a slab's, the demagnetising field of the whole
-/// lattice, or a program's own.
+/// A scene's field that is computed on the host: that of slab_demag, of demag or dipoles, or a
+/// program's own.
 class HostSolver {
  public:
   static constexpr int degree = 2;

@@ -61,7 +61,8 @@ TEST(Changing, KeepsTheTime) {
   EXPECT_LT(largest_distance(field, packed<double>(beside->field().vectors)), 1e-4);
 }
 
-// A run that is stored and continued after a change has the bits of one that is not interrupted.
+// A run that is stored and continued after a change gives bitwise the same results as one that is
+// not interrupted.
 TEST(Changing, IsStored) {
   auto const file = fs::path(testing::TempDir()) / fmt::format("changed_{}.h5", ::getpid());
   for (auto const* const integrator :

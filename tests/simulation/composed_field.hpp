@@ -51,8 +51,8 @@ inline auto composed_field(CompositionNumbers const& n) {
       SiteDependentSlonczewski{field_of_sites(lattice, n.damping_like_of_sites, 0),
                                field_of_sites(lattice, along_x, 0),
                                is_site_dependent ? n.field_like : 0, n.lambda});
-  // Gyromagnetic ratios do not multiply torques, so the torques are divided by the ratios
-  // beforehand.
+  // Torques do not depend on the gyromagnetic ratios. TurnsAtRates multiplies all of A by these
+  // ratios, so the torques are divided by them beforehand.
   auto per_ratio = n.gyromagnetic_of_sites;
   for (double& ratio : per_ratio) ratio = 1 / ratio;
   ScaledBySite const torques_per_ratio{FieldWithVacancies(torques, occupation),

@@ -18,7 +18,8 @@ template <class Term>
 using Prepared = decltype(cayspin::detail::prepare_term(
     std::declval<Term const&>(), Space(), std::declval<SpinField<double, Memory> const&>(), 0.0));
 
-/// Returns a field with these values, or with `otherwise` at every site if there are none.
+/// Returns a field with the values `numbers`, or with `otherwise` at every site if `numbers` is
+/// empty.
 inline ScalarField<double, Memory> field_of_sites(Lattice const& lattice,
                                                   std::vector<double> numbers, double otherwise) {
   if (numbers.empty()) numbers.assign(static_cast<std::size_t>(lattice.sites()), otherwise);
@@ -27,8 +28,8 @@ inline ScalarField<double, Memory> field_of_sites(Lattice const& lattice,
   return field;
 }
 
-/// H = moment (applied + source cos(3 t)), E = -m.H. Moments, and sources along x, depend on the
-/// site; the source along y is uniform.
+/// H = moment * (applied + source * cos(3 t)), E = -m.H. Moments, and sources along x, depend on
+/// the site; the source along y is uniform.
 struct SiteDependentApplied {
   ScalarField<double, Memory> moments, along_x;
   Vec3<double> applied;
@@ -60,8 +61,8 @@ struct SiteDependentApplied {
   }
 };
 
-/// Slonczewski's field with a site-dependent damping-like strength times cos(2 t), a constant
-/// field-like strength, and p along (along_x, 0.6, 0.8).
+/// Slonczewski's field with a damping-like strength that is a site-dependent number times cos(2 t),
+/// a constant field-like strength, and p along (along_x, 0.6, 0.8).
 struct SiteDependentSlonczewski {
   ScalarField<double, Memory> damping_like, along_x;
   double field_like, lambda;
@@ -121,8 +122,8 @@ struct ScaledBySite {
   }
 };
 
-/// The second constant of the cubic anisotropy, and the hexagonal anisotropy, for crystal axes
-/// along x, y and z, as polynomials.
+/// The term of the cubic anisotropy with constant2, and the hexagonal anisotropy, as polynomials.
+/// The crystal axes are along x, y and z.
 struct CrystalByPolynomials {
   double cubic2, hexagonal;
 
@@ -148,7 +149,7 @@ struct CrystalByPolynomials {
   }
 };
 
-/// Multiplies H and E of a field by 1 + part sin(5 t).
+/// Multiplies H and E of a field by 1 + part * sin(5 t).
 template <class Field>
 struct ChangesInTime {
   Field inner;

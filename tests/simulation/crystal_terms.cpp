@@ -85,8 +85,8 @@ TEST(CrystalTerms, AreTheDerivativeOfTheirEnergy) {
     }
 }
 
-// A helix that turns right-handed by q per site about its axis e has m.(m' x e) = sin(q), for any
-// phase.
+// A helix that turns right-handed by q per site about its axis e has m.(m' x e) = sin(q) for any
+// phase, where m' is the next spin after m.
 TEST(CrystalTerms, D2dTurnsSpinsToTheLeftAlongXAndToTheRightAlongY) {
   constexpr double D = 0.3;
   auto const energy = [&](std::string const& shape, std::string const& normal,
@@ -199,7 +199,7 @@ TEST(CrystalTerms, SpinsTurnAtTheFrequencyOfTheirResonance) {
   constexpr double K = -0.3, K2 = 0.2;
   expect_period("{ cubic = -0.3, constant2 = 0.2, axes = [[1, 0, 0], [0, 1, 0]] }",
                 "[1, 1.0003, 1]", -4.0 / 3 * (K + K2 / 3));
-  // The spin is in an easy plane whose energy is P m_z^2 / 2, with P = of_plane.
+  // The spin is in an easy plane. The energy of the plane is P * m_z^2 / 2, with P = of_plane.
   constexpr double of_plane = 0.8, of_six = 0.02;
   expect_period(
       "[{ constant = -0.8, axis = [0, 0, 1] }, { hexagonal = -0.02, axis = [0, 0, 1], in_plane = "
@@ -207,7 +207,8 @@ TEST(CrystalTerms, SpinsTurnAtTheFrequencyOfTheirResonance) {
       "[0.6, 0.8, 0.0001]", std::sqrt(36 * of_six * (of_plane + 6 * of_six)));
 }
 
-// A spin along an easy direction in the plane leaves it in an opposite field of 36 |K|.
+// A spin along an easy direction in the plane leaves that direction if the opposite field exceeds
+// 36 |K|.
 TEST(CrystalTerms, AHexagonalSpinSwitchesWhereItsStiffnessEnds) {
   for (double const share : {0.99, 1.01}) {
     auto const scene = llg_scene(

@@ -75,7 +75,8 @@ TEST(CrystalScenes, ConesTurnAtTheFrequencyOfTheirMagnon) {
 
 // A wave in Neel's state of a simple cubic lattice: the spins of one sublattice open more than
 // those of the other, and all turn rigidly about z, right-handed about the spins that open more. At
-// small openings the frequency is sqrt((h + K)^2 - (h gamma)^2).
+// small openings the frequency is sqrt((h + K)^2 - (h * gamma)^2), with the exchange field h, the
+// anisotropy K and the structure factor gamma of the wave.
 TEST(CrystalScenes, ConesOfAnAntiferromagnetTurnAtTheFrequencyOfTheirMagnon) {
   constexpr double h = 6 * 0.6, K = 0.3, opening = 0.7, end = 2;
   double const gamma = (std::cos(2 * pi / 8) + std::cos(2 * pi / 6) + std::cos(2 * pi / 4)) / 3;
@@ -138,7 +139,8 @@ random = { seed = 1 }
   }
 }
 
-// H = -(1 / mu) dE/dm, so without damping E and the sum of (mu / g) m are conserved.
+// With the moments mu and the gyromagnetic ratios g, H = -(1 / mu) dE/dm. So without damping, E and
+// the sum of (mu / g) * m are conserved.
 TEST(CrystalScenes, MomentsConserveEnergyAndAngularMomentum) {
   auto const run = SceneRun::open(llg_scene("0", "rkmk8", 100, R"toml(
 [lattice]
@@ -169,8 +171,8 @@ random = { seed = 2 }
   for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(after[c], before[c], 1e-9);
 }
 
-// Two sublattices of different moments at one temperature: each follows the Langevin function of
-// its own mu h / T.
+// Two sublattices of different moments at one temperature: the mean of each follows the Langevin
+// function of its own mu * h / T.
 TEST(CrystalScenes, EachMomentHasTheTemperature) {
   auto const scene = llg_scene("1", "heun", 1000, R"toml(
 [lattice]
@@ -202,7 +204,8 @@ uniform = [0, 0, 1]
   }
 }
 
-// m.p = tanh(I + atanh(m0.p)), where I is the integral of damping_like over time.
+// m.p = tanh(I + atanh(m0.p)), where m0 is the first spin and I is the integral of damping_like
+// over time.
 TEST(CrystalScenes, ASpinUnderSlonczewski) {
   auto const scene = llg_scene("0", "rkmk8", 100, R"toml(
 [lattice]
@@ -217,9 +220,10 @@ uniform = [0.6, 0, -0.8]
                 500 * epsilon(precision));
 }
 
-// A wall of width 1 in a current. A free wall moves at (1 + damping xi) u while its plane turns.
-// Below Walker's current a hard axis holds the plane, and the wall moves at (1 + damping^2) (xi /
-// damping) u. Both velocities are exact up to second-order effects of the lattice.
+// A wall of width 1 in a current. A free wall moves at (1 + damping * xi) * u while its plane
+// turns. Below Walker's current a hard axis holds the plane, and the wall moves at
+// (1 + damping^2) * (xi / damping) * u. Both velocities are exact up to second-order effects of the
+// lattice.
 TEST(CrystalScenes, AWallUnderACurrent) {
   constexpr double damping = 0.4, xi = 0.25, u = 0.1;
   for (bool const has_hard_axis : {false, true}) {

@@ -56,7 +56,8 @@ Moments moments_of(io::Scene const& scene, std::vector<double> const& spins) {
   return all;
 }
 
-/// Returns sum mu (3 r (r.m) - m r^2) / (4 pi r^5), with r from the other sites.
+/// Returns the sum of mu * (3 r (r.m) - m r^2) / (4 pi r^5) over all other sites, where r is the
+/// vector from the other site.
 Vec3<double> field_at(Moments const& all, std::size_t site) {
   Vec3<double> h{0, 0, 0};
   for (std::size_t other = 0; other < all.m.size(); ++other) {
@@ -129,7 +130,8 @@ TEST(Dipoles, AreTheDemagOfCrystalsAndNotOfCells) {
             1e-3);
 }
 
-// The field of an atom at a distance r = 0.25 nm along its moment mu is mu0 mu / (2 pi r^3), in T.
+// At a distance r = 0.25 nm along its moment mu, the field of an atom in T is mu0 * mu / (2 pi
+// r^3).
 TEST(Dipoles, AreInTeslaAndJoules) {
   auto const scene = scene_of(R"toml(
 units = "SI"
@@ -178,7 +180,7 @@ TEST(Dipoles, OfPeriodicCrystalsHaveLorentzsField) {
   }
 }
 
-// Dipoles in a chain align along it. Each has an energy of -2 zeta(3) / (4 pi).
+// Dipoles in a chain align along it. Each dipole then has an energy of -2 zeta(3) / (4 pi).
 TEST(Dipoles, OfAChainRelaxAlongIt) {
   auto const scene = with_dipoles("shape = [24]\nboundary = 'periodic'", "dipoles = true");
   auto const run = SceneRun::open(scene, {});
@@ -234,12 +236,12 @@ TEST(Dipoles, CountTheirMemory) {
     auto const scene = with_dipoles("shape = [16, 16, 16]\ncrystal = 'bcc'", field);
     return make_plan(scene, Precision::double_precision).memory.field;
   };
-  // The kernel has 24 values at each of 17 x 32 x 32 wave numbers, the buffer 3 complex values in
-  // each of 17 x 512 rows.
+  // The kernel has 24 values at each of 17 x 32 x 32 wave numbers. The buffer has 3 complex values
+  // in each of 17 x 512 rows.
   std::int64_t const expected = 8 * (17 * 32 * 32 * 24 + 2 * 3 * 17 * 512);
   auto const found = bytes("dipoles = true") - bytes("applied = [0, 0, 1]");
   EXPECT_GE(found, expected);
-  EXPECT_LE(found, expected + 8 * 3 * 32 * 18 * 18 * 3);  // H
+  EXPECT_LE(found, expected + 8 * 3 * 32 * 18 * 18 * 3);  // room for H
 }
 
 }  // namespace

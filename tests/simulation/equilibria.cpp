@@ -153,7 +153,7 @@ class RandomText {
   bool is_open_ = true;
 };
 
-/// Fixture: opening a run initialises Kokkos.
+/// Fixture that initialises Kokkos, by opening a run.
 class Equilibria : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -193,8 +193,8 @@ class Reference {
     return largest;
   }
 
-  /// Returns the error of H: the energy's derivative as all mobile spins turn at random, by finite
-  /// differences, minus the derivative that follows from H.
+  /// Returns the error of H: the derivative of the energy along a random turn of all mobile spins,
+  /// by finite differences, minus the derivative that follows from H.
   double error_of_derivative(unsigned seed) const {
     std::mt19937 engine(seed);
     auto v = std::vector<double>(m_.size());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// One physical system in two forms: terms in kernels or in a separate pass, and fewer sites or
-// vacant sites (with every method that accepts both forms); constants or expressions.
+// Compares two forms of one physical system: terms in kernels or in a separate pass, fewer sites or
+// vacant sites, and constants or expressions. The first two are compared with every method that
+// accepts both forms.
 #include "../support/larger.hpp"
 #include "io/method.hpp"
 #include "scenes_of_text.hpp"
@@ -14,8 +15,8 @@
 namespace cayspin::simulation::test {
 namespace {
 
-// The terms of a plain scene, in kernels and in a separate pass. Moments of 1 cause the pass and
-// change nothing else.
+// Compares the terms of a plain scene in kernels with those in a separate pass. Moments of 1 cause
+// the pass and change nothing else.
 TEST(FieldInPass, APassIsTheFieldThatKernelsEvaluate) {
   constexpr auto plain = R"toml(
 [system]

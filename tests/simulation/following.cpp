@@ -47,7 +47,8 @@ steps = {}
 
 std::vector<std::string> const following = {"lattice.follow={axis='x',quantity='mz'}"};
 
-// Returns the wall's position: the mean of m_z gives the cells that point up; the shift is added.
+// Returns the wall's position: the mean of m_z gives the number of cells that point up, to which
+// the shift is added.
 double place_of_wall(SceneRun& run, int cells) {
   auto const mean = run.sample().magnetization.z;
   return spacing * (0.5 * cells * (1 + mean) + static_cast<double>(run.shift()));

@@ -14,7 +14,8 @@ namespace {
 
 constexpr double ratios[] = {1, 0.5, 2.5};
 
-// A spin turns about z by g H t; the tangent of half its angle to z falls as exp(-damping g H t).
+// A spin with the gyromagnetic ratio g turns about z by g * H * t. The tangent of half its angle to
+// z falls as exp(-damping * g * H * t).
 TEST(GyromagneticOfSites, TurnsSpinsByTheirOwn) {
   constexpr double H = 0.7, damping = 0.2, t = 60 * 0.02;
   auto const scene = llg_scene("0.2", "rkmk4", 60,
@@ -140,7 +141,8 @@ struct MeanOfRegion {
   double error() const { return std::sqrt((of_squares / count - value() * value()) / count); }
 };
 
-// The mean of free spins decays as exp(-2 damping g T t), where T is the temperature.
+// The mean of free spins decays as exp(-2 * damping * g * T * t), with the gyromagnetic ratio g and
+// the temperature T.
 TEST(GyromagneticOfSites, TakesPartInTheNoise) {
   auto const end = end_of(llg_scene(
       "0.5", "heun", 100,

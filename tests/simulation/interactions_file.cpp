@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The cache file of a demagnetising field's tensors is found again, and verified.
+// Tests that the cache file of a demagnetising field's tensors is read again, and that damage to
+// the file is detected.
 #include "simulation/interactions_file.hpp"
 
 #include <gtest/gtest.h>

@@ -154,8 +154,8 @@ steps = 1
                 -0.04 * 0.6 - 0.02 * 0.36, 1e-15)
         << name;
   }
-  // Stiff exchange holds the spins at the interface near those of the cells: the energy falls by
-  // the torque squared over k = 2 A / d^2, the stiffness of a half cell.
+  // Stiff exchange holds the spins at the interface near those of the cells. The energy is lower by
+  // torque^2 / k, where k = 2 A / d^2 is the stiffness of a half cell and d the spacing.
   double const torque = 0.04 * 0.8 + 2 * 0.02 * 0.6 * 0.8, k = 2 * 1e3 / 0.25;
   EXPECT_NEAR(energy("exchange = 1e3", turned), -0.04 * 0.6 - 0.02 * 0.36 - torque * torque / k,
               1e-10);
@@ -192,8 +192,8 @@ TEST(Interlayers, AreRefusedBesideNegativeExchange) {
                    "field.exchange: is negative beside an interlayer");
 }
 
-// Two layers of thickness d with an antiferromagnetic bond saturate in a field B where 2 A k tanh(k
-// d) = 2 |J|, with k^2 = Ms B / (2 A).
+// Two layers of thickness d with an antiferromagnetic bond saturate at the field B for which
+// 2 A k * tanh(k d) = 2 |J|, with k^2 = Ms * B / (2 A).
 TEST(Interlayers, OfThickLayersSaturateWhereTheContinuumDoes) {
   constexpr double A = 1.5e-11, Ms = 1e6, J = 1.5e-3, thickness = 2e-8;
   auto const excess = [](double B) {
@@ -205,7 +205,7 @@ TEST(Interlayers, OfThickLayersSaturateWhereTheContinuumDoes) {
     (excess((below + above) / 2) > 0 ? above : below) = (below + above) / 2;
   struct Case {
     double cell, error;
-    long spacer;  // cells
+    long spacer;  // in cells
   };
   for (auto const& [cell, error, spacer] : {Case{2e-9, 0.02, 0}, {1e-9, 0.005, 0}, {2e-9, 0.02, 2}})
     for (double const side : {-1.0, 1.0}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The magnitude of a site's energy, to which the guard's limit of rises is proportional, where one
-// pass evaluates all terms: it includes each term.
+// Tests that the magnitude of a site's energy includes every term if one pass evaluates all terms.
+// The guard's limit on a rise of the energy is proportional to this magnitude.
 #include "scenes_of_text.hpp"
 
 #include <cstdint>
@@ -45,7 +45,8 @@ TEST(Magnitudes, IncludeTheFieldOfAProgram) {
   EXPECT_NEAR(magnitude_of(scene), 3 * 4, 1e-12);
 }
 
-// Parallel spins have no energy of exchange or DMI, so that their magnitude is that of the bonds.
+// Parallel spins have no energy of exchange or DMI, so the magnitude follows only from the
+// strengths of the bonds.
 TEST(Magnitudes, IncludeDmiAtAnySpacing) {
   auto const magnitude = [](std::string const& dmi) {
     return magnitude_of(llg_scene("0.5", "rkmk4", 1,
@@ -58,7 +59,7 @@ TEST(Magnitudes, IncludeDmiAtAnySpacing) {
        {"{ bulk = 1e-4 }", "{ bulk = 'i < 9 ? 1e-4 : 0' }", "{ d2d = 1e-4 }",
         "{ interfacial = 'i < 9 ? 1e-4 : 0', normal = [0, 0, 1] }"})
     EXPECT_NEAR(magnitude(dmi), expected, 1e-9) << dmi;
-  // A normal of each site is a sum of three terms.
+  // A DMI with site-dependent normals is a sum of three terms.
   EXPECT_NEAR(magnitude("{ interfacial = 1e-4, normal = ['0', '0', 'i < 9 ? 1 : 0'] }"),
               3 * expected, 1e-9);
 }

@@ -18,8 +18,8 @@
 namespace cayspin::simulation::test {
 namespace {
 
-// Each moment turns by gamma H t in its own field along z, H = B + (2 K / Ms - mu0 Ms) m_z, and
-// keeps its m_z.
+// Each moment keeps its m_z and turns by gamma * H * t in its own field along z,
+// H = B + (2 Ku / Ms - mu0 * Ms) * m_z.
 TEST(MomentsOfSites, PrecessInTheFieldOfTheirOwnMagnetization) {
   auto const scene = scene_of(R"toml(
 units = "SI"
@@ -219,8 +219,9 @@ struct Mean {
   double error() const { return std::sqrt((of_squares / count - value() * value()) / count); }
 };
 
-// Independent moments of three kinds, each with its own damping and temperature: the means of m_z
-// and of its square. One sample is a site's mean over six points in time; sites are independent.
+// Compares the means of m_z and of m_z^2 with Langevin's, for independent moments of three kinds,
+// each with its own damping and temperature. One sample is a site's mean over six points in time;
+// sites are independent.
 TEST(MomentsOfSites, HaveLangevinsMeansAtTheirTemperature) {
   auto const scene = scene_of(R"toml(
 [system]
@@ -275,7 +276,8 @@ steps = 1000
   }
 }
 
-// The mean of free spins decays as exp(-2 damping times the integral of the temperature).
+// The mean of free spins decays as exp(-2 * damping * I), where I is the integral of the
+// temperature over time.
 TEST(MomentsOfSites, DiffuseByATemperatureInTimeAndOfSites) {
   auto const scene = scene_of(R"toml(
 [system]

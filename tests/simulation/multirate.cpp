@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Expensive (multirate) fields in scenes: orders, counts, bits of interrupted runs, and refusals.
+// Expensive (multirate) fields in scenes: orders of convergence, numbers of evaluations, bitwise
+// identical results of interrupted runs, and refused scenes.
 #include "scenes_of_text.hpp"
 
 #include <cmath>
@@ -66,7 +67,7 @@ TEST(MultirateFields, BesideCurrentsAndSitesOfTheirOwn) {
   }
 }
 
-/// Returns a scene with a field of the program that counts its evaluations.
+/// Returns a scene with a field of the program. `calls` counts the field's evaluations.
 io::Scene with_own_field(std::string const& integrator, std::shared_ptr<int> const& calls) {
   auto scene = film_on_host(integrator, {"field={exchange=0.5}"});
   scene.field.own.nonlocal = [calls](io::HostVectors const& spins, io::HostVectors const& field,
@@ -93,7 +94,7 @@ TEST(MultirateFields, OfAProgramAreEvaluatedOnceAStep) {
   auto const run =
       SceneRun::open(with_own_field("method='rkmk4'\nsubsteps=3\ndt=0.1\nsteps=100", calls), {});
   run->advance(1);
-  int const looks = 1;  // by energy_guard, at the start
+  int const looks = 1;  // evaluations by energy_guard, at the start
   EXPECT_EQ(*calls, looks + 2 + 3 * 4);
   *calls = 0;
   run->advance(20);

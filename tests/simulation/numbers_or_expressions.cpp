@@ -107,7 +107,7 @@ TEST_F(NumbersOrExpressions, TermsAddUpWithFreeBoundaries) {
 }
 
 // With free boundaries, each end of a chain along x has x as a hard axis, with the energy
-// D^2 / (2 A) m_x^2.
+// D^2 / (2 A) * m_x^2.
 TEST_F(NumbersOrExpressions, TheEndsOfAChainWithBulkDmiHaveAnAnisotropy) {
   auto const run =
       SceneRun::open(llg_scene("0.1", "rkmk4", 1,
@@ -123,7 +123,7 @@ TEST_F(NumbersOrExpressions, TheEndsOfAChainWithBulkDmiHaveAnAnisotropy) {
   EXPECT_NEAR(found, exact, 1e-15);
 }
 
-// m_z = tanh(gamma damping_like t) for a spin that starts perpendicular to the polarization.
+// m_z = tanh(gamma * damping_like * t) for a spin that starts perpendicular to the polarization.
 TEST_F(NumbersOrExpressions, ATorqueInTeslaTurnsSpinsByTheirOwnGamma) {
   for (std::string const gamma : {"2.5e11", "'2.5e11 + 0*x'"}) {
     auto const run =
@@ -164,7 +164,8 @@ TEST_F(NumbersOrExpressions, RelaxedSpinsHaveTheTorqueThatWasAskedFor) {
   }
 }
 
-// Only spins move along the axis of `follow`. Values that differ along it would not move with them.
+// Only spins move along the axis of `follow`. Values that differ along this axis would not move
+// with the spins.
 TEST_F(NumbersOrExpressions, NoneMayDifferAlongAnAxisThatFollows) {
   for (std::string const table :
        {"lattice.gyromagnetic='1+x'", "lattice.moments='1+x'", "system.damping='0.1+x'",

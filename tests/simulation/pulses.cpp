@@ -69,8 +69,8 @@ TEST(Pulses, AreFoundWhereTheTextDoesNotNameTheirTimes) {
     }
 }
 
-// Along a constant field, m_z = tanh(damping t). The error of steps of this length shows that none
-// was longer.
+// In a constant field along z, m_z = tanh(damping * t). The small error with max_dt shows that no
+// step was longer.
 TEST(AdaptiveSteps, AreNoLongerThanTheScenesLongest) {
   auto const error = [](std::string const& keys) {
     auto const end =
@@ -213,7 +213,7 @@ TEST(Pulses, AreWaitedForPastTheEndOfTheScene) {
   }
 }
 
-// At rest the energy is -0.5, above the -0.8 at the start.
+// At rest the energy is -0.5, which is above the energy at the start, -0.78.
 TEST(Pulses, ThatLowerAFieldDoNotKeepARunFromEndingAtRest) {
   auto const scene = scene_of(
       "system = { kind = 'llg', damping = 0.5 }\nlattice = { shape = [1] }\n"

@@ -24,7 +24,7 @@ struct CompositionNumbers {
   Lattice lattice;
   double exchange = 0, interfacial = 0, bulk = 0, cubic = 0, moment = 1, gyromagnetic = 1;
   double cubic2 = 0, hexagonal = 0;
-  double exchange_in_time = 0, anisotropy_in_time = 0, dmi_in_time = 0;  // a of 1 + a sin(5 t)
+  double exchange_in_time = 0, anisotropy_in_time = 0, dmi_in_time = 0;  // a in 1 + a * sin(5 t)
   double constant[2] = {}, damping_like = 0, field_like = 0, nonadiabaticity = 0, damping = 0;
   Vec3<double> axis[2] = {{0, 0, 1}, {0, 0, 1}}, axis_of_sites{0, 0, 1}, applied{0, 0, 0},
                velocity{0, 0, 0};
@@ -33,9 +33,9 @@ struct CompositionNumbers {
   double source_along_y = 0, largest_moment = 1;
   std::vector<double> gyromagnetic_of_sites, damping_like_of_sites;
   double largest_gyromagnetic = 1, lambda = 1;
-  double along_x = 0;  // polarization along (along_x i, 0.6, 0.8)
+  double along_x = 0;  // polarization along (along_x * i, 0.6, 0.8)
   std::vector<Coupling> couplings, d2d;
-  double scale = 0;  // bound on |H|
+  double scale = 0;  // bound on |H| times the gyromagnetic ratio
 };
 
 /// A random composition of terms, shape and site-dependent values, both as the text of a scene and
@@ -72,7 +72,7 @@ class Composition {
   static std::string text_of(Vec3<double> const& v) {
     return fmt::format("[{:.4f}, {:.4f}, {:.4f}]", v.x, v.y, v.z);
   }
-  /// Returns a + b i for each site.
+  /// Returns a + b * i for each site.
   std::vector<double> linear_along_x(double a, double b) const {
     std::vector<double> values(static_cast<std::size_t>(numbers.lattice.sites()));
     for (std::size_t site = 0; site < values.size(); ++site)

@@ -15,7 +15,7 @@
 
 namespace cayspin::simulation::test {
 
-/// Returns a number from the environment, or `usual`.
+/// Returns the environment variable `name` as a number, or `usual` if the variable is not set.
 inline std::int64_t setting(char const* name, std::int64_t usual) {
   char const* const asked = std::getenv(name);
   return asked ? std::atoll(asked) : usual;
@@ -24,7 +24,8 @@ inline std::uint64_t random_seed() {
   return static_cast<std::uint64_t>(setting("CAYSPIN_SEED", 1));
 }
 
-/// A small lattice, its field and its initial spins; [system] and [integrator] are missing.
+/// Tables of a scene: a small lattice, its field and its initial spins. [system] and [integrator]
+/// are missing.
 inline constexpr char const* chain_of_nine =
     "lattice = { shape = [9] }\nfield = { exchange = 1.0 }\n"
     "initial = { random = { seed = 4 } }\n";

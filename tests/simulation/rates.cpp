@@ -89,8 +89,8 @@ TEST_F(Rates, OfABiaxialParticleWithDamping) {
     }
 }
 
-// Stiff exchange modes contribute as without damping, if they are fast compared with the motion
-// over the barrier.
+// If stiff exchange modes are fast compared with the motion over the barrier, they contribute as
+// without damping.
 TEST_F(Rates, OfAStiffChainWithDamping) {
   double const easy = 1.3, hard = 0.7, damping = 0.3;
   auto const lattice = cayspin::Lattice::chain(3);
@@ -124,7 +124,7 @@ TEST_F(Rates, FindARotationOfAllSpins) {
 // Brown's diffusion: the cosine z of the angle to the axis diffuses in the potential
 // -K z^2 / 2 - h z; the diffusion coefficient is damping * kT * (1 - z^2). The flux of probability
 // over the top at z = -h / K gives the rate of one spin: exp(-barrier / kT) times the prefactor
-//   damping (1 - z^2) sqrt(K / (2 pi kT)) (K +- h).
+//   damping * (1 - z^2) * sqrt(K / (2 pi kT)) * (K +- h).
 // In a chain of N spins the prefactor is multiplied by sqrt(N) and, for each exchange mode, by the
 // ratio of its curvatures in the well and at the top. At the top, a mode has one curvature along
 // the ring of saddles and one across it.
@@ -222,7 +222,7 @@ TEST_F(Rates, AskBeforeEachColumnWhetherToGoOn) {
   EXPECT_EQ(calls, 3);
 }
 
-/// Returns spins along z with the given curvatures.
+/// Returns a state whose spins are all along z, with a diagonal Hessian of these curvatures.
 StateHessian state_of(std::vector<double> const& curvatures) {
   std::size_t const count = curvatures.size();
   std::vector<double> spins;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Tests which ensembles are stepped as columns of one lattice, and that replicas in columns move,
-// are sampled and fail like separate runs; also that ensembles relax. tests/program/ensembles.cpp
-// compares their bits in files.
+// Tests which ensembles are stepped as columns of a few lattices, and that replicas in columns
+// move, are sampled and fail like separate runs; also that ensembles relax.
+// tests/program/ensembles.cpp compares files of ensembles with those of separate runs, bit by bit.
 #include "../support/watchdog.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/ensemble_run.hpp"
@@ -193,7 +193,8 @@ TEST(ReplicaColumns, FailAsRunsOfTheirOwn) {
   }
 }
 
-// The searches build their fields side by side. Terms that need a pass fill tables and fields.
+// Searches with terms that need a pass free memory, for which Kokkos waits for all kernels. So they
+// must not be side by side in one kernel: they would never end.
 TEST(Ensembles, RelaxWithTermsThatNeedAPass) {
   auto const scene = llg_scene("0.1", "rkmk4", 1, R"([lattice]
 shape = [4]

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A run that is stored and continued equals one that is not interrupted, in bits and counts, with
-// every method. A run that is interrupted early says so.
+// With every method, a run that is stored and continued gives bitwise the same results, and the
+// same counts, as one that is not interrupted. A run that is interrupted early reports it.
 #include "random_run.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/failure.hpp"
@@ -95,7 +95,7 @@ TEST(Restarting, CorrectsTheEnergyOnceIfAStepFails) {
   };
   auto const whole = run_of(-1);
   whole->advance(20);
-  for (int const failing_call : {12, 13, 14}) {  // one of them is not that of energy control
+  for (int const failing_call : {12, 13, 14}) {  // not all of these are by energy control
     auto const failed = run_of(failing_call);
     EXPECT_THROW(failed->advance(20), std::runtime_error);
     ASSERT_GT(failed->steps(), 0);
@@ -109,9 +109,8 @@ TEST(Restarting, CorrectsTheEnergyOnceIfAStepFails) {
   fs::remove(file);
 }
 
-// When a poll returns true, for example for one of Python's signals, the request is passed to the
-// run, which then has to stop.
-// The guard checks so many sites after every tenth step of the scene, wherever the pieces end.
+// The guard checks a lattice of so many sites after every tenth step of the scene, wherever the
+// pieces end.
 TEST(Restarting, DoesNotChangeWhereARunComesToRest) {
   auto const scene = scene_of(
       "system = { kind = 'llg', damping = 0.5 }\nlattice = { shape = [65, 64] }\n"
@@ -128,6 +127,8 @@ TEST(Restarting, DoesNotChangeWhereARunComesToRest) {
   EXPECT_EQ(steps_in_pieces_of(37), steps_in_pieces_of(800));
 }
 
+// If a poll returns true, the request, for example one of Python's signals, has been passed to the
+// run, which then must report that it was interrupted.
 TEST(Interrupting, IsNotAskedAfterTheLastStep) {
   auto scene = llg_scene("0.1", "rkmk4", 40, chain_of_nine);
   auto const wait = std::make_shared<std::chrono::milliseconds>(0);

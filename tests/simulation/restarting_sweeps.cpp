@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Continued runs on lattices that are large enough for sweeps (cayspin::Path), with fields that
-// allow and fields that prevent sweeps. CAYSPIN_RANDOM_RESTARTS is the number of runs, few by
-// default; 0 means each method once with each field and precision.
+// allow and fields that prevent sweeps. CAYSPIN_RANDOM_RESTARTS is the number of runs, by default
+// 10; 0 means each variant of each method once with each field and precision.
 #include "random_run.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/failure.hpp"

@@ -60,8 +60,9 @@ inline double largest_distance(std::vector<double> const& a, std::vector<double>
   return largest;
 }
 
-/// Expects equal bits and counts of a run that is not interrupted, of one that is stored after
-/// `cut` steps, and of one that continues from there to the scene's end.
+/// Expects bitwise identical results and equal counts from two computations: a run that is not
+/// interrupted, and a run that is stored after `cut` steps and continued by another run to the
+/// scene's end.
 inline void expect_same_bits_after_a_break(io::Scene const& scene, std::int64_t cut,
                                            Precision precision = Precision::double_precision) {
   auto const file =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Random discs, balls, rings, layers and films with holes: from random and uniform starts each
-// search converges to a minimum. CAYSPIN_SHAPED_FILMS is their number.
+// search converges to a minimum. CAYSPIN_SHAPED_FILMS is the number of shapes.
 #include "io/scene.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/scene_field.hpp"

@@ -16,7 +16,7 @@ namespace {
 constexpr double mu0 = 1.25663706127e-6, gamma = 1.760859e11, mu_B = 9.2740100657e-24,
                  meV = 1.602176634e-22, boltzmann = 1.380649e-23, pi = std::numbers::pi;
 
-// The units of a reduced scene.
+// The units of a reduced scene, in SI.
 struct Reduced {
   double energy, field, time;
 };
@@ -58,7 +58,7 @@ std::string with_numbers(std::string_view text, std::map<std::string, double> co
 }
 
 TEST(SiScenes, AFerrimagnetHasTheFieldsOfItsReducedScene) {
-  // The units are 1 meV and 1 Bohr magneton.
+  // The reduced units are 1 meV for energies and 1 Bohr magneton for moments.
   double const alpha = 0.1, field = meV / mu_B, time = (1 + alpha * alpha) / (gamma * field),
                dt = 2e-15;
   std::string const usual = R"toml(
@@ -232,8 +232,9 @@ TEST(SiScenes, IronHasTheExchangeFieldOfItsEightNeighbours) {
     }
 }
 
-// A current moves a spiral of 24 cells. If xi equals Gilbert's damping, the spiral keeps its shape
-// and moves with the electrons, at 28.9755 m/s sin(q a) / (q a) for 1e12 A/m^2.
+// A current moves a spiral of 24 cells. If the nonadiabaticity equals Gilbert's damping, the spiral
+// keeps its shape and moves with the electrons, at 28.9755 m/s * sin(q a) / (q a) for 1e12 A/m^2.
+// Here q is the wave number of the spiral and a the spacing.
 TEST(SiScenes, ASpiralOfPermalloyMovesWithTheElectrons) {
   auto const text = [](double alpha) {
     return fmt::format(R"toml(units = "SI"

@@ -19,7 +19,7 @@ Vector cross(Vector const& a, Vector const& b) {
 }
 double dot(Vector const& a, Vector const& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// z = m.p obeys dz/dt = a c(z) (1 - z^2), c = 2 L^2 / ((L^2 + 1) + (L^2 - 1) z).
+// z = m.p obeys dz/dt = a * c(z) * (1 - z^2), with c(z) = 2 L^2 / ((L^2 + 1) + (L^2 - 1) * z).
 TEST(SlonczewskiOfSites, TurnsAFreeSpinByItsImplicitForm) {
   constexpr double a = 0.3, L = 1.7, t = 2, z0 = -0.6;
   auto const integral = [](double z) {
@@ -39,8 +39,8 @@ TEST(SlonczewskiOfSites, TurnsAFreeSpinByItsImplicitForm) {
   }
 }
 
-// Near m = +-z a small tilt decays at the rate damping (K +- b) +- a c, with c = 1 near z and L^2
-// near -z. Beyond the threshold, where this rate is 0, the tilt grows.
+// Near m = +-z a small tilt decays at the rate damping * (K +- b) +- a * c, where c is 1 near z and
+// L^2 near -z. Beyond the threshold, where this rate is 0, the tilt grows.
 TEST(SlonczewskiOfSites, HasTheThresholdOfItsAngle) {
   constexpr double damping = 0.05, K = 0.8, b = 0.1, L = 1.5, tilt = 1e-3, t = 40 * 0.02;
   for (double const side : {1.0, -1.0})
@@ -60,8 +60,9 @@ TEST(SlonczewskiOfSites, HasTheThresholdOfItsAngle) {
     }
 }
 
-// dm/dt = gamma / (1 + alpha^2) ((A + alpha B) m x (p x m) + (B - alpha A) p x m), A = beta P L^2 /
-// ((L^2 + 1) + (L^2 - 1) m.p), B = beta epsilon', beta = hbar j / (e Ms d).
+// dm/dt = gamma / (1 + alpha^2) * ((A + alpha * B) * (m x (p x m)) + (B - alpha * A) * (p x m)),
+// with A = beta * P * L^2 / ((L^2 + 1) + (L^2 - 1) * m.p), B = beta * epsilon' and
+// beta = hbar * j / (e * Ms * d).
 TEST(SlonczewskiOfSites, IsThatOfACurrent) {
   constexpr double Ms = 6e5, alpha = 0.3, P = 0.45, L = 1.6, second = 0.12, thickness = 2e-9;
   constexpr double dt = 1e-17;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Runs at a temperature have equal bits in pieces, with any observation and after a restart, in
-// random scenes of many methods.
+// Runs at a temperature give bitwise identical results in pieces, with any period of checks and
+// after a restart, in random scenes of many methods.
 #include "random_run.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/failure.hpp"

@@ -85,8 +85,8 @@ TEST(Vacancies, LeaveTheMotionOfTheShapeAlone) {
   EXPECT_GT(compared, 40);
 }
 
-/// Returns a film with moments of 10, whose noise is this many hundredths of the largest that a
-/// step may have.
+/// Returns a film with moments of 10. Its noise is `hundredths` / 100 of the largest that a step
+/// may have.
 io::Scene film_of_moments(std::string const& lattice, std::string const& couplings,
                           int hundredths) {
   constexpr double damping = 0.5, dt = 0.02;
