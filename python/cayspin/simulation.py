@@ -250,7 +250,7 @@ class Simulation:
                     if run.steps % every == 0]
             if at_rest or any(stop):
                 return
-            if until is not None and self._scene is not scene:
+            if until is not None and self._scene.dt != scene.dt:
                 end = run.step_at(until)
 
     def observe(self, every: int, f: Callable[[Simulation], Any]) -> None:

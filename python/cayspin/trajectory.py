@@ -118,6 +118,9 @@ class Trajectory:
         """
         if boundary is None:
             boundary = along_axes(self.path, self.scene, "boundary", "open", "boundary")[:2]
+        elif not isinstance(boundary, str):
+            boundary = arguments.entries(boundary, "topological_charge: boundary",
+                                         'two words, each "open" or "periodic"')
         spins = Frames(self.spins, range(len(self)))
         none = observables.topological_charge(np.empty((0, *spins.shape[1:])), boundary)
         return np.array([observables.topological_charge(spins[frame], boundary)

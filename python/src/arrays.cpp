@@ -93,8 +93,10 @@ SiteNumbersOut array_of(std::vector<double> numbers, std::array<std::int64_t, 3>
 NumbersOut array_of(simulation::LentVectors const& lent) {
   using Owner = std::shared_ptr<void const>;
   auto const& vectors = lent.vectors;
-  nb::capsule const owner(new Owner(lent.owner),
-                          [](void* held) noexcept { delete static_cast<Owner*>(held); });
+  nb::capsule const owner(new Owner(lent.owner), [](void* held) noexcept {
+    nb::gil_scoped_release const released;
+    delete static_cast<Owner*>(held);
+  });
   std::size_t shape[4] = {0, 0, 0, 3};
   std::copy_n(vectors.shape.begin(), 3, shape);
   return NumbersOut(vectors.data, 4, shape, owner, vectors.strides.data(),

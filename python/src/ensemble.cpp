@@ -9,8 +9,8 @@
 
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
-#include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
 #include <array>
@@ -121,7 +121,8 @@ void define_ensemble(nb::module_& module) {
                    "EnsembleSimulation: the scene has no [ensemble]; accepted: Simulation");
              RunSettings const settings{precision_of(precision), space, threads};
              nb::gil_scoped_release const released;
-             return std::make_unique<EnsembleRun>(scene, settings, !io::has_integrator(scene));
+             return freed_without_gil(
+                 std::make_unique<EnsembleRun>(scene, settings, !io::has_integrator(scene)));
            }),
            "scene"_a, "precision"_a, "space"_a.none(), "threads"_a.none())
       .def("continue_from", &EnsembleRun::continue_from, "file"_a,

@@ -18,7 +18,7 @@
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
-#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
@@ -267,9 +267,10 @@ void define_run(nb::module_& module) {
                        std::optional<std::string> const& space, std::optional<int> threads,
                        std::optional<std::filesystem::path> const& restart) {
              RunSettings const settings{precision_of(precision), space, threads, restart};
-             if (restart) return as_error([&] { return SceneRun::open(scene, settings); });
+             if (restart)
+               return freed_without_gil(as_error([&] { return SceneRun::open(scene, settings); }));
              nb::gil_scoped_release const released;
-             return SceneRun::open(scene, settings);
+             return freed_without_gil(SceneRun::open(scene, settings));
            }),
            "scene"_a, "precision"_a, "space"_a.none(), "threads"_a.none(), "restart"_a.none())
       .def("save",

@@ -19,6 +19,7 @@ bool all_are_damped(io::Scene const& scene);
 inline bool energy_must_fall(io::Scene const& scene, bool all_damped) {
   return scene.system.kind == io::SystemKind::llg && all_damped && !is_thermal(scene) &&
          !io::has_torque(scene.field) && !io::depends_on_time(scene.field) &&
+         !scene.field.own.nonlocal &&  // which may depend on time
          scene.integrator.energy_guard && scene.integrator.method->keeps_length;
 }
 

@@ -113,7 +113,9 @@ Minimum SceneMinimizer<Real, Space>::relax(Space const& exec, io::Scene const& s
     }
     auto found = minimize(exec, scene, field, spins, closer);
     double const of_gradient = found.torque;
-    found.torque = largest_torque(exec, field, spins, options.time, moments);
+    // After an interrupt a program's own field must not be called any more.
+    if (found.end != MinimizeEnd::interrupted)
+      found.torque = largest_torque(exec, field, spins, options.time, moments);
     found.iterations += all.iterations;
     found.evaluations += all.evaluations + 1;
     found.saddles += all.saddles;

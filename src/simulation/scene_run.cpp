@@ -46,14 +46,13 @@ Plan plan_of(io::Scene const& scene, Precision precision) {
                           "\"auto\" is chosen by the program; accepted: the method and dt or "
                           "tolerance that `cayspin advise` names");
   auto plan = make_plan(scene, precision);
-  // A scene with steps = 0 runs without an end, so the features of its field cannot be known in
-  // advance: adaptive steps are then at most dt.
-  if (scene.integrator.steps == 0) {
-    auto& steps = plan.options.steps;
-    steps.end = std::numeric_limits<double>::infinity();
-    if (io::depends_on_time(scene.field))
-      steps.max_dt = std::max(steps.min_dt, std::min(steps.max_dt, scene.integrator.dt));
-  }
+  // The features in time of a program's nonlocal field cannot be known in advance, nor those of any
+  // field if steps = 0, which is a run without an end. Adaptive steps are then at most dt.
+  auto& steps = plan.options.steps;
+  bool const is_endless = scene.integrator.steps == 0;
+  if (is_endless) steps.end = std::numeric_limits<double>::infinity();
+  if (scene.field.own.nonlocal || (is_endless && io::depends_on_time(scene.field)))
+    steps.max_dt = std::max(steps.min_dt, std::min(steps.max_dt, scene.integrator.dt));
   require_memory(scene, plan);
   return plan;
 }
@@ -161,7 +160,9 @@ std::int64_t SceneRun::step_at(double t) const {
   double const begin = plan().times.begin * scene_.units.time;
   double const steps = (t - begin) / dt, whole = std::round(steps);
   auto const origin = static_cast<double>(plan().times.origin);
-  if (!(std::abs(steps - whole) <= 1e-9 * std::max(1.0, 1e-6 * whole)) || !(whole >= 0) ||
+  // `begin` is a sum over all changes of the scene, and each addition has a rounding error.
+  double const round_off = std::min(1e-3, 1e-12 * (origin + std::max(0.0, whole)));
+  if (!(std::abs(steps - whole) <= std::max(1e-9, round_off)) || !(whole >= 0) ||
       !(origin + whole <= 0x1p53))
     throw UsageError(
         fmt::format("t = {} is {:.12g} steps of dt = {}{}; accepted: a whole number of "

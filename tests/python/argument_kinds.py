@@ -169,6 +169,12 @@ class Calls(PackageTest):
         for boundary in (["open", "periodic"], np.array(["open", "periodic"]),
                          (np.str_("open"), np.array("periodic"))):
             self.assertEqual(cayspin.topological_charge(m, boundary), expected)
+        run = self.run_program(scene(output={"every": 20}))
+        with cayspin.open(run.filename) as file:
+            expected = file.topological_charge(["open", "periodic"])
+            found = file.topological_charge(iter(["open", "periodic"]))
+            np.testing.assert_array_equal(found, expected)
+            self.assertEqual(len(found), 3)
         self.refused("topological_charge: boundary", lambda b: cayspin.topological_charge(m, b),
                      (*NO_SEQUENCES, ["open", 1], [["open"], ["open"]], (True, False)))
 

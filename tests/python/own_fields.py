@@ -105,6 +105,30 @@ class OwnFields(PackageTest):
             self.assertGreater(min(map(abs, terms.values())), 0)
             self.assertAlmostEqual(sum(terms.values()), sim.energy(), delta=limit * magnitude)
 
+    def test_may_depend_on_time(self):
+        one = {"lattice": {"shape": [1]}, "system": {"kind": "llg", "damping": 0.01},
+               "initial": {"uniform": [0.6, 0, 0.8]},
+               "integrator": {"method": "rkmk4", "dt": 0.01, "steps": 100}}
+        rising = cayspin.Simulation(scene({"nonlocal": lambda m, t: -t * m * [0, 0, 1]}, **one))
+        rising.run()  # the energy t m_z^2 / 2 rises
+        same = cayspin.Simulation(scene({"anisotropy": {"constant": -1.0, "axis": [0, 0, 1]},
+                                         "in_time": {"anisotropy": "t"}}, **one))
+        same.run()
+        np.testing.assert_allclose(rising.spins, same.spins, atol=1e-13, rtol=0)
+
+        matrix = np.array([[0, 0, 5], [0, 0, 0], [5, 0, 0.0]])
+        ends = []
+        for integrator in ({"method": "tsit5", "tolerance": 1e-7, "end": 100},
+                           {"method": "rkmk4", "dt": 0.005, "end": 100}):
+            tables = {**one, "initial": {"uniform": [0, 0, 1]}, "integrator": integrator}
+            sim = cayspin.Simulation(scene(
+                {"applied": [0, 0, 1], "nonlocal": lambda m, t: (m @ matrix) * (60 < t < 61)},
+                **tables))
+            sim.run()
+            ends.append(sim.spins)
+        np.testing.assert_allclose(*ends, atol=3e-3)
+        self.assertLess(ends[1][..., 2].max(), 0.9)
+
     # Yields a simulation with the field `whole` in the scene and a slab as own field, and one with
     # the two exchanged.
     def exchanged(self, whole, lattice, precision="double", **tables):

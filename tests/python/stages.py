@@ -48,6 +48,21 @@ class Stages(PackageTest):
             np.testing.assert_array_equal(sim.spins, file["spins"][-1])
             self.assertEqual(file["time"][-1], sim.time)
 
+    # The time of each change has a rounding error, and these add up.
+    def test_many_changes(self):
+        one = {"lattice": {"shape": [1]}, "initial": {"uniform": [1, 0, 1]}}
+        sim = cayspin.Simulation(scene(**one, field={"applied": [0, 0, 1]},
+                                       integrator={"method": "heun", "dt": 0.017, "steps": 60000}))
+        sim.observe(70, lambda s: s.set("field.applied", [0, 0, 1 + s.time / 2000]))
+        sim.run()
+        self.assertEqual(sim.steps, 60000)
+        sim = cayspin.Simulation(scene(**one, field={"applied": [0, 0, 1]},
+                                       integrator={"method": "heun", "dt": 0.017, "steps": 1}))
+        for n in range(800):
+            sim.set("field.applied", [0, 0, 1 + n / 800])
+            sim.run(until=(n + 1) * 100 * 0.017)
+        self.assertEqual(sim.steps, 80000)
+
     def test_what_stays(self):
         sim = cayspin.Simulation(scene())
         sim.step(7)

@@ -5,6 +5,7 @@ open scenes. CAYSPIN_ROUNDS is the number of rounds. A hang ends the test with a
 import faulthandler
 import os
 import threading
+import time
 import unittest
 
 import cayspin
@@ -81,6 +82,28 @@ class Threads(PackageTest):
         for thread in threads:
             thread.join()
         self.assertEqual(errors, [])
+
+    # Freeing spins waits for the kernels of all threads. The replicas of this ensemble run in one
+    # kernel, which asks Python from time to time whether Ctrl-C was pressed.
+    def test_freeing_while_another_thread_steps(self):
+        faulthandler.dump_traceback_later(LONGEST, exit=True)
+        strengths = [0.1 * n for n in range(8)]
+        ensemble = cayspin.EnsembleSimulation(scene(
+            field={"slab_demag": None},
+            ensemble={"replicas": 8, "vary": {"field.applied.0": strengths}}))
+        waste = [cayspin.Simulation(scene()) for _ in range(50)]
+        views = [sim.spins for sim in waste[:20]]
+        for sim in waste[:20]:
+            sim.step()
+        thread = threading.Thread(target=ensemble.step, args=[20000])
+        thread.start()
+        while waste:
+            waste.pop()
+            if views:
+                views.pop()
+            time.sleep(0.005)
+        thread.join()
+        self.assertEqual(ensemble.steps, 20000)
 
 
 if __name__ == "__main__":

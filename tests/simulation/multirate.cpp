@@ -89,6 +89,25 @@ io::Scene with_own_field(std::string const& integrator, std::shared_ptr<int> con
   return scene;
 }
 
+// A function of Python must not be called while Ctrl-C has set an exception.
+TEST(OwnFields, AreNotCalledAfterAnInterruptOfASearch) {
+  for (std::string const lattice : {"lattice.occupied=\"i != 2\"", "lattice.moments=2.0"}) {
+    auto const calls = std::make_shared<int>(0);
+    auto scene = with_own_field("method='rkmk4'\ndt=0.1\nsteps=1", calls);
+    auto given = scene.field.own;
+    scene = io::with_overrides(scene, {lattice});
+    scene.field.own = given;
+    auto const run = SceneRun::open(scene, {});
+    int at_interrupt = -1;
+    run->relax({.torque = 1e-30, .interrupted = [&] {
+                  if (*calls > 20) at_interrupt = *calls;
+                  return *calls > 20;
+                }});
+    EXPECT_GT(at_interrupt, 20) << lattice;
+    EXPECT_EQ(*calls, at_interrupt) << lattice;
+  }
+}
+
 TEST(MultirateFields, OfAProgramAreEvaluatedOnceAStep) {
   auto const calls = std::make_shared<int>(0);
   auto const run =
