@@ -120,10 +120,10 @@ struct Crystal {
     for (std::size_t site = 0; site < basis.size(); ++site)
       if (!std::ranges::all_of(basis[site], [](double x) { return std::isfinite(x); }))
         throw std::invalid_argument("cayspin::Crystal: site " + std::to_string(site) +
-                                    " is at no finite place");
+                                    " has a non-finite position");
     if (auto const two = sites_at_one_place())
       throw std::invalid_argument("cayspin::Crystal: sites " + std::to_string((*two)[0]) + " and " +
-                                  std::to_string((*two)[1]) + " are at one place");
+                                  std::to_string((*two)[1]) + " have the same position");
   }
 
  private:

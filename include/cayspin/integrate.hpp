@@ -268,7 +268,9 @@ Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator co
   check_access<Exec, typename Spins::memory_space>();
   if (!std::isfinite(times.dt) || !std::isfinite(times.begin))
     throw std::invalid_argument("cayspin::integrate: begin and dt must be finite");
-  if (times.first < 0 || times.steps < times.first)
+  if (times.first < 0)
+    throw std::invalid_argument("cayspin::integrate: the first step has a negative number");
+  if (times.steps < times.first)
     throw std::invalid_argument("cayspin::integrate: the number of steps is negative");
   // These checks come before an observer sees the spins, and are made even if there are no steps to
   // take.

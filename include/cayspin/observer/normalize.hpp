@@ -55,7 +55,7 @@ void require_unit_spins(Exec const& exec, SpinField<Real, MemorySpace> const& sp
   message
       << "cayspin::require_unit_spins: the spins must be of length 1, and the largest | |m| - 1 "
          "| is "
-      << defect << "; cayspin::normalize mends small defects";
+      << defect << "; cayspin::normalize corrects small deviations";
   throw std::invalid_argument(message.str());
 }
 

@@ -168,7 +168,7 @@ class ThermalNoise {
                                : largest_of(options_.cell_sites) * largest_of(options_.replicas);
     if (!(largest * u <= 1))
       throw std::invalid_argument(
-          "cayspin::ThermalNoise: damping temperature dt must be at most 1: a smaller dt");
+          "cayspin::ThermalNoise: damping * temperature * dt must be at most 1: a smaller dt");
     if (u == 0) return;
     if (largest_factor_) {
       run(exec, step, after, before, spins,
