@@ -6,23 +6,25 @@ namespace {
 
 constexpr char const* head = R"(# Tables of extreme inputs
 
-How each method handles inputs that are tiny, huge or wrong; [the report](extremes.md) has a
-summary. The test `extremes` computes these tables and compares them with this page. It also checks
-most of the statements above each table. `extremes_long` does the same for the last table. After a
-change, `build/release/bin/test_extremes --write` writes this page again, in a few minutes.
+These tables show how each method handles inputs that are tiny, huge or wrong; [the
+report](extremes.md) has a summary. The test `extremes` computes all tables but the last, compares
+them with this page, and checks most of the statements above them. The test `extremes_long`
+computes and compares the last table. After a change of a method or of these tests,
+`build/release/bin/test_extremes --write` rewrites this page in a few minutes.
 
 | word | meaning |
 |---|---|
-| exact | the exact solution to round-off: 8 epsilon a step, plus 4 epsilon times the angle in radians |
-| bounded | \| \|m\| - 1 \| is below 4 epsilon a step; the error is that of the method |
-| warned | a warning says that dt is too large; except with `classical_*`, \|m\| is kept, or the run stops with status 3 |
-| drifts | \|m\| is not kept, as documented for `classical_*` |
-| refused | one line before the first step |
-| detected | the run stops with status 3 |
+| exact | the exact solution to round-off: 8 epsilon per step, plus 4 epsilon times the angle of rotation in radians |
+| bounded | lengths change by at most 4 epsilon per step; directions have the error of the method |
+| warned | `run` warns that dt is too large; the run stops with exit status 3, or keeps the lengths as in "bounded" (except with `classical_*`) |
+| drifts | lengths are not kept, as documented for `classical_*` |
+| refused | the scene is refused before the first step, with a one-line message |
+| detected | the run stops with exit status 3 |
 
-Runs take six steps of 1/128, unless the table or its text says otherwise. Two words in a cell are
-for double and single precision. Square brackets hold generators and rotations where not all behave
-alike. Constant sigmas are not in the tables.
+Here epsilon is the machine epsilon of the precision. Unless a table or its text says otherwise,
+runs take six steps of dt = 1/128. If a cell has two words, the first is for double precision and
+the second for single precision. Where a method behaves differently with different generators or
+rotations, square brackets list those that the row is about. No run has a constant sigma.
 )";
 
 // Methods that take 1e8 steps in minutes.

@@ -72,9 +72,10 @@ Section equilibria() {
   using enum Fate;
   Section section{"Equilibria",
                   R"(
-The search of `cayspin relax` from random spins, in a field of 1 with exchange 1, to a bound of 1e-6
-on the torque, unless the table says otherwise. The first two columns have no exchange. Exact means
-that all spins keep their bits; bounded, that all end along the field.)",
+Unless a column says otherwise, the search of `cayspin relax` starts from random spins with exchange
+1 in a field of 1, and ends when the torque is below 1e-6. In the first two columns there is no
+exchange. In this table "exact" means that all spins stay bit-identical, and "bounded" that all
+spins end along the field.)",
                   {exact, bounded, refused, detected}};
   auto const add = [&](char const* name, Setting setting, Against against) {
     setting.steps = 1;

@@ -13,11 +13,11 @@ using enum Against;
 Section steps() {
   Section section{"Steps",
                   R"(
-One spin in a field of 1, damping 0.1. Up to dt 1e-12 the error of a step is far below an epsilon,
-and runs are exact; at 1e-3 they are bounded, apart from `classical_*`. `run` warns if dt is above
-the stable dt, or if a spin may turn by more than 3 radians per step (2 radians where no stable dt
-is known). With the orthogonal generator, the energy of ab2 rises already at dt 1, which is
-detected.)",
+The runs have one spin in a field of 1 with damping 0.1, or one rigid body without damping. At dt
+1e-12 and below, the error of a step is far below epsilon, and runs are exact. At dt 1e-3 runs are
+bounded, except with `classical_*`. `run` warns if dt is above the stable dt. It also warns if a
+spin may turn by more than 3 radians per step, or by 2 radians where no stable dt is known. With ab2
+and the orthogonal generator, the energy rises already at dt 1, which stops the run.)",
                   {exact, bounded, warned, detected},
                   {exact, drifts, warned}};
   for (char const* dt : {"1e-300", "1e-12", "1e-3", "1", "1e8", "1e160", "1e300"}) {
@@ -31,11 +31,11 @@ detected.)",
 Section turns() {
   Section section{"Turns",
                   R"(
-One spin, damping 0, that turns by this angle in a step, or a body that turns about as fast. The
-Cayley map cannot rotate by pi. The exponential's dexp^-1 has its pole at 2 pi. The square of 1e160
-overflows, and an overflow stops the run at its first step. `run` warns in all four columns. With
-the exponential, runs are exact up to 1e8 where A is constant, in single precision some only up to
-2 pi.)",
+The runs have one spin without damping, which turns in each step by the angle that heads the column,
+or a rigid body that turns about as fast. The Cayley map cannot rotate by pi. For the exponential,
+dexp^-1 has a pole at 2 pi. The square of 1e160 overflows, and an overflow stops the run at its
+first step. `run` warns in all four columns. With the exponential and a constant A, runs are exact
+for angles of up to 1e8; with some methods in single precision, only up to 2 pi.)",
                   {exact, warned},
                   {warned}};
   for (auto const& [name, turn] : {std::pair{"pi", std::numbers::pi},
@@ -49,10 +49,11 @@ the exponential, runs are exact up to 1e8 where A is constant, in single precisi
 Section fields() {
   Section section{"Fields",
                   R"(
-Damping 0.1. A spin without a field, or along it, stays at rest. On x86 and ARM processors, numbers
-below the smallest normal one (2.2e-308, in single precision 1.2e-38) count as zero. An overflow
-stops the run at its first step. If a field is switched on within a step, the error of this step may
-be dt |A|, whatever the order of the method.)",
+The runs have one spin with damping 0.1, or one rigid body. A spin without a field, or along the
+field, stays at rest. On x86 and ARM processors, numbers below the smallest normal number (double
+precision: 2.2e-308, single: 1.2e-38) count as zero. An overflow stops the run at its first step. If
+a field is switched on within a step, the error of this step may be as large as dt |A|, whatever the
+order of the method.)",
                   {exact, bounded, warned, refused, detected},
                   {exact, drifts, detected}};
   section.add("A = 0", {.field = 0, .damping = 0.1}, solution);
@@ -66,9 +67,10 @@ be dt |A|, whatever the order of the method.)",
 Section dampings() {
   Section section{"Damping",
                   R"(
-One spin in a field of 1, or a body, which has no damping. At damping 1e-12 a method may add more
-energy than the damping takes: `run` warns, or stops when the energy rises by more than round-off.
-At damping 1e12 dt is far too large.)",
+The runs have one spin in a field of 1 with the damping that heads the column, or one rigid body,
+which has no damping. At damping 1e-12 a method may add more energy than the damping removes. `run`
+then warns, or stops when the energy rises by more than round-off. At damping 1e12 the dt of these
+runs is far too large.)",
                   {bounded, warned, refused, detected},
                   {drifts, warned}};
   for (char const* damping : {"0", "1e-12", "1e12"})
@@ -79,9 +81,9 @@ At damping 1e12 dt is far too large.)",
 Section starts() {
   Section section{"Starts",
                   R"(
-Damping 0.1, dt 1e-3. The program normalises initial spins; these runs begin with a wrong length
-all the same. Errors of more than 64 epsilon are detected before the first step. An error of one ulp
-is kept or normalised away. The lengths of `classical_*` are not checked.)",
+The runs have damping 0.1 and dt 1e-3. The program normalises initial spins; in these runs a length
+is made wrong after that. Errors of more than 64 epsilon are detected before the first step. An
+error of one ulp stays, or the method removes it. With `classical_*` lengths are not checked.)",
                   {bounded, warned, detected},
                   {drifts}};
   Setting start{.damping = 0.1, .dt = 1e-3, .start_length = 1.001};
@@ -96,9 +98,10 @@ is kept or normalised away. The lengths of `classical_*` are not checked.)",
 Section lattices() {
   Section section{"Lattices",
                   R"(
-Uniform spins with exchange 1 in a field of 1, damping 0.1, dt 1e-3. Exact means that each spin
-agrees with a single one to 8 epsilon. `red_black2` and `red_black4` are exact only on some
-lattices. A lattice that does not fit into memory is refused.)",
+The runs have uniform spins with exchange 1 in a field of 1, damping 0.1 and dt 1e-3. In this table
+"exact" means that each spin agrees to 8 epsilon with the spin of a lattice of one site. Runs of
+`red_black2` and `red_black4` are exact only on some lattices. A lattice that does not fit into
+memory is refused.)",
                   {exact, refused},
                   {exact, refused}};
   using Shape = std::array<std::int64_t, 3>;
@@ -118,9 +121,9 @@ Section faults() {
   many.shape = {5000, 1, 1};
   Section section{"Faults",
                   R"(
-Lattices of 64 and of 5000 spins, in which one spin becomes NaN after step 3; damping 0.1, up to 20
-steps of 1e-3. `run` detects it at the next step; above 4096 sites, within ten steps. No frame is
-written after the fault.)",
+In lattices of 64 and of 5000 spins, one spin becomes NaN after step 3. The runs have damping 0.1
+and would otherwise take 20 steps of 1e-3. `run` stops at the next step (with more than 4096 sites,
+within ten steps), and writes no frame after the NaN.)",
                   {detected},
                   {detected}};
   section.add("64 spins", few, nothing, 4);
@@ -131,9 +134,9 @@ written after the fault.)",
 Section drift() {
   Section section{"Drift",
                   R"(
-One spin, damping 0, 5000 steps. `Every(100, Normalize{})` takes a Newton step towards |m| = 1
-every 100 steps. Except for `classical_*`, | |m| - 1 | then stays below some 400 epsilon, whatever
-the number of steps.)",
+The runs have one spin without damping, and take 5000 steps. In the last column,
+`Every(100, Normalize{})` takes a Newton step towards |m| = 1 every 100 steps. Except with
+`classical_*`, | |m| - 1 | then stays below some 400 epsilon, whatever the number of steps.)",
                   {bounded, warned},
                   {drifts, warned}};
   section.add("without Newton steps", {.steps = 5000});
@@ -162,10 +165,10 @@ Section longest_runs() {
   constexpr std::int64_t steps = 100'000'000;
   Section section{"1e8 steps",
                   R"(
-One spin in a field of 1, damping 0, dt 0.37, rkmk4 with either rotation. Round-off accumulates
-where all steps are alike: | |m| - 1 | grows by some 0.01 epsilon a step, to 3e-10 in double
-precision. In single precision it reaches 0.01 after some 7e6 steps, where the run stops. With a
-Newton step every 1000 steps it stays below some 10 epsilon.)",
+The runs have one spin in a field of 1 without damping, and use rkmk4 with dt 0.37 and either
+rotation. Round-off accumulates, because all steps are alike: | |m| - 1 | grows by some 0.01 epsilon
+per step, to 3e-10 in double precision. In single precision it reaches 0.01 after some 7e6 steps,
+and the run stops. With a Newton step every 1000 steps, | |m| - 1 | stays below some 10 epsilon.)",
                   {bounded, detected}};
   section.add("without Newton steps", {.dt = 0.37, .steps = steps}, nothing, steps);
   section.add("with Newton steps", {.dt = 0.37, .steps = steps, .normalized = 1000}, nothing,

@@ -11,12 +11,12 @@ using enum Against;
 Section adaptive_steps() {
   Section section{"Adaptive steps",
                   R"(
-Field 1, damping 0.1, tolerance 1e-4 (1e-5 with the field that is switched on), unless the table
-says otherwise. dt is the time between samples, of which a run has six after the start: 1/128 up to
-the column of the field that is switched on, and 1 after it, unless the table says otherwise. The
-error stays below 30 times the tolerance, also where the field is switched on within a step. A run
-stops if a step would have to be below min_dt, if numbers are too large for the precision, or if the
-start is wrong. With a damping of 1e12, steps are some 1e-12 long, and only min_dt limits their
+Unless a column says otherwise, the field is 1, the damping 0.1, and the tolerance 1e-4 (1e-5 in the
+column "on within a step"). Here dt is the time between samples; each run has six after the start.
+Unless a column says otherwise, dt is 1/128 in the columns up to "on within a step", and 1 in those
+after it. The error stays below 30 times the tolerance, also if the field is switched on within a
+step. A run stops if it needs a step shorter than min_dt, if a number overflows, or if an initial
+length is wrong. With a damping of 1e12, steps are some 1e-12 long, and only min_dt limits their
 number.)",
                   {exact, bounded, refused, detected}};
   section.add("A = 0", {.field = 0, .damping = 0.1}, solution);
@@ -39,9 +39,10 @@ number.)",
 Section temperatures() {
   Section section{"Temperatures",
                   R"(
-Methods with constant steps that take a temperature; damping 0.1, field 1. dt is 1e-12 at T 1e-300,
-and 1e-3 with NaN. A run at T = 0 is bit-identical to one without `[thermal]`. `run` warns where
-noise turns spins by more than half a radian a step.)",
+The table has the methods with constant steps that accept a temperature. The damping is 0.1 and the
+field is 1. In the column "T 1e-300" dt is 1e-12. In the column "NaN" dt is 1e-3, and a spin becomes
+NaN after step 3. A run at T = 0 is bit-identical to one without `[thermal]`. `run` warns if noise
+turns spins by more than half a radian per step (root mean square).)",
                   {exact, bounded, warned, refused, detected}};
   auto const add = [&](char const* name, Setting setting, double temperature,
                        Against against = nothing, std::int64_t detected_by = 6) {
@@ -63,8 +64,10 @@ noise turns spins by more than half a radian a step.)",
 Section expensive_fields() {
   Section section{"Expensive fields",
                   R"(
-Methods that accept an expensive field, here the demagnetising field of a slab, of strength 0.5.
-Damping 0.1, field 1. dt is 1e-12 at strength 1e-300, and 1e-3 with NaN.)",
+The table has the methods that accept an expensive field. In these runs it is the demagnetising
+field of a slab, with strength 0.5 unless a column says otherwise. The damping is 0.1 and the
+applied field is 1. In the column "strength 1e-300" dt is 1e-12. In the column "NaN" dt is 1e-3, and
+a spin becomes NaN after step 3.)",
                   {exact, bounded, warned, detected},
                   {exact, drifts, warned, detected}};
   auto const add = [&](char const* name, Setting setting, double strength,
