@@ -39,7 +39,8 @@ output_file_tag x
 
 
 def by_spirit(solver, bound, most=20000):
-    """Returns evaluations, seconds, barrier, torque at the saddle, and the initial skyrmion."""
+    """Returns evaluations, seconds, barrier, torque at the saddle, and the skyrmion before it was
+    relaxed."""
     from spirit import (chain, configuration, log, simulation, state, system, transition)
     from spirit.parameters import gneb
 
@@ -73,7 +74,7 @@ def by_spirit(solver, bound, most=20000):
             configuration.plus_z(p, idx_image=IMAGES - 1)
             transition.homogeneous(p, 0, IMAGES - 1)
             chain.update_data(p)
-            rough = 0.3  # meV, force at which the highest image starts to climb
+            rough = 0.3  # meV: below this largest force, the highest image starts to climb
             inner = range(1, IMAGES - 1)
             force = lambda: simulation.get_max_torque_norm(p)
             count = iterate(p, simulation.METHOD_GNEB, lambda: 0 < force() < rough)

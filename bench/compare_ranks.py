@@ -5,13 +5,13 @@
 Usage: compare_ranks.py BUILD_DIR [--repetitions N]
 
 Columns of the table, for a lattice of the given number of sites:
-- strong: the time of one rank with two threads over that of two ranks, on this lattice,
-- weak: the time of two independent ranks with this lattice each over that of two ranks that share
-  one of twice its length,
+- strong: (time of one rank with two threads) / (time of two ranks), both on this lattice,
+- weak: (time of two independent ranks that have this lattice each) / (time of two ranks that share
+  a lattice of twice its length),
 - in step: like weak, but the independent ranks wait for each other after each step,
-- exchange: the part of the time that is spent exchanging ghosts, in the strong and in the weak
-  case.
-The runs alternate, and the best of each kind counts.
+- exchange: percentage of the time that two ranks spend exchanging ghosts, on this lattice and on
+  the one of twice its length.
+The kinds of run take turns, and the fastest run of each kind counts.
 """
 import argparse
 import os
@@ -24,7 +24,7 @@ LINE = re.compile(r"(.*): ([\d.]+) ns, exchange ([\d.]+), exchanges \d+, stages 
 
 
 def measure(program, ranks, threads, size, *more):
-    """Returns {method: (ns per spin and step, part of the time in exchanges, stages)}."""
+    """Returns {method: (ns per spin and step, fraction of the time spent in exchanges, stages)}."""
     environment = dict(os.environ, OMP_NUM_THREADS=str(threads), OMP_WAIT_POLICY="passive",
                        OMP_PROC_BIND="false")
     text = subprocess.run(["mpiexec", "-n", str(ranks), program, *map(str, size), *more],

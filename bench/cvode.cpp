@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Compares CVODE of SUNDIALS with cayspin's methods on one thread, with the same kernel for the
-// right side: the milliseconds and evaluations that each takes to reach given errors. `bench_cvode
-// [SCENE..]`; without names it runs all scenes: slab_fine, slab_fine_damped, film, heisenberg,
-// film_256. The error is the largest distance of any spin, at four times, from a run of tsit5 with
-// a tolerance of 1e-12; for this, spins are divided by their lengths. Times are the shortest of
-// several runs.
+// right side: prints the milliseconds and evaluations that each takes to reach given errors.
+// `bench_cvode [SCENE..]`; without names it runs all scenes: slab_fine, slab_fine_damped, film,
+// heisenberg, film_256. The error is the largest distance of any spin, at four times, from a run of
+// tsit5 with a tolerance of 1e-12, after the spins have been divided by their lengths. Times are
+// the shortest of several runs.
 #include "cvode_run.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -110,7 +110,7 @@ class Comparison {
       }
     });
   }
-  /// For disordered spins with only exchange.
+  /// A method of order 8 that is suited only to disordered spins with nothing but exchange.
   void steps_with_sigma() {
     using Plain = Rkmk<Spins, tableau::DormandPrince8>;
     using WithSigma = Rkmk<Spins, tableau::DormandPrince8, isotropy::Constant>;
@@ -120,7 +120,7 @@ class Comparison {
   }
   void cvode(std::string const& name, by_sundials::CvodeOptions const& options) {
     by_sundials::Cvode<Generator> solver(problem_.lattice, problem_.generator, options);
-    // Stops runs that a loose tolerance makes unstable.
+    // The limit ends runs that a loose tolerance makes unstable.
     double const rate = problem_.field_bound * std::hypot(1, problem_.damping);
     auto const most = static_cast<std::int64_t>(50000 + 20 * problem_.horizon * rate);
     add(name, false, [&](int rung) {

@@ -21,14 +21,14 @@
 namespace by_sundials {
 
 struct CvodeOptions {
-  int method = CV_BDF;  // CV_ADAMS: with fixed-point iteration
+  int method = CV_BDF;  // or CV_ADAMS, with fixed-point iteration
   int max_order = 5;
   bool preconditioned = false;
 };
 
 /// The preconditioner (1 + b K)^-1 as in StiffGauss, normal to the spins. K is the exchange
-/// operator, and b = gamma (damping - i precession) with the measured damping and precession and
-/// the gamma of CVODE.
+/// operator, and b = gamma * (damping - i * precession), where gamma is given by CVODE, and damping
+/// and precession are measured.
 class SpinWavePreconditioner {
   using Solver = cayspin::detail::SpinWaveSolver<double, Kokkos::HostSpace>;
 
@@ -70,8 +70,8 @@ class SpinWavePreconditioner {
       site.store(r - dot(m, r) * m, output);
     }
   };
-  /// Functor that computes v' + m x v'' normal to the spins, and keeps the right side along them.
-  /// v' and v'' are the real and the imaginary part of the solution.
+  /// Functor that stores the part of v' + m x v'' normal to the spin m plus the part of the right
+  /// side along m. v' and v'' are the real and the imaginary part of the solution.
   struct Turn {
     cayspin::SiteArray<double, 6> solution;
     SiteArray right, spins;

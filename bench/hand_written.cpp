@@ -37,8 +37,8 @@ std::vector<double> numbers_of(Vectors<Real> const& vectors, std::size_t sites) 
   return numbers;
 }
 
-// A missing neighbour is the site itself. The inner loop has no branch; the two ends of a row are
-// handled outside it.
+// The site itself stands in for a missing neighbour, so that this bond has no field. The inner loop
+// has no branch; the two ends of a row are handled outside it.
 template <class Real, class Body>
 void for_each(Cube<Real> const& cube, Numbers<Real> const v, Body body) {
   std::size_t const row = static_cast<std::size_t>(cube.n), plane = row * row;

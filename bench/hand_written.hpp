@@ -34,10 +34,10 @@ struct Vectors {
   Array<Number> x, y, z;
 };
 
-/// Copies from (sites, 3); each thread first touches the memory that it works on.
+/// Copies from an array (sites, 3); each thread is the first to touch the memory that it works on.
 template <class Number>
 void fill(Vectors<Number>& vectors, std::vector<double> const& from);
-/// Copies to (sites, 3).
+/// Returns a copy as an array (sites, 3).
 template <class Number>
 std::vector<double> numbers_of(Vectors<Number> const& vectors, std::size_t sites);
 
@@ -53,8 +53,8 @@ struct Cube {
 };
 
 /// bcc, n x n x n periodic cells of two sites: exchange with 8 neighbours (14 with the second
-/// shell), a field along z, damping. The positions of all neighbours are written into the code. For
-/// each z, the spins of site 0 of all cells come before those of site 1.
+/// shell), a field along z, damping. The positions of all neighbours are hard-coded. For each z,
+/// the spins of site 0 of all cells come before those of site 1.
 template <class Number, bool SecondShell>
 struct Bcc {
   using Real = Number;

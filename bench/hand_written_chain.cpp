@@ -3,7 +3,7 @@
 
 namespace hand_written {
 
-// A missing neighbour is the site itself.
+// The site itself stands in for a missing neighbour, so that this bond has no field.
 template <Loops loops, class Body>
 HAND_WRITTEN_INLINE void for_each(Chain<loops> const& c, Numbers<double> const v, Body body) {
   auto const slope = [&](std::size_t i, std::size_t left, std::size_t right) {

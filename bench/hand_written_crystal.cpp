@@ -8,9 +8,9 @@ HAND_WRITTEN_INLINE void add(Numbers<Real> const& v, std::size_t i, Vector<Real>
   sum.x += v.x[i], sum.y += v.y[i], sum.z += v.z[i];
 }
 
-/// Indices at which the rows with the neighbours of a row begin: four rows of the other site of the
-/// cells and, for the second shell, the row itself (`own`) and four rows of the same site
-/// (`along`).
+/// Indices of the first sites of the rows that hold the neighbours of a row: four rows of the other
+/// site of the cells and, for the second shell, the row itself (`own`) and four rows of the same
+/// site (`along`).
 struct RowsBeside {
   std::size_t other[4], own, along[4];
 };

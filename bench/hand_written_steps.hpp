@@ -42,7 +42,7 @@ HAND_WRITTEN_INLINE Vector<Real> moved(Numbers<Real> const& from, std::size_t i,
   return {from.x[i] + step * s.x, from.y[i] + step * s.y, from.z[i] + step * s.z};
 }
 
-/// A x m with A = h + damping m x h.
+/// Returns A x m, where A = h + damping * (m x h).
 template <class Real>
 HAND_WRITTEN_INLINE Vector<Real> rate(Real damping, Vector<Real> const& m, Vector<Real> const& h) {
   Real const ax = h.x + damping * (m.y * h.z - m.z * h.y);

@@ -19,7 +19,7 @@
 namespace ladder {
 
 using Spins = cayspin::SpinField<double, Kokkos::HostSpace>;
-using States = std::vector<std::vector<double>>;  // (sites, 3) at each sample
+using States = std::vector<std::vector<double>>;  // one (sites, 3) array per sample
 
 inline constexpr int looks = 4;
 
@@ -70,9 +70,9 @@ class Clock {
 /// One run of any method.
 struct Run {
   States states;
-  double seconds = 0;            // of stepping
-  std::int64_t evaluations = 0;  // of the right side
-  std::int64_t multirate = 0;    // of an expensive field
+  double seconds = 0;            // spent in steps
+  std::int64_t evaluations = 0;  // evaluations of the right side
+  std::int64_t multirate = 0;    // evaluations of an expensive field
   std::int64_t steps = 0;
 };
 
@@ -82,7 +82,7 @@ struct Rung {
 
 struct Ladder {
   std::string name;
-  bool is_own = true;  // a method of cayspin
+  bool is_own = true;  // true: a method of cayspin
   std::vector<Rung> rungs = {};
 };
 
@@ -104,8 +104,8 @@ inline double distance(States const& run, States const& reference) {
   return largest;
 }
 
-/// Returns the cost of a ladder at an error, interpolated logarithmically between rungs; infinity
-/// if no rung reaches the error.
+/// Returns the smallest `amount` (seconds, for example) with which a ladder reaches an error,
+/// interpolated logarithmically between rungs; infinity if no rung reaches the error.
 inline double amount_to(Ladder const& ladder, double error, double Rung::*amount) {
   double best = std::numeric_limits<double>::infinity();
   Rung const* before = nullptr;
@@ -127,9 +127,9 @@ struct Limits {
   int rungs = 24;
 };
 
-/// Calls run(rung) for rung 0, the coarsest, and so on. Repeats rungs with an error below 0.5: the
-/// shortest of up to 100 runs counts, of 2 or 3 if they are long. Stops at the limits, or when
-/// small errors no longer decrease.
+/// Calls run(rung) for rung 0, the coarsest, and so on. Keeps the rungs with an error below 0.5 and
+/// repeats them: the shortest of up to 100 runs counts, or of 2 or 3 if they are long. Stops at the
+/// limits, or when small errors no longer decrease.
 template <class RunOnce>
 Ladder climb(std::string name, bool is_own, States const& reference, Limits const& limits,
              RunOnce const& run) {
@@ -170,7 +170,7 @@ Run take_steps(Stepper& stepper, Generator const& generator, cayspin::Lattice co
   Clock clock;
   auto const look = [&](auto const&, cayspin::Step const& step, auto const& now) {
     if (step.number > 0) {
-      run.seconds += clock.seconds();  // integrate has fenced
+      run.seconds += clock.seconds();  // integrate() has fenced
       run.states.push_back(cayspin::copy_to_host(now));
     }
     clock.reset();
@@ -187,8 +187,8 @@ inline std::int64_t with_looks(double steps) {
   return looks * std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(steps / looks)));
 }
 
-/// Returns `fewest` steps for rung 0 and 1.5 times as many for each next one, rounded up to a
-/// multiple of `looks`.
+/// Returns the number of steps of a rung: `fewest` for rung 0, 1.5 times as many for each further
+/// rung, rounded up to a multiple of `looks`.
 inline std::int64_t steps_of(int rung, double fewest) {
   return with_looks(fewest * std::pow(1.5, rung));
 }

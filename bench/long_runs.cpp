@@ -32,7 +32,8 @@ struct Options {
   std::string only;
 };
 
-/// Observer that records the largest errors so far. It is called before EnergyControl.
+/// Observer that records the largest errors so far. It comes before EnergyControl, so that it sees
+/// the spins before they are corrected.
 class Watch {
  public:
   Watch(Generator const& generator, std::int64_t sites)
@@ -135,7 +136,8 @@ int main(int argc, char** argv) {
   Runs const runs(options_of(argc, argv));
   runs.run<ProjectedRk4<Spins>>("RK4 + renormalise");
   runs.run<Rkmk4<Spins>>("RKMK4");
-  // Makes A the sum of the six neighbours: the term -6 m of exchange cancels.
+  // With this sigma, A is the sum over the six neighbours: sigma * m cancels the term -6 * m of
+  // exchange.
   isotropy::Constant const neighbor_sum{6};
   runs.run<Rkmk4<Spins, isotropy::Constant>>("RKMK4, sigma = 6", neighbor_sum);
   runs.run<StereographicRungeKutta<Spins, tableau::Classical4>>("RK4 in the chart");

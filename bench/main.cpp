@@ -77,6 +77,6 @@ int main(int argc, char** argv) {
   add_kokkos();
   add_environment();
   benchmark::RunSpecifiedBenchmarks();
-  benchmark::ClearRegisteredBenchmarks();  // frees the memory that they hold, before Kokkos ends
+  benchmark::ClearRegisteredBenchmarks();  // frees their memory before Kokkos is finalised
   return 0;
 }

@@ -18,21 +18,21 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 COUNTS = ROOT / "tests" / "cuda" / "expected_sass.txt"
 
-# Assumed, for the SXM cards: both have the chip GH100 and differ only in memory.
+# Assumed values for the SXM cards: both have the chip GH100 and differ only in memory.
 CARDS = {"H100": 3.35e12, "H200": 4.8e12}  # memory bandwidth, bytes/s, from the data sheets
 PROCESSORS = 132  # multiprocessors
 CLOCK = 1.755e9  # Hz; a busy card does not keep up its boost clock of 1.98 GHz
-SCHEDULERS, LANES = 4, 32  # of a multiprocessor (each issues one instruction a clock); of a warp
-ARITHMETIC = {"f64": 64, "f32": 128}  # lanes of a multiprocessor
+SCHEDULERS, LANES = 4, 32  # per multiprocessor, one instruction a clock each; per warp
+ARITHMETIC = {"f64": 64, "f32": 128}  # lanes per multiprocessor
 INTEGERS = 64
-FIRST_CACHE = 128  # bytes a clock, of a multiprocessor
+FIRST_CACHE = 128  # bytes a clock, per multiprocessor
 SECOND_CACHE = 5.5e12  # bytes a second: a cautious 60 % of 5120 bytes a clock
 LATENCY = 800e-9  # seconds that a site's loads take from a busy memory: twice those of an idle one
-REGISTERS, WARPS = 65536, 64  # of a multiprocessor
+REGISTERS, WARPS = 65536, 64  # per multiprocessor
 SECTOR = 32  # bytes: the smallest transfer of the second-level cache
 
 SIZE = {"f64": 8, "f32": 4}
-METHODS = {  # cases of bench_throughput
+METHODS = {  # for each method of the counts, the case of bench_throughput
     "LieEuler": "Euler", "LieHeun": "Heun", "Rkmk4": "RKMK4",
     "StereographicHeun": "Heun tangent", "StereographicRk4": "RKMK4 tangent"}
 
@@ -50,12 +50,14 @@ class Kernel:
 
     @property
     def words(self):
-        """Numbers read from memory and written to it for each site."""
+        """Values that a site reads from memory or writes to it. The 18 loads of the spins at its
+        six neighbours are from caches."""
         return self.loads - 18 + self.stores
 
     @property
     def warps(self):
-        """Warps on a multiprocessor; threads get registers in eights, warps come in fours."""
+        """Warps that fit on a multiprocessor. A thread gets registers in multiples of 8, and
+        warps are allocated four at a time."""
         each = (self.registers + 7) // 8 * 8 * LANES
         return min(WARPS, REGISTERS // each // 4 * 4)
 
@@ -70,8 +72,8 @@ def seconds(kernel, bandwidth, edge):
     size, sites = SIZE[kernel.precision], walk(edge)
     once = (kernel.total - kernel.loop) / sites  # instructions outside a thread's loop, per site
     clocks = 1 / (PROCESSORS * CLOCK)
-    # For a tile of 32 x 4 x sites also two rows along y and two along z are read, and a sector at
-    # each end of the rows of the tile.
+    # A tile of 32 x 4 x `sites` sites also reads spins beside it: along y, two rows in each layer;
+    # along z, two layers; along x, a sector at each end of its rows.
     stencil = 3 * (size * (1 + 2 / 4 + 2 / sites) + 2 * SECTOR / 32)
     return {
         "memory": kernel.words * size / bandwidth,
@@ -79,7 +81,7 @@ def seconds(kernel, bandwidth, edge):
         "issue": (kernel.loop + once) / LANES / SCHEDULERS * clocks,
         "arithmetic": kernel.arithmetic / ARITHMETIC[kernel.precision] * clocks,
         "integers": (kernel.integer + once) / INTEGERS * clocks,
-        # The neighbours along x are not aligned: each of these loads takes one more line.
+        # The neighbours along x are not aligned: each of these six loads takes one more line.
         "first cache": ((kernel.loads + kernel.stores) * size + 6 * FIRST_CACHE / 32) /
                        FIRST_CACHE * clocks,
         "latency": LATENCY / (kernel.warps * LANES * PROCESSORS),

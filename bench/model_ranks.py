@@ -4,13 +4,13 @@
 
 Usage: model_ranks.py BUILD_DIR [--latency S --bandwidth B] [--plot FILE.png]
 
-The step of a part of n x n x n sites takes time for its sites, for the ghost sites that it computes
-as well, and for one exchange of ghosts along z and one along y. An exchange takes a latency plus
-its bytes over a bandwidth. The time of a site, the latency and the bandwidth are fitted to runs of
-bench_ranks on two ranks, which share the memory of this machine; no lattice fits the caches.
-Predictions for many ranks use the --latency and --bandwidth of a network instead. Ranks that
-exchange ghosts at each stage compute no ghosts, but each stage is a pass through memory; the time
-of such steps is measured, too.
+The step of a part of n x n x n sites takes time for its sites, for the ghost sites that it
+computes as well, and for one exchange of ghosts along z and one along y. An exchange takes a
+latency plus its bytes divided by a bandwidth. The time of a site, the latency and the bandwidth are
+fitted to runs of bench_ranks on two ranks, which share the memory of this machine; no lattice fits
+into the caches. Predictions for many ranks use the --latency and --bandwidth of a network instead.
+Ranks that exchange ghosts at each stage compute no ghosts, but each stage is a pass through memory;
+the time of such steps is measured, too.
 """
 import argparse
 import pathlib
@@ -23,14 +23,15 @@ from compare_ranks import better, measure
 SIZES = [(128, 128, 256), (192, 192, 128), (192, 192, 256), (256, 256, 128), (256, 256, 256)]
 RANKS = [8, 64, 512, 4096]
 SITE_BYTES = 3 * 8
-# Ranks and efficiency, relative to one node of eight, of a hydrodynamics application of Parthenon:
-# arXiv 2202.12309.
+# Published number of ranks and weak efficiency, relative to one node of eight ranks, of a
+# hydrodynamics application of Parthenon: arXiv 2202.12309.
 PUBLISHED = (73728, 0.92)
 
 
 def measured(program, repetitions):
     """Returns {method: [(sites, sites with computed ghosts, bytes, seconds, seconds in exchanges,
-    stages, time by passes over that of independent ranks)]} for one rank and step."""
+    stages, time by passes / time of independent ranks), ...]}, one tuple per size, for one rank and
+    one step."""
     rows = {}
     for nx, ny, nz in SIZES:
         half = (nx, ny, nz // 2)
@@ -49,7 +50,7 @@ def measured(program, repetitions):
 
 
 def relative_fit(columns, values):
-    """Returns the coefficients with the least relative errors of the values, and these errors."""
+    """Fits the values by least squares of the relative errors; returns coefficients and errors."""
     columns, values = numpy.array(columns, float).T, numpy.array(values, float)
     found, *_ = numpy.linalg.lstsq(columns / values[:, None], numpy.ones(len(values)), rcond=None)
     return found, columns @ found / values - 1
@@ -67,17 +68,18 @@ class Model:
         return 2 * self.latency + 2 * SITE_BYTES * sites / self.bandwidth
 
     def step(self, n, depth=None):
-        """Returns the seconds of a step of a part with neighbours on all four sides. It exchanges
-        `depth` planes at a time: as many as all stages of one or more steps need, or 1."""
+        """Returns the seconds of a step of a part with neighbours on all four sides. The part
+        exchanges `depth` planes of ghosts at a time: 1, or as many as all stages of one or more
+        steps need (default: of one step)."""
         depth = depth or self.stages
         sites = numpy.mean([n * (n + 2 * k)**2 for k in range(depth)])
         passes = self.passes if depth < self.stages else 1
         return passes * self.site * sites + self.stages / depth * self.exchange(n, depth)
 
     def efficiency(self, n, ranks):
-        """Returns the weak efficiency with n^3 sites per rank; with few ranks, many have fewer than
-        four neighbours."""
-        inner = 1 - 1 / ranks**0.5  # share of the ends of parts that are inside the lattice
+        """Returns the weak efficiency with n^3 sites per rank; with few ranks, many of them have
+        fewer than four neighbours."""
+        inner = 1 - 1 / ranks**0.5  # fraction of the faces between parts
         alone = self.site * n**3
         return alone / (alone + inner * (self.step(n) - alone))
 

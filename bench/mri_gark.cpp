@@ -154,8 +154,8 @@ class Mri {
   std::vector<double> start_;
 };
 
-/// Returns the order of a method: minus the least-squares slope of log(error) over log(steps), for
-/// errors below 2e-3.
+/// Returns the order of a method: minus the slope of log(error) against log(steps), fitted by least
+/// squares to the errors of at most 2e-3.
 double fitted_order(ladder::Ladder const& ladder) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (auto const& rung : ladder.rungs) {
@@ -188,7 +188,7 @@ int main(int argc, char** argv) {
   double const largest =
       largest_stable_step<Rkmk4<Spins>>(exchange_bound(film(), exchange) + 1, damping);
   std::vector<ladder::Ladder> ladders;
-  // A step has a multiple of `stages` inner steps, each at most 0.4 of the largest stable one.
+  // A step has a multiple of `stages` inner steps, each at most 0.4 times the largest stable one.
   auto const compare = [&](std::string const& name, bool is_own, double coarsest, int stages,
                            auto&& run) {
     auto const once = [&](int rung) {

@@ -19,8 +19,8 @@ using namespace cayspin;
 using Spins = SpinField<double>;
 using scene::Default, scene::Orthogonal;
 
-// Rigid bodies in place of the scene. Each later struct with a generator() is the scene with one
-// change.
+// Rigid bodies instead of the default scene. Each later struct with a generator() is the default
+// scene with one change.
 struct Bodies {
   static auto generator(Lattice const&) { return RigidBody::principal(1, 2, 3); }
 };
@@ -80,7 +80,7 @@ struct DampingOfSites {
   }
 };
 
-/// Times steps of integrate, with energy, norm defect and magnetization computed after each.
+/// Times steps of integrate(), with energy, norm defect and magnetization computed after each step.
 template <class Stepper>
 void time_observed_steps(benchmark::State& state, Lattice const& lattice) {
   auto spins = scene::random<typename Stepper::spins_type>(lattice);

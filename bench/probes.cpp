@@ -80,7 +80,8 @@ template <class Real, class P>
 PROBE_INLINE Vector<P> dcay_inverse(Vector<P> const& f, Vector<P> const& y) {
   return y + Real(-0.5) * cross(f, y) + (Real(0.25) * dot(f, y)) * f;
 }
-/// Returns the spin at the coordinates step * chart_rate(u, m, m0) of the chart at m0.
+/// Returns the spin at the coordinates step * chart_rate(u, m, m0) of the stereographic chart at
+/// m0.
 template <class Real, class P>
 PROBE_INLINE Vector<P> chart_move(Real step, Vector<P> const& u, Vector<P> const& m,
                                   Vector<P> const& m0) {
@@ -103,7 +104,7 @@ PROBE_INLINE Vector<P> chart_to(Vector<P> const& f, Vector<P> const& m0) {
   P const s = dot(f, f);
   return m0 + (Real(2) / (Real(1) + s)) * (f - s * m0);
 }
-/// Returns the rate m' = u of a spin m in the coordinates of the chart at m0.
+/// Returns the time derivative of the coordinates, in the chart at m0, of a spin m with m' = u.
 template <class Real, class P>
 PROBE_INLINE Vector<P> chart_rate(Vector<P> const& u, Vector<P> const& m, Vector<P> const& m0) {
   P const inverse = Real(2) / (Real(2) * dot(m, m0) + Real(2));
@@ -130,9 +131,9 @@ PROBE_INLINE void Probe<Real>::write(Vector const& v, int field, std::ptrdiff_t 
   store(v.x, to), store(v.y, to + stride_), store(v.z, to + 2 * stride_);
 }
 
-/// Calls body(at, m, A) for each pack of the spins in field `level`. Writes the ghost sites of
-/// field `out` after each row. Unless Whole, A leaves out the part -6 exchange m, which does not
-/// turn m.
+/// Calls body(at, m, A) for each pack of the spins in field `level`, where `at` is the index of its
+/// first spin. Writes the ghost sites of field `out` after each row. Unless Whole, A leaves out the
+/// part -6 * exchange * m, which does not rotate m.
 template <class Real>
 template <bool Whole, class Body>
 PROBE_INLINE void Probe<Real>::for_each_pack(int level, int out, Body const& body) {
@@ -170,8 +171,8 @@ PROBE_INLINE void Probe<Real>::for_each_pack(int level, int out, Body const& bod
     }
 }
 
-// Calls work(index in (sites, 3), index in a field) for each component of each site, also of the
-// ghost sites, which have the spins of the sites beside them.
+// Calls work(index in (sites, 3), index in a field) for each component of each site and of the
+// ghost sites at the ends of the rows, which have the spins of the sites beside them.
 template <class Real>
 template <class Work>
 void Probe<Real>::for_each_site(Work const& work) const {

@@ -45,7 +45,7 @@ class Probe {
 
   Scene scene_;
   std::ptrdiff_t pitch_, stride_;
-  std::vector<Real> fields_[7];  // the spins are the first
+  std::vector<Real> fields_[7];  // fields_[0] holds the spins
 };
 
 }  // namespace probes

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Runs bench_throughput, bench_few_spins, bench_options and bench_evaluations with all cores, and
-# bench_throughput also with one. Then prints tables of the results and draws them. Usage:
-# PYTHON=python3 bash bench/run.sh BUILD_DIR
+# Runs bench_throughput, bench_few_spins, bench_options and bench_evaluations with OMP_NUM_THREADS
+# threads (default: all cores), and bench_throughput also with one thread. Then prints tables of the
+# results and draws them. Usage: PYTHON=python3 bash bench/run.sh BUILD_DIR
 set -euo pipefail
 
 build_dir=$1

@@ -50,7 +50,7 @@ struct Orthogonal {
   }
 };
 
-/// Reports nanoseconds per spin and step, and what bounds them: the numbers moved per spin and step
+/// Reports nanoseconds per spin and step, and what limits them: the values moved per spin and step
 /// (`words`) and the bytes of work memory per spin.
 inline void report(benchmark::State& state, std::int64_t sites, double words, double work_bytes) {
   auto const spins = static_cast<double>(sites);
@@ -77,7 +77,7 @@ Stepper make_stepper(typename Stepper::spins_type const& like) {
     return Stepper(like);
 }
 
-/// Returns how many numbers per spin a step on a large lattice moves between caches and memory:
+/// Returns how many values per spin a step on a large lattice moves between caches and memory:
 /// `of_passes` if each stage is a pass over memory, and 6 for a sweep, which reads and writes the
 /// spins once.
 template <class Stepper>

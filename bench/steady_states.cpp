@@ -56,8 +56,8 @@ Cost by_minimize(Field const& field, Spins& spins, bool preconditioned) {
   return {found.end == MinimizeEnd::converged, found.evaluations, clock.seconds()};
 }
 
-/// Takes steps against the gradient, by s.s / s.y and s.y / y.y times the gradient in turn, where s
-/// is the previous step and y the change of the gradient in it.
+/// Takes steps against the gradient. The ratio of step to gradient is |s.s / s.y| and |s.y / y.y|
+/// in turn, where s is the previous step and y the change of the gradient during that step.
 template <class Field>
 Cost by_barzilai_borwein(Field const& field, Spins& spins) {
   auto const& lattice = spins.lattice();

@@ -63,13 +63,13 @@ class SpinVectors {
       unpack(from, to.array());
   }
 
-  /// Returns where kernels read a vector.
+  /// Returns the array from which kernels read the vector `v`, after a copy if not in place.
   SiteArray input(N_Vector v) const {
     if (in_place_) return of_vector(v);
     unpack(v, spins_.array());
     return spins_.array();
   }
-  /// Returns where kernels write a vector.
+  /// Returns the array to which kernels write the vector `v`; call finish(v) after they have.
   OutputArray output(N_Vector v) const {
     return {in_place_ ? of_vector(v) : rates_.array(), false};
   }

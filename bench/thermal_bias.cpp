@@ -144,8 +144,9 @@ Vector by_rotation(Vector const& f, Vector const& m) {
   return m + std::sin(angle) * em + (1 - std::cos(angle)) * cross(e, em);
 }
 
-/// Each scheme predicts spins with the field of m, then takes its step with the field of the spins
-/// that `at` returns. `first` is dt times the A of the prediction, and `a` that of the step.
+/// A scheme predicts spins by guess(a, m), where a = dt * A(m), then takes its step with the field
+/// of the spins that `at` returns. In step(), `first` is dt * A(m), and `a` is dt * A of those
+/// spins.
 struct HeunAndRenormalise {
   static constexpr char const* name = "Heun, renormalised";
   static Vector guess(Vector const& a, Vector const& m) { return normalized(m + cross(a, m)); }

@@ -65,7 +65,8 @@ class Register {
   explicit Register(std::string const& precision) : prefix_(precision + "/") {
     using cayspin::StereographicRungeKutta, cayspin::tableau::Heun, cayspin::tableau::Classical4;
     using Orthogonal = scene::Orthogonal<scene::Default>;
-    // Numbers read and written per spin and step if each stage is a pass over memory.
+    // The last argument: values read and written per spin and step if each stage is a pass over
+    // memory.
     hand_written("hand-written Heun", &Loop::heun, 27);
     hand_written("hand-written RK4", &Loop::runge_kutta4, 63);
     add_probe<cayspin::LieEuler<Spins>>("Euler", &Probe::euler, 6);

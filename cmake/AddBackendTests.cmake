@@ -2,11 +2,11 @@
 # cayspin_add_test(<name> SOURCES <file>... [LIBRARIES <target>...] [LABELS <label>...]
 #                  [THREADS <count>...] [TIMEOUT <seconds>] [BATCH <files>] [FAST]
 #                  [ON_HOST_DEVICE])
-# One GoogleTest program test_<name>, linked to cayspin and started by tests/main.cpp, which runs it
-# inside Kokkos. THREADS registers one entry per count where a threaded host backend is compiled in;
-# otherwise there is one entry with two threads. BATCH: compiles that many files as one, so that
-# headers they share are compiled once. FAST: compiles the program to run fast. ON_HOST_DEVICE: adds
-# a second program, test_<name>_on_host_device.
+# Adds a GoogleTest program test_<name> that links cayspin and tests/main.cpp, which runs the tests
+# inside Kokkos. THREADS: registers one test per count if a threaded host backend is compiled in,
+# otherwise one test with two threads, as without THREADS. BATCH: compiles that many files as one,
+# so that headers they share are compiled once. FAST: optimises the program more. ON_HOST_DEVICE:
+# adds a second program, test_<name>_on_host_device.
 function(cayspin_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "FAST;ON_HOST_DEVICE" "BATCH;TIMEOUT"
                         "SOURCES;LIBRARIES;LABELS;THREADS")

@@ -5,7 +5,8 @@
 # Adds to the list `flags` the libraries that a target links with, and the libraries that these link
 # with, in the order for the linker.
 function(cayspin_link_flags target flags)
-  # A Kokkos that is built within this project finds these packages only for itself.
+  # A Kokkos that is built within this project finds these packages only for itself, so they are
+  # looked for here again.
   if(NOT TARGET ${target} AND target MATCHES "^(OpenMP|Threads|CUDA)::")
     string(REPLACE CUDA CUDAToolkit package ${CMAKE_MATCH_1})
     find_package(${package} QUIET)

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# From a clone to a built, tested, running cayspin. Usage: see the text below.
+# Installs what cayspin needs, and builds, tests and runs it from a clone. Usage: see the text
+# below.
 set -euo pipefail
 
 usage() {
@@ -35,8 +36,8 @@ kokkos_source=${CAYSPIN_KOKKOS_SOURCE:-$deps/kokkos-source}
 say() { printf 'cayspin: %s\n' "$*"; }
 fail() { printf 'cayspin: %s\n' "$*" >&2; exit 1; }
 
-# logged NAME COMMAND...: the output of the command goes to build/logs/NAME.log. Its end is shown if
-# the command fails.
+# logged NAME COMMAND...: writes the output of the command to build/logs/NAME.log. If the command
+# fails, prints the end of this file.
 logged() {
   local log=$logs/$1.log
   shift
@@ -48,8 +49,8 @@ logged() {
 . "$root/cmake/bootstrap_kokkos.sh"
 . "$root/cmake/bootstrap_wheels.sh"
 
-# The parts that the verb needs are switched on. The others are off in a new build folder, and stay
-# as they are in an old one.
+# Switches on the parts that the verb needs. In a new build folder, the other parts are off; in an
+# old one, they stay as they are.
 choose_parts() {
   local part
   for part in APP PROGRAM PYTHON TESTS ALL_TESTS EXAMPLES BENCH MPI; do
@@ -126,7 +127,7 @@ build_site() {
   fail "no python3 with sphinx, myst_parser and furo"
 }
 
-# Fails before anything is built if no GPU is here to run it.
+# Fails, before anything is built, if there is no GPU here to run it.
 require_gpu() {
   case $preset in
     cuda)

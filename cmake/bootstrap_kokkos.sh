@@ -74,7 +74,7 @@ provide_kokkos_source() {
   fi
 }
 
-# Where the network drops packets, the connection is given up after 20 s.
+# Gives up after 20 s without an answer, as in a network that drops packets.
 source_from_release() {
   local file=$deps/kokkos-$release.tar.gz
   local url=https://github.com/kokkos/kokkos/releases/download/$release/kokkos-$release.tar.gz
@@ -88,8 +88,8 @@ PYTHON
   unpack_checked "$file" "$release_sha256" "kokkos-$release" 1
 }
 
-# unpack_checked FILE SHA256 FOLDER DEPTH: unpacks FOLDER of an archive, DEPTH levels below its
-# root.
+# unpack_checked FILE SHA256 FOLDER DEPTH: checks an archive, unpacks what its FOLDER contains, and
+# deletes the archive. DEPTH is the number of names in FOLDER.
 unpack_checked() {
   printf '%s  %s\n' "$2" "$1" | sha256sum --check --quiet ||
     fail "$1 is not the file it should be; delete it and try again"

@@ -35,8 +35,8 @@ provide_hdf5() {
 # All interpreters share one build folder: only the module is compiled for each of them.
 build_wheels() {
   local interpreter name venv wheel work=$root/build/wheels
-  # Each interpreter would choose the compiler that compiled it, and with a new compiler name
-  # everything would be compiled again.
+  # Without these variables, a build would use the compiler that compiled the interpreter, and a
+  # change of compiler would compile everything again.
   local -x CC=${CC:-gcc} CXX=${CXX:-g++}
   [ "$(uname -m)" = x86_64 ] || fail "wheels are built on x86-64; this is $(uname -m)"
   provide_kokkos_source

@@ -5,7 +5,8 @@
 
 #include <cstdio>
 
-/// Cubic anisotropy with axes x, y, z: E = K/2 (mx^2 my^2 + my^2 mz^2 + mz^2 mx^2) per site.
+/// Cubic anisotropy with axes x, y, z: E = K/2 * (mx^2 * my^2 + my^2 * mz^2 + mz^2 * mx^2) per
+/// site.
 struct CubicAnisotropy {
   double constant;
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstdio>
 
-/// H_i = g sum_j (3 (m_j.x) x - m_j) / r_ij^3 along a periodic chain in direction x; r_ij is the
-/// distance the shorter way around, and g the strength.
+/// H_i = g * sum_j (3 * (m_j.x) * x - m_j) / r_ij^3 along a periodic chain in direction x; r_ij is
+/// the distance the shorter way around, and g is the strength.
 struct DipolesOfChain {
   static constexpr int degree = 2;  // H is linear in m: E = -m.H/2
   double strength;

@@ -8,7 +8,7 @@
 #include <vector>
 
 /// The interfacial Dzyaloshinskii-Moriya interaction of a film with normal z and spacing 1:
-/// H = -2 D (z div m - grad m_z), E = -m.H / 2 per site.
+/// H = -2 * D * (z div m - grad m_z), E = -m.H / 2 per site.
 struct InterfacialDmi {
   static constexpr int degree = 2;  // H is linear in the spins
   double constant;

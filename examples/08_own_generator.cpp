@@ -14,11 +14,11 @@ struct Current {
   cayspin::Vec3<double> polarisation;  // p, a unit vector
 };
 
-/// Gilbert's equation with the torque -a m x (m x p), which turns spins towards the polarisation p.
-/// a = strength P L^2 / ((L^2 + 1) + (L^2 - 1) m.p), with degree of polarisation P and asymmetry L.
-/// Gilbert's damping of this torque adds -damping a p to A. Forwarding prepares the inner generator
-/// before each stage, so that the field of the inner generator may depend on time or be computed on
-/// the host.
+/// Gilbert's equation with the torque -a * m x (m x p), which turns spins towards the polarisation
+/// p, or away from it if a < 0. Here a = strength * P * L^2 / ((L^2 + 1) + (L^2 - 1) * m.p), with
+/// the degree of polarisation P and the asymmetry L. Gilbert's damping of this torque adds
+/// -damping * a * p to A. Forwarding prepares the inner generator before each stage, so that the
+/// field of the inner generator may depend on time or be computed on the host.
 template <class Inner>
 class SpinTorque : public cayspin::Forwarding<SpinTorque<Inner>, Inner> {
  public:
@@ -90,7 +90,7 @@ double critical_current(bool down) {
 
 int main(int argc, char** argv) {
   Kokkos::ScopeGuard kokkos(argc, argv);
-  // The layer switches at a = -+ damping H_k, with m.p = +-1.
+  // The layer switches at a = -damping * H_k if m.p = 1, and at a = damping * H_k if m.p = -1.
   double const predicted_up = -2 * damping * constant / (strength_of_unit * degree);
   double const predicted_down = -predicted_up / (asymmetry * asymmetry);
   double const up = critical_current(false), down = critical_current(true);

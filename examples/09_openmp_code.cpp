@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Uses the arrays of another code, which works on plain arrays with OpenMP loops. Unmanaged Views,
-// which allocate nothing, give access to the arrays. A write head moves along a track. The other
-// code computes the field of the head and reads the bits; cayspin integrates the motion of the
-// spins. Numbers are copied when one code hands over to the other, not in each step.
+// Uses the arrays of another code, whose OpenMP loops work on plain arrays. Unmanaged Views, which
+// allocate nothing, give access to the arrays. A write head moves along a track. The other code
+// computes the field of the head and reads the bits; cayspin integrates the motion of the spins.
+// Values are copied when one code hands over to the other, not in each step.
 #include <cayspin/cayspin.hpp>
 
 #include <array>
@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
       cayspin::integrate(exec, stepper, generator, spins, {.begin = 0, .dt = 0.1, .steps = 100});
     }
   cayspin::copy(exec, spins, m);
-  exec.fence();  // copies do not wait
+  exec.fence();  // copy() does not wait until the copy is complete
   std::printf("%d of %d bits are right\n", bits_right(my_m), bits);
   return bits_right(my_m) == bits ? 0 : 1;
 }

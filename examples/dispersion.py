@@ -11,7 +11,7 @@ import matplotlib
 import numpy as np
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  the backend has to be chosen before
+import matplotlib.pyplot as plt  # noqa: E402  the backend has to be chosen first
 
 
 def scene():

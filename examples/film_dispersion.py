@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Spin waves that an antenna excites in a permalloy film, beside the dispersion of Kalinikos and
-Slavin (1986): waves along the magnetization (backward volume) and across it (Damon-Eshbach)."""
+"""Spin waves that an antenna excites in a permalloy film, compared with the dispersion of Kalinikos
+and Slavin (1986): waves along the magnetization (backward volume) and across it (Damon-Eshbach)."""
 
 import argparse
 import pathlib
@@ -12,7 +12,7 @@ import matplotlib
 import numpy as np
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  the backend has to be chosen before
+import matplotlib.pyplot as plt  # noqa: E402  the backend has to be chosen first
 
 GAMMA, MU0 = 1.76085963e11, 4e-7 * np.pi  # rad/(s T), T m/A
 MS, A, FIELD, THICKNESS = 8e5, 1.3e-11, 0.05, 2e-8  # A/m, J/m, T, m

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Solves the five standard problems of muMAG with the shipped scenes. Prints what they ask for
-beside published figures, with the evaluations of the field and the processor time in seconds.
+beside published values, with the evaluations of the field and the processor time in seconds.
 
 Usage: standard_problems.py [PROBLEM]... [--picture PNG] [--quick]
 """
@@ -31,7 +31,7 @@ class Clock:
 
 
 class Loop:
-    """Equilibria in fields along a direction, each relaxed from the one before."""
+    """Equilibria in fields along a direction, each relaxed from the previous one."""
 
     def __init__(self, of, direction):
         self.sim = cayspin.Simulation(of)
@@ -61,7 +61,7 @@ class Loop:
 
 
 def problem_1(quick):
-    """Loops of 2 um x 1 um x 20 nm of permalloy along both axes."""
+    """Half hysteresis loops of a film of permalloy, 2 um x 1 um x 20 nm, along both axes."""
     loops = []
     print("axis     cells, nm   Hc, mT   <m> at H = 0       states  evaluations: median, most   s")
     # The problem asks for a field 1 degree off the axis.
@@ -95,7 +95,7 @@ DONAHUE = ((0.1, .05707, 1, 0), (2, .05694, 1, 0), (5, .05612, .9999, 0), (8, .0
 
 
 def problem_2(quick):
-    """Half loops of particles of 5d x d x d/10 along (1, 1, 1)."""
+    """Half hysteresis loops along (1, 1, 1) of particles of 5d x d x d/10."""
     loops = []
     print("d, l_ex  cells           Hc, Ms   <m> at H = 0       states  evaluations: median, most"
           "   s")
@@ -139,7 +139,7 @@ def energies(sim, cells):
 
 
 def problem_3(quick):
-    """The cube in which a flower and a vortex have the same energy."""
+    """Finds the edge of the cube in which a flower and a vortex have the same energy."""
     starts = {"flower": ({"uniform": [0, 0, 1]}, True),
               "twisted flower": ({"uniform": [0, 0, 1]}, False),
               "vortex": ({"expression": ["0.3", "0.5 - z", "y - 0.5"]}, False)}

@@ -3,7 +3,7 @@
 
 #include "ensemble.hpp"
 
-/// The maps F of the paper's Sec. 5, under its names, as method choices of a scene.
+/// The maps F of the paper's Sec. 5, under the paper's names, as method choices of a scene.
 namespace cayspin::paper {
 
 using io::Generator, io::Isotropy;

@@ -6,16 +6,18 @@
 namespace cayspin::paper {
 namespace {
 
-/// A function that returns d = xi_2 - A' for a method F = dt A + dt^2/2 (A' + d), A = -I^-1 m.
+/// A function that returns d = xi_2 - A' for a method F = dt * A + dt^2 / 2 * (A' + d), where
+/// A = -I^-1 m.
 using Choose = Vector (*)(Body const&, Vector const& m);
 
-// Returns a d with <d, A> = 0, but d x m = A x m.
+// Returns a d that fulfils only the printed condition: <d, A> = 0, but d x m = A x m.
 Vector fulfils_printed(Body const& body, Vector const& m) {
   Vector const a = default_generator(body, m), w = orthogonal_part(a, m);
   return multiply_add(-dot(w, w) / dot(a, m), m, w);
 }
 
-// Returns the d with which A' + d is A' without its part along m: d x m = 0, but <d, A> is not 0.
+// Returns the d that makes A' + d equal to A' without its part along m. It fulfils only the
+// corrected condition: d x m = 0, but <d, A> is not 0.
 Vector fulfils_corrected(Body const& body, Vector const& m) {
   Vector const a = default_generator(body, m);
   Vector const rate = default_generator(body, cross(a, m));

@@ -34,7 +34,8 @@ double invariant_sigma_def(Body const& body, Vector const& m) {
 }
 
 /// Returns a function that measures the energy error of a body for a dt. The method is Heun on
-/// A = -I^-1 m, with `factor` times dt^power sigma_def m added to F.
+/// A = -I^-1 m, with factor * dt^power * sigma_def * m added to F, where sigma_def is the printed
+/// one.
 auto energy_error(double factor, int power) {
   return [=](double dt) {
     return [=](Body const& body) {

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double end_time = 10;
 
-// Return <A', A x m> along the exact flow, for A = -I^-1 m, and with A_o in place of A. The two
-// differ.
+// Return <A', A x m> along the exact flow: the first for A = -I^-1 m, the second with A_o in place
+// of A. The two values differ.
 double default_product(Body const& body, Vector const& m) {
   Vector const x = cross(default_generator(body, m), m);
   return dot(default_generator(body, x), x);
@@ -24,7 +24,7 @@ double orthogonal_product(Body const& body, Vector const& m) {
 
 double square(Vector const& a) { return dot(a, a); }
 
-/// A function that returns A + sigma m, or A_o + sigma m, with one choice of sigma.
+/// A function that returns A + sigma * m, or A_o + sigma * m, with one choice of sigma.
 using Form = Vector (*)(Body const&, Vector const& m);
 
 Vector without_sigma(Body const& body, Vector const& m) { return orthogonal_generator(body, m); }
@@ -55,8 +55,8 @@ auto energy_error(Form form) {
   };
 }
 
-// Returns the component along A_o of the error of one step, divided by dt^2. The right sigma makes
-// its limit for dt -> 0 vanish.
+// Returns the component along A_o of the error of one step, divided by dt^2. With the right sigma
+// it tends to zero as dt -> 0.
 auto local_error(Form form, double dt) {
   return [=](Body const& body) {
     auto const& m = body.start;
@@ -71,7 +71,7 @@ auto local_error(Form form, double dt) {
   };
 }
 
-// Returns |s - sigma|, where s is sigma by a forward difference over dt.
+// Returns |s - sigma|, where s is sigma computed with a forward difference of A_o over dt.
 auto remainder(double dt) {
   return [=](Body const& body) {
     auto const& m = body.start;
@@ -82,8 +82,8 @@ auto remainder(double dt) {
   };
 }
 
-// Returns the energy error of implicit Euler, xi = A(cay(dt xi) m), with sigma m added to xi,
-// sigma = sign <A', A x m>/|A_o|^2.
+// Returns the energy error of implicit Euler, xi = A(cay(dt * xi) m), with sigma * m added to xi,
+// where sigma = sign * <A', A x m> / |A_o|^2.
 auto implicit_energy_error(double sign) {
   return [=](double dt) {
     return [=](Body const& body) {

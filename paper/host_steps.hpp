@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstdint>
 
-/// Steps m <- cay(F(m)) m of one rigid body on plain numbers: for the paper's wrong formulas, which
-/// the library does not have.
+/// Steps m <- cay(F(m)) m of one rigid body in plain host code, for the paper's wrong formulas,
+/// which the library does not have.
 namespace cayspin::paper {
 
 /// Returns A without its part along m.

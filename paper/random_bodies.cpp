@@ -63,7 +63,7 @@ std::array<double, 3> draw_moments(Law const& law, Dice& dice) {
   return moments;
 }
 
-// Returns a random point of the great circles H(m) = 1/(2 I_middle), on which the ratio of <m,
+// Returns a random point of the great circles H(m) = 1 / (2 * I_middle), on which the ratio of <m,
 // e_least> and <m, e_largest> is fixed up to its sign.
 Vector on_separatrix(Body const& body, Dice& dice) {
   std::array<std::size_t, 3> order{0, 1, 2};

@@ -14,8 +14,8 @@ using Vector = Vec3<double>;
 
 /// A free rigid body and its initial angular momentum.
 struct Body {
-  std::array<double, 3> moments;  // of inertia, principal
-  std::array<Vector, 3> axes;     // principal, right-handed
+  std::array<double, 3> moments;  // principal moments of inertia
+  std::array<Vector, 3> axes;     // principal axes, right-handed
   Vector start;                   // on the unit sphere
   cayspin::detail::SymmetricMatrix<double> inverse_inertia;
 

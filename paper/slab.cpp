@@ -90,7 +90,7 @@ std::vector<Vector> rotated(std::vector<Vector> spins, double dt, std::vector<Ve
   return spins;
 }
 
-// Returns -<A_o', A_o x m>/|A_o|^2 of every site, where A_o is w, and A_o' = (other - w)/dt.
+// Returns -<A_o', A_o x m> / |A_o|^2 of every site, where A_o is w, and A_o' = (other - w) / dt.
 std::vector<double> sigmas(std::vector<Vector> const& spins, std::vector<Vector> const& w,
                            std::vector<Vector> const& other, double dt) {
   std::vector<double> sigma(spins.size());

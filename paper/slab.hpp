@@ -34,7 +34,7 @@ struct SlabPath {
   std::vector<double> times;
   std::vector<Vector> spin;        // site 37
   std::vector<double> logarithms;  // ln|m| of the site where |ln|m|| is largest
-  std::vector<double> sigma;       // of site 37; only for runs on plain numbers
+  std::vector<double> sigma;       // of site 37; only from run_slab_with_sigma
   std::vector<Vector> end;         // spins of all sites at the end
 };
 
@@ -42,8 +42,8 @@ struct SlabPath {
 /// between them.
 SlabPath run_slab(Slab const& slab, MethodChoice const& choice, double dt, int looks);
 
-/// Runs geometric Euler on plain numbers, with sigma = -factor <A_o', A_o x m>/|A_o|^2. A_o' is a
-/// backward difference, in the first step a forward difference. Factor 1 is correct, -1 is the
+/// Runs geometric Euler in plain host code, with sigma = -factor * <A_o', A_o x m> / |A_o|^2. A_o'
+/// is a backward difference, in the first step a forward difference. Factor 1 is correct, -1 is the
 /// paper's.
 SlabPath run_slab_with_sigma(Slab const& slab, double factor, double dt, int looks);
 

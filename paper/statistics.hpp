@@ -20,12 +20,12 @@ Spread spread(std::vector<double> const& values);
 /// ten values, returns their mean.
 std::vector<double> means_of_ten(std::vector<double> const& values);
 
-/// Returns the orders log(coarse/fine) / log(step_ratio), value by value, where both errors are
-/// above `round_off`.
+/// Returns the order log(coarse / fine) / log(step_ratio) for each pair of errors that are both
+/// above `round_off`; other pairs are left out.
 std::vector<double> orders(std::vector<double> const& coarse, std::vector<double> const& fine,
                            double step_ratio, double round_off);
 
-/// Returns the least-squares slope of log(error) over log(dt).
+/// Returns the least-squares slope of log(error) against log(dt).
 double fitted_order(std::vector<double> const& dts, std::vector<double> const& errors);
 
 }  // namespace cayspin::paper

@@ -13,7 +13,7 @@ smartquotes = False  # m' is a derivative
 root_doc = "index"
 myst_heading_anchors = 4  # the anchors that GitHub gives to headings
 highlight_language = "none"
-suppress_warnings = ["misc.highlighting_failure"]  # excerpts with `...`
+suppress_warnings = ["misc.highlighting_failure"]  # excerpts contain `...`
 
 html_theme = "furo"
 html_title = "cayspin"
@@ -29,7 +29,7 @@ html_show_copyright = False
 
 
 def describe(app, pagename, templatename, context, doctree):
-    """For search engines: the title of a page and how its text begins."""
+    """Adds a description for search engines: the title of a page and the start of its text."""
     text = "Search the documentation of cayspin"
     if doctree:
         prose = (node.astext() for node in doctree.findall(nodes.paragraph)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The sources of the site: the pages, with links that lead within the site and a tree of pages, and
-a listing of each file of the repository that a page links to."""
+"""Writes the sources of the site: the pages, with links that lead within the site and a tree of
+pages, and a listing of each file or folder of the repository that a page links to."""
 
 import os
 import pathlib
@@ -68,7 +68,8 @@ class Writer:
         self.write(path, text)
 
     def target(self, page, link):
-        """Where a link of a page leads in the site."""
+        """Returns the path or address to which a link of a page leads in the site. If the link is
+        to a listing or an image, creates that file."""
         name, mark, anchor = link.partition("#")
         path = pathlib.Path(os.path.normpath(page.parent / name))
         if not name or ":" in name:
@@ -83,7 +84,8 @@ class Writer:
         return os.path.relpath(path, page.parent) + mark + anchor
 
     def listing(self, path):
-        """A page of a file's text, or of what a folder holds."""
+        """Writes a page with the text of a file, or with links to the files of a folder, and
+        returns its path."""
         page = path / "index.md" if (self.root / path).is_dir() else path.with_name(path.name + ".md")
         if path in self.listed:
             return page

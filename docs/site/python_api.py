@@ -28,7 +28,7 @@ GROUPS = {
     "Input": ["occupied_of_mesh", "read_uppasd", "read_spirit_pairs"],
     "Errors and version": ["CayspinError", "SceneError", "NumbersFailed", "__version__"],
 }
-CONSTRUCTED = ("Scene", "Simulation", "EnsembleSimulation")  # instances of other classes are results
+CONSTRUCTED = ("Scene", "Simulation", "EnsembleSimulation")  # instances of others are only received
 
 HEAD = """# Python API
 
@@ -48,9 +48,9 @@ class Member:
     name: str
     kind: str
     doc: str
-    type: str  # of a field or property, or what a function returns
+    type: str  # of a field or property; of a function or method, what it returns
     arguments: Optional[ast.arguments] = None
-    parameters: Optional[List[str]] = None  # as in the source
+    parameters: Optional[List[str]] = None  # as written in the source
     raises: bool = False
 
 
@@ -80,7 +80,7 @@ class Module:
         return " ".join(ast.get_source_segment(self.source, node).split()) if node else ""
 
     def comment(self, node):
-        """The text of `#: ..` after a field, or in the lines above it."""
+        """Returns the text of the `#: ..` behind a field; if there is none, of those above it."""
         behind = self.lines[node.end_lineno - 1].partition("#:")[2].strip()
         above = []
         for line in reversed(self.lines[:node.lineno - 1]):
@@ -90,7 +90,7 @@ class Module:
         return behind or " ".join(above)
 
     def parameters(self, arguments):
-        """The parameters as they are written, without self and cls."""
+        """Returns the parameters as they are written, without self and cls."""
         def one(argument, default, stars=""):
             text = stars + argument.arg
             if argument.annotation:
@@ -155,7 +155,7 @@ class Module:
 
 
 def imports(path):
-    """{public name: (module's file, name there)} of an __init__.py."""
+    """Returns {public name: (file of the module, name there)} of an __init__.py."""
     found = {}
     for node in ast.parse(path.read_text(encoding="utf-8")).body:
         if isinstance(node, ast.ImportFrom) and node.module != "__future__":
@@ -167,14 +167,14 @@ def imports(path):
 
 
 def public_names():
-    """The names of cayspin.__all__."""
+    """Returns the names in cayspin.__all__."""
     tree = ast.parse((PACKAGE / "__init__.py").read_text(encoding="utf-8"))
     return next(ast.literal_eval(node.value) for node in tree.body
                 if isinstance(node, ast.Assign) and node.targets[0].id == "__all__")
 
 
 def things() -> Dict[str, List[Thing]]:
-    """The public names of each group."""
+    """Returns the public names of each group."""
     modules, packages = {}, {"": imports(PACKAGE / "__init__.py"),
                              "texture": imports(PACKAGE / "texture/__init__.py")}
     found = {}
@@ -189,7 +189,7 @@ def things() -> Dict[str, List[Thing]]:
 
 
 def markdown(doc):
-    """A docstring as Markdown: indented blocks become code, and named pages become links."""
+    """Returns a docstring as Markdown: indented blocks as code, named pages as links."""
     doc = re.sub(r"docs/reference/(\w+\.md)", r"[\1](\1)", doc)
     lines, block = [], []
     for line in [*inspect.cleandoc(doc).split("\n"), "end"]:
@@ -227,7 +227,7 @@ def bullet(member, owner):
 
 
 def entry(thing):
-    """The section of a public name."""
+    """Returns the section of a public name, as a list of its parts."""
     if thing.kind == "value":
         return [f"### `{thing.name}`", f"`{thing.type}`: {thing.doc}"]
     if thing.kind == "function":

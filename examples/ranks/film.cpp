@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A permalloy film with a user-written demagnetising field, computed by FFTs that are shared by all
-// ranks. The printed numbers have equal bits on any number of ranks.
+// ranks. The printed numbers are bitwise identical on any number of ranks.
 #include "film_demagnetising_field.hpp"
 
 #include <cayspin/cayspin.hpp>

@@ -21,7 +21,7 @@
 /// with open boundaries, which is divided among the ranks along y. Each rank transforms its rows
 /// along x, and then its share of the columns along y. Rows and columns are padded to twice the
 /// extents, so that the film does not see its periodic images. Each transform is that of a single
-/// row or column, so the bits do not depend on the number of ranks.
+/// row or column, so the field is bitwise identical on any number of ranks.
 class FilmDemagnetisingField {
  public:
   static constexpr int degree = 2;  // H is linear in m: E = -m.H/2
@@ -88,7 +88,7 @@ class FilmDemagnetisingField {
     }
 
     /// Calls fill(row, component, y) to fill each padded row along x; y counts this rank's rows.
-    /// Afterwards each rank has the spectra of its columns.
+    /// Afterwards column_ holds the spectra of this rank's columns.
     template <class Fill>
     void transform(Fill const& fill) {
       for (std::size_t c = 0; c < 3; ++c)
@@ -149,8 +149,8 @@ class FilmDemagnetisingField {
       return of_rows_.data() + 3 * rows() * k_.begin[rank] + (c * rows() + y) * k_.of(rank);
     }
 
-    // With FFTW_ESTIMATE and FFTW_UNALIGNED all rows on all ranks have the same plan, which gives
-    // equal bits.
+    // With FFTW_ESTIMATE and FFTW_UNALIGNED all rows on all ranks have the same plan, so that
+    // results are bitwise identical.
     void make_plans() {
       constexpr unsigned flags = FFTW_ESTIMATE | FFTW_UNALIGNED;
       auto const x = static_cast<int>(2 * nx_), y = static_cast<int>(2 * ny_);
@@ -169,9 +169,9 @@ class FilmDemagnetisingField {
         work(rank, shares.begin[rank], shares.of(rank));
     }
 
-    // Calls work(number, place of the number in the messages) for all numbers of this rank's
-    // columns. The messages are one after the other in memory, one for each rank's rows; within
-    // each the order is (component, row, column).
+    // Calls work(value in column_, its place in of_columns_) for all values of this rank's columns.
+    // of_columns_ consists of one message for each rank's rows; within a message the order is
+    // (component, row, column).
     template <class Work>
     void for_each_number(Work const& work) {
       for_each_share(y_, [&](std::size_t, std::size_t begin, std::size_t count) {
@@ -187,8 +187,8 @@ class FilmDemagnetisingField {
       for (std::size_t i = 0; i < 3 * columns(); ++i) work(as_fftw(&column_[i * 2 * ny_]));
     }
 
-    // This rank has `lines` lines. Sends every rank its share of these lines, and receives this
-    // rank's share of the lines of every rank.
+    // `from` holds `lines` rows or columns of this rank. Sends to every rank its share of these
+    // lines, and receives in `to` this rank's share of the lines of every rank.
     void exchange(std::vector<Complex> const& from, std::size_t lines, Shares const& shares,
                   std::vector<Complex>& to, std::size_t lines_there, Shares const& shares_there) {
       auto const counts = [](std::size_t of_line, Shares const& of_ranks) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A code that has its own communicator and its own View, divided along z, and uses cayspin for the
-// steps. The printed numbers have equal bits on any number of ranks.
+// steps. The printed numbers are bitwise identical on any number of ranks.
 #include <cayspin/cayspin.hpp>
 #include <cayspin/mpi/domain.hpp>
 
@@ -9,8 +9,8 @@
 
 namespace {
 
-/// The initial state: a helix along z. `in_plane` is the number of sites of a plane, and `first`
-/// the first plane of the rank.
+/// Sets the initial state: a helix along z. `in_plane` is the number of sites of a plane, and
+/// `first` is the first plane of the rank.
 struct Helix {
   Kokkos::View<double* [3]> m;
   std::int64_t in_plane, first;

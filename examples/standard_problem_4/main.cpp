@@ -89,7 +89,8 @@ bool follows_with_a_multirate_field(bool with_adaptive_methods) {
   return fine;
 }
 
-/// Checks that the energy never rises during 10 ns, in which the film reaches equilibrium.
+/// Checks that the energy never rises between samples during 10 ns, in which the film reaches
+/// equilibrium.
 bool falls_for_10_nanoseconds() {
   StandardProblem4 problem(200, 50);
   problem.relax(1e-6);

@@ -23,7 +23,7 @@ class MultirateProblem4 {
       cayspin::SlowField<Spins, cayspin::HostField<Spins, cayspin::DemagnetizingField<double>>>;
   static constexpr int looks_per_nanosecond = 50;
 
-  /// `problem` must be at equilibrium.
+  /// Call problem.relax() first: runs start at that equilibrium.
   MultirateProblem4(Problem const& problem, Problem::Vector const& millitesla, int nanoseconds)
       : problem_(problem),
         nanoseconds_(nanoseconds),
@@ -33,8 +33,8 @@ class MultirateProblem4 {
 
   struct Run {
     std::vector<Problem::Vector> m;  // at each sample
-    double largest_rise = 0;         // of the energy between samples
-    double fall = 0, round_off = 0;  // of the energy, over the whole run
+    double largest_rise = 0;         // of the energy between two samples
+    double fall = 0, round_off = 0;  // of the energy: in the whole run; in one value
     std::int64_t multirate = 0;      // evaluations of the demagnetising field by steps
     double seconds = 0;              // of steps only
 
@@ -57,8 +57,8 @@ class MultirateProblem4 {
         cayspin::AdaptiveRkmk<Spins, Tableau>(spins_, cayspin::StepOptions{.tolerance = tolerance}),
         looks());
   }
-  /// Each step takes one evaluation of the demagnetising field, and twice `substeps` steps of RKMK4
-  /// for everything else.
+  /// Each step but the first takes one evaluation of the demagnetising field, and twice `substeps`
+  /// steps of RKMK4 for everything else.
   template <int Order>
   Run multirate(int steps, int substeps) {
     return run(cayspin::Multirate<cayspin::Rkmk4<Spins>, SlowTerm, Order>(

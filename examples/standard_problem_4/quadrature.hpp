@@ -11,7 +11,7 @@
 
 /// The demagnetising tensor by mumax3's quadrature (Vansteenkiste et al. 2014, Sec. II.E) with its
 /// default accuracy: the mean, over points in one cell, of the field of point charges on the faces
-/// of the other. Its error is up to 2.5e-4.
+/// of the other cell. Its error is up to 2.5e-4.
 namespace quadrature {
 
 constexpr double accuracy = 6;  // gap between the cells / edge of a piece of a cell

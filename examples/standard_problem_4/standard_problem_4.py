@@ -23,7 +23,7 @@ MUMAX3 = {"at rest": ((0.9669684, 0.1252733, 0.0), 1e-4),
 
 
 def newell_f(x, y, z):
-    """Newell, Williams and Dunlop 1993, eq. 27."""
+    """Returns f of Newell, Williams and Dunlop 1993, eq. 27."""
     xx, yy, zz = x * x, y * y, z * z
     r = np.sqrt(xx + yy + zz)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -34,7 +34,7 @@ def newell_f(x, y, z):
 
 
 def newell_g(x, y, z):
-    """Newell, Williams and Dunlop 1993, eq. 32."""
+    """Returns g of Newell, Williams and Dunlop 1993, eq. 32."""
     xx, yy, zz = x * x, y * y, z * z
     r = np.sqrt(xx + yy + zz)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -49,7 +49,8 @@ def newell_g(x, y, z):
 
 def interaction(function, axes):
     """Returns an element of the tensor at offsets 0 to n - 1 along x, y and z: minus the second
-    difference of `function`, taken along all three axes, over 4 pi times the volume of a cell."""
+    differences of `function` along the three axes in turn, divided by 4 * pi * (volume of a cell).
+    """
     size = np.array(SIZE, dtype=np.longdouble) / SIZE[2]
     grid = np.meshgrid(*(np.arange(-1, n + 1) * d for n, d in zip(CELLS, size)), indexing="ij")
     values = function(*(grid[axis] for axis in axes))

@@ -42,8 +42,8 @@ template <class Type>
 struct AdaptiveOn : ::testing::Test {};
 TYPED_TEST_SUITE(AdaptiveOn, Backends, BackendName);
 
-// Serial and the threaded space choose equal dt and so give equal bits, also at frames within a
-// step. On a device, two runs are compared with each other.
+// Serial and the threaded space choose the same steps and give bitwise identical spins, also at
+// frames within a step. On a device, two runs are compared with each other.
 TYPED_TEST(AdaptiveOn, HasTheBitsOfSerial) {
   using Field = typename TypeParam::Spins;
   using Exec = typename TypeParam::Exec;

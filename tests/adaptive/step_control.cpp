@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The step controller against numbers computed by hand, and the order that each embedded tableau
-// gives it. Hairer and Wanner, Solving ODEs II, IV.2.
+// Compares the step controller with values computed by hand, and checks which error order each
+// embedded tableau passes to it. Hairer and Wanner, Solving ODEs II, IV.2.
 #include "../order/chain.hpp"
 
 using namespace cayspin;

@@ -53,7 +53,7 @@ inline Slab every_term(Lattice const& lattice) {
 
 constexpr auto natural = [](Slab const& slab) { return slab.natural(); };
 
-/// Returns an equation with site-dependent coefficients and vacancies.
+/// Returns a generator with site-dependent coefficients and vacancies.
 template <class Field>
 auto site_dependent(Slab const& slab) {
   auto const numbers = [&](auto const& value) { return numbers_on<Field>(slab.lattice, value); };

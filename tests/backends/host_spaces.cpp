@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Trajectories and reductions have the same bits on Serial and on the threaded space.
+// Trajectories and reductions are bitwise identical on Serial and on the threaded space.
 #include "equal_bits.hpp"
 
 #include <cstdlib>

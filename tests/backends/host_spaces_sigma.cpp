@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Serial and the threaded space give equal bits with steppers that remember the previous step, that
-// iterate, or that differentiate the generator, and with one that changes some sites in place while
-// it reads others.
+// Serial and the threaded space give bitwise identical results with steppers that remember the
+// previous step, that iterate, or that differentiate the generator, and with one that changes some
+// sites in place while it reads others.
 #include "equal_bits.hpp"
 
 #include <cayspin_paper/analytic_sigma.hpp>

@@ -139,7 +139,8 @@ TEST(Labels, Integrate) {
               Every(3, Record(slab.field(), samples)));
   });
   EXPECT_EQ(samples.size(), 3u);
-  // Six steps in two batches, or with a kernel for each stage; and three samples.
+  // Six steps take one kernel for each of two batches, or one for each stage; each of the three
+  // samples takes one.
   bool const batches = detail::runs_on_calling_thread<Exec>(spins.sites());
   EXPECT_EQ(seen.kernels.size(), (batches ? 2u : 6u * 4) + 3);
   expect_prefix(seen.kernels);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A sweep, which takes all stages through the lattice together, gives the same bits as one kernel
-// per stage.
+// A sweep, which takes all stages through the lattice together, gives results that are bitwise
+// identical to those of one kernel per stage.
 #include "sweeping.hpp"
 
 using namespace cayspin;
@@ -127,7 +127,7 @@ TYPED_TEST(Sweep, IsLeftWhereItsBuffersExceedFields) {
   expect_bounded(&Rkmk<Field, tableau::DormandPrince8>::work_bytes);
 }
 
-// batch() would read memory that a sweeping stepper does not have, so it refuses.
+// batch() would read memory that a sweeping stepper does not have, so such a stepper refuses it.
 TYPED_TEST(Sweep, RefusesBatches) {
   typename TestFixture::Field spins("spins", Lattice::cubic(8, 8, 8));
   Rkmk4 stepper(spins);

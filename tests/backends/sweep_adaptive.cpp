@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// An adaptive method takes the same steps by sweeps and by passes, bit by bit: rejected steps,
-// steps that end at a requested time, and steps that end later.
+// An adaptive method takes bitwise identical steps by sweeps and by passes, also if steps are
+// rejected, or end at or after a requested time.
 #include "sweeping.hpp"
 
 using namespace cayspin;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A stepper's memory of earlier steps survives switches between sweeps and passes, also when
-// another stepper continues from its checkpoint: the bits are those of uninterrupted passes.
+// another stepper continues from its checkpoint: results are bitwise identical to those of
+// uninterrupted passes.
 #include "sweeping.hpp"
 
 #include <cayspin/integrate.hpp>

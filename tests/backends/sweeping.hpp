@@ -35,7 +35,7 @@ inline bool can_sweep(Lattice const& lattice, int stages) {
   return lattice.boundary[1] == Boundary::open || rows == 1 || rows >= stages;
 }
 
-/// Returns an equation with exchange, anisotropy and a rotating field.
+/// Returns a generator with exchange, anisotropy and a rotating field.
 inline auto turning(Slab const& slab) {
   return LandauLifshitz(EffectiveField(Exchange(slab.lattice, slab.exchange),
                                        UniaxialAnisotropy(slab.anisotropy, slab.axis),

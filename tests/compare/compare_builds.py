@@ -59,7 +59,7 @@ class Case:
 
 
 def words(cell):
-    """The words in a cell of the table, without remarks in brackets; "-" means no word."""
+    """Returns the words in a cell of the table, without remarks in brackets; "-" means no word."""
     found = [re.sub(r" *\(.*\)", "", word).strip() for word in cell.split(",")]
     return NONE if found == ["-"] else found
 
@@ -85,7 +85,7 @@ def listed_combinations(program):
 
 
 def other_combinations(listed):
-    """Yields the other combinations of the same words. Most of them are refused."""
+    """Yields all other combinations of the same words. Most of them are refused."""
     adaptive = {combination.method: combination.adaptive for combination in listed}
     known = set(listed)
     for method, compensated, *choice in itertools.product(
@@ -108,7 +108,7 @@ def toml_value(value):
 
 
 def scene_text(scene, combination, steps):
-    """The scene with another method, shortened, and with a smaller lattice if it is large."""
+    """Returns the scene with another method, fewer steps and, if it is large, a smaller lattice."""
     in_si = scene.get("units") == "SI"
     top = {key: value for key, value in scene.items() if not isinstance(value, dict)}
     scene = {section: dict(keys) for section, keys in scene.items() if isinstance(keys, dict)}
@@ -147,7 +147,7 @@ def contents(path):
 
 
 def run(program, scene, output, case, options):
-    """Exit status, messages, and the contents of the file, if there is one."""
+    """Runs a scene; returns exit status, messages, and the contents of the file, or None."""
     command = [program, "run", scene, "--output", output, "--precision", case.precision, "--quiet",
                *options]
     environment = {**os.environ, "OMP_PROC_BIND": "false", "OMP_WAIT_POLICY": "passive"}

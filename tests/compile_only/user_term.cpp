@@ -17,7 +17,7 @@ static_assert(sizeof(detail::Pack<double>) == 16 && sizeof(detail::Pack<float>) 
 #endif
 #endif
 
-/// H = -c (m.m) m, E = c (m.m)^2 / 4
+/// H = -c * (m.m) * m, E = c * (m.m)^2 / 4
 struct Quartic {
   double c;
   template <class Stencil>

@@ -17,8 +17,8 @@
 namespace cayspin::test {
 namespace {
 
-/// Uncoupled crystals of extent^3 cells on one lattice: sites 2 c and 2 c + 1 of a cell belong to
-/// crystal c.
+/// Uncoupled crystals of extent^3 cells on one lattice: sites 2 * c and 2 * c + 1 of a cell belong
+/// to crystal c.
 template <class Spins>
 class Crystals {
  public:
@@ -197,7 +197,7 @@ std::pair<double, double> crossing(double temperature, double dt, std::int64_t s
 }
 
 // Run by ctest -C long -L long. The error of the steps heats the crystal in proportion to dt^2,
-// which lowers the crossing by about 22 dt^2.
+// which lowers the crossing by about 22 * dt^2.
 TEST(HeisenbergCrystal, DISABLED_BinderCumulantsCrossAtTheCriticalTemperature) {
   auto const [fine, its_error] = crossing(2.036, 0.03, 40, 2000, 100);
   auto const [coarse, error_of_coarse] = crossing(1.979, 0.06, 20, 600, 200);

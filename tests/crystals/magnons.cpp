@@ -102,7 +102,7 @@ std::vector<Coupling> honeycomb_bonds(double exchange) {
   return bonds({0, 1}, {{0, 0, 0}, {-1, 0, 0}, {0, -1, 0}}, exchange);
 }
 
-// omega = (8 J - J_k) cos(opening), with J_k = 8 J cos(kx / 2) cos(ky / 2) cos(kz / 2).
+// omega = (8 * J - J_k) * cos(opening), with J_k = 8 * J * cos(kx / 2) * cos(ky / 2) * cos(kz / 2).
 TYPED_TEST(Magnons, OfABodyCentredCrystal) {
   Cells const cells{24, 6, 5};
   auto const crystal = Crystal::bcc();
@@ -124,8 +124,8 @@ TYPED_TEST(Magnons, OfABodyCentredCrystal) {
   }
 }
 
-// omega = J (3 -+ |f|) cos(opening), where f is the sum of exp(i k.delta) over the offsets delta of
-// the three neighbours.
+// omega = J * (3 -+ |f|) * cos(opening), where f is the sum of exp(i k.delta) over the offsets
+// delta of the three neighbours.
 TYPED_TEST(Magnons, OfAHoneycomb) {
   Cells const cells{18, 12, 1};
   auto const crystal = Crystal::honeycomb();
@@ -147,9 +147,9 @@ TYPED_TEST(Magnons, OfAHoneycomb) {
     }
 }
 
-// At the corner K of the Brillouin zone, a sublattice can precess with the other one at rest. D
+// At the corner K of the Brillouin zone, one sublattice can precess while the other is at rest. D
 // between second neighbours, along z and in the sense of the hexagons, splits the two frequencies
-// by 6 sqrt(3) D cos(opening).
+// by 6 * sqrt(3) * D * cos(opening).
 TYPED_TEST(Magnons, OfAHoneycombWithAGap) {
   Cells const cells{12, 12, 1};
   constexpr double D = 0.04;
@@ -177,7 +177,7 @@ TYPED_TEST(Magnons, OfAHoneycombWithAGap) {
   EXPECT_NEAR(std::abs(found[0] - found[1]), 6 * std::sqrt(3.0) * D * std::cos(opening), 1e-14);
 }
 
-// The flat band of a kagome lattice: omega = 6 J cos(opening) at any k. Here the phases of the
+// The flat band of a kagome lattice: omega = 6 * J * cos(opening) at any k. Here the phases of the
 // three sites of a cell differ by a third of a turn.
 TYPED_TEST(Magnons, OfAKagome) {
   Cells const cells{9, 8, 1};
@@ -197,9 +197,9 @@ TYPED_TEST(Magnons, OfAKagome) {
       6 * 0.75 * std::cos(opening));
 }
 
-// omega = sqrt((h + K)^2 - (h gamma)^2) at small openings, with h = 8 |J| and gamma = cos(kx / 2)
-// cos(ky / 2) cos(kz / 2). It is positive if spins up have the larger amplitude, and negative if
-// spins down do.
+// omega = sqrt((h + K)^2 - (h * gamma)^2) at small openings, with h = 8 * |J| and
+// gamma = cos(kx / 2) * cos(ky / 2) * cos(kz / 2). It is positive if spins up have the larger
+// amplitude, and negative if spins down do.
 TYPED_TEST(Magnons, OfAnAntiferromagnet) {
   Cells const cells{24, 6, 5};
   constexpr double J = -0.75, h = 8 * -J, K = 0.5;
@@ -228,7 +228,8 @@ TYPED_TEST(Magnons, OfAnAntiferromagnet) {
   }
 }
 
-// Two sublattices turn about the constant L = sum of (mu / g) m, at 8 J g g' |L| / (mu mu').
+// Two sublattices rotate about the constant L = sum of (mu / g) * m, at the rate
+// 8 * J * g * g' * |L| / (mu * mu').
 TYPED_TEST(Magnons, OfAFerrimagnet) {
   Cells const cells{9, 4, 3};
   auto const crystal = Crystal::bcc();

@@ -26,7 +26,7 @@ def parser_of(description):
 
 
 def compile_entry(arguments):
-    """The directory and the words of the command that compiles the source."""
+    """Returns the directory and the words of the command that compiles the source."""
     entry = next(entry for entry in json.loads(arguments.commands.read_text())
                  if entry["file"] == arguments.source)
     return entry["directory"], shlex.split(entry["command"])

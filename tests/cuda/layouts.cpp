@@ -10,7 +10,7 @@ namespace cayspin::test {
 template <class Argument>
 __global__ void takes(Argument) {}
 
-/// A function whose symbol contains the size.
+/// A function whose symbol contains the size of an argument on the host.
 template <class Argument, std::size_t OnHost>
 void has_size() {}
 

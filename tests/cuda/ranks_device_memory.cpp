@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The example as with -DCAYSPIN_MPI_DEVICE_MEMORY=ON: messages do not pass through the host.
+// Compiles the example as with -DCAYSPIN_MPI_DEVICE_MEMORY=ON: messages do not pass through the
+// host.
 #define CAYSPIN_MPI_DEVICE_MEMORY
 #include "../../examples/ranks/main.cpp"

@@ -37,7 +37,7 @@ METHODS = {
 
 
 def kernel_name(symbol):
-    """Precision, method and stage of a symbol; None for kernels whose indices have 64 bits."""
+    """Returns precision, method and stage of a symbol; None if the kernel has 64-bit indices."""
     name = subprocess.run(["c++filt", symbol], check=True, text=True,
                           stdout=subprocess.PIPE).stdout
     found = re.search(r"TileLoop<int, .*?OnDeviceSite<(float|double), .*?RungeKuttaStage<"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The demagnetising field as devices compute it, against that of the host. This runs on host
+// Compares the demagnetising field as devices compute it with that of the host. This runs on host
 // spaces, too, where FFTW replaces the device's transforms.
 #include "films.hpp"
 
@@ -29,7 +29,8 @@ template <class Backend>
 class DemagnetizingFieldOnDevices : public ::testing::Test {};
 TYPED_TEST_SUITE(DemagnetizingFieldOnDevices, Backends, BackendName);
 
-// With memory for all wave numbers along x at once, for two at a time, and for one at a time.
+// The memory suffices for all wave numbers along x at once, for two at a time, or for one at a
+// time.
 TYPED_TEST(DemagnetizingFieldOnDevices, IsThatOfTheHost) {
   using Real = typename TypeParam::Real;
   using Exec = typename TypeParam::Exec;

@@ -125,7 +125,7 @@ TEST(DemagnetizingField, OfWhatItCannotTake) {
   EXPECT_THROW(of_film(other, other, 0), std::invalid_argument);
 }
 
-// The bits are printed for same_bits.cmake, which compares them for several numbers of threads.
+// Prints a hash of the bits for same_bits.cmake, which compares it for several numbers of threads.
 TYPED_TEST(DemagnetizingFields, HaveBitsToCompare) {
   using Real = TypeParam;
   std::uint64_t hash = 0;

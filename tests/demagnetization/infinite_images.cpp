@@ -99,7 +99,7 @@ TYPED_TEST(InfiniteImages, OfABarHaveItsMean) {
 }
 
 // Stripes of width a, alternately up and down, in a film of thickness d: N along the normal is the
-// sum over odd n of 8/(n pi)^2 (1 - exp(-k d))/(k d), k = n pi/a.
+// sum over odd n of 8 / (n * pi)^2 * (1 - exp(-k * d)) / (k * d), with k = n * pi / a.
 TYPED_TEST(InfiniteImages, OfStripesAreTheirFourierSeries) {
   using Real = TypeParam;
   for (double const thickness : {0.1, 1.0, 5.0}) {

@@ -58,13 +58,13 @@ TEST(LatticeSums, OfChainsAndSquareLattices) {
   auto const chain = of_uniform(cubic, {5, 1, 1}, {.periodic_images = {all, 0, 0}}, {1, 1, 0});
   EXPECT_NEAR(chain.x, 4 * zeta3 / (4 * pi), 1e-14);
   EXPECT_NEAR(chain.y, -2 * zeta3 / (4 * pi), 1e-14);
-  // The sum is 4 zeta(3/2) beta(3/2).
+  // The sum is 4 * zeta(3/2) * beta(3/2).
   double const square_sum = 4 * std::riemann_zeta(1.5) * 0.8645026534612020;
   auto const square = of_uniform(cubic, {4, 3, 1}, {.periodic_images = {all, all, 0}}, {0, 1, 1});
   EXPECT_NEAR(square.z, -square_sum / (4 * pi), 1e-13);
   EXPECT_NEAR(square.y, square_sum / (8 * pi), 1e-13);
   EXPECT_NEAR(square_sum, 9.0336216831, 1e-9);
-  // On a triangular lattice it is 6 zeta(3/2) L(3/2), with the Dirichlet series L of the
+  // On a triangular lattice the sum is 6 * zeta(3/2) * L(3/2), with the Dirichlet series L of the
   // coefficients 1, -1, 0, 1, -1, 0, ...
   double l = 0;
   for (int n = 2000000; n >= 0; --n) l += std::pow(3. * n + 1, -1.5) - std::pow(3. * n + 2, -1.5);

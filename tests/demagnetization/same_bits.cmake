@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# cmake -DPROGRAM=... -P same_bits.cmake: checks that fields have equal bits with 1, 2, 3 and 5
-# threads.
+# cmake -DPROGRAM=... -P same_bits.cmake: checks that fields are bitwise identical with 1, 2, 3 and
+# 5 threads.
 foreach(threads 1 2 3 5)
   set(ENV{OMP_NUM_THREADS} ${threads})
   set(ENV{OMP_PROC_BIND} false)

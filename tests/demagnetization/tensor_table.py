@@ -65,8 +65,8 @@ def g(x, y, z):
 
 
 def entry(function, order, position, cell):
-    """Returns the second difference of `function`, whose arguments are the coordinates in the
-    given order of axes."""
+    """Returns minus the second differences of `function` along its three arguments in turn,
+    divided by 4 * pi * (volume of a cell). `order`: the axes of the arguments."""
     x, y, z = (mpf(position[axis]) for axis in order)
     a, b, c = (mpf(cell[axis]) for axis in order)
     weight = {-1: -1, 0: 2, 1: -1}

@@ -102,7 +102,7 @@ def missing_files_of_sources(root, sources):
 
 
 def wrong_commands(root, lines):
-    """Checks `lines`, each (file, line number, line)."""
+    """Yields the faults of commands in `lines`, each of which is (file, line number, line)."""
     usage = re.search(r"bootstrap\.sh ([\w-]+(?:\|[\w-]+)+)", read(root, "cmake/bootstrap.sh"))
     verbs = set(usage.group(1).split("|"))
     presets = {preset["name"]
@@ -116,7 +116,7 @@ def wrong_commands(root, lines):
 
 
 def other_first_program(root, pages):
-    """Checks that the README's first program is that of an example, which is compiled and run."""
+    """Yields a fault if the README's first program is not that of an example, which is tested."""
     example = "examples/01_switching_slab.cpp"
     if not os.path.exists(os.path.join(root, example)):
         return
@@ -129,7 +129,7 @@ def other_first_program(root, pages):
 
 
 def check_pages(root):
-    """All faults of the pages, as (file, line, sentence)."""
+    """Returns all faults of the pages, as (file, line, sentence)."""
     pages = pages_of(root)
     lines = [(page.path, number, line)
              for page in pages for number, line in enumerate(page.lines, 1)]
@@ -138,7 +138,7 @@ def check_pages(root):
 
 
 def check_sources(root):
-    """All faults of the sources' comments and texts, as (file, line, sentence)."""
+    """Returns all faults of the sources' comments and texts, as (file, line, sentence)."""
     paths = [path for folder in SOURCE_FOLDERS
              for path in sorted(glob.glob(os.path.join(root, folder, "**", "*"), recursive=True))]
     lines = [(os.path.relpath(path, root), number, line)

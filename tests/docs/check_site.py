@@ -53,8 +53,9 @@ def broken_links(site, path, page, pages):
 
 
 def check(site):
-    """All faults, as (page, sentence). Pages in api/ are Doxygen's own work and are not checked,
-    since Doxygen 1.9.4 links some of them to pages that it leaves out. Their index must exist."""
+    """Returns all faults, as (page, sentence). Pages in api/ are Doxygen's own work and are not
+    checked, since Doxygen 1.9.4 links some of them to pages that it leaves out. Their index must
+    exist."""
     pages = {path: PageOfSite(path) for path in sorted(site.rglob("*.html"))
              if path.relative_to(site).parts[0] not in ("_static", "api")}
     faults = []

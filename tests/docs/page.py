@@ -46,13 +46,13 @@ class Page:
             self.kinds.append(kind)
 
     def of_kind(self, *kinds):
-        """(number, line) of each line of these kinds."""
+        """Returns (number, line) of each line of these kinds."""
         return [(number, line)
                 for number, (line, kind) in enumerate(zip(self.lines, self.kinds), 1)
                 if kind in kinds]
 
     def links(self):
-        """(line number, is an image, target) of every link outside of code."""
+        """Returns (line number, whether it is an image, target) of every link outside of code."""
         found = []
         for number, line in self.of_kind("prose", "table", "heading"):
             line = INLINE_CODE.sub("code", line)
@@ -63,7 +63,7 @@ class Page:
         return found
 
     def inline_code(self):
-        """(line number, text) of every piece of code in prose and tables."""
+        """Returns (line number, text) of every piece of code in prose and tables."""
         return [(number, match.group(0).strip("`"))
                 for number, line in self.of_kind("prose", "table")
                 for match in INLINE_CODE.finditer(line)]
@@ -81,8 +81,8 @@ class Page:
         return anchors
 
     def sentences(self):
-        """(line number of the paragraph, sentence) of prose. A piece of code counts as one word, a
-        link as its text, and an image as nothing."""
+        """Returns (line number of the paragraph, sentence) for each sentence of prose. A piece of
+        code counts as one word, a link as its text, and an image as nothing."""
         blocks, previous = [], "blank"
         for number, (line, kind) in enumerate(zip(self.lines, self.kinds), 1):
             if kind == "prose":
@@ -101,5 +101,5 @@ class Page:
 
 
 def length(sentence):
-    """Number of words of a sentence that hold a letter or a digit."""
+    """Returns the number of words of a sentence that contain a letter or a digit."""
     return sum(1 for word in sentence.split() if re.search(r"\w", word))

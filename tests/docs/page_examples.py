@@ -35,7 +35,7 @@ REFERENCE = ("conventions", "field_terms", "methods")
 
 
 def pages():
-    """The pages to run. Pages of pictures are left to gallery_test.py."""
+    """Returns the pages to run. Pages of pictures are left to gallery_test.py."""
     guide = sorted(map(pathlib.Path, glob.glob(str(ROOT / "docs/guide/*.md"))))
     return [ROOT / "README.md"] + [
         page for page in guide if page.name != "what_a_scene_can_hold.md"] + [
@@ -43,7 +43,7 @@ def pages():
 
 
 def commands_of(block):
-    """The commands of a block; none if any needs more than built programs, such as a browser."""
+    """Returns a block's commands, or none if one needs more than built programs (a browser)."""
     commands = block.replace("\\\n", " ").splitlines()
     runs_here = all(command.startswith(("cayspin ", "python3 ")) and
                     not command.startswith("cayspin view ") for command in commands)

@@ -18,7 +18,7 @@ PAGE = "docs/reference/python_api.md"
 
 
 def faults_of(name, member):
-    """Faults of a docstring. That of a class has to name its constructor's parameters."""
+    """Returns the faults of a docstring. A class's has to name the constructor's parameters."""
     doc = " ".join(member.doc.split())
     if not doc:
         return [f"{name}: no docstring"]

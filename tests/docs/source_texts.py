@@ -14,7 +14,7 @@ SYNTAX = {".hpp": C_LIKE, ".cpp": C_LIKE, ".h": C_LIKE, ".in": HASH_LIKE, ".py":
 
 
 def source_texts(path):
-    """(line number, line) of every line of a comment or literal; empty for other files."""
+    """Yields (line number, line) of every line of a comment or literal; none for other files."""
     syntax = SYNTAX.get(os.path.splitext(path)[1])
     if syntax is None or not os.path.isfile(path):
         return

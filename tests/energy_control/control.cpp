@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Lagged energy control: its effect on one state; it removes drift and keeps orders and lengths;
-// equal bits on host spaces; what it refuses.
+// Lagged energy control: how it changes one state; that it removes drift and keeps orders and
+// lengths; bitwise identical results on host spaces; what it refuses.
 #include "../backends/equal_bits.hpp"
 #include "../support/backends.hpp"
 #include "../support/evaluate.hpp"
@@ -178,8 +178,8 @@ Field turned(Source const& source, Field const& start, double higher,
   return spins;
 }
 
-// Compares with the Cayley map of kappa m x A, with one kappa for all spins, written out for each
-// spin: m + kappa A_o + O(kappa^2), where A_o is the part of A orthogonal to m.
+// Compares with the Cayley map of kappa * (m x A), with one kappa for all spins, written out for
+// each spin: m + kappa * A_o + O(kappa^2), where A_o is the part of A orthogonal to m.
 template <class Source, class Field>
 void expect_turn(Source const& source, Field const& start) {
   using Real = typename Field::value_type;
@@ -223,7 +223,7 @@ TEST(EnergyControl, ReachesTheEnergy) {
   expect_order("left of the energy", fitted_order(asked, left), 2, 0.1);
 }
 
-// However far away the energy is, no spin moves by more than 0.1 dt times the largest rate. At
+// However far away the energy is, no spin moves by more than 0.1 * dt * (the largest rate). At
 // equilibrium, spins do not move.
 TYPED_TEST(OneCall, IsBounded) {
   using Field = typename TestFixture::Field;

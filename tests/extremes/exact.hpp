@@ -20,7 +20,7 @@ inline long double exact_angle(Setting const& setting, bool body, long double ti
 }
 
 /// Returns the exact solution at `time`. While the field is on, the azimuth of a spin grows as
-/// field t, and tan(theta / 2) falls as exp(-damping field t). A rigid body only turns.
+/// field * time, and tan(theta / 2) falls as exp(-damping * field * time). A rigid body only turns.
 inline Vec3<double> exact_end(Setting const& setting, bool body, long double time) {
   if (setting.along_field) return {0, 0, 1};
   long double const angle =

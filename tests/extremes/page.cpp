@@ -27,7 +27,7 @@ the second for single precision. Where a method behaves differently with differe
 rotations, square brackets list those that the row is about. No run has a constant sigma.
 )";
 
-// Methods that take 1e8 steps in minutes.
+// Returns methods that take 1e8 steps in minutes.
 std::vector<Integrator> simplest() {
   std::vector<Integrator> few;
   for (auto const& one : with_equal_steps())
@@ -35,7 +35,7 @@ std::vector<Integrator> simplest() {
   return few;
 }
 
-// Methods with constant steps whose scenes with this setting are not refused.
+// Returns the methods with constant steps whose scenes with this setting are not refused.
 std::vector<Integrator> those_that_take(Setting const& setting) {
   Situation const situation{"", setting, setting};
   std::vector<Integrator> some;

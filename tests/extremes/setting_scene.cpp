@@ -15,7 +15,7 @@
 namespace cayspin::extremes {
 namespace {
 
-// Returns a number with every digit, and infinity in TOML's spelling.
+// Returns a number as text that reads back exactly, or infinity in TOML's spelling.
 std::string decimal(double number) {
   return std::isfinite(number) ? fmt::format("{:.17e}", number) : "inf";
 }

@@ -41,8 +41,8 @@ struct Setting {
 };
 
 /// Reference for the end of a run. solution: the exact one. one_spin: the run of a lattice of one
-/// site. no_noise: the run without [thermal], which has to give the same bits. start: the initial
-/// spins.
+/// site. no_noise: the run without [thermal], whose end has to be bitwise identical. start: the
+/// initial spins.
 enum class Against { nothing, solution, one_spin, no_noise, start };
 
 /// A column of a table.

@@ -39,7 +39,8 @@ class Look : public RunObserver<HostSpace, Spins> {
     if (is_thermal(scene)) noise_.emplace(scene, generator, spins);
   }
 
-  // Runs of 1000 steps or more are looked at only every 1000 steps, or every `normalized` steps.
+  // Runs of 1000 steps or more are looked at only every 1000 steps, or every `normalized` steps,
+  // and after the last step.
   bool due(Step const& step) const override {
     std::int64_t const every = setting_.normalized ? setting_.normalized : 1000;
     return setting_.steps < 1000 || step.last || step.number % every == 0;

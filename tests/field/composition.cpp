@@ -114,7 +114,7 @@ TYPED_TEST(Fields, WhatTermsRefuse) {
   EXPECT_THROW(Moments(lattice, {-1}, {-1}), std::invalid_argument);
 }
 
-// The second axis is turned to be at right angles with the first.
+// The second axis is turned to be at right angles to the first.
 TEST(CubicAxes, OfFewDigitsAreMadeOrthogonal) {
   Vec3<double> const first{1, 2, 2}, second{2, 1, -2};
   CubicAnisotropy const exact(1.3, first, second);

@@ -217,7 +217,7 @@ TYPED_TEST(Pairs, ThatCannotBe) {
                                  0.1);
   typename TypeParam::Exec const exec;
   EXPECT_THROW(stepper.step(exec, generator, spins, 0, 0.1), std::invalid_argument);
-  // So would Series4, also within a sum of terms and an orthogonal generator.
+  // Series4 would omit it, too, even within a sum of terms or an orthogonal generator.
   Series4<typename TypeParam::Spins> series(spins);
   EXPECT_THROW(series.step(exec, generator, spins, 0, 0.1), std::invalid_argument);
   EXPECT_THROW(series.step(exec,

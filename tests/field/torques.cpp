@@ -19,7 +19,7 @@ class Torques : public ::testing::Test {
   using Method = Rkmk4<Spins, isotropy::Zero, Exponential>;
   typename Backend::Exec exec;
 
-  /// Expects m' = t + damping m x t at every site, where t is torque(m, site).
+  /// Expects m' = t + damping * (m x t) at every site, where t is torque(m, site).
   template <class Term, class Torque>
   void check(Lattice const& lattice, Term const& term, Torque const& torque) const {
     auto const spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 11));
@@ -79,7 +79,7 @@ TYPED_TEST(Torques, ZhangLiIsItsFormula) {
                 });
 }
 
-// With c = m.p and the angle f about p: c' = (a + damping b) (1 - c^2), f' = b - damping a.
+// With c = m.p and the angle f about p: c' = (a + damping * b) * (1 - c^2), f' = b - damping * a.
 TYPED_TEST(Torques, OneSpinUnderSlonczewski) {
   double const bound = 1e-9 + 100 * epsilon<typename TypeParam::Real>, time = 1.7;
   for (double const damping : {0.0, 0.2})
@@ -104,8 +104,9 @@ std::vector<double> helix(std::int64_t sites, double per_site, double phase, dou
   return numbers;
 }
 
-// A helix of angle q per site turns at the rate -w (1 + damping xi) and leaves its plane with m_z'
-// = (xi - damping) w (1 - m_z^2). Here w = u sin(q) / spacing; in the continuum, u q / spacing.
+// A helix of angle q per site turns at the rate -w * (1 + damping * xi) and leaves its plane with
+// m_z' = (xi - damping) * w * (1 - m_z^2). Here w = u * sin(q) / spacing; in the continuum, it
+// would be u * q / spacing.
 TYPED_TEST(Torques, AHelixUnderZhangLi) {
   double const bound = 1e-9 + 200 * epsilon<typename TypeParam::Real>;
   double const spacing = 0.5, u = 0.7, time = 2;
@@ -159,7 +160,7 @@ TYPED_TEST(Torques, EveryKindOfMethodTakesTheNewTerms) {
   expect_same(EffectiveField(exchange, dmi, local), Series4<Spins>(like));
 }
 
-// (cos qz, sin qz, 0) has m . curl m = -q, so that D > 0 prefers it.
+// (cos(q * z), sin(q * z), 0) has m . curl m = -q, so that D > 0 prefers it.
 TYPED_TEST(Torques, BulkDmiIsDTimesMDotCurlM) {
   double const d = 0.7, spacing = 0.01;
   std::int64_t const n = 100;

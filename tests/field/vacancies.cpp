@@ -22,7 +22,7 @@ auto every_term(Lattice const& lattice) {
                         TimeDependentZeeman(turning_field));
 }
 
-/// Includes terms that isotropy::Analytic cannot differentiate.
+/// Returns a field with terms that isotropy::Analytic cannot differentiate.
 auto bonds_and_torques(Lattice const& lattice) {
   return EffectiveField(
       BiquadraticBonds{0.6}, BulkDmi(lattice, 0.4), ZhangLi(lattice, {0.5, -0.3, 0.2}, 0.3),
@@ -100,7 +100,7 @@ class Vacancies : public GradientTest<Backend> {
 };
 TYPED_TEST_SUITE(Vacancies, Backends, BackendName);
 
-// Spins beyond the vacant sites do not change a bit of the spins in the box.
+// The spins in the box move bitwise as they would in a lattice that consists of the box only.
 TYPED_TEST(Vacancies, CutAClusterOff) {
   using Spins = typename TypeParam::Spins;
   this->template expect_cut_off<Rkmk4<Spins>>(every_term);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int64_t bodies = 21;
 
-// Returns b m, from the full matrix of b.
+// Returns b * m, from the full matrix of b.
 Vec3<double> times(SymmetricTensor const& b, Vec3<double> const& m) {
   double const matrix[3][3] = {{b[0], b[3], b[4]}, {b[3], b[1], b[5]}, {b[4], b[5], b[2]}};
   double const in[3] = {m.x, m.y, m.z};
@@ -73,7 +73,7 @@ class RigidBodies : public ::testing::Test {
     return RigidBodyEnsemble(field);
   }
 
-  /// Expects a step of the two generators to end with equal bits.
+  /// Expects steps with the two generators to give bitwise identical spins.
   template <class One, class Other>
   void expect_same_step(One const& one, Other const& other) const {
     auto const after = [&](auto const& generator) {
@@ -99,7 +99,7 @@ TYPED_TEST(RigidBodies, EachBodyItsOwnTensor) {
   this->check(this->ensemble(body_tensor), body_tensor);
 }
 
-// Three numbers per body against six, three of them zero: equal motion.
+// Bodies given by three numbers move exactly like bodies given by six numbers, three of them zero.
 TYPED_TEST(RigidBodies, EachBodyItsOwnMoments) {
   auto const diagonal_part = [](std::int64_t body) {
     auto const b = body_tensor(body);

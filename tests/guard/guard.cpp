@@ -41,8 +41,8 @@ class GuardIn : public ::testing::Test {
 using Precisions = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(GuardIn, Precisions);
 
-// The limit is 64 epsilon at the start. Later it is 64 epsilon for each step, as if there had been
-// at least a million, but at most 0.01.
+// The limit is 64 * epsilon at the start. Later it is 64 * epsilon * max(steps, 1e6), but at most
+// 0.01.
 TYPED_TEST(GuardIn, LengthsMayBeOffByRoundOff) {
   double const of_a_step = 64 * std::numeric_limits<TypeParam>::epsilon();
   this->expect_limit_of_length(0, of_a_step);
@@ -64,8 +64,8 @@ TYPED_TEST(GuardIn, EnergiesMayRiseByRoundOff) {
   EXPECT_NE(failure->find("from 0 at step 2"), std::string::npos) << *failure;
 }
 
-// The limit follows the current magnitude, and each rise is measured from the energy of the call
-// before.
+// The limit follows the current magnitude, and each rise is measured from the energy of the
+// previous call.
 TYPED_TEST(GuardIn, SmallRisesDoNotAddUp) {
   double const rise = 60 * std::numeric_limits<TypeParam>::epsilon();
   double energy = 1;

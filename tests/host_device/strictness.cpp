@@ -95,7 +95,8 @@ TYPED_TEST(Strictness, IntegrateWaitsForItsObserversAndItsEnd) {
   EXPECT_NEAR(z_now(), std::cos(2.) / std::cosh(0.2), 1e-3);
 }
 
-// Constructors of terms and copies to the host have no instance of the caller's.
+// Constructors of terms and copies to the host get no instance from the caller, so they have to
+// wait for all instances.
 TYPED_TEST(Strictness, TermsAndCopiesWaitForWorkOnAnyInstance) {
   auto const other = Kokkos::Experimental::partition_space(HostDevice(), 1)[0];
   auto const lattice = Lattice::chain(4);
@@ -118,7 +119,7 @@ TYPED_TEST(Strictness, TermsAndCopiesWaitForWorkOnAnyInstance) {
   SiteDependentExchange const exchange(constant);
   evaluate_field(HostDevice(), exchange, spins, 0, field);
   auto const numbers = copy_to_host(field);
-  EXPECT_EQ(numbers[0], -2);  // 2 (m1 - m0) at the free end
+  EXPECT_EQ(numbers[0], -2);  // 2 * (m1 - m0) at the free end
   EXPECT_EQ(numbers[1], 2);
 }
 

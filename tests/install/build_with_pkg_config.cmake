@@ -40,7 +40,7 @@ if(libraries)
     message(FATAL_ERROR "${program} does not take ${libraries}; it misses: ${missing}")
   endif()
 endif()
-# cayspin_same_bits.pc adds only the flag for equal bits to the flags of cayspin.pc.
+# cayspin_same_bits.pc adds only one flag, for bitwise identical results, to those of cayspin.pc.
 ask(flags cayspin --cflags)
 ask(with_same_bits cayspin_same_bits --cflags)
 list(REMOVE_ITEM with_same_bits -ffp-contract=off)

@@ -2,9 +2,9 @@
 """Checks that the shared library has the only copy of the simulation and of a static Kokkos:
 one_simulation.py NM LIBRARY PROGRAM..., with the programs and libraries that link it.
 
-A copy shows as a function or variable that both define, or as a large file where symbols are
-stripped. Symbols of inline functions, templates and static functions do not count, as every file
-that uses them has them.
+A copy shows as a function or variable that the library and a program both define or, where symbols
+are stripped, as a large file. Symbols of inline functions, templates and static functions do not
+count, as every file that uses them has them.
 """
 
 import os

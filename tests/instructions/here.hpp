@@ -63,7 +63,7 @@ class Kokkos::View<Real*, cayspin::instructions::Memory> {
 
 namespace cayspin::inline v0_2::detail {
 
-// Replaces the launch in all headers that follow.
+// Replaces the function that launches kernels, in all headers that are included below.
 template <class Body>
 void for_each_task(instructions::Here const&, std::string const&, std::int64_t count, std::int64_t,
                    Body const& body) {

@@ -67,7 +67,7 @@ def counts_of_dump(text):
 
 
 def disassembly(program):
-    """The text of each instruction by address in the file, and the address of each function."""
+    """Returns, for the file, the instructions by address and the addresses of the functions."""
     listing = subprocess.run(["objdump", "-d", "--no-show-raw-insn", "-C", program], check=True,
                              text=True, stdout=subprocess.PIPE).stdout
     texts, functions = {}, {}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Steps of the main methods and a sample, for callgrind: one dump for each, of what its kernels
-// executed.
+// Runs the main methods and a sample under callgrind, which writes one dump for each of them, with
+// the instructions that its kernels executed.
 #include "here.hpp"
 
 #include <cayspin/field/effective_field.hpp>
@@ -40,7 +40,7 @@ void count_sample(char const* name) {
     detail::reduce_sites<detail::SumsThenMaxima<Look::sums>, Look::count>(
         Here(), "sample", spins.layout(), Look{generator, {}, spins.array()});
   };
-  look();  // binds the functions of the C library
+  look();  // makes the loader bind the functions of the C library
   CALLGRIND_ZERO_STATS;
   look();
   CALLGRIND_DUMP_STATS_AT(name);

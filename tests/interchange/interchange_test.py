@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Shared code of the tests in this folder: SCRIPT PROGRAM FOLDER_OF_PACKAGES."""
+"""Shared code of the tests in this folder. Usage of a test: SCRIPT PROGRAM FOLDER_OF_PACKAGES"""
 
 import pathlib
 import subprocess

@@ -11,7 +11,7 @@ FORMATS = {"text": ovf.FILEFORMAT_TEXT, "binary4": ovf.FILEFORMAT_BIN4,
 
 
 def read(path):
-    """The header and the values (site, 3) of a file."""
+    """Returns the header and the values (site, 3) of a file."""
     with ovf.ovf_file(str(path)) as file:
         assert file.found and file.is_ovf and file.n_segments == 1, file.get_latest_message()
         header = ovf.ovf_segment()

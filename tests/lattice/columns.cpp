@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Chains and films side by side along x, too far apart for exchange: each column has the bits of a
-// separate run, also with noise.
+// Chains and films side by side along x, too far apart for exchange: each column is bitwise
+// identical to a separate run, also with noise.
 #include "../support/backends.hpp"
 #include "../support/coefficients.hpp"
 

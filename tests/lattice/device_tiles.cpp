@@ -46,7 +46,7 @@ std::size_t number_of(std::array<std::int32_t, 3> const& shape, std::int32_t x, 
   return static_cast<std::size_t>((std::int64_t(z) * shape[1] + y) * shape[0] + x);
 }
 
-/// Returns how often the threads of `rows` visit each site of the shape.
+/// Returns how often each site of the shape is visited by the threads that cover `rows`.
 std::vector<int> visits(std::array<std::int32_t, 3> const& shape, RowRange const& rows) {
   std::vector<int> count(number_of(shape, 0, 0, shape[2]));
   detail::DeviceTiles const tiles(shape[0], rows);
@@ -158,7 +158,7 @@ RowLayout large_layout(std::int32_t nz) {
 }
 
 TEST(DeviceSites, LongIndicesWhereNumbersNeedThem) {
-  std::int32_t const most = (1 << 11) - 2;  // one more plane is counted, and 2^11 would wrap
+  std::int32_t const most = (1 << 11) - 2;  // one more plane is counted: 2^11 would wrap
   using Short = detail::DeviceLayout<std::int32_t>;
   auto const fits = large_layout(most), beyond = large_layout(most + 1);
   EXPECT_TRUE(Short::reaches(fits, 1));

@@ -20,7 +20,7 @@ struct Neighbor {
 
 constexpr double missing = -7;
 
-/// A generator that returns one neighbour, or `missing` in all components.
+/// A generator that returns one neighbour, or `missing` in all components if there is none.
 template <int Axis, bool Next>
 struct NeighborOrMissing {
   template <class Stencil>
@@ -34,7 +34,7 @@ struct NeighborOrMissing {
   }
 };
 
-/// A generator that returns the numbers of a field at the previous site, the site and the next one.
+/// A generator that returns the values of a field at the previous site, the site and the next one.
 template <int Axis, class Real>
 struct Numbers {
   SiteArray<Real, 1> numbers;

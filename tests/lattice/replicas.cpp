@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Each replica of a lattice has the bits of a separate run, whatever the term, the method, the
-// shape and the boundaries, also with noise.
+// Each replica of a lattice is bitwise identical to a separate run, whatever the term, the method,
+// the shape and the boundaries, also with noise.
 #include "../support/backends.hpp"
 #include "../support/coefficients.hpp"
 

@@ -68,7 +68,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*(?:<(cayspin[a-z_]*/[^>]+)>|"([^"]+)")'
 
 
 def layer_of(layers, name):
-    """Index and name of the layer, or None."""
+    """Returns the index and the name of the layer, or None."""
     for index, (layer, patterns) in enumerate(layers):
         if any(name == p or (p.endswith("/") and name.startswith(p)) for p in patterns):
             return index, layer
@@ -92,7 +92,7 @@ class Tree:
         return path.relative_to(self.root).as_posix()
 
     def resolve(self, path, public, quoted):
-        """The included file's name; None if the build writes it, or if it is missing."""
+        """Returns the name of the included file; None if the build writes it or it is missing."""
         if (public or quoted) in GENERATED:
             return None
         if public:
@@ -152,7 +152,8 @@ class Tree:
                     self.problems.append(f"{self.name(path)}: {word} is physics, not of detail/")
 
     def check_versioned_namespace(self):
-        """The namespace keeps two versions of the library in one program apart."""
+        """Checks that headers are in the versioned namespace, which keeps two versions of the
+        library in one program apart."""
         version = VERSION.search((self.root / "CMakeLists.txt").read_text(encoding="utf-8"))
         expected = f"cayspin::inline v{version[1]}_{version[2]}"
         for name in self.includes:
@@ -161,8 +162,8 @@ class Tree:
                 self.problems.append(f"{name}: not all of it is in {expected}")
 
     def check_members_without_address(self):
-        """Structs with [[no_unique_address]] members may have another size in device code: see
-        detail/backend.hpp."""
+        """Checks that no file writes [[no_unique_address]], which may change the size of a struct
+        in device code: see detail/backend.hpp."""
         for name in self.includes:
             text = (self.root / name).read_text(encoding="utf-8")
             if "[[no_unique_address]]" in text and not name.endswith("/detail/backend.hpp"):

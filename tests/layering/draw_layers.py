@@ -97,7 +97,8 @@ class Picture:
         self.top = max(self.rows.values())
         self.width = max(map(self.middle, includes)) + WIDTH / 2 + EDGE
         self.height = 2 * EDGE + self.top * ROW + HEIGHT
-        # Objects in a row: the boxes, then the arrows that pass between them.
+        # The middle and half width of each object in a row: of boxes, later also of arrows between
+        # them.
         self.taken = {row: [(self.middle(layer), WIDTH / 2 + 9) for layer in includes
                             if self.rows[layer] == row] for row in range(self.top + 1)}
 
@@ -108,7 +109,7 @@ class Picture:
         return EDGE + (self.top - row) * ROW
 
     def free(self, row, wish):
-        """The free place of a row that is nearest to the wanted one."""
+        """Takes the free place of a row that is nearest to the wanted one, and returns it."""
         places = sorted(range(EDGE, int(self.width) - EDGE + 1), key=lambda x: (abs(x - wish), x))
         place = next(x for x in places
                      if all(abs(x - middle) >= half for middle, half in self.taken[row]))
@@ -116,7 +117,7 @@ class Picture:
         return place
 
     def ends(self, layer, others, down):
-        """Where the arrows between a layer and the others leave or reach its box."""
+        """Returns, for each of the others, where its arrow leaves or reaches the box of a layer."""
         order = sorted(others, key=lambda other: (self.middle(other), self.rows[other]))
         step = min(26, (WIDTH - 40) / max(len(order), 1))
         first = self.middle(layer) - step * (len(order) - 1) / 2
@@ -124,7 +125,7 @@ class Picture:
         return {other: (first + step * place, y) for place, other in enumerate(order)}
 
     def arrow(self, begin, end, rows):
-        """A smooth line from start to end, straight through the rows between them."""
+        """Returns a smooth line from start to end, straight through the rows between them."""
         points = [begin]
         for row in rows:
             x = self.free(row, end[0])

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Equal bits and counts on Serial and the threaded host space.
+// Minimising gives bitwise identical results and equal counts on Serial and on the threaded space.
 #include "../backends/equal_bits.hpp"
 #include "films.hpp"
 

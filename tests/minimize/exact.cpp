@@ -11,8 +11,8 @@ namespace {
 template <class Backend>
 class Exact : public MinimizerTest<Backend> {
  protected:
-  /// Expects a free spiral, which turns by `angle` about `about` from site to site: tan(angle) = D
-  /// dx / A.
+  /// Expects a free spiral, which turns by `angle` about `about` from site to site, where
+  /// tan(angle) = D * dx / A.
   template <class Dmi>
   void expect_spiral(Lattice const& lattice, Dmi const& dmi, double angle, double a,
                      Vec3<double> const& about) const {
@@ -30,8 +30,8 @@ class Exact : public MinimizerTest<Backend> {
 };
 TYPED_TEST_SUITE(Exact, Backends, BackendName);
 
-// E = -K/2 (m.e)^2 - h.m with h at the angle psi to e: the spin switches at
-// |h| = K (cos^(2/3) psi + sin^(2/3) psi)^(-3/2) (Stoner and Wohlfarth 1948).
+// E = -K/2 * (m.e)^2 - h.m with h at the angle psi to e: the spin switches at
+// |h| = K * (cos(psi)^(2/3) + sin(psi)^(2/3))^(-3/2) (Stoner and Wohlfarth 1948).
 TYPED_TEST(Exact, StonerWohlfarth) {
   double const strength = 0.7, step = 0.002;
   for (double const degrees : {5.0, 20.0, 45.0, 70.0}) {
@@ -56,8 +56,8 @@ TYPED_TEST(Exact, StonerWohlfarth) {
   }
 }
 
-// m_z = tanh(x / sqrt(A / K)). The energy per area is 2 sqrt(A K), with an error of second order in
-// the spacing.
+// m_z = tanh(x / sqrt(A / K)). The energy per area is 2 * sqrt(A * K), with an error of second
+// order in the spacing.
 TYPED_TEST(Exact, BlochWall) {
   double const a = 1, k = 1;
   double error[2];

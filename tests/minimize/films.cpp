@@ -61,7 +61,7 @@ TYPED_TEST(Films, TakeFewEvaluationsFarWiderThanAWall) {
   }
 }
 
-// Without the preconditioner, the number of evaluations grows as the root of the exchange.
+// Without the preconditioner, the number of evaluations grows as the square root of the exchange.
 TYPED_TEST(Films, TakeManyMoreWithoutThePreconditioner) {
   auto const start = random_directions(width * width, 1);
   auto const with = this->relax(1000, start, {.torque = 1e-2});

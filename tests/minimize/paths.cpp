@@ -42,7 +42,7 @@ TYPED_TEST_SUITE(Paths, Backends, BackendName);
 
 std::vector<double> const up{0, 0, 1}, down{0, 0, -1};
 
-// E = -easy m_z^2 / 2 + hard m_y^2 / 2 - h.m; paths lie in the plane of x and z.
+// E = -easy * m_z^2 / 2 + hard * m_y^2 / 2 - h.m; paths lie in the plane of x and z.
 auto macrospin(double easy, double hard, Vec3<double> const& applied) {
   return EffectiveField(UniaxialAnisotropy(easy, {0, 0, 1}), UniaxialAnisotropy(-hard, {0, 1, 0}),
                         Zeeman{applied});
@@ -94,8 +94,8 @@ TYPED_TEST(Paths, OfAMacrospinWithALowBarrier) {
   EXPECT_NEAR(found.barrier_forward(), 0.5 * easy * std::pow(1 - applied / easy, 2), this->exact());
 }
 
-// Between close images the energy falls steeply, and images turn the direction at their lower
-// neighbours. A chain with strong exchange turns as one spin.
+// Between close images the energy falls steeply, and each image turns the direction of the path at
+// its lower neighbour. A chain with strong exchange turns as one spin.
 TYPED_TEST(Paths, SettleWithManyImagesInAnyField) {
   std::mt19937 engine(7);
   std::uniform_real_distribution<double> fields(0.2, 0.9);
@@ -195,8 +195,8 @@ TYPED_TEST(Paths, HaveTwoSaddles) {
   for (auto const& known : found.saddles) EXPECT_EQ(found.energy[known.image], known.energy);
 }
 
-// The wall may be anywhere. It is 5 sites wide, so its energy is nearly the continuum's, 2 sqrt(A
-// K).
+// The wall may be anywhere. It is 5 sites wide, so its energy is nearly that of the continuum,
+// 2 * sqrt(A * K).
 TYPED_TEST(Paths, OfAWallThroughAChain) {
   auto const lattice = Lattice::chain(100);
   EffectiveField const field(Exchange(lattice, 10), UniaxialAnisotropy(0.4, {0, 0, 1}),
@@ -220,7 +220,7 @@ struct Skyrmion {
   std::vector<double> spins, uniform;
 };
 
-// As in the tests of other programs: J 10, D 6, and 25 T on two Bohr magnetons, in meV.
+// As in the tests of other programs: J = 10 meV, D = 6 meV, and 25 T on two Bohr magnetons.
 auto skyrmion_field(Lattice const& lattice) {
   return EffectiveField(Exchange(lattice, 10.0), BulkDmi(lattice, 6.0),
                         Zeeman{{0, 0, 2.894190905}});

@@ -93,8 +93,8 @@ TYPED_TEST(Saddles, NotWhereTheEnergyIsFlat) {
   }
 }
 
-/// H_i = -4 c m_i^3 for each component i: E = c sum of m_i^4, which is not quadratic. In minima,
-/// spins point to the corners of a cube.
+/// H_i = -4 * c * m_i^3 for each component i, and E = c * (sum of m_i^4), which is not quadratic.
+/// In minima, spins point to the corners of a cube.
 struct CubicAnisotropy {
   double constant;
   template <class Stencil>

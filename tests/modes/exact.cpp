@@ -16,7 +16,7 @@ class MacrospinModes : public ModesTest<Backend> {};
 TYPED_TEST_SUITE(MacrospinModes, Backends, BackendName);
 
 // With the curvatures bx along x and by along y,
-// rate^2 + damping (bx + by) rate + (1 + damping^2) bx by = 0.
+// rate^2 + damping * (bx + by) * rate + (1 + damping^2) * bx * by = 0.
 TYPED_TEST(MacrospinModes, AreThoseOfKittelWithDamping) {
   double const bx = 1.05, by = 0.35;
   EffectiveField const field(SlabDemag({1, 0, 0}, bx - by), UniaxialAnisotropy(0.3, {0, 0, 1}),
@@ -119,9 +119,9 @@ TYPED_TEST(MacrospinModes, RefuseWhatCannotBe) {
         std::invalid_argument);
 }
 
-// An isotropic open chain with the exchange -A has w = 2 A sin(pi p / n), equal for p and n - p,
-// and zero modes that drift: the chain turns freely, and the angle of a turn may grow in proportion
-// to time.
+// An isotropic open chain with the exchange -A has w = 2 * A * sin(pi * p / n), equal for p and
+// n - p, and zero modes that drift: the chain turns freely, and the angle of a turn may grow in
+// proportion to time.
 TYPED_TEST(MacrospinModes, AreWavesInAnIsotropicAntiferromagnet) {
   for (std::int64_t const n : {6, 8, 16}) {
     auto const lattice = Lattice::chain(n);

@@ -61,8 +61,8 @@ TYPED_TEST(WaveModes, AreNotReciprocalWithDmi) {
   this->expect_frequencies(normal_modes(this->exec, LandauLifshitz(field, 0.0), m), all, 0);
 }
 
-// w = sqrt((2 J + K)^2 - (2 J cos k)^2), which a field h along the easy axis splits into w + h and
-// |w - h|.
+// w = sqrt((2 * J + K)^2 - (2 * J * cos(k))^2), which a field h along the easy axis splits into
+// w + h and |w - h|.
 TYPED_TEST(WaveModes, OfAnAntiferromagnetInAField) {
   double const j = 1, anisotropy = 0.1, h = 0.07;
   auto const lattice = Lattice::chain(20, 1, Boundary::periodic);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A lattice divided among ranks gives the bits of a single rank: spins, sums and maxima, and the
-// decisions of adaptive steps.
+// A lattice divided among ranks gives results that are bitwise identical to those of a single rank:
+// spins, sums and maxima, and the decisions of adaptive steps.
 #include "../support/backends.hpp"
 #include "../support/mean_field.hpp"
 #include "divisions.hpp"
@@ -50,8 +50,8 @@ class EqualBits : public ::testing::Test {
   using Spins = typename Backend::Spins;
   using Real = typename Backend::Real;
 
-  /// make(spins) returns a stepper. Lattices that it refuses are skipped. `one_in`: 2 takes only
-  /// every second lattice, and so on, for steppers that communicate often.
+  /// make(spins) returns a stepper. Lattices for which it throws std::invalid_argument are skipped.
+  /// `one_in`: 2 takes only every second lattice, and so on, for steppers that communicate often.
   template <class Motion = Turning, class Make>
   void expect_equal_bits(int depth, Make const& make, int steps = 3, std::size_t one_in = 1) {
     int compared = 0;
@@ -86,7 +86,7 @@ class EqualBits : public ::testing::Test {
   }
 
  private:
-  // Returns the numbers of samples at the start and after each step, and the stepper's counts.
+  // Returns the values of samples at the start and after each step, and the stepper's counts.
   template <class Motion, class Make>
   std::vector<double> run(Spins& spins, Make const& make, int steps) {
     auto const generator = Motion::generator_on(spins.lattice());
@@ -116,7 +116,7 @@ TYPED_TEST(EqualBits, LieEuler) {
   this->expect_equal_bits(1, [](auto const& spins) { return LieEuler(spins); });
 }
 
-/// Sweeps run only on hosts.
+/// Returns the paths to test: sweeps run only on hosts.
 template <class Exec>
 std::vector<Path> paths() {
   if (detail::is_host_execution<Exec>) return {Path::pass, Path::sweep};

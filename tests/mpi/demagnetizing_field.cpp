@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The demagnetising field of a lattice divided among ranks has the bits of a single rank, and so do
-// steps that evaluate it, in each stage or once a step.
+// The demagnetising field of a lattice divided among ranks is bitwise identical to that on a single
+// rank, and so are steps that evaluate it, in each stage or once a step.
 #include "../support/backends.hpp"
 #include "divisions.hpp"
 

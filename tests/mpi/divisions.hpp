@@ -28,7 +28,8 @@ inline std::vector<mpi::Division> divisions(Lattice const& lattice, int depth) {
   return found;
 }
 
-/// Returns lattices with irregular and small extents, each boundary open and periodic.
+/// Returns lattices with irregular and small extents; each boundary is open in some, periodic in
+/// others.
 inline std::vector<Lattice> lattices() {
   std::vector<Lattice> all;
   std::array<std::int64_t, 3> const shapes[] = {
@@ -51,7 +52,7 @@ inline std::string name_of(Lattice const& lattice, mpi::Division const& division
   return name + "in " + std::to_string(division.y) + " x " + std::to_string(division.z) + " parts";
 }
 
-/// Returns the numbers of a part's own sites, out of those of the whole lattice, (sites, 3).
+/// From the values (sites, 3) of the whole lattice, returns those of the part's own sites.
 inline std::vector<double> numbers_of_part(Lattice const& local, std::vector<double> const& all) {
   auto const& shape = whole(local).shape;
   auto const begin = local.part->begin();

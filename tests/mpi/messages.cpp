@@ -9,7 +9,8 @@
 namespace cayspin::inline v0_2::mpi {
 namespace {
 
-/// Returns the number of component c of a site, by its place in the whole lattice.
+/// Returns a value for component c of the site at this place in the whole lattice; all values
+/// differ.
 template <class Real>
 Real number_of(Lattice const& whole, std::array<std::int64_t, 3> site, int c) {
   for (std::size_t axis = 0; axis < 3; ++axis)

@@ -38,8 +38,8 @@ class OnRanks : public ProgramTest {
     return all;
   }
 
-  /// Expects two files to contain equal runs: the same bits in all frames and samples, and the same
-  /// steps and evaluations.
+  /// Expects two files to contain equal runs: bitwise identical frames and samples, and equal
+  /// numbers of steps and evaluations.
   void expect_same(std::string const& one, std::string const& other) const {
     auto const first = io::read_info(in_folder(one)), second = io::read_info(in_folder(other));
     EXPECT_TRUE(second.complete);

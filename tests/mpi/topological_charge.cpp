@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The topological charge of a divided lattice has the bits of the whole one, and planes are
-// numbered as in the whole one.
+// The topological charge of a divided lattice is bitwise identical to that of the whole one, and
+// planes are numbered as in the whole one.
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>

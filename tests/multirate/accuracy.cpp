@@ -143,7 +143,7 @@ TEST(SlowField, SecondPassKeepsTheEnergyLaw) {
   EXPECT_GT(one_pass.back(), two_passes.front());
   EXPECT_GT(rk4.back(), rk4.front());
 
-  // Compared with RK4 with steps as long as a substep, which evaluates the expensive field 20 times
+  // Compares with RK4 with steps as long as a substep, which evaluates the expensive field 20 times
   // in a step instead of once.
   Spins spins = copy_of(start);
   stepper.reset();

@@ -12,8 +12,8 @@
 
 namespace cayspin::test {
 
-/// H_i = -strength sum_j e^(-|i-j|/2) D m_j with D = diag(1, 0.6, 0.2), over sites in memory order.
-/// The eigenvalues of this map are between -4.1 strength and 0.
+/// H_i = -strength * sum_j e^(-|i-j|/2) D m_j with D = diag(1, 0.6, 0.2), over sites in memory
+/// order. The eigenvalues of this map are between -4.1 * strength and 0.
 struct LongRange {
   static constexpr int degree = 2;
   double strength = 0;
@@ -56,7 +56,7 @@ struct Turning {
   }
 };
 
-/// Returns an equation with terms of every kind, one of which is expensive.
+/// Returns a generator with terms of every kind, one of which is expensive.
 template <class SlowTerm>
 auto with_multirate(Lattice const& lattice, double exchange, SlowTerm const& slow, double damping,
                     double amplitude = 0) {

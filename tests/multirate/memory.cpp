@@ -53,8 +53,8 @@ TEST(SlowField, StartsAnew) {
   stepper.reset();
   EXPECT_EQ(again(), fresh);
 
-  // At a step that is more than twice as long as the last one or has the other sign, the method
-  // starts anew. A step of length 0 does nothing.
+  // A step that is more than twice as long as the last one, or has the other sign, is treated as a
+  // first step. A step of length 0 does nothing.
   Spins spins = copy_of(start);
   auto const evaluations_of = [&](double dt) {
     auto const before = stepper.slow_evaluations_done();
@@ -144,7 +144,7 @@ TEST(SlowField, SameBitsOnHostSpaces) {
 }
 #endif
 
-/// A term of the library whose field is computed in kernels, not on the host.
+/// The expensive term is one of the library, whose field is computed in kernels, not on the host.
 TEST(SlowField, TakesAnyTermOfKnownDegree) {
   Spins spins = random_spins(small_block, 5);
   SlabDemag const slab{Vector{1, 2, 0}, 0.7};
@@ -173,7 +173,7 @@ struct Failing : LongRange {
   }
 };
 
-// The field fails in the first step, at its end, and at the end of the third step.
+// The field fails within the first step, at its end, or in the third step.
 TEST(SlowField, LeavesTheSpinsOfAStepThatFails) {
   Spins const start = random_spins(small_block, 5);
   for (double const from : {0.07, 0.1, 0.25}) {

@@ -34,7 +34,7 @@ struct RowOfFields {
   }
 };
 
-/// H = -(0, y m_y, z m_z), evaluated on the host: the demagnetising field of a mode.
+/// H = -(0, y * m_y, z * m_z), evaluated on the host: the demagnetising field of a mode.
 struct Elliptical {
   static constexpr int degree = 2;
   double y = 0, z = 0;
@@ -58,8 +58,8 @@ Spins almost_along_x(Lattice const& lattice, double angle) {
   });
 }
 
-/// A linear mode about x: u' = M u for u = (m_y, m_z), with M = [-damping a, -b; a, -damping b],
-/// and the energy (a m_y^2 + b m_z^2) / 2, both in closed form.
+/// A linear mode about x: u' = M u for u = (m_y, m_z), with M = [-damping * a, -b; a,
+/// -damping * b], and the energy (a * m_y^2 + b * m_z^2) / 2, both in closed form.
 struct Mode {
   double along, y, z, damping;
 
@@ -115,9 +115,8 @@ TEST(MultirateModes, KeepTheirLinewidths) {
   expect_below("order 4, half the step", error_of_linewidths<4, Spins>(0.008, dt / 2), 5e-5);
 }
 
-/// Returns the largest factor by which the angle of a spin grows over the second half of the steps,
-/// among spins whose frequency times dt is 0.05 to 12. In the first half, what depends on the start
-/// decays.
+/// Returns the largest factor by which the angle of a spin grows during the second half of the
+/// steps, among spins whose frequency * dt is 0.05 to 12. During the first half, transients decay.
 template <int Order>
 double growth(double damping, double dt_times_d, Elliptical const& shape, int steps) {
   constexpr std::int64_t count = 241;
@@ -154,8 +153,8 @@ double growth(double damping, double dt_times_d, Elliptical const& shape, int st
   return worst;
 }
 
-// A Case gives, for its damping, dt times the expensive field's largest eigenvalue up to which no
-// mode grows.
+// For its damping, a Case gives the largest dt * (largest eigenvalue of the expensive field) at
+// which no mode grows: `stable` at order 4, and `of_order_3`.
 TEST(MultirateModes, DoNotGrow) {
   struct Case {
     double damping, stable, of_order_3;

@@ -49,7 +49,7 @@ TYPED_TEST(TermEnergy, IsThatOfThePage) {
   this->expect_energy("TimeDependentZeeman",
                       TimeDependentZeeman([&](double t) { return (1 + t) * applied; }), 0.27, 3.33,
                       0.5);
-  // Each of the two bonds has A |dm|^2 / (2 * 0.25), with |dm|^2 = 2 and 3.6.
+  // Each of the two bonds has A * |dm|^2 / (2 * 0.25), with |dm|^2 = 2 and 3.6.
   this->expect_energy("Exchange", Exchange(lattice, 0.8), 8.96, 8.96);
   // The bonds have harmonic means: 2 * 0.4 * 1.2 / 1.6 = 0.6 and 2 * 1.2 * 0.3 / 1.5 = 0.48.
   auto const constants = numbers_on<Fields>(lattice, [](std::int64_t site) {
@@ -57,16 +57,16 @@ TYPED_TEST(TermEnergy, IsThatOfThePage) {
   });
   this->expect_energy("SiteDependentExchange", SiteDependentExchange(constants),
                       2 * (0.6 * 2 + 0.48 * 3.6), 2 * (0.6 * 2 + 0.48 * 3.6));
-  // The bonds have (D / 0.5) (m x m').y, since n x e = y; the y components are -0.8 and 0. Half the
+  // The bonds have D / 0.5 * (m x m').y, since n x e = y; the y components are -0.8 and 0. Half the
   // energy of a bond belongs to each of its sites.
   this->expect_energy("InterfacialDmi", InterfacialDmi(lattice, 0.7, {0, 0, 1}), -1.12, 1.12);
-  // -K / 2 mz^2
+  // -K / 2 * mz^2
   this->expect_energy("UniaxialAnisotropy", UniaxialAnisotropy(2, {0, 0, 3}), -1.64, 1.64);
-  // The sum of -K / 2 mz^2 over the sites: -1/2 (0.4 * 0 + 1.2 * 0.64 + 0.3 * 1)
+  // The sum of -K / 2 * mz^2 over the sites: -1/2 * (0.4 * 0 + 1.2 * 0.64 + 0.3 * 1)
   this->expect_energy("SiteDependentUniaxialAnisotropy",
                       SiteDependentUniaxialAnisotropy(constants, Vec3<double>{0, 0, 1}), -0.534,
                       0.534);
-  // The energies 1/2 (m.n)^2 of the sites, with n = (0, 0.6, 0.8), are 0, 0.5 and 0.32.
+  // The energies 1/2 * (m.n)^2 of the sites, with n = (0, 0.6, 0.8), are 0, 0.5 and 0.32.
   this->expect_energy("SlabDemag", SlabDemag({0, 3, 4}), 0.82, 0.82);
   this->expect_energy("SlabDemag, half", SlabDemag({0, 3, 4}, 0.5), 0.41, 0.41);
 }

@@ -184,7 +184,7 @@ TYPED_TEST(Integrate, EveryRefersToObserversWithNames) {
   static_assert(detail::changes_spins<Every<Control&>>);
   static_assert(detail::changes_spins<std::reference_wrapper<Control>>);
   static_assert(detail::changes_spins<Every<std::reference_wrapper<Control>>>);
-  // The due() of an observer in a std::reference_wrapper is asked, too.
+  // The due() of an observer in a std::reference_wrapper is called, too.
   EnergyControl seldom(this->spins, conserving, {.period = 3});
   integrate(this->exec, stepper, conserving, this->spins, {0, 0.1, 4}, std::ref(seldom));
   EXPECT_EQ(seldom.evaluations_done(), 2);

@@ -21,7 +21,8 @@ Lattice film(std::int64_t nx, std::int64_t ny, Boundary boundary, std::int64_t n
   return Lattice::cubic(nx, ny, nz, 1, boundary);
 }
 
-/// Returns m = (sin t cos p, sin t sin p, cos t) in each plane, with [t, p] = angles(x, y).
+/// Returns m = (sin(t) * cos(p), sin(t) * sin(p), cos(t)) in each plane, with [t, p] = angles(x,
+/// y).
 template <class Angles>
 std::vector<double> by_angles(Lattice const& lattice, Angles const& angles) {
   std::vector<double> m;
@@ -162,7 +163,7 @@ TYPED_TEST(TopologicalCharge, AgainstPlainLoops) {
   }
 }
 
-// tests/python/observables.py expects the same charges of the same spins.
+// tests/python/observables.py expects the same charges for the same spins.
 TYPED_TEST(TopologicalCharge, TheNumbersOfThePackage) {
   using Spins = typename TypeParam::Spins;
   auto const charge = [&](Boundary along_x, Boundary along_y) {

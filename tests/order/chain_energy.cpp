@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Orders of the energy of an undamped coupled chain, over a time of 10 and for fixed step sizes.
-// They differ from those on a single sphere (rigid_body.cpp).
+// Orders of the energy error of an undamped coupled chain, during a time of 10 and for fixed step
+// sizes. They differ from those on a single sphere (rigid_body.cpp).
 #include "../support/larger.hpp"
 #include "chain.hpp"
 

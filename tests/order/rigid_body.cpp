@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Orders of the trajectory and of the energy on three random triaxial rigid bodies, over a time of
-// 2 and for fixed step sizes.
+// Orders of the trajectory's and of the energy's error on three random triaxial rigid bodies,
+// during a time of 2 and for fixed step sizes.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -71,7 +71,7 @@ Errors errors(Stepper& stepper, Generator const& generator, int steps) {
   return found;
 }
 
-constexpr double exact = 0;  // an energy conserved to round-off
+constexpr double exact = 0;  // stands for an energy that is conserved to round-off
 
 struct Orders {
   int trajectory;

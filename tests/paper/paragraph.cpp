@@ -13,7 +13,7 @@ std::string printed(std::string const& text) {
   return ::testing::internal::GetCapturedStdout();
 }
 
-// After an indent of two columns, lines have at most 116; a longer word stands on a separate line.
+// Lines have an indent of two columns and at most 116 more; a longer word gets a line of its own.
 TEST(Paragraph, BreaksAtSpaces) {
   EXPECT_EQ(printed("a b"), "\n  a b\n");
   std::string const word(117, 'w'), line(116, 'x');

@@ -42,7 +42,7 @@ struct RandomScene {
   Method method;
   bool single, orthogonal;
   Slab slab;
-  double share;  // dt over the stable dt, or over 1 / rate if that is 0 or unknown
+  double share;  // dt / stable dt; if that is 0 or unknown, dt * rate
   int steps;
   unsigned start;
 

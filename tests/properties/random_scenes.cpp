@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Properties of every scene, tested on new random scenes in each run: |m| = 1, a falling energy,
-// equal bits in a second run (on a host, in all threads), and reversibility of symmetric methods.
+// Properties of every scene, tested on new random scenes in each run: |m| = 1, a falling energy, a
+// bitwise identical second run (on a host, with all threads), and reversibility of symmetric
+// methods.
 #include "../support/backends.hpp"
 #include "../support/larger.hpp"
 #include "random_scene.hpp"
@@ -52,7 +53,8 @@ struct Property {
   }
 };
 
-/// Space of a second run, which must give equal bits: all threads of a host, or the same device.
+/// Space of a second run, which must be bitwise identical: all threads of a host, or the same
+/// device.
 using Again =
     std::conditional_t<detail::is_host_execution<Space>, Kokkos::DefaultHostExecutionSpace, Space>;
 
@@ -98,8 +100,8 @@ class Check {
 
   // The stable dt holds for nearly uniform states. From other states the energy may rise in rare
   // cases at shorter steps; at orders 1 and 2 this was observed only above 0.9 of the stable dt. At
-  // order 4, a step's own error of the energy, (dt |A|)^5, must stay below the loss by damping,
-  // damping dt |A|. ab2 has no stable dt.
+  // order 4, a step's own error of the energy, (dt * |A|)^5, must stay below the loss by damping,
+  // damping * dt * |A|. ab2 has no stable dt.
   bool energy_falls() const {
     if constexpr (is_midpoint) return true;
     if (scene_.method == Method::ab2) return false;
@@ -152,8 +154,8 @@ class Check {
       all_.not_reversed += away > 1;
   }
 
-  // Each step is solved to a few epsilons. The bound lets adjacent trajectories diverge at up to
-  // half of the field bound.
+  // Each step is solved to a few epsilons. The bound lets adjacent trajectories diverge at rates of
+  // up to half the field bound.
   double reversal_bound() const {
     double const rate = dt_ * scene_.slab.field_bound();
     return 4 * eps * scene_.steps * std::exp(0.5 * rate * scene_.steps);
@@ -207,8 +209,8 @@ double distance_after_return(RandomScene const& scene, double dt) {
 }
 
 /// Takes red-black steps of dt and as many of -dt in an undamped scene. Returns the distance from
-/// the start, in units of the allowed one. The longest part of a step, 1.7 dt at order 4, is short
-/// enough for the iteration of the on-site terms to converge.
+/// the start, in units of the allowed one. The longest part of a step, 1.7 * dt at order 4, is
+/// short enough for the iteration of the on-site terms to converge.
 template <class Real>
 double red_black_reversal(RandomScene const& scene) {
   using Spins = SpinField<Real, Space::memory_space>;

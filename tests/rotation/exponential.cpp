@@ -27,8 +27,8 @@ class ExponentialMap : public ::testing::Test {
     return {value, up, down, value * Real(1 + 8 * eps), value * Real(1 - 8 * eps)};
   }
 
-  /// The y and z of exp(f) e_x come only from sin|f|/|f| f x e_x, so they are compared relative to
-  /// their own size.
+  /// The y and z components of exp(f) e_x come only from sin|f| / |f| * (f x e_x), so they are
+  /// compared relative to their own size.
   static void expect_small_angle(Real size) {
     for (auto const& [f, along] :
          {std::pair{Vec3<Real>{0, 0, size}, size}, std::pair{Vec3<Real>{0, -size, 0}, size},

@@ -63,7 +63,7 @@ TYPED_TEST(Laws, TheTangentUndoesItsInverse) {
   this->template tangents_are_inverse<OverflowSafeCayley>();
 }
 
-/// Returns d/ds map(f + s g) x at s = 0, by differences of fourth order.
+/// Returns d/ds map(f + s * g) x at s = 0, by differences of fourth order.
 template <class Map>
 Long derivative(Map const& map, Long const& f, Long const& g, Long const& x) {
   long double const s = 1e-4L;
@@ -72,7 +72,7 @@ Long derivative(Map const& map, Long const& f, Long const& g, Long const& x) {
 }
 
 // The differential is right-trivialised: d/ds R(f) v = (dR_f f') x R(f) v for a fixed vector v. The
-// left-trivialised one is the right-trivialised one of -f; it must differ from the differences.
+// left-trivialised one is the right-trivialised one of -f; it must not agree with the differences.
 TYPED_TEST(Laws, CayleyTangentIsTheDerivative) {
   using Real = TypeParam;
   this->sweep(30, [&](auto const& f, auto const& x, auto const& g) {

@@ -17,8 +17,9 @@ class Packs : public ::testing::Test {
     return {detail::load<Pack>(x), detail::load<Pack>(y), detail::load<Pack>(z)};
   }
 
-  // Packs and single numbers give the same bits, unless the compiler may contract operations. Then
-  // components, which are differences, may differ by the round-off of the whole vector.
+  // Packs and single numbers give bitwise identical results, unless the compiler may contract
+  // operations. Then components, which are differences, may differ by the round-off of the whole
+  // vector.
   static void expect_equal(Vec3<Real> const& pack, Vec3<Real> const& number, char const* what) {
     auto const expect = [&](Real a, Real b) {
 #if defined(CAYSPIN_TEST_CONTRACTED)

@@ -61,7 +61,7 @@ inline Long exponential(Long const& f, Long const& x) {
   long double const half = std::sin(n / 2);
   return x + std::sin(n) * c + (2 * half * half) * outer(u, c);
 }
-/// Returns (1 - (n/2) cot(n/2)) / n^2.
+/// Returns (1 - n/2 * cot(n/2)) / n^2.
 inline long double exponential_coefficient(long double n) {
   if (n < 1e-3L) return 1 / 12.L + n * n / 720 + n * n * n * n / 30240;
   return (1 - n / 2 / std::tan(n / 2)) / (n * n);

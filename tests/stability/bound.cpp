@@ -63,8 +63,8 @@ double scaled_limit(double damping, bool precession = true) {
   return 7 * largest_stable_step<Stepper>(7, damping, {.precession = precession});
 }
 
-// The table solves |R(y (-damping + i))| = 1, where R is the stability polynomial of order 1, 2 or
-// 4; roots were found in 30 digits.
+// The values of y in the table solve |R(y * (-damping + i))| = 1, where R is the stability
+// polynomial of order 1, 2 or 4. They were computed with 30 digits.
 struct Row {
   double damping;
   char const *euler, *heun, *rk4;

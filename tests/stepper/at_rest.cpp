@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Spins at equilibrium beside moving ones, and spins whose rate passes through zero: sigma is never
-// 0/0, and spins at equilibrium keep their bits.
+// 0/0, and spins at equilibrium stay bitwise unchanged.
 #include "../support/backends.hpp"
 #include "../support/landau_lifshitz.hpp"
 

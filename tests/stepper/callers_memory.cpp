@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // With any method, integrate() and minimize() return the spins in their original memory. Steppers
-// that continue from there give the bits of separate steps.
+// that continue from there give results that are bitwise identical to those of single steps.
 #include "../support/backends.hpp"
 #include "every_stepper.hpp"
 
@@ -101,7 +101,7 @@ TYPED_TEST(CallersMemory, IsWhereAMinimizationEnds) {
   }
 }
 
-// A copy of a stepper would share its fields, but not its numbers.
+// A copy of a stepper would share the original's fields, but not its other members.
 TYPED_TEST(CallersMemory, SteppersAreMovedAndNotCopied) {
   using Field = typename TestFixture::Field;
   auto const like = this->start();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A stepper restored from the checkpoint of another continues with the other's bits and counts, and
-// a continued run has the bits of a single run.
+// A stepper restored from the checkpoint of another continues bitwise like the other, with equal
+// counts, and a continued run is bitwise identical to a single run.
 #include "../order/chain.hpp"
 
 #include <cmath>

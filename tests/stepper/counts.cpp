@@ -6,7 +6,7 @@
 namespace cayspin::test {
 namespace {
 
-/// H = (m.z / 2) z, computed by host code that counts its calls.
+/// H = m_z / 2 along z, computed by host code that counts its calls.
 struct CountingSolver {
   static constexpr int degree = 2;
   std::int64_t* calls;

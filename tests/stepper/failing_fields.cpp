@@ -8,7 +8,7 @@
 namespace cayspin::test {
 namespace {
 
-/// H = 9 m.z z, computed by host code that throws after a number of calls.
+/// H = 9 * m_z along z, computed by host code that throws after a number of calls.
 struct FailingSolver {
   static constexpr int degree = 2;
   int* left;

@@ -24,7 +24,8 @@ class ImplicitStep : public ::testing::Test {
                   .damping = 0.2};
   Field const start = random_spins<Field>(slab.lattice, 3);
 
-  // Bound of the residual, from the solver's tolerance and the round-off of dt A, where dt |A| < 6.
+  // Bound of the residual, from the solver's tolerance and the round-off of dt * A, where
+  // dt * |A| < 6.
   static constexpr double bound = 50 * epsilon<Real>;
 
   static ImplicitLieEuler<Field> euler(Field const& like, ImplicitOptions options = {}) {
@@ -38,7 +39,7 @@ class ImplicitStep : public ::testing::Test {
     return spins;
   }
 
-  /// Returns the largest |m1 - cay(dt A(p)) m0|, where p is m1 or the midpoint.
+  /// Returns the largest |m1 - cay(dt * A(p)) m0|, where p is m1 or the midpoint.
   double residual(Field const& end, double dt, bool middle) const {
     std::vector<double> point = numbers_of(end), from = numbers_of(start);
     if (middle)

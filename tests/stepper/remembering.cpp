@@ -116,7 +116,7 @@ TEST(UnequalSteps, KeepTheOrder) {
   });
 }
 
-// LieEuler rotates by dt w + clamp(dt sigma) m. Here sigma is written out.
+// LieEuler rotates by dt * w + clamp(dt * sigma) * m. Here sigma is written out.
 TEST(FiniteDifference, CapOfTheTurn) {
   constexpr double dt = 0.1;
   Space const exec;

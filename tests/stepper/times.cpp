@@ -42,7 +42,7 @@ TEST(Times, OfEvaluations) {
                                   0.5 * dt * (3.0 * h(t) - h(t - dt)));
 }
 
-// For w = H - (m.H) m, sigma = -<w', w x m> / |w|^2, where w' includes dH/dt and the motion of m.
+// For w = H - (m.H) * m, sigma = -<w', w x m> / |w|^2, where w' includes dH/dt and the motion of m.
 TEST(Times, OfTheFieldsDerivative) {
   Spins const like("like", Lattice::chain(1));
   auto const normal = [](Vector const& a, Vector const& to) { return a - dot(to, a) * to; };
@@ -62,7 +62,7 @@ TEST(Times, OfTheFieldsDerivative) {
     LieEuler stepper(spins, isotropy::Analytic{});
     stepper.step(Space{}, generator, spins, t, step);
     Vector const f = step * w - (step * dot(turn, cross(w, m)) / dot(w, w)) * m;
-    // H is differentiated numerically, with a relative error of about (omega dt)^4 / 1e5, where
+    // H is differentiated numerically, with a relative error of about (omega * dt)^4 / 1e5, where
     // omega is at most 3.
     EXPECT_LT(length(spin(spins, 0) - Cayley::rotate(f, m)), 1e-4 * std::pow(3 * step, 4) * step);
   }

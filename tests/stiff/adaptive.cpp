@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Stiff steps that follow a tolerance.
+// Stiff steps whose length is chosen from a tolerance.
 #include "../support/field_that_jumps.hpp"
 #include "../support/figures.hpp"
 #include "../support/larger.hpp"
@@ -52,8 +52,8 @@ TEST(AdaptiveStiff, TheErrorFollowsTheTolerance) {
                 static_cast<long>(stepper.accepted_steps()));
     EXPECT_LT(errors.back(), tolerance);
   }
-  // A step of dt has an error of dt^3, limited by the tolerance; errors of all steps add up to
-  // dt^2.
+  // A step has an error of order dt^3, which the tolerance limits; the errors of all steps add up
+  // to order dt^2.
   expect_order("error over tolerance", fitted_order(tolerances, errors), 2.0 / 3, 0.15);
 }
 

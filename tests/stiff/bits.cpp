@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Bits are equal on Serial and OpenMP.
+// Stiff steps are bitwise identical on Serial and on the threaded space.
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>

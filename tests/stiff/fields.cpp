@@ -100,7 +100,7 @@ TEST(StiffFields, Antiferromagnet) {
   EXPECT_LT(largest_distance(end, exact), 1e-3);
 }
 
-// A step that was refused is refused again, and does not begin in the middle.
+// A step that was refused is refused again: it must not continue where the refused one ended.
 TEST(StiffFields, ReplicasAreRefusedAtEachStep) {
   auto const lattice = Lattice::chain(4).with_replicas(2);
   LandauLifshitz const generator(EffectiveField(Exchange(lattice, 1.0)), 0.1);

@@ -129,7 +129,8 @@ TYPED_TEST_SUITE(Vacancies, Precisions, PrecisionName);
 
 template <class Field>
 using Chart4 = StereographicRungeKutta<Field, tableau::Classical4>;
-/// A method in the chart whose increments are not recovered from spins.
+/// A method in the stereographic chart that stores its increments, while Chart4 recomputes them
+/// from the spins of its stages.
 template <class Field>
 using ChartOfThreeEighths = StereographicRungeKutta<Field, tableau::ThreeEighths4>;
 

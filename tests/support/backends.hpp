@@ -113,7 +113,7 @@ Spins spins_of(Lattice const& lattice, std::vector<double> const& numbers) {
   return spins;
 }
 
-/// Returns the numbers of a field, (sites, 3), in double.
+/// Returns the values of a field, (sites, 3), in double.
 template <class Field>
 std::vector<double> numbers_of(Field const& field) {
   auto const numbers = copy_to_host(field);

@@ -40,7 +40,7 @@ inline void expect_below(std::string const& what, double figure, double bound) {
   EXPECT_LT(figure, bound) << what;
 }
 
-/// Returns the least-squares slope of log(error) over log(dt).
+/// Returns the least-squares slope of log(error) against log(dt).
 inline double fitted_order(std::vector<double> const& dts, std::vector<double> const& errors) {
   double sx = 0, sy = 0, sxx = 0, sxy = 0;
   auto const n = static_cast<double>(dts.size());

@@ -5,8 +5,8 @@
 
 namespace cayspin::test {
 
-/// A term that needs all spins before each stage: H = -strength <m>, where <m> is the mean over the
-/// lattice, and E = strength <m>.m / 2 per site.
+/// A term that needs all spins before each stage: H = -strength * <m>, where <m> is the mean over
+/// the lattice, and E = strength * <m>.m / 2 per site.
 class MeanField {
  public:
   struct Uniform {

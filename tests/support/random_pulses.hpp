@@ -205,8 +205,8 @@ class RandomPulses {
   }
 
  private:
-  /// The shortest pulses of a sinc are its side lobes; the one after the main lobe has to be within
-  /// the run.
+  /// Returns true if a pulse of the shape rises and falls within the run. The shortest pulses of a
+  /// sinc are its side lobes; the one after the main lobe has to be within the run.
   bool is_within(TimeShape const& shape) const {
     if (shape.kind == TimeShape::step) return false;
     if (shape.kind == TimeShape::sinc) return shape.middle + 5 * shape.width < end;
@@ -262,7 +262,7 @@ class RandomPulses {
     for (std::size_t c = 0; c < 3; ++c) m[c] += dt * rate[c];
     return m;
   }
-  // Returns H x m + damping (m x H) x m.
+  // Returns H x m + damping * (m x H) x m.
   Triple rate(Triple const& m, Triple const& h) const {
     Triple const turn{h[1] * m[2] - h[2] * m[1], h[2] * m[0] - h[0] * m[2],
                       h[0] * m[1] - h[1] * m[0]};

@@ -21,7 +21,7 @@ inline Slab unit_slab(Vector const& applied, double damping, bool precession = t
 }
 
 /// Returns a slab of thickness 1, divided into `cells` cells. Its fastest spin wave has a frequency
-/// of about 4 cells^2.
+/// of about 4 * cells^2.
 inline Slab thin_slab(std::int64_t cells, double damping) {
   Slab slab = unit_slab({0.05, 0.05, 0}, damping);
   slab.lattice = Lattice::chain(cells, 1 / static_cast<double>(cells));

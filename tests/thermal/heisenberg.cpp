@@ -100,8 +100,8 @@ Averages by_noise(std::int64_t extent, double temperature, double dt, std::int64
   return averages;
 }
 
-/// Runs sweeps of a heat bath, which draw each spin anew by Boltzmann's weights in the field of its
-/// neighbours.
+/// Runs sweeps of a heat bath, which replace each spin by one drawn from Boltzmann's distribution
+/// in the field of its neighbours.
 Averages by_heat_bath(std::int64_t extent, double temperature, std::int64_t looks) {
   auto const n = static_cast<std::size_t>(extent), sites = n * n * n;
   auto const numbers = random_directions(static_cast<std::int64_t>(sites), 9);
@@ -195,8 +195,8 @@ TEST(HeisenbergModel, DISABLED_BinderCumulantsCrossAtTheCriticalTemperature) {
   EXPECT_NEAR(crossing, 1.443, 0.01 * 1.443);
 }
 
-// Spin waves of a finite cube reduce |m| by T / (2 N) times the sum of 1 / (3 - sum of cosines)
-// over the wave vectors other than 0.
+// Spin waves of a finite cube reduce |m| by T / (2 * N) * (the sum of 1 / (3 - sum of cosines) over
+// the wave vectors other than 0).
 TEST(HeisenbergModel, HasTheSpinWavesOfLowTemperatures) {
   constexpr int extent = 8;
   double sum = 0;

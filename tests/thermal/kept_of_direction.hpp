@@ -5,9 +5,9 @@
 
 namespace cayspin::test {
 
-/// Returns the average of m.m_0 after half a step's noise, with u = damping T dt and s^2 = u -
-/// u^2/12. Among 32 equally likely cases, 12 leave a spin as it is, 12 turn it by 2 s, and 8 by
-/// sqrt(6) s.
+/// Returns the average of m.m_0 after half a step's noise, with u = damping * T * dt and
+/// s^2 = u - u^2 / 12. Among 32 equally likely cases, 12 leave a spin as it is, 12 turn it by
+/// 2 * s, and 8 by sqrt(6) * s.
 inline double kept_of_direction(double u) {
   auto const kept_by = [](double angle) { return (1 + 2 * std::cos(angle)) / 3; };
   double const s = std::sqrt(u - u * u / 12);

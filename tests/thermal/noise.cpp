@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Thermal noise: diffusion on the sphere, Langevin's function, Boltzmann's law of single spins, and
-// bits that depend neither on the host space nor on interruptions. Seeds are fixed; statistical
-// limits are five standard errors.
+// results that do not depend, bit by bit, on the host space or on interruptions. Seeds are fixed;
+// statistical limits are five standard errors.
 #include "../support/backends.hpp"
 #include "../support/larger.hpp"
 #include "kept_of_direction.hpp"
@@ -52,7 +52,7 @@ TYPED_TEST(Thermal, DirectionsAreForgottenAtTheRateOfDiffusion) {
   this->exec.fence();
   auto const now = numbers_of(spins);
   auto const sites = static_cast<double>(lattice.sites());
-  std::array<double, 3> mean{};  // of 3 m_c m_0c for each component
+  std::array<double, 3> mean{};  // of 3 * m_c * m_0c for each component c
   double largest_defect = 0;
   for (std::size_t i = 0; i < now.size(); i += 3) {
     double square = 0;
@@ -62,15 +62,15 @@ TYPED_TEST(Thermal, DirectionsAreForgottenAtTheRateOfDiffusion) {
     }
     largest_defect = larger(largest_defect, std::abs(square - 1));
   }
-  // <3 m_c m_0c> is the same for all components c. The variance of 3 m_c m_0c is at most 9 <(m_c
-  // m_0c)^2> <= 9/5.
+  // <3 * m_c * m_0c> is equal for all components c. The variance of 3 * m_c * m_0c is at most
+  // 9 * <(m_c * m_0c)^2> <= 9/5.
   double const kept = std::pow(kept_of_direction(u), 2);
   for (double const of_component : mean)
     EXPECT_NEAR(of_component, kept, 5 * std::sqrt(1.8 / sites));
   EXPECT_LT(largest_defect, 8 * epsilon<typename TypeParam::Real>);
 }
 
-// With x = field / temperature, <m_z> = coth x - 1/x and <m_z^2> = 1 - 2 <m_z> / x.
+// With x = field / temperature, <m_z> = coth(x) - 1 / x and <m_z^2> = 1 - 2 * <m_z> / x.
 TYPED_TEST(Thermal, SpinsInAFieldFollowLangevin) {
   double const temperature = 0.5, field = 1, x = field / temperature;
   double const langevin = 1 / std::tanh(x) - 1 / x, square = 1 - 2 * langevin / x;
@@ -112,7 +112,7 @@ TYPED_TEST(Thermal, AUniaxialSpinFollowsBoltzmann) {
   EXPECT_NEAR(found / sites, expected, 5 * error + 5e-4);
 }
 
-// E = -(m_x^2 + 2 m_z^2) / 2 has a hard, a medium and an easy axis. The midpoint rule over the
+// E = -(m_x^2 + 2 * m_z^2) / 2 has a hard, a medium and an easy axis. The midpoint rule over the
 // sphere gives the expected <m_x^2> and <m_z^2>.
 TYPED_TEST(Thermal, ABiaxialSpinFollowsBoltzmann) {
   double const temperature = 0.4;
@@ -157,8 +157,8 @@ TYPED_TEST(Thermal, LengthsDoNotDrift) {
   EXPECT_LT(norm_defect(this->exec, spins), 8 * epsilon<typename TypeParam::Real>);
 }
 
-// Noise depends on the number of the step and not on earlier steps, so a run in pieces gives the
-// bits of an uncut run.
+// Noise depends on the number of the step and not on earlier steps, so a run in pieces is bitwise
+// identical to an uncut run.
 TYPED_TEST(Thermal, BitsDoNotDependOnWhereARunIsCut) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::cubic(21, 6, 5);
@@ -300,7 +300,7 @@ TEST(ThermalNoiseUses, AreRefusedInOneSentence) {
   EXPECT_THROW(noise.turn(exec, 1, Half::before, 1.1, spins), std::invalid_argument);
   EXPECT_THROW(noise.turn(exec, 1, Half::before, std::nan(""), spins), std::invalid_argument);
   EXPECT_THROW(noise.turn(exec, 1, Half::before, 0.1, others), std::invalid_argument);
-  // The bound on dt is that of the site of a cell that turns most.
+  // The bound on dt is set by the site of the cell whose spin turns most.
   ThermalNoise<Spins> const slow(spins, 0.5, {.temperature = 2, .cell_sites = {0.5}});
   EXPECT_THROW(slow.turn(exec, 1, Half::before, 2.1, spins), std::invalid_argument);
   EXPECT_NO_THROW(slow.turn(exec, 1, Half::before, 1.9, spins));

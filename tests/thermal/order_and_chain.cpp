@@ -60,7 +60,8 @@ TYPED_TEST(ThermalChain, FollowsFisher) {
       for (int c = 0; c < 3; ++c)
         sum += m[static_cast<std::size_t>(3 * i + c)] *
                m[static_cast<std::size_t>(3 * ((i + distance) % sites) + c)];
-    // A pair is correlated with 2 distance - 1 pairs, itself included, with which it shares bonds.
+    // A pair is correlated with the 2 * distance - 1 pairs with which it shares bonds, itself
+    // included.
     double const limit = 5 * std::sqrt((2 * distance - 1.0) / sites) / std::sqrt(3) + 5e-4;
     EXPECT_NEAR(sum / sites, std::pow(neighbors, distance), limit) << distance;
   }

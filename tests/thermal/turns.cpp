@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The distribution of the random turns: moments over their 32 values, frequencies, independence of
-// sites, steps and the two halves of a step's noise, and equal bits for single sites and packs.
-// Seeds are fixed; statistical limits are five standard errors.
+// sites, steps and the two halves of a step's noise, and bitwise identical results for single sites
+// and packs. Seeds are fixed; statistical limits are five standard errors.
 #include "../support/backends.hpp"
 #include "kept_of_direction.hpp"
 

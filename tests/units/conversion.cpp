@@ -45,8 +45,8 @@ TEST(Units, AtomisticFigures) {
   EXPECT_EQ(material.dmi(1e-21), 1);
 }
 
-// From g mu_B P j / (2 e Ms) and hbar P j / (2 e Ms d), by hand. Electrons move against the
-// current.
+// From g * mu_B * P * j / (2 * e * Ms) and hbar * P * j / (2 * e * Ms * d), by hand. Electrons move
+// against the current.
 TEST(Units, CurrentsComeToVelocitiesAndFields) {
   units::PolarizedCurrent drift{.density = 1e12, .polarization = 0.4, .Ms = 8e5};
   EXPECT_NEAR(units::drift_velocity(drift), -28.9755, 5e-5);

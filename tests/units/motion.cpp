@@ -157,8 +157,8 @@ TYPED_TEST(UnitsInMotion, EnergyInJoulesIsTheDirectSum) {
         auto const stiff = [&](Vector const& next, double d) {
           add(A * volume / (d * d) * dot(next - m, next - m));
         };
-        // A bond along e has the energy density D (m_z d_e m_e - m_e d_e m_z), where m is the mean
-        // of the spins at its ends and d_e m their difference over the cell's edge.
+        // A bond along e has the energy density D * (m_z * d_e m_e - m_e * d_e m_z), where m is the
+        // mean of the spins at its ends, and d_e m is their difference divided by the cell's edge.
         if (i < 3) {
           auto const next = at(i + 1, j, k);
           stiff(next, cell[0]);

@@ -98,8 +98,8 @@ TEST_F(Precessing, Euler) {
   expect<ClassicalEuler<Spins>>("Euler, dt 1e-3", a, 1e-3, ".0469", "3.753e-2");
   auto const fine = expect<ClassicalEuler<Spins>>("Euler, dt 1e-4", a, 1e-4, ".0045", "3.699e-3");
 
-  // The mean of ln|m| is (dt/2) ((1 + damping^2) / damping) (E_start - E_end) / N, with energies on
-  // the exact path.
+  // The mean of ln|m| is dt / 2 * (1 + damping^2) / damping * (E_start - E_end) / N, with energies
+  // on the exact path.
   Space const exec;
   double const fall = energy(exec, slab_.field(), slab_start()).value -
                       energy(exec, slab_.field(), reference_.end).value;

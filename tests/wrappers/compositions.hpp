@@ -46,7 +46,7 @@ class Named : public Forwarding<Named<Inner>, Inner> {
   Inner inner_;
 };
 
-/// H = 0.7 m.z along z, computed by host code.
+/// H = 0.7 * m_z along z, computed by host code.
 struct AlongZ {
   static constexpr int degree = 2;
   template <class Field>
@@ -133,8 +133,8 @@ inline constexpr bool sees_vacant_spins =
     detail::holds<PairCouplings, Term>() || detail::holds<detail::SeesAllSpins, Term>();
 
 /// Calls visit(name, wrapped, factors, is_alone) for each wrapper of the library and for Named
-/// around a term, and for some wrappers around wrappers. `is_alone`: `wrapped` must answer like the
-/// term.
+/// around a term, and for some wrappers around wrappers. `is_alone` is true if `wrapped` must
+/// answer like the term.
 template <class Real, class Term, class Visit>
 void for_each_wrapper(Setting<Real> const& on, std::string const& name, Term const& term,
                       std::vector<double> const& factors, Visit const& visit) {

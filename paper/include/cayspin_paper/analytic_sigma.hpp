@@ -30,15 +30,15 @@
 namespace cayspin::inline v0_2 {
 namespace isotropy {
 
-/// sigma from A' along the flow: xi = A_o + sigma m with sigma = (m.A) - <A', X> / |X|^2,
+/// sigma from A' along the flow: xi = A_o + sigma * m, where sigma = m.A - <A', X> / |X|^2 and
 /// X = A x m. The derivative of an affine field is its linear part, applied to X. For LieEuler;
-/// ImplicitLieEuler adds sigma m with the opposite sign of <A', X>. Lewis and Nigam 2002, Sec. 4.1
-/// and 4.2, with the sign and the norm corrected. sigma is zero if X is zero.
+/// ImplicitLieEuler adds sigma * m with the opposite sign of <A', X>. Lewis and Nigam 2002, Sec.
+/// 4.1 and 4.2, with the sign and the norm corrected. sigma is zero if X is zero.
 struct Analytic {};
 
-/// Like Analytic, but computed as the geodesic curvature of the orbit times its speed, sigma = k_g
-/// |X| = <m'', m x m'> / |m'|^2, m' = X: sigma as a partial connection form. For LieEuler only.
-/// Lewis and Nigam 2002, Sec. 3.2.
+/// Like Analytic, but sigma is computed as the geodesic curvature k_g of the orbit times its speed,
+/// sigma = k_g * |X| = <m'', m x m'> / |m'|^2 with m' = X, which is a partial connection form. For
+/// LieEuler only. Lewis and Nigam 2002, Sec. 3.2.
 struct Connection {};
 
 }  // namespace isotropy
@@ -67,12 +67,12 @@ template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value sigma_along_flow(isotropy::Analytic, Vec3<Value> const& rate,
                                                    Vec3<Value> const& x, Vec3<Value> const&,
                                                    Value const& along) {
-  // A spin at equilibrium gets no part along m, because F = 0 keeps the bits of m.
+  // At equilibrium sigma is zero, because F = 0 leaves m bitwise unchanged.
   return guarded_quotient(multiply_subtract(along, dot(x, x), dot(rate, x)), dot(x, x));
 }
 
-/// Computes sigma from the second derivative of the orbit, m'' = A' x m + A x X with A = m x X +
-/// (m.A) m.
+/// Computes sigma from the second derivative of the orbit, m'' = A' x m + A x X, with
+/// A = m x X + (m.A) * m.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value sigma_along_flow(isotropy::Connection, Vec3<Value> const& rate,
                                                    Vec3<Value> const& x, Vec3<Value> const& m,
@@ -157,10 +157,10 @@ class Rates {
   bool streaming_ = false;  // stores of rates bypass the caches
 };
 
-/// Functor that takes a step of geometric Euler, in place: m <- cay(dt (A_o + sigma m)) m.
+/// Functor that takes a step of geometric Euler, in place: m <- cay(dt * (A_o + sigma * m)) m.
 template <class Isotropy, class Rotation, class Generator, class Real>
 struct CorrectedEulerStage {
-  Generator generator;  // prepared on the rates
+  Generator generator;  // prepared for the rates
   Isotropy isotropy;
   SiteArray<Real, 3> rates;
   SiteArray<Real, 1> along;
@@ -183,7 +183,7 @@ struct CorrectedEulerStage {
 /// removes the part of A along m.
 template <class Generator, class Real>
 struct ImplicitSigmaStage {
-  Generator generator;  // prepared on the rates
+  Generator generator;  // prepared for the rates
   SiteArray<Real, 3> rates, spins;
   OutputArray<Real, 1> sigma;  // holds m.A on input
   bool orthogonal;

@@ -37,12 +37,12 @@ struct AppliedRate {
   }
 };
 
-/// Returns d/dt of a callable by central differences of order 4, from its values at t +- dt/8 and t
-/// +- dt/4, where it must be defined. The relative error is about (w dt)^4 / 1e5 for changes of
-/// angular frequency w.
+/// Returns the time derivative of a callable by central differences of order 4, from its values at
+/// t +- dt/8 and t +- dt/4, where it must be defined. If the values oscillate with the angular
+/// frequency w, the relative error is about (w * dt)^4 / 1e5.
 template <class Applied>
 Vec3<double> time_derivative(Applied const& applied, double t, double dt) {
-  if (dt == 0) return {0, 0, 0};  // a step of no time moves no spin
+  if (dt == 0) return {0, 0, 0};  // in a step of zero length no spin moves
   double const d = dt / 8;
   Vec3<double> const near = applied(t + d) - applied(t - d);
   Vec3<double> const far = applied(t + 2 * d) - applied(t - 2 * d);

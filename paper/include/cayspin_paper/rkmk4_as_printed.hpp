@@ -21,8 +21,8 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// Stage `Stage` of the misprinted method. Stages 0 to 2 store a = dt xi, and move m0 by 1/2, 1/2
-/// and 1 times a to the next stage. The last stage forms all increments and ends the step.
+/// Stage `Stage` of the misprinted method. Stages 0 to 2 store a = dt * xi, and rotate m0 by a / 2,
+/// a / 2 and a for the next stage. The last stage forms all increments and ends the step.
 template <int Stage, class Isotropy, class Generator, class Real>
 struct AsPrintedStage {
   using Tableau = tableau::Classical4;

@@ -71,8 +71,8 @@ struct DirectSeries {
   }
 };
 
-/// The orthogonal series as printed in the paper, from the derivatives of A_o. It has the same
-/// order as the direct series of A_o, and for rigid bodies three times the energy error of that.
+/// The orthogonal series as printed in the paper, from the derivatives of A_o. Its order is that of
+/// the direct series of A_o; for rigid bodies its energy error is three times as large.
 struct PaperSeries : DirectSeries {
   using Correction = Series4PaperCorrection;
   template <class Value>
@@ -176,11 +176,11 @@ struct SeriesStage {
 }  // namespace detail
 
 /// The symbolic series of order 4 in Cayley coordinates:
-/// F = dt a + dt^2 a_1/2 + dt^3 (2 a_2 + |a|^2 a + a_1 x a)/12
-///   + dt^4 (a_3 + |a|^2 a_1 + a_2 x a + 2 <a_1, a> a)/24, a = A, a_k = d^k A / dt^k on the
-/// exact flow, by recurrence. Rigid bodies take one kernel. Landau-Lifshitz takes four, with a
-/// field that is affine in the spins and does not depend on t. isotropy::Energy is for rigid bodies
-/// only. Lewis and Nigam 2002, Sec. 4.4 and 5.3.
+/// F = dt * a + dt^2 * a_1 / 2 + dt^3 * (2 * a_2 + |a|^2 * a + a_1 x a) / 12
+///   + dt^4 * (a_3 + |a|^2 * a_1 + a_2 x a + 2 * <a_1, a> * a) / 24,
+/// where a = A, and a_k = d^k A / dt^k on the exact flow follow by recurrence. Rigid bodies take
+/// one kernel. Landau-Lifshitz takes four, with a field that is affine in the spins and does not
+/// depend on t. isotropy::Energy is for rigid bodies only. Lewis and Nigam 2002, Sec. 4.4 and 5.3.
 template <class Spins, class Isotropy = isotropy::Zero, class Series = detail::DirectSeries>
 class Series4 : public detail::StepperBase<Spins> {
   static_assert(std::is_same_v<Isotropy, isotropy::Zero> ||

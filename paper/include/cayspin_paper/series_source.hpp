@@ -132,7 +132,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> series_derivative(Generator const& gener
   return SeriesOf<Generator>::template derivative<K>(generator, m, source);
 }
 
-/// Returns d^K/dt^K of A - (m.A) m.
+/// Returns d^K/dt^K of A - (m.A) * m.
 template <int K, class Generator, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> orthogonal_derivative(Generator const& generator,
                                                               Vec3<Value> const* m,
