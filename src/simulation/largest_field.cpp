@@ -323,6 +323,12 @@ double bound_of_dipoles(io::Scene const& scene, Lattice const& lattice) {
          dipolar_bound(lattice, *demag->dipoles, moments, demag->periodic_images);
 }
 
+double least_damping(io::Scene const& scene) {
+  auto const& system = scene.system;
+  return system.dampings.there() ? range_of_sites(scene, system.dampings, "system.damping").least
+                                 : system.damping;
+}
+
 double largest_damping(io::Scene const& scene) {
   auto const& system = scene.system;
   if (!system.dampings.there()) return system.damping;

@@ -12,6 +12,9 @@ namespace cayspin::simulation {
 /// Returns the largest damping of any site. Throws io::SceneError if one is negative.
 double largest_damping(io::Scene const& scene);
 
+/// Returns the smallest damping of any site.
+double least_damping(io::Scene const& scene);
+
 /// Returns an upper bound on |H| times the gyromagnetic ratio at any site, including torques, at
 /// 1001 times of a run and at its time features. For a demagnetising field, the bound is one on its
 /// eigenvalues, which |H| at a single site may exceed. A program's own nonlocal field is not

@@ -2,6 +2,7 @@
 #include "multirate_method.hpp"
 
 #include "io/relax.hpp"
+#include "largest_field.hpp"
 #include "thermal.hpp"
 
 #include <cayspin/serialize.hpp>
@@ -117,7 +118,7 @@ bool is_multirate(io::Demagnetization const& demag, io::Scene const& scene) {
 int order_of_multirate(io::Scene const& scene, Variant const& variant) {
   // For larger damping, order 3 widens resonance lines by less than 1 %.
   constexpr double small = 0.015;
-  return variant.order >= (scene.system.damping < small ? 4 : 5) ? 4 : 3;
+  return variant.order >= (least_damping(scene) < small ? 4 : 5) ? 4 : 3;
 }
 
 bool has_slow_field(io::Scene const& scene) {

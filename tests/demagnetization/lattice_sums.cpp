@@ -147,6 +147,20 @@ TEST(DipolarBound, IsAboveTheLargestEigenvalueAndNotFarAbove) {
     }
 }
 
+// Layers of one film, at a distance that does not depend on the film's thickness.
+TEST(DipolarBound, OfAThinFilmIsNotFarAboveThatOfItsLayer) {
+  for (double const across : {0.1, 0.6, 2.0}) {
+    Lattice film = Lattice::square(16, 16);
+    film.spacing[2] = across;
+    // The sum of 1/r^3 over an infinite square lattice is 9.0336.
+    double const layer = 9.0336 * across / (4 * std::numbers::pi);
+    Crystal const cubic{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {{0, 0, 0}}};
+    double const bound = dipolar_bound(film, cubic, {1});
+    EXPECT_GE(bound, layer);
+    EXPECT_LE(bound, 3 * layer) << across;
+  }
+}
+
 // Chains along y, each of which consists of one site and its images.
 TEST(DipolarBound, CountsImagesAlongAnAxisOfOneCell) {
   Crystal const chains{{{{1, 0, 0}, {0, 0.3, 0}, {0, 0, 1}}}, {{0, 0, 0}}};

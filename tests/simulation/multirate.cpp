@@ -2,6 +2,8 @@
 // Expensive (multirate) fields in scenes: orders of convergence, numbers of evaluations, bitwise
 // identical results of interrupted runs, and refused scenes.
 #include "scenes_of_text.hpp"
+#include "simulation/multirate_method.hpp"
+#include "simulation/variant.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -64,6 +66,16 @@ TEST(MultirateFields, BesideCurrentsAndSitesOfTheirOwn) {
     double const error = largest_distance(end_of(scene), exact);
     std::printf("    %-14s error %.1e\n", method, error);
     EXPECT_LT(error, limit) << method;
+  }
+}
+
+TEST(MultirateFields, HaveTheOrderThatTheSmallestDampingNeeds) {
+  for (auto const& [damping, order] :
+       {std::pair{"0.1", 3}, {"'0.1 + 0*i'", 3}, {"0.01", 4}, {"'0.01 + i'", 4}}) {
+    auto const scene =
+        film_on_host("method='rkmk4'\ndt=0.1\nsteps=1",
+                     {"field.slab_demag.multirate=true", std::string("system.damping=") + damping});
+    EXPECT_EQ(order_of_multirate(scene, find_variant(scene)), order) << damping;
   }
 }
 

@@ -31,8 +31,12 @@ inline double dipolar_bound(Lattice const& lattice, Crystal crystal,
   std::vector<Point> places, cell;
   for (std::size_t site = 0; site < crystal.basis.size(); ++site)
     places.push_back(crystal.position({}, site));
+  auto const scaled = [&](Point r) {
+    for (std::size_t axis = 0; axis < 3; ++axis) r[axis] *= lattice.spacing[axis];
+    return r;
+  };
   double longest = 0;
-  for (auto const& vector : crystal.cell) longest = std::max(longest, length(vector));
+  for (auto const& vector : crystal.cell) longest = std::max(longest, length(scaled(vector)));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     auto const extent = whole(lattice).shape[axis];
     auto const cells = axis == 2 ? extent / lattice.cell_sites : extent;
@@ -40,12 +44,8 @@ inline double dipolar_bound(Lattice const& lattice, Crystal crystal,
     // The bound is that of an infinite lattice. For a single layer without images, any distance
     // between the layers of that lattice gives a bound.
     bool const repeats = cells > 1 || periodic_images[axis] != 0;
-    cell.push_back(add_scaled(repeats ? 1 : longest / length(vector), vector, {}));
+    cell.push_back(add_scaled(repeats ? 1 : longest / length(scaled(vector)), vector, {}));
   }
-  auto const scaled = [&](Point r) {
-    for (std::size_t axis = 0; axis < 3; ++axis) r[axis] *= lattice.spacing[axis];
-    return r;
-  };
   std::ranges::transform(places, places.begin(), scaled);
   std::ranges::transform(cell, cell.begin(), scaled);
   PointsOfLattice const points(cell);
