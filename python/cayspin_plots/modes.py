@@ -54,6 +54,7 @@ def moving(file, mode, frame, texture):
     if not -count <= mode < count:
         raise ValueError(f"frame {mode}; accepted: {-count} to {count - 1}, the modes")
     mode %= count
+    texture.require_rectangular(file.attrs["scene"])
     spacing, boundary, si = texture.lattice_of(file.attrs["scene"])
     phase = 2 * np.pi * frame / FRAMES
     parts = file["mode"][mode]

@@ -23,6 +23,7 @@ def number_of(file, image):
 
 def texture_of(file, image, before, texture):
     """An image of a path as a texture, and the spins of the image `before`."""
+    texture.require_rectangular(file.attrs["scene"])
     spacing, boundary, si = texture.lattice_of(file.attrs["scene"])
     number = number_of(file, image)
     title, other = f"image {number}", None
@@ -49,8 +50,12 @@ def _smooth(distance, energy):
             np.append(y.ravel(), energy[-1]))
 
 
-def _has_pictures(file):
+def _has_pictures(file, texture):
     *_, nz, ny, nx, _ = file["spins"].shape
+    try:
+        texture.require_rectangular(file.attrs["scene"])
+    except ValueError:
+        return False
     return file["spins"].ndim == 5 and nx * ny * nz > 1
 
 
@@ -69,7 +74,7 @@ def _pictures(file):
 def draw(file, texture, colors):
     si = file.attrs["units"] == "SI"
     distance, energy = file["distance"][:], file["energy"][:]
-    pictures = _pictures(file) if _has_pictures(file) else []
+    pictures = _pictures(file) if _has_pictures(file, texture) else []
     figure = style.plt.figure(figsize=(9, 6.4 if pictures else 4.2), constrained_layout=True)
     rows = figure.add_gridspec(2 if pictures else 1, 1, height_ratios=[2, 1][:2 if pictures else 1])
     axis = figure.add_subplot(rows[0])

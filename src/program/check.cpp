@@ -118,7 +118,11 @@ Json staged_json(io::Scene const& scene, std::vector<CheckedStage> const& stages
   add_memory(object, largest);
   object["precision"] = std::string(to_string(precision));
   add_units(object, scene.units);
-  add_notes(object, scene);
+  std::vector<std::string> notes;
+  for (auto const& stage : stages)
+    for (auto const& note : io::notes(stage.stage.scene))
+      if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
+  if (!notes.empty()) object["notes"] = notes;
   return object;
 }
 

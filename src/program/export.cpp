@@ -85,8 +85,10 @@ io::OvfField ovf_field_of(io::TrajectoryInfo const& info, io::OvfMesh const& mes
   auto const number = static_cast<std::size_t>(frame);
   io::OvfField field;
   field.title = "m";
-  field.description = {fmt::format("Total simulation time: {}{}", info.frame_times[number],
-                                   info.header.units.si ? " s" : ""),
+  field.description = {info.cost.relaxed
+                           ? fmt::format("Equilibrium: {}", info.frame_steps[number])
+                           : fmt::format("Total simulation time: {}{}", info.frame_times[number],
+                                         info.header.units.si ? " s" : ""),
                        fmt::format("Step: {}", info.frame_steps[number]),
                        fmt::format("Frame: {} of {}", frame, info.path.filename().string()),
                        fmt::format("Written by cayspin {}", info.header.cayspin_version)};

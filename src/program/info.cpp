@@ -19,20 +19,22 @@
 namespace cayspin::program {
 namespace {
 
-// `si`: true if the file's numbers are in SI.
-void print_sample(char const* name, io::Sample const& sample, bool si) {
+// `si`: true if the file's numbers are in SI. `is_state`: true if the sample is an equilibrium,
+// whose step and time are its number.
+void print_sample(char const* name, io::Sample const& sample, bool si, bool is_state) {
   auto const& [step, time, scalars] = sample;
   auto const& m = scalars.magnetization;
+  auto const when = is_state ? fmt::format("state {}", step)
+                             : fmt::format("step {}, t = {:.9g}{}", step, time, si ? " s" : "");
   fmt::print(
-      "{:<12} step {}, t = {:.9g}{}: energy {:.9g}{}, norm defect {:.3g}, "
+      "{:<12} {}: energy {:.9g}{}, norm defect {:.3g}, "
       "magnetization ({:.6f}, {:.6f}, {:.6f})\n",
-      name, step, time, si ? " s" : "", scalars.energy, si ? " J" : "", scalars.norm_defect, m[0],
-      m[1], m[2]);
+      name, when, scalars.energy, si ? " J" : "", scalars.norm_defect, m[0], m[1], m[2]);
 }
 
 void print_frame(char const* name, io::TrajectoryInfo const& info, std::size_t frame) {
   print_sample(name, {info.frame_steps[frame], info.frame_times[frame], info.frame_scalars[frame]},
-               info.header.units.si);
+               info.header.units.si, info.cost.relaxed.has_value());
   auto const sites = static_cast<std::size_t>(info.header.cell_sites);
   if (sites == 1) return;
   for (std::size_t site = 0; site < sites; ++site) {
@@ -95,7 +97,7 @@ void print_trajectory(io::TrajectoryInfo const& info, std::optional<bool> being_
   if (info.frames > 1) print_frame("last frame", info, static_cast<std::size_t>(info.frames) - 1);
   auto const& sample = info.last_sample;
   if (sample && (info.frames == 0 || sample->step > info.frame_steps.back()))
-    print_sample("last sample", *sample, header.units.si);
+    print_sample("last sample", *sample, header.units.si, info.cost.relaxed.has_value());
   print_more(info);
   bool const has_ended = info.complete || info.cost.wall_seconds > 0;
   if (has_ended && info.cost.relaxed)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
 #include "files/file_beside.hpp"
+#include "io/toml_string.hpp"
 #include "new_scenes.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/text.hpp"
@@ -42,8 +43,13 @@ int write_new(NewOptions const& options) {
   auto const results = [](std::filesystem::path name) {
     return name.filename().replace_extension(".h5").string();
   };
-  auto const text = replaced(std::string(scene->text), scene->path, path.string());
-  file.stream() << replaced(text, results(scene->path), results(path));
+  auto const quoted = [&](std::filesystem::path const& name) {
+    return io::toml_string(results(name));
+  };
+  auto const text =
+      replaced(std::string(scene->text), scene->path, simulation::shell_word(path.string()));
+  file.stream() << replaced(replaced(text, quoted(scene->path), quoted(path)), results(scene->path),
+                            simulation::shell_word(results(path)));
   file.commit();
   fmt::print("{0}: try `cayspin check {1}`, then `cayspin run {1}`\n", path.string(),
              simulation::shell_word(path.string()));

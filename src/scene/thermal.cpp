@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <tuple>
+#include <variant>
 
 namespace cayspin::inline v0_2::io::detail {
 
@@ -25,7 +26,13 @@ void read_temperature(Item const& item, Scene& scene, Thermal& thermal) {
     auto const profile = both.required("profile", accepted_site_numbers(scene.lattice));
     thermal.temperature = number_of_sites(profile, scene, thermal.of_sites);
     if (!(thermal.temperature >= 0)) profile.fail("is negative", "a number >= 0");
-    thermal.in_time = component_in_time(both.required("time", "an expression in t"));
+    auto const time = both.required("time", "an expression in t");
+    thermal.in_time = component_in_time(time);
+    if (auto* const factor = std::get_if<double>(&thermal.in_time)) {
+      if (!(*factor >= 0)) time.fail("is negative", "a number >= 0");
+      thermal.temperature *= *factor;
+      *factor = 1;
+    }
   } else if (item.node->is_string() && is_in_time(string(item, accepted_temperature))) {
     thermal.in_time = component_in_time(item);
   } else if (!read_site_numbers(item, scene, thermal.of_sites)) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The first commands of a new user: writing a scene, checking it, running it, and drawing a
 // picture.
+#include "io/scene.hpp"
 #include "program_test.hpp"
 
 #include <cstdlib>
@@ -32,6 +33,15 @@ TEST_F(NewScenes, ReplaceNoFileUnasked) {
   output_of({"new", "film", "--overwrite"});
   EXPECT_TRUE(contains(text_of("other.toml"), "file = \"other.h5\""));
   EXPECT_TRUE(contains(text_of("film.toml"), "file = \"film.h5\""));
+}
+
+TEST_F(NewScenes, CanHaveAnyName) {
+  for (std::string const name : {"my \"best\" film", "two\\new", "a 'b' \"c\""}) {
+    SCOPED_TRACE(name);
+    output_of({"new", "film", "--output", name + ".toml"});
+    EXPECT_EQ(io::read_scene(in_folder(name + ".toml")).output.file, name + ".h5");
+    output_of({"check", name + ".toml"});
+  }
 }
 
 TEST_F(NewScenes, OfAnUnknownKindAreRefused) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // cayspin relax to one equilibrium or to one for each field of a list: its file, and refusals.
+#include "io/ovf.hpp"
 #include "program_test.hpp"
 
 #include <nlohmann/json.hpp>
@@ -175,6 +176,16 @@ TEST_F(Relax, IsExported) {
   ASSERT_EQ(relax(scene).status, 0);
   EXPECT_EQ(output_of({"export", "out.h5", "--ovf", "ovf"}), "ovf/out_000000.ovf\n");
   EXPECT_TRUE(exists("ovf/out_000000.ovf"));
+}
+
+// An equilibrium has a number, but no time.
+TEST_F(Relax, HasNoTimes) {
+  ASSERT_EQ(relax(si_scene + "[field]\napplied = [[0, 0, 0.1], [0, 0, 0.2]]\n").status, 0);
+  auto const said = output_of({"info", "out.h5"});
+  EXPECT_TRUE(contains(said, "state 1: energy ")) << said;
+  EXPECT_FALSE(contains(said, "t = ")) << said;
+  output_of({"export", "out.h5", "--ovf", "ovf"});
+  EXPECT_EQ(io::read_ovf(in_folder("ovf/out_000001.ovf")).description.at(0), "Equilibrium: 1");
 }
 
 // `check` describes what relax would do with a scene that only relax accepts.

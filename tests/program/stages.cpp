@@ -249,6 +249,12 @@ TEST_F(Stages, AreCheckedOneByOne) {
   EXPECT_EQ(stages[3].at("begin_step"), 55);
   EXPECT_GT(stages[3].at("stable_dt"), 0);
   EXPECT_TRUE(stages[2].contains("relax"));
+  EXPECT_FALSE(json.contains("notes"));
+  // A note that only a later stage has is among those of the scene.
+  auto const noted = nlohmann::json::parse(
+      output_of({"check", "scene.toml", "--json", "--set", "stage.2.field={ mu0 = 2 }"}));
+  ASSERT_EQ(noted.at("notes").size(), 1U);
+  EXPECT_TRUE(contains(noted.at("notes")[0].get<std::string>(), "field.mu0"));
 }
 
 TEST_F(Stages, AreSweptAndNotTraded) {

@@ -61,6 +61,15 @@ class PlotPath(PlotFound):
             result = self.plot(self.path(name, shape))
             self.assert_drawn(png, (9, 4.2), (BLUE,), result)
 
+    # On squares, its triangles would be sheared.
+    def test_a_skew_cell(self):
+        file = self.path("skew.h5", (1, 8, 10))
+        with h5py.File(file, "r+") as data:
+            data.attrs["scene"] = SCENE + "cell = [[1, 0, 0], [0.5, 0.8660254, 0], [0, 0, 1]]\n"
+        png = self.folder / "skew_path.png"
+        self.assert_drawn(png, (9, 4.2), (BLUE,), self.plot(file))
+        self.assert_no_picture("its sites are not on a rectangular grid", file, "--frame", "0")
+
     def test_an_image(self):
         for arguments in (("--frame", 3), ("--frame", -1), ("--difference", 0)):
             png = self.folder / "image.png"

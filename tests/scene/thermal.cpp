@@ -20,6 +20,18 @@ TEST(ThermalScene, TemperatureAndSeedArrive) {
   EXPECT_EQ(scene_of(llg_scene, {"thermal.temperature=0.5"}).thermal->temperature, 0.5);
 }
 
+TEST(ThermalScene, ANumberAsTimeIsAFactor) {
+  auto const with_time = [](char const* profile, char const* time) {
+    return thermal_scene(fmt::format("temperature = {{ profile = {}, time = {} }}", profile, time));
+  };
+  EXPECT_DOUBLE_EQ(scene_of(with_time("200", "0.01")).thermal->temperature, 2);
+  std::vector<std::string> const steps{"system.damping=0.1", "integrator.dt=0.1"};
+  EXPECT_EQ(refusal_of(with_time("200", "0.01"), steps), "accepted");
+  EXPECT_NE(refusal_of(with_time("200", "1"), steps), "accepted");
+  EXPECT_EQ(refusal_of(with_time("1", "0"), {"integrator.until_torque=1e-6"}), "accepted");
+  EXPECT_NE(refusal_of(with_time("1", "-1"), {}), "accepted");
+}
+
 // Temperature 0 means no noise, so keys that a temperature excludes are accepted.
 TEST(ThermalScene, TemperatureZeroGoesWithEverything) {
   for (auto const& other : std::vector<std::vector<std::string>>{

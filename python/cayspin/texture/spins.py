@@ -101,6 +101,17 @@ def lattice_of(scene: str) -> tuple[list[float], list[str], bool]:
     return found[0], found[1], tables.get("units") == "SI"
 
 
+def require_rectangular(scene: str) -> None:
+    """Raises ValueError for the text of a scene whose cells are not boxes with one site. Files of
+    paths and modes have no positions of sites."""
+    lattice = toml.loads(scene).get("lattice", {}) if scene else {}
+    cell = lattice.get("cell", np.eye(3))
+    if "crystal" in lattice or len(lattice.get("basis", [0])) != 1 or not np.array_equal(
+            cell, np.eye(3)):
+        raise ValueError("its sites are not on a rectangular grid, and it has no positions; "
+                         "accepted: the file of a run")
+
+
 def time_text(time: float, si: bool) -> str:
     """A time for titles: in reduced units, or in s with a prefix."""
     if not si:
@@ -135,7 +146,9 @@ def of_file(file: Any, frame: int = -1,
     require_trajectory(file)
     number = frame_number(file, frame)
     spacing, boundary, si = lattice_of(file.attrs.get("scene", ""))
-    title = f"frame {number}, {time_text(file['time'][number], si)}"
+    title = f"frame {number}"
+    if "converged" not in file.attrs:  # in a file of cayspin relax, `time` is the state's number
+        title += f", {time_text(file['time'][number], si)}"
     other = None
     if before is not None:
         before = frame_number(file, before)

@@ -15,9 +15,13 @@ from ..texture import toml
 def _output_of(scene):
     """`output.file`; None for a scene that `cayspin run` refuses with its own message."""
     try:
-        output = toml.loads(scene.read_text(encoding="utf-8")).get("output")
+        tables = toml.loads(scene.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
+    if "ensemble" in tables:
+        raise ValueError(f"{scene}: a page shows one run; accepted: a scene without [ensemble], or "
+                         "cayspin run, then cayspin plot")
+    output = tables.get("output")
     name = output.get("file") if isinstance(output, dict) else None
     return pathlib.Path(name) if name and isinstance(name, str) else None
 
