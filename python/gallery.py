@@ -39,7 +39,7 @@ def scenes(page):
 
 @contextlib.contextmanager
 def workspace(program):
-    """A folder in which commands of pages work, and their environment."""
+    """Yields a folder in which the commands of the pages can run, and the environment for them."""
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         for tree in ("scenes", "python", "examples"):

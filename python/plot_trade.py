@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Draws what `cayspin trade SCENE --json` measured: error over cost for one scene, the methods to
-take for several."""
+"""Draws what `cayspin trade SCENE --json` measured: for one scene, error over cost; for several,
+which method to use."""
 
 import json
 import pathlib

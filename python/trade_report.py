@@ -64,7 +64,9 @@ def best(trade, error, keep):
 
 
 def ratios(trade):
-    """The ratios of the first table: gains and projected_rk8 in double, then double over single."""
+    """Returns the ratios of the first table: for each error, the gain and the time of
+    projected_rk8 / that of the fastest cayspin method, in double precision; then, for three errors,
+    the time in double / that in single precision."""
     found = []
     for error in ERRORS:
         gain = trade_costs.gain(trade, error)
@@ -88,7 +90,7 @@ def ratio_row(title, found):
 
 
 def gains_of(row):
-    """The row of a table of gains, made from a row with all ratios."""
+    """Returns the row of a table of gains, made from a row with all ratios."""
     return row_of([cell.split(" (")[0] for cell in row.strip("| ").split(" | ")[:len(GAINS)]])
 
 
@@ -110,8 +112,8 @@ def cost_row(method, unit):
 
 
 def with_tables(page, trades, rows):
-    """The page with new rows in its tables of ratios or gains. The tables of scenes get the methods
-    in their pictures."""
+    """Returns the page with new rows in its tables of ratios or gains. The tables of scenes list
+    the methods that their pictures show."""
     trade, lines, replaced, in_ratios, only_gains = None, [], False, False, False
     for line in page.splitlines():
         heading, first = re.match("### (.*)", line), re.match(r"\| ?([^|]*?) ?\|", line)

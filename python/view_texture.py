@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Started by `cayspin view`: the package's view, which needs nothing compiled."""
+"""`cayspin view` starts this script, which runs the package's viewer. It needs nothing compiled."""
 
 import pathlib
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Starts the program in the wheel: python -m cayspin, or the package's command `cayspin`."""
+"""Starts the program cayspin: for python -m cayspin, and for the command `cayspin` of the wheel."""
 
 import os
 import sys

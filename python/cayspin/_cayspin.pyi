@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The compiled part of the package. Use cayspin.Scene and cayspin.Simulation."""
+"""The compiled part of the package. Use cayspin.Scene and cayspin.Simulation instead."""
 
 import os
 from pathlib import Path
@@ -7,19 +7,20 @@ from typing import Any, Callable
 
 import numpy as np
 
-version: str  #: of the package, as in 0.2.0
+version: str  #: version of the package, such as 0.2.0
 git_commit: str
 complete_file: Callable[[str | os.PathLike], None]
 
 class CayspinError(Exception):
-    """An error of the package: one line with what is wrong, and what is accepted."""
+    """An error of the package. Its message is one line: what is wrong, and what is accepted."""
 
 class SceneError(CayspinError):
-    """A scene that is refused: its file and line, the key, what is wrong and what is accepted."""
+    """Raised for a scene that is refused. The message has its file and line, the key, what is wrong
+    and what is accepted."""
 
 class NumbersFailed(CayspinError):
-    """A run whose spins are not finite, have left the sphere or have gained energy without a
-    source; or a search without a result."""
+    """Raised for a run whose spins are not finite, have left the sphere or have gained energy
+    without a source, and for a search that finds no result."""
 
 class Scene:
     @staticmethod

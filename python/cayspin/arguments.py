@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Checks of arguments: each returns the value, or raises a CayspinError of one line.
+"""Checks of arguments. A check returns the value, or raises CayspinError with a one-line message.
 
 A NumPy scalar, or an array without axes, counts as the value that it holds."""
 
@@ -22,18 +22,19 @@ def _one(thing: Any) -> Any:
 
 
 def shown(thing: Any) -> str:
-    """A value as text for a message of one line."""
+    """Returns a value as text for a one-line message, cut to 80 characters."""
     text = " ".join(repr(thing).split())
     return text if len(text) <= 80 else text[:77] + "..."
 
 
 def without_line(message: str) -> str:
-    """A warning without the place at its start: the line of a text made from tables, or --set."""
+    """Returns a warning without the place at its start, which means nothing to the caller: the line
+    in a text that was made from tables, or --set."""
     return re.sub(r"^(replica \d+: )?(Scene:\d+: |--set )", r"\1", message)
 
 
 def whole(number: Any, name: str, bits: int = 64) -> int:
-    """A whole number that fits into `bits` bits."""
+    """Returns a whole number, which must fit into a signed integer of `bits` bits."""
     try:
         if isinstance(number, np.ndarray) and number.ndim:
             raise TypeError
@@ -46,7 +47,7 @@ def whole(number: Any, name: str, bits: int = 64) -> int:
 
 
 def real(number: Any, name: str) -> float:
-    """A number; text is refused."""
+    """Returns a number as a float. Text is refused."""
     value = _one(number)
     try:
         is_number = hasattr(type(value), "__float__") or hasattr(type(value), "__index__")
@@ -58,7 +59,7 @@ def real(number: Any, name: str) -> float:
 
 
 def flag(truth: Any, name: str) -> bool:
-    """True or False, also as 1 or 0."""
+    """Returns True or False, which may be given as 1 or 0."""
     value = _one(truth)
     if isinstance(value, (bool, int)) and value in (0, 1):
         return bool(value)
@@ -79,7 +80,7 @@ def wants_stop(answer: Any) -> bool:
 
 
 def is_unicode(text: str) -> bool:
-    """Whether UTF-8 can encode a string: it cannot encode half of a surrogate pair."""
+    """Whether UTF-8 can encode a string. It cannot if the string has half of a surrogate pair."""
     return not any("\ud800" <= letter <= "\udfff" for letter in text)
 
 
@@ -102,14 +103,14 @@ def entries(things: Any, name: str, accepted: str) -> list:
 
 
 def options(given: Iterable[str], accepted: Iterable[str], name: str) -> None:
-    """Checks the names of further options."""
+    """Raises CayspinError if the name of an option is not in `accepted`."""
     for option in given:
         if option not in accepted:
             raise CayspinError(f"{name}: no option {option}; accepted: {', '.join(accepted)}")
 
 
 def axes(given: Any) -> Any:
-    """Matplotlib axes; new ones for None."""
+    """Returns the given matplotlib axes, or new ones for None."""
     if given is None:
         import matplotlib.pyplot
 
@@ -120,7 +121,7 @@ def axes(given: Any) -> Any:
 
 
 def file_name(path: Any, name: str) -> str:
-    """The name of a file."""
+    """Returns the name of a file as a string."""
     try:
         text = os.fsdecode(os.fsencode(_one(path)))
     except (TypeError, UnicodeEncodeError):
@@ -138,7 +139,8 @@ def counted(count: int, what: str) -> str:
 
 
 def numbers(array: Any, name: str) -> np.ndarray:
-    """A numpy array of float32 or float64 with aligned elements; a copy only if necessary."""
+    """Returns an array of numbers as float32 or float64 with aligned elements, copied only if
+    necessary."""
     try:
         array = np.asarray(array)
     except ValueError:

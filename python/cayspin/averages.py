@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 class Averages:
     """Running means from Simulation.averages(), over all samples or over the latest ones.
 
-    Each is an Average with a standard error, as from average(). It is NaN before the first sample.
-    Numbers are in the units of the scene."""
+    Each mean is an Average with a standard error, as from average(). Mean and error are NaN before
+    the first sample. Numbers are in the units of the scene."""
 
     def __init__(self, window: int | None):
         def looks():
@@ -65,7 +65,7 @@ class Averages:
 
     @property
     def energies(self) -> dict[str, Average]:
-        """The mean of the energy of each term, by the names of Simulation.energies()."""
+        """The mean of the energy of each term, by the term's name in Simulation.energies()."""
         return {name: self._average(looks) for name, looks in self._terms.items()}
 
     def __repr__(self):

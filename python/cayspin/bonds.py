@@ -12,7 +12,8 @@ from cayspin._cayspin import CayspinError
 
 
 def as_float(word):
-    """A number, also in Fortran's form 1.0d-3; None for other words."""
+    """Returns a word as a float, also one in Fortran's form 1.0d-3. Returns None if it is no
+    number."""
     try:
         return float(word.lower().replace("d", "e"))
     except ValueError:
@@ -20,7 +21,7 @@ def as_float(word):
 
 
 class File:
-    """The lines of a file as words, without comments. Its errors name the line."""
+    """The lines of a text file, split into words, without comments. Errors name the line."""
 
     def __init__(self, path, name, comments="#"):
         self.path = arguments.file_name(path, name)
@@ -57,8 +58,8 @@ class File:
 
 
 def _energy(value, unit, name):
-    """An energy, or a vector of energies, for a scene: with the name of the unit, or divided by
-    `unit` if that is given."""
+    """Returns an energy, or a vector of energies, as a scene has it: {name: value}, where `name` is
+    the unit, or value / unit if `unit` is given."""
     value = np.asarray(value, float)
     return {name: value.tolist()} if unit is None else (value / unit).tolist()
 
@@ -78,7 +79,8 @@ def reversed_bond(key):
 
 
 def couplings(exchange, dmi, unit, name):
-    """The table field.couplings for bonds {(i, j, offset): J} and {(i, j, offset): D}."""
+    """Returns the table field.couplings for bonds: `exchange` is {(i, j, offset): J}, and `dmi` is
+    {(i, j, offset): D}."""
     pairs = []
     for key in dict.fromkeys((*exchange, *dmi)):
         pair: dict[str, Any] = {"between": list(key[:2]), "offset": list(key[2])}

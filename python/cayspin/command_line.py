@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Command lines of scripts. A wrong one ends the script with one line and status 2, as those of the
-program do."""
+"""Command lines of scripts. A wrong one ends the script like the program cayspin, with a one-line
+message and status 2."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Callable
 
 
 class Parser(argparse.ArgumentParser):
-    """An ArgumentParser without the usage before its errors."""
+    """An ArgumentParser that prints no usage before its errors."""
 
     def error(self, message: str):
         message = " ".join(message.split())
@@ -37,7 +37,7 @@ def real(text: str) -> float:
 
 
 def frame(text: str) -> int:
-    """The number of a frame; "last" is -1."""
+    """Returns the number of a frame, which is -1 for "last"."""
     try:
         return -1 if text == "last" else int(text)
     except ValueError:
@@ -46,7 +46,7 @@ def frame(text: str) -> int:
 
 
 def one_of(*words: str) -> Callable[[str], str]:
-    """One of a few words."""
+    """Returns a type for an argument that must be one of these words."""
     def chosen(text):
         if text not in words:
             raise argparse.ArgumentTypeError(f"{text}: accepted: {', '.join(words)}")

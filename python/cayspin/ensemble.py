@@ -13,9 +13,9 @@ from cayspin.spectra import StructureFactor, structure_factor
 
 
 class Ensemble:
-    """An open file of a scene with [ensemble], from open(). Its arrays are read when they are
-    indexed: ensemble.spins[-1, 5]. Use it in a `with`, or call close(). Numbers are in the units
-    of the scene.
+    """The open file of a scene with [ensemble], from open(). Its arrays are read when they are
+    indexed: ensemble.spins[-1, 5]. Use it in a `with`, or call close(). Numbers are in the units of
+    the scene.
 
     - `spins`: (frame, replica, nz, ny, nx, 3), for a crystal with several sites in a cell
       (frame, replica, site, nz, ny, nx, 3)
@@ -87,10 +87,10 @@ class Ensemble:
 
     def structure_factor(self, replicas: Sequence[int] | None = None,
                          frames: slice = slice(None), **options: Any) -> StructureFactor:
-        """S(k, w) at all wave vectors of the lattice, from the `frames` of a slice, averaged over
-        `replicas`; see cayspin.structure_factor(), which also has the other options. If no key is
-        varied, `replicas` may be omitted: all replicas are then used. By default the boundaries,
-        the cell and the positions of its sites are those of the scene.
+        """S(k, w) at all wave vectors of the lattice, from the frames that the slice `frames`
+        selects, averaged over `replicas`; see cayspin.structure_factor(), which also has the other
+        options. If no key is varied, `replicas` may be omitted: all replicas are then used. By
+        default the boundaries, the cell and the positions of its sites are those of the scene.
 
         Raises CayspinError as that function does, for replicas that do not exist, and for frames
         that are not equally spaced in time.

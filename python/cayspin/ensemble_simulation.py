@@ -15,22 +15,22 @@ from cayspin.scene import Scene
 
 
 class EnsembleSimulation:
-    """The replicas of a `scene` with [ensemble], which run together. Replica r is bit-identical to
-    a run of the scene with its values and seeds. On several threads, small replicas run at the same
-    time.
+    """The replicas of a `scene` with [ensemble], which run together. Each replica is bit-identical
+    to a run of the scene with the values and seeds of that replica. On several threads, small
+    replicas run at the same time.
 
         sim = cayspin.EnsembleSimulation(scene)
         sim.run()
         sim.spins  # (replica, nz, ny, nx, 3)
 
     `precision` is "double" or "single", `space` an execution space that was compiled in (default:
-    that of Kokkos), `threads` the number of its threads, which the first simulation of a process
-    decides. `restart` names the file of an ensemble: the simulation continues from its last frame.
-    It is refused if the method remembers more than the spins.
+    that of Kokkos), `threads` the number of threads of the space, which the first simulation of a
+    process decides. `restart` names the file of an ensemble, from whose last frame the simulation
+    continues. The file is refused if the method remembers more than the spins.
 
-    Ctrl-C stops it between two steps with KeyboardInterrupt; some replicas may then be further than
-    others. Lengths, times, fields and energies are in the units of the scene: reduced ones, or with
-    units = "SI" m, s, T and J.
+    Ctrl-C stops the simulation between two steps with KeyboardInterrupt; some replicas may then be
+    further than others. Lengths, times, fields and energies are in the units of the scene: reduced
+    ones, or with units = "SI" m, s, T and J.
 
     Raises SceneError for a scene that cannot run here, CayspinError for other arguments, for a
     scene without [ensemble] and for a `restart` that does not fit.
@@ -58,8 +58,8 @@ class EnsembleSimulation:
 
     def step(self, n: int = 1) -> None:
         """Takes `n` steps of dt in every replica. Replicas that run() has ended early go on until
-        they are at the step of the others. The first step warns of a dt that is too large for one
-        of them. After Ctrl-C some replicas may be further than `steps`; they wait for the others.
+        they are at the step of the others. The first step warns if dt is too large for one of the
+        replicas. After Ctrl-C some replicas may be further than `steps`; they wait for the others.
 
         Raises NumbersFailed when spins of a replica are not finite, leave the sphere or gain energy
         without a source, SceneError for a dt that integrator.refuse_unstable refuses, CayspinError
@@ -90,8 +90,8 @@ class EnsembleSimulation:
               keep_saddles: bool = False) -> list[Minimum]:
         """Moves each replica to a minimum of the energy, as Simulation.relax() does, and returns
         the result of each search. A search ends where max |m x H| is below `torque`, in the unit of
-        H, T in SI, or after about `evaluations` of the field. With `keep_saddles` it may end at a
-        saddle.
+        H, T in SI, or after about `evaluations` evaluations of the field. With `keep_saddles` it
+        may end at a saddle.
 
         Raises NumbersFailed for a field that is not finite, SceneError for rigid bodies,
         temperatures and torques of currents, CayspinError for other arguments.
@@ -116,8 +116,8 @@ class EnsembleSimulation:
 
     @property
     def spins(self) -> np.ndarray:
-        """The spins now, (replica, nz, ny, nx, 3), for a crystal with several sites in a cell
-        (replica, site, nz, ny, nx, 3): a copy."""
+        """A copy of the present spins, (replica, nz, ny, nx, 3), or for a crystal with several
+        sites in a cell (replica, site, nz, ny, nx, 3)."""
         spins, cell_sites = self._run.spins(), self._scene._scene.cell_sites
         if cell_sites == 1:
             return np.array(spins)
@@ -173,12 +173,12 @@ class EnsembleSimulation:
 
     @property
     def space(self) -> str:
-        """The execution space, as in "openmp"."""
+        """The execution space, such as "openmp"."""
         return self._run.space
 
     @property
     def threads(self) -> int:
-        """Threads of the space; 1 for a device."""
+        """The number of threads of the space, which is 1 for a device."""
         return self._run.threads
 
     def __repr__(self):

@@ -18,7 +18,7 @@ class Minimum:
     iterations: int  #: steps of the search
     evaluations: int  #: of the field of all sites
     saddles: int  #: saddles met during the search
-    #: upper bound of the lowest curvature, energy / rad^2, if converged; inf with `keep_saddles`
+    #: upper bound of the lowest curvature, in energy / rad^2, if converged; inf with `keep_saddles`
     curvature: float
 
     @property
@@ -30,7 +30,7 @@ class Minimum:
 
 @dataclasses.dataclass(frozen=True)
 class Modes:
-    """Result of Simulation.modes(), the slowest first."""
+    """Result of Simulation.modes(): normal modes, the slowest first."""
 
     frequency: np.ndarray  #: (mode,), angular in reduced units; in Hz in SI
     decay: np.ndarray  #: (mode,), in 1/s in SI; negative where the motion grows

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Frames of a file at equal steps of time, and the lattice of the scene that wrote them."""
+"""Reads frames at equal time steps from a file, and the lattice of the scene in the file."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from cayspin.texture.replica import Replica
 
 @contextlib.contextmanager
 def reading(file: Any, path: Any) -> Iterator[None]:
-    """Turns errors of h5py, and of the text of a scene, into a CayspinError of one line. Raises it
-    also for a closed file."""
+    """Turns errors of h5py, and of the text of a scene, into a CayspinError with a one-line
+    message. Also raises CayspinError for a closed file."""
     if not file:
         raise CayspinError(f"{path}: the file is closed; accepted: an open one")
     try:
@@ -30,15 +30,15 @@ def reading(file: Any, path: Any) -> Iterator[None]:
 
 
 def found_in(file: Any, names: Iterable[str]) -> dict[str, Any]:
-    """Arrays and groups by their names; None for those that are not there. Unlike file.get(),
-    raises KeyError for a damaged one."""
+    """Returns the arrays and groups of a file with these names, None for those that are missing.
+    Unlike file.get(), raises KeyError for a damaged array or group."""
     return {name: file[name] if name in file else None for name in names}
 
 
 def texture_of(file: Any, path: Any, frame: int, before: int | None = None,
                replica: int | None = None) -> tuple[texture.Texture, np.ndarray | None]:
-    """A frame to draw, and the spins of the frame `before`. `replica`: only for the file of an
-    ensemble."""
+    """Returns a frame to draw, and the spins of the frame `before`, if it is given. `replica`: only
+    for the file of an ensemble."""
     with reading(file, path):
         try:
             return texture.of_file(file if replica is None else Replica(file, replica), frame,
@@ -48,7 +48,8 @@ def texture_of(file: Any, path: Any, frame: int, before: int | None = None,
 
 
 class Frames:
-    """Some of the frames of a dataset, read one by one; of one replica, if frames have several."""
+    """Some of the frames of a dataset, each read when it is indexed. If frames hold several
+    replicas, those of one replica."""
 
     def __init__(self, dataset: Any, frames: range, replica: int | None = None):
         self.dataset, self.frames, self.replica = dataset, frames, replica
@@ -63,8 +64,8 @@ class Frames:
 
 def at_equal_steps(file: Any, path: Any, count: int, frames: Any,
                    name: str) -> tuple[range, float]:
-    """The frames that a slice chooses from a file of `count` frames, and the time from one to the
-    next."""
+    """Returns the frames that a slice chooses from a file of `count` frames, and the time between
+    successive ones. Raises CayspinError if that time is not constant."""
     if not isinstance(frames, slice):
         raise CayspinError(f"{name}: frames {arguments.shown(frames)}; accepted: a slice")
     try:
@@ -108,7 +109,7 @@ def along_axes(path: Any, text: str, key: str, default: Any, argument: str) -> l
 
 
 def crystal(path: Any, text: str, argument: str) -> Scene:
-    """A Scene with the cells of the scene `text`, and nothing else of it."""
+    """Returns a Scene that has only the cells of the scene `text`."""
     read = tables(path, text, "lattice.cell", f"the argument {argument}")
     lattice = read.get("lattice")
     if not isinstance(lattice, dict) or not isinstance(lattice.get("shape"), list):
@@ -122,7 +123,8 @@ def crystal(path: Any, text: str, argument: str) -> Scene:
 
 
 def with_lattice(path: Any, text: str, options: dict) -> dict:
-    """The options, completed by periodic, cell and positions of the scene if they are not given."""
+    """Returns the options. Takes periodic, cell and positions from the scene if they are not
+    given."""
     options = dict(options)
     if "periodic" not in options:
         words = along_axes(path, text, "boundary", "open", "periodic")

@@ -87,8 +87,8 @@ def occupied_of_mesh(mesh: Any, shape: tuple[int, ...], spacing: float | tuple[f
         low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
         corners = corners - (low + high) / 2 + cells * edges / 2
     corners = corners / edges - 0.5  # in cells, from the middle of the first one
-    # Shifts the mesh slightly: no line through the middles of cells may meet an edge or lie in a
-    # face.
+    # Shifts the mesh slightly, so that no line along z through the middle of a cell meets an edge
+    # or lies in a face.
     corners = corners + [1.234567e-7, 2.718281e-7, 3.141592e-7]
     first = np.maximum(np.ceil(corners.min(axis=1)[:, :2]), 0).astype(int)
     last = np.minimum(np.floor(corners.max(axis=1)[:, :2]), cells[:2] - 1).astype(int)

@@ -69,8 +69,9 @@ class Dispersion:
 
 
 def _on_segment(begin, end, shape):
-    """The wave vectors of a lattice of `shape` cells between two corners of a path: their positions
-    along it, rising from 0 to 1, and (k, 3) in multiples of the lattice's smallest ones."""
+    """Returns the wave vectors of a lattice of `shape` cells that lie on the way from the corner
+    `begin` of a path to the corner `end`: their positions along the way, rising from 0 to 1, and
+    the wave vectors, (k, 3) whole numbers in units of 1 / shape."""
     step = (end - begin) * shape
     axis = np.abs(step).argmax()
     first, last = sorted((begin[axis] * shape[axis], end[axis] * shape[axis]))
@@ -83,8 +84,8 @@ def _on_segment(begin, end, shape):
 
 
 def _along(path, shape, reciprocal):
-    """The wave vectors on a path, (k, 3) in multiples of the lattice's smallest ones, their
-    distances along the path, and the distances of its corners."""
+    """Returns the wave vectors on a path, (k, 3) whole numbers in units of 1 / shape, their
+    distances along the path, and the distances of the path's corners."""
     corners = arguments.numbers(path, "dispersion: path").astype(np.float64)
     if corners.ndim != 2 or corners.shape[1] != 3 or len(corners) < 2:
         raise CayspinError(f"dispersion: a path of shape {corners.shape}; accepted: two or more "
@@ -106,13 +107,14 @@ def _along(path, shape, reciprocal):
         distances.append(start + length * part)
         numbers.append(found)
     distance = np.concatenate(distances)
-    # A corner ends one part and starts another.
+    # A wave vector at a corner ends one part of the path and starts the next. It is kept once.
     once = np.diff(distance, prepend=-np.inf) > 1e-9 * at[-1]
     return np.concatenate(numbers)[once], distance[once], at
 
 
 def _combination(component, about, mean):
-    """The coefficients of m_x, m_y, m_z."""
+    """Returns the coefficients of m_x, m_y and m_z in the component that dispersion()
+    transforms."""
     component = arguments.word(component, "dispersion: component")
     if component in ("x", "y", "z"):
         return np.eye(3)["xyz".index(component)].astype(complex)
@@ -138,7 +140,8 @@ def hann(count: int) -> np.ndarray:
 
 
 def window_in_space(shape: Any, periodic: Sequence[bool]) -> np.ndarray:
-    """Hann's window along axes that are not periodic, (nz, ny, nx), for a shape (nx, ny, nz)."""
+    """Returns an array (nz, ny, nx): Hann's window along the axes that are not periodic. `shape`:
+    (nx, ny, nz)."""
     window = np.ones(tuple(shape[::-1]))
     for axis, closed in enumerate(periodic):
         if not closed and shape[axis] > 1:
@@ -191,11 +194,11 @@ def dispersion(spins: Any, dt: float, path: Any, *, labels: Sequence[str] | None
     normal to the mean direction of all spins, or to `about`, and right-handed with it. Right-handed
     motion about that direction, such as precession about a field, has w > 0, and its wave
     exp(i (k.r - w t)) runs along k. Left-handed motion appears at (-k, -w). Components "x", "y"
-    and "z" are real: they show both.
+    and "z" are real, so either motion appears at both (k, w) and (-k, -w).
 
     The time window is Hann's. The sum of S over w is |sum of (..) exp(-i k.r)|^2 divided by the
     number of sites, averaged over the frames with the squared window as weight. Frequencies are
-    angular, 2 pi / (frames dt) apart, up to pi / dt. Faster motion is aliased: its frequency
+    angular, 2 pi / (frames * dt) apart, up to pi / dt. Faster motion is aliased: its frequency
     appears shifted by a multiple of 2 pi / dt.
 
     Raises CayspinError for arrays and words that do not fit, fewer than four frames, and a path
@@ -247,8 +250,8 @@ def dispersion(spins: Any, dt: float, path: Any, *, labels: Sequence[str] | None
 
 
 class Average(NamedTuple):
-    """The mean of numbers over time, from average(). Each field is a number, or an array (...) of
-    values (time, ...)."""
+    """The mean of numbers over time, from average(). Each field is a number, or an array (...) if
+    the values are (time, ...)."""
 
     mean: Any  #: in the unit of the values
     error: Any  #: its standard error; NaN where the values are too few to tell
@@ -256,7 +259,8 @@ class Average(NamedTuple):
 
 
 def _block_error(values):
-    """The standard error of the mean, and the length of the blocks from which it is computed."""
+    """Returns the standard error of the mean, and the length of the blocks from which the error is
+    computed."""
     count, length, alone = len(values), 1, 0.0
     if count > 1 and (values == values[0]).all():
         return 0.0, 1
@@ -271,7 +275,8 @@ def _block_error(values):
 
 
 def average(values: Any, skip: int = 0) -> Average:
-    """The mean of `values` (time, ...) over time and its standard error, without the first `skip`.
+    """The mean over time of `values` (time, ...), without the first `skip` of them, and the
+    standard error of this mean.
 
     Successive values are correlated, so the error is that of means of blocks
     (Flyvbjerg and Petersen 1989). The length of blocks is doubled from 1 until it is B with

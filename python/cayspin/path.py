@@ -14,28 +14,28 @@ from cayspin.scene import Scene
 
 @dataclasses.dataclass(frozen=True)
 class MinimumEnergyPath:
-    """Result of path(). Energies are in the scene's unit, J in SI. Without a saddle, the values
-    of the saddle are None. `prefactor_*` and `langer_*` are those of
-    rate = prefactor T^((n - n_s) / 2) exp(-barrier / kT), with n and n_s the numbers of zero modes
-    of the state that is left and of the saddle."""
+    """Result of path(). Energies are in the scene's unit, J in SI. Without a saddle, the values of
+    the saddle are None. `prefactor_*` and `langer_*` are the prefactors in
+    rate = prefactor * T^((n - n_s) / 2) * exp(-barrier / kT), where n and n_s are the numbers of
+    zero modes of the state that is left and of the saddle."""
 
     spins: np.ndarray  #: (image, nz, ny, nx, 3), for a crystal (image, site, nz, ny, nx, 3)
     energy: np.ndarray  #: (image,), summed over sites
     distance: np.ndarray  #: (image,), radians along the great circles of all spins
     saddle: np.ndarray | None  #: spins of the highest saddle, (nz, ny, nx, 3) or with sites first
     saddle_energy: float | None  #: energy of the highest saddle, in the unit of `energy`
-    barrier_forward: float | None  #: saddle_energy minus the energy of the first image, in its unit
-    barrier_backward: float | None  #: saddle_energy minus the energy of the last image, in its unit
-    #: lowest curvature of that saddle, about 0 or less, energy / rad^2
+    barrier_forward: float | None  #: saddle_energy minus the energy of the first image
+    barrier_backward: float | None  #: saddle_energy minus the energy of the last image
+    #: lowest curvature of the highest saddle, about 0 or less, in energy / rad^2
     saddle_curvature: float | None
     saddles: np.ndarray  #: (saddle,), highest first: energy, curvature, next_curvature, image
     end: str  #: "converged", or why not
     converged: bool  #: whether the path and all of its saddles have converged
     evaluations: int  #: of the field of all sites
     prefactor_forward: float | None  #: with `rates`; in SI in 1/s with T in K
-    prefactor_backward: float | None  #: the same for the way back, in the same unit
+    prefactor_backward: float | None  #: for the way back, in the same unit
     langer_forward: float | None  #: of Langer's theory, with damping, in the same unit
-    langer_backward: float | None  #: the same for the way back, in the same unit
+    langer_backward: float | None  #: of Langer's theory, for the way back, in the same unit
     zero_modes: tuple[int, int, int] | None  #: with `rates`: of the start, the saddle and the end
 
 
@@ -43,7 +43,8 @@ _SADDLE = [("energy", float), ("curvature", float), ("next_curvature", float), (
 
 
 def _end(state, name, shape, cell_sites):
-    """The name of a file, or an array in the order of the library."""
+    """Returns an end of the path: the name of a file, or an array in the library's order of
+    sites."""
     if isinstance(state, (str, bytes, os.PathLike)):
         return arguments.file_name(state, f"path: {name}")
     spins = arguments.numbers(state, f"path: {name}")
@@ -64,10 +65,10 @@ def path(scene: Scene, start: np.ndarray | str | os.PathLike, end: np.ndarray | 
         found.barrier_forward, found.saddle
 
     `scene` needs no integrator. `start` and `end` are arrays in the shape of Simulation.spins, or
-    files as initial.file takes them: both are relaxed first. `images` is the number of images,
+    files as initial.file takes them. Both ends are relaxed first. `images` is the number of images,
     including both ends, from 3 to 1000. `torque` bounds max |m x H| of the ends and saddles, in the
     unit of H, T in SI. `evaluations` limits the evaluations of the field of all sites. `rates` adds
-    prefactors of rates, up to 4096 sites. `precision`, `space` and `threads` are those of
+    prefactors of rates, for at most 4096 sites. `precision`, `space` and `threads` are those of
     Simulation.
 
     If the search ends early, `converged` is False, and the result has what was found so far. Raises

@@ -17,8 +17,8 @@ _VECTORS = re.compile(r".*(sources\[\d+\]\.profile|axis|axes\[\d+\]|in_plane|nor
 
 
 def _without_arrays(thing, key, arrays):
-    """A value of a scene without its arrays of values per site, which are moved into `arrays` by
-    their keys."""
+    """Returns a value of a scene without its arrays of values per site, which are moved into
+    `arrays` by their keys and replaced by toml_text.ARRAY."""
     if isinstance(thing, np.ndarray) and thing.ndim in (4, 5) and thing.shape[-1] == 3 \
             and _VECTORS.fullmatch(key):
         thing = [thing[..., component] for component in range(3)]
@@ -33,8 +33,8 @@ def _without_arrays(thing, key, arrays):
 
 
 def _split(tables):
-    """Splits tables into those that text can hold, the initial spins, functions of the field, and
-    arrays of values per site."""
+    """Splits tables, and returns what text can hold, the initial spins, the functions of the field,
+    and the arrays of values per site."""
     tables = {name: table for name, table in tables.items() if table is not None}
     spins, own = None, {}
     initial = tables.get("initial")
@@ -54,8 +54,8 @@ def _split(tables):
 
 
 def _text_without_applied(scene, path):
-    """The text of a scene without its field.applied, which a function replaces; None if it has
-    none."""
+    """Returns the text of a scene without its field.applied, which a function replaces. Returns
+    None if the scene has no field.applied."""
     try:
         tables = toml.loads(scene.text)
     except ImportError as error:
@@ -66,14 +66,14 @@ def _text_without_applied(scene, path):
 
 
 def _as_planes(spins):
-    """An array of initial spins in the library's order."""
+    """Returns an array of initial spins in the library's order of sites."""
     if spins is None or spins.ndim == 4:
         return spins
     return spins[0] if len(spins) == 1 else sites.by_plane(spins, len(spins))
 
 
 def _flat(arrays):
-    """Values per site in the library's order."""
+    """Returns flat arrays of values per site in the library's order of sites."""
     return {key: np.ascontiguousarray(_as_planes(array[..., None]), np.float64).ravel()
             for key, array in arrays.items()}
 
@@ -114,8 +114,8 @@ class Scene:
     SI. `field["nonlocal"]` may be a function of (spins, t) that returns H of all sites in the shape
     of the spins, in SI also in T. It is called with a copy of the spins whenever a step or an
     energy needs the field. H has to be linear in the spins, and with the moments mu the matrix of
-    mu H has to be symmetric, so that its energy is -sum mu m.H / 2. H may depend on t, so the energy
-    guard is off, and the steps of adaptive methods are at most dt.
+    mu H has to be symmetric, so that the energy of this field is -sum mu m.H / 2. H may depend on t,
+    so the energy guard is off, and the steps of adaptive methods are at most dt.
 
     Raises SceneError with one line that names the key, what is wrong and what is accepted.
     """
@@ -134,11 +134,11 @@ class Scene:
     @classmethod
     def from_file(cls, path: str | os.PathLike, **overrides: Any) -> Scene:
         """Reads a scene from the TOML file `path`, with keys changed by `overrides`, as in
-        from_file("film.toml", integrator={"dt": 0.1}). Overrides are tables as in Scene(); one of
-        `initial` replaces the whole table, and may be an array. A function as field.applied takes
-        the place of the file's.
+        from_file("film.toml", integrator={"dt": 0.1}). Overrides are tables as in Scene(). An
+        override of `initial` replaces the whole table, and may be an array. A function for
+        field.applied replaces the file's field.applied.
 
-        Raises SceneError with file and line for what is wrong in it.
+        Raises SceneError, with file and line, for errors in the file, and for wrong overrides.
         """
         typed, spins, own, arrays = _split(overrides)
         self = cls.__new__(cls)
@@ -174,7 +174,8 @@ class Scene:
 
     def at_sites(self, expression: str) -> np.ndarray:
         """The values of an `expression` at the sites, (nz, ny, nx), for a crystal with several
-        sites in a cell (site, nz, ny, nx): at_sites("grain(20, 1)") numbers the grains.
+        sites in a cell (site, nz, ny, nx): at_sites("grain(20, 1)") gives the number of each site's
+        grain.
 
         Raises CayspinError for an invalid expression.
         """
@@ -189,7 +190,8 @@ class Scene:
         return changed
 
     def _changes(self, tables):
-        """Tables and dotted keys without their arrays of values per site, and those arrays."""
+        """Returns tables and dotted keys without their arrays of values per site, and these
+        arrays."""
         def refuse_functions(thing, key):
             if callable(thing):
                 raise _cayspin.SceneError(f"{key}: a function; accepted: numbers and expressions")

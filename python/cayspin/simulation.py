@@ -24,16 +24,16 @@ class Simulation:
     """A simulation of a `scene`: its spins, which step forward in time.
 
     `precision` is "double" or "single", `space` an execution space that was compiled in (default:
-    that of Kokkos), `threads` the number of its threads, which the first simulation of a process
-    decides.
+    that of Kokkos), `threads` the number of threads of the space, which the first simulation of a
+    process decides.
 
-    `restart` names a file of save(), or the trajectory of a run: the simulation continues from
+    `restart` names a file of save(), or the trajectory of a run. The simulation continues from
     there, bit-identical to an uninterrupted run. The lattice in the file has to be the scene's; a
     warning names other differences.
 
-    While it steps, other Python threads run. Ctrl-C stops it between two steps with
-    KeyboardInterrupt, and it can continue from there. N calls of step() give the same bits as one
-    step(N), and as `cayspin run`.
+    While a simulation steps, other Python threads run. Ctrl-C stops the simulation between two
+    steps with KeyboardInterrupt, and it can continue from there. N calls of step() give bitwise the
+    same results as one step(N), and as `cayspin run`.
 
     Lengths, times, fields and energies are in the units of the scene: reduced ones, or with
     units = "SI" m, s, T and J.
@@ -83,8 +83,9 @@ class Simulation:
         """Steps to time `until`, in s in SI, or to the scene's end, as `cayspin run` does.
 
         Frames go into the HDF5 file `output`, or into the scene's output.file; output=False writes
-        none. `overwrite` replaces an existing file. The run ends early if the scene's until_torque
-        or an observer says so. If an observer changes dt, the run still ends at the same time.
+        none. `overwrite` replaces an existing file. The run ends early if the torque falls below
+        the scene's until_torque, or if an observer returns True. If an observer changes dt, the run
+        still ends at the same time.
 
         Raises NumbersFailed and SceneError as step() does. Raises CayspinError for a time that has
         passed or is not a whole number of steps, for a scene without end, and for a file that
@@ -113,7 +114,7 @@ class Simulation:
             self._advance(end, self._scene._scene.guard_period, True, until)
             return
         file = arguments.file_name(output, "run: output")
-        # An observer may move the end of the run, so _advance() decides when it is reached.
+        # An observer may move the run's end, so _advance(), not the recorder, determines it.
         try:
             recorder = _cayspin.Recorder(self._run, _LAST_STEP, file, overwrite)
         except _cayspin.CayspinError as error:
@@ -136,12 +137,12 @@ class Simulation:
               keep_saddles: bool = False) -> Minimum:
         """Moves the spins to a minimum of the energy, without steps in time, as `cayspin relax`
         does. The search ends where max |m x H| is below `torque`, in the unit of H, T in SI, or
-        after about `evaluations` of the field of all sites.
+        after about `evaluations` evaluations of the field of all sites.
 
         `applied`, three numbers in the unit of H, replaces the scene's field.applied. A hysteresis
         loop is [sim.relax(applied=h) and sim.magnetization() for h in fields]: each search starts
-        from the state before. Without `applied`, H is that of the current time. Time and steps do
-        not change. With `keep_saddles` the search may end at a saddle.
+        from the result of the one before it. Without `applied`, H is that of the current time. Time
+        and steps do not change. With `keep_saddles` the search may end at a saddle.
 
         The scene needs no integrator. After Ctrl-C the spins hold the last state of the search.
 
@@ -161,15 +162,16 @@ class Simulation:
 
     def modes(self, count: int = 8, tolerance: float = 1e-9,
               evaluations: int = 100000) -> Modes:
-        """Finds the `count` slowest normal modes, at most 128, about the spins. The spins have to
-        be in equilibrium: call relax() first. In a mode they move by the real part of
-        shape e^((i w - decay) t), with w the angular frequency, 2 pi frequency in SI.
+        """Finds the `count` slowest normal modes, at most 128, of motion about the present spins.
+        The spins have to be in equilibrium: call relax() first. In a mode, the spins move by the
+        real part of shape * exp((i w - decay) * t), where w is the angular frequency: `frequency`
+        in reduced units, 2 pi * `frequency` in SI.
 
         A scene with [torque] may have at most 1024 sites; first call run() until the spins are at
         rest under the current. A mode with a negative decay grows.
 
         `tolerance` is the relative error of the shapes; frequencies are more accurate. The search
-        ends after about `evaluations` of the field of all sites.
+        ends after about `evaluations` evaluations of the field of all sites.
 
         Raises CayspinError for other arguments, SceneError for rigid bodies, temperatures and spins
         that neither precess nor are damped, NumbersFailed for spins that a current keeps moving.
@@ -187,25 +189,25 @@ class Simulation:
                      energy_unit if is_si else None)
 
     def set(self, keys: str | dict[str, Any], value: Any = None) -> None:
-        """Changes keys of the scene. Spins, time and steps are kept. `keys` is one
-        key with its `value`, or a dict of keys or tables:
+        """Changes keys of the scene. Spins, time and steps are kept. `keys` is one key with its
+        `value`, or a dict of keys or tables:
 
             sim.set("field.applied", [0.1, 0, 0])
             sim.set({"system.damping": 0.02, "integrator.dt": 0.01})
             sim.set({"integrator": {"method": "tsit5", "tolerance": 1e-6, "end": 50}})
 
-        Units are the scene's, and values per site may be arrays (nz, ny, nx).
+        Values are in the units of the scene. Values per site may be arrays (nz, ny, nx).
 
         Keys are changed as by a table [[stage]] of a scene, with the same rules. The value of a
         key, also if it is a dict, takes the place of the old one as a whole:
         {"field.dmi": {"bulk": 0.1}} leaves no other key of the old DMI, while "field.dmi.bulk"
         changes only that key. A table such as "integrator" keeps the keys that are not given, but
-        integrator.method starts a new [integrator]. Its end or steps are counted from now. If the
-        keys do not include an integrator, run() takes the scene's duration again. Methods that
+        integrator.method starts a new [integrator]. A new `end` or `steps` is counted from now. If
+        no key of [integrator] is given, run() runs for the scene's duration again. Methods that
         remember earlier steps start afresh.
 
         Raises SceneError for keys that cannot change, such as those of lattice, and for wrong
-        values, CayspinError for other arguments; nothing is changed then.
+        values, CayspinError for other arguments. In both cases, nothing is changed.
         """
         changes = {arguments.word(keys, "set"): value} if isinstance(keys, str) else keys
         if not isinstance(changes, dict):
@@ -223,9 +225,9 @@ class Simulation:
 
     def save(self, checkpoint: str | os.PathLike) -> None:
         """Stores in the file `checkpoint` all that Simulation(scene, restart=checkpoint) needs to
-        continue with the same bits. A file of that name is replaced as a whole.
+        continue bit-identically. An existing file of that name is replaced as a whole.
 
-        Raises CayspinError where it cannot be written.
+        Raises CayspinError if the file cannot be written.
         """
         self._run.save(arguments.file_name(checkpoint, "save"))
 
@@ -255,7 +257,7 @@ class Simulation:
 
     def observe(self, every: int, f: Callable[[Simulation], Any]) -> None:
         """Calls the function `f` with this simulation after each step whose number is a multiple of
-        `every`. If it returns True, the current step(n) or run() ends.
+        `every`. If `f` returns True, the current step(n) or run() ends.
 
         Raises CayspinError for an `every` below 1, and if `f` is not a function.
         """
@@ -284,9 +286,9 @@ class Simulation:
 
     @property
     def spins(self) -> np.ndarray:
-        """The spins now, (nz, ny, nx, 3), for a crystal with several sites in a cell
-        (site, nz, ny, nx, 3): on a host a read-only view of the library's memory, on a device a
-        copy.
+        """The present spins, (nz, ny, nx, 3), or for a crystal with several sites in a cell
+        (site, nz, ny, nx, 3). On a host they are a read-only view of the library's memory, on a
+        device a copy.
 
         A view never changes: while you hold one, the next step moves the spins to other memory.
         Assigning to `spins` copies and normalises any array that broadcasts to the shape, and
@@ -320,10 +322,10 @@ class Simulation:
             raise _cayspin.CayspinError(f"plot: {error}") from None
 
     def field(self) -> np.ndarray:
-        """The effective field H of every site now, (nz, ny, nx, 3), for a crystal with several
-        sites in a cell (site, nz, ny, nx, 3), in T in SI; read-only. It includes torques of
+        """The present effective field H of every site, (nz, ny, nx, 3), or for a crystal with
+        several sites in a cell (site, nz, ny, nx, 3), in T in SI; read-only. H includes torques of
         currents, as the field that would turn the spins in the same way, and is 0 at frozen sites.
-        At vacant sites it means nothing and need not be 0. Raises CayspinError for rigid bodies.
+        At vacant sites H means nothing and need not be 0. Raises CayspinError for rigid bodies.
         """
         return sites.by_site(self._run.field(), self._scene._scene.cell_sites)
 
@@ -343,7 +345,7 @@ class Simulation:
         return np.array(self._run.sample()[2])
 
     def sublattice_magnetization(self) -> np.ndarray:
-        """The mean spin of each site of the cell, (site, 3), over the sites that have a spin."""
+        """The mean spin of each site of the cell, (site, 3), over cells where it has a spin."""
         spins = self.spins
         spins = spins.reshape(-1, *spins.shape[-4:])
         count = spins.any(-1).sum((1, 2, 3))
@@ -385,12 +387,12 @@ class Simulation:
 
     @property
     def space(self) -> str:
-        """The execution space, as in "openmp"."""
+        """The execution space, such as "openmp"."""
         return self._run.space
 
     @property
     def threads(self) -> int:
-        """Threads of the space; 1 for a device."""
+        """The number of threads of the space, which is 1 for a device."""
         return self._run.threads
 
     def __repr__(self):

@@ -11,7 +11,8 @@ from cayspin import texture
 
 
 def texture_of(simulation: Any) -> texture.Texture:
-    """The spins of a Simulation with their places in the crystal."""
+    """Returns the present spins of a Simulation to draw. Includes the positions of the sites if
+    these do not form a rectangular grid."""
     scene, spins = simulation.scene, simulation.spins
     _, boundary, si = texture.lattice_of(scene.text)
     cell, places = scene.cell, None

@@ -60,13 +60,15 @@ class _Waves:
         return (there * self.window**2).sum()
 
     def amplitudes(self, vectors):
-        """sum of v exp(-i k.r), (k, 3)."""
+        """Returns the Fourier amplitudes of vectors v on the sites r, (k, 3): the sum over sites of
+        window * v * exp(-i k.r)."""
         vectors = vectors.reshape(self.sites, *self.grid, 3) * self.window[..., None]
         found = np.fft.fftn(vectors, axes=(1, 2, 3))[(slice(None), *self.of_fft)]
         return np.einsum("sk,skc->kc", self.phases, found)
 
     def products(self, word, amplitude):
-        """The product of amplitudes (..., k, 3) that belongs to a component, (..., k)."""
+        """Returns the product of amplitudes (..., k, 3) for a component such as "xy" or "total",
+        (..., k)."""
         if word in _PAIRS:
             a, b = ("xyz".index(letter) for letter in word)
             if a == b:
@@ -94,7 +96,7 @@ def _words(name, components):
 
 
 def _runs(spins):
-    """The runs to average over, after checking that they have the same shape."""
+    """Returns the runs to average over as a list. Raises CayspinError if their shapes differ."""
     runs = list(spins) if isinstance(spins, (list, tuple)) else [spins]
     if not runs:
         raise CayspinError("structure_factor: no runs; accepted: one or more arrays of frames")
@@ -146,7 +148,7 @@ def structure_factor(spins: Any, dt: float, *, components: str | Sequence[str] =
     in a cell interfere differently in each zone, and the sum rule holds for the mean over enough of
     them: positions times zones have to be whole numbers, as with (2, 2, 2) for bcc.
 
-    Frequencies are angular, 2 pi / (frames dt) apart, up to pi / dt. Faster motion is aliased.
+    Frequencies are angular, 2 pi / (frames * dt) apart, up to pi / dt. Faster motion is aliased.
 
     Raises CayspinError for arrays, words and numbers that do not fit, and fewer than four frames.
     """
@@ -189,7 +191,7 @@ def structure_factor(spins: Any, dt: float, *, components: str | Sequence[str] =
 
 
 class _FileOfModes:
-    """Modes from a file of `cayspin modes`, in its units."""
+    """Modes from a file of `cayspin modes`, in the units of the file."""
 
     def __init__(self, name, path, moments):
         import h5py
@@ -253,22 +255,22 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
     be compared with a run. `temperature` is that of thermal.temperature, in K in SI.
     `frequency`: the frequencies of S, (w,), angular and rising, as those of structure_factor().
 
-    Each mode has the mean energy k T, which for a deviation Re(c v exp(i w_n t)) is
+    The mean energy of each mode is k_B T. A deviation Re(c v exp(i w_n t)) has the energy
     |c|^2 w_n Q / 4, with Q = sum of (mu / g) i m.(v* x v). With
     v(k) = sum of v exp(-i k.r) / sqrt(N), the mode contributes
 
-        S_ab(k, w) = k T / (w_n Q) (u_a(k) u_b(k)* L(w - w_n) + v_a(k) v_b(k)* L(w + w_n))
+        S_ab(k, w) = k_B T / (w_n Q) (u_a(k) u_b(k)* L(w - w_n) + v_a(k) v_b(k)* L(w + w_n))
 
     where u(k) is computed from v* in place of v, and L is a Lorentzian of area 1 whose half width
     at half maximum is the decay of the mode plus `width`. `integrated` has the areas of all lines.
-    They are exact in linear theory without damping and for circular precession, otherwise only for
-    small damping. The elastic line of the state itself and longitudinal fluctuations are not
-    included.
+    In linear theory, these areas are exact without damping and for circular precession; otherwise
+    they hold for small damping. The elastic line of the state itself and longitudinal fluctuations
+    are not included.
 
     `moments`: mu / g of each site in reduced units, from lattice.moments and lattice.gyromagnetic,
-    an array that broadcasts to the spins without their last axis. Without it, mu / g is 1, or the
-    number of the scene if `modes` is a file. `components`, `cell`, `positions`, `periodic` and
-    `zones` are those of structure_factor(); if `modes` is a file, the lattice is the scene's by
+    an array that broadcasts to the spins without their last axis. Without `moments`, mu / g is 1,
+    or the number in the scene if `modes` is a file. `components`, `cell`, `positions`, `periodic`
+    and `zones` are those of structure_factor(); if `modes` is a file, the lattice is the scene's by
     default.
 
     Raises CayspinError for a mode that does not oscillate or lowers the energy, a file of bands or

@@ -15,7 +15,7 @@ _WHOLE = ("i", "j", "da", "db", "dc")
 
 
 def _spirit_table(file):
-    """The header and the rows below it, each a line number with its words."""
+    """Returns the header and the rows below it, each as the number of its line and its words."""
     for n, (line, words) in enumerate(file.rows):
         if words[0] == "n_interaction_pairs":
             count = file.whole(line, words[1] if len(words) > 1 else "", "n_interaction_pairs")
@@ -40,10 +40,12 @@ def read_spirit_pairs(path: str | os.PathLike, *, unit: float | None = None) -> 
     `path` has a header that names columns, in any order: i, j, da, db, dc, Jij, Dijx, Dijy, Dijz
     and Dij. With Dij, the length of D, the vector gives only its direction. Other columns are not
     read. Numbers are in meV, and D is Cartesian. E = -J m.m' - D.(m x m') with each pair once, as
-    in a scene. A pair that is listed twice, or from both ends, is the sum of both, as in Spirit.
+    in a scene. A pair that is listed twice, or from both ends, gets the sum of both entries, as in
+    Spirit.
 
-    Energies are { meV = .. } for units = "SI"; with `unit`, in meV, they are numbers divided by it,
-    for a scene in reduced units. Sites i and j count as in lattice.basis, from 0.
+    Energies are { meV = .. }, for a scene with units = "SI". With `unit`, an energy in meV, they
+    are numbers in units of `unit`, for a scene in reduced units. Sites i and j count as in
+    lattice.basis, from 0.
 
     Raises CayspinError, with file and line, for a file without such a table, and for columns Dija,
     Dijb and Dijc, which mean something else in Spirit's documentation than in its source.

@@ -21,7 +21,7 @@ def _key(name):
 
 
 def value(thing, key):
-    """One TOML value on one line. `key` names it in the message of a SceneError."""
+    """Returns a value as TOML text on one line. `key`: its name in the message of a SceneError."""
     if isinstance(thing, (np.generic, np.ndarray)):
         thing = thing.tolist()
     if isinstance(thing, np.floating):  # with more digits than Python's
@@ -58,8 +58,9 @@ def document(tables):
 
 
 def overrides(tables):
-    """Tables and dotted keys as key.path=VALUE. The keys of a table are changed one by one, except
-    those of [initial]; a dict under a dotted key replaces that table."""
+    """Returns tables and dotted keys as a list of key.path=VALUE. The keys of a table are changed
+    one by one, but [initial] is replaced as a whole, and so is a table whose dotted key has a
+    dict."""
     assignments = []
     for name, entry in tables.items():
         if isinstance(entry, dict) and name != "initial" and "." not in str(name):

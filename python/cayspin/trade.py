@@ -20,7 +20,8 @@ from cayspin.texture import toml
 
 
 def program() -> str:
-    """The program that CAYSPIN_PROGRAM names, that of this package, or the one on the PATH."""
+    """Returns the program that CAYSPIN_PROGRAM names, that of this package, or the one on the
+    PATH."""
     packaged = pathlib.Path(__file__).resolve().parent / "bin" / "cayspin"
     found = None if packaged.exists() else shutil.which("cayspin")
     return os.environ.get("CAYSPIN_PROGRAM") or found or str(packaged)
@@ -55,8 +56,8 @@ def _input_files(command: str, scene: Scene) -> list[str]:
 
 def _as_of_a_call(command: str, message: str, file: str, written: bool,
                   changed: list[str]) -> str:
-    """A message of the program, rewritten for the caller of the function: without options of the
-    command line, and without the file that was written for the call."""
+    """Returns a message of the program, rewritten for the caller of trade() or advise(): without
+    options of the command line, and without the file that was written for the call."""
     if written:
         message = re.sub(rf"^{re.escape(file)}:(\d+: )?", "", message).strip()
     for one in changed:
@@ -117,7 +118,7 @@ def _options(precision, space, threads):
 class Trade(list):
     """Result of trade(): a list of dicts, one for each run. pandas.DataFrame(trade) takes it.
 
-    - `method`, and `baseline`: whether it is one
+    - `method`, and `baseline`: whether the method is a baseline
     - `dt`, in the scene's unit, or `tolerance`, in radians
     - `error`: the largest distance of any spin, dimensionless
     - `seconds` of stepping, and `evaluations` of the field of all sites
@@ -127,7 +128,7 @@ class Trade(list):
     def __init__(self, answer: dict):
         super().__init__({"method": method["method"], "baseline": method["baseline"], **rung}
                          for method in answer["methods"] for rung in method["rungs"])
-        #: the time up to which errors hold, in the scene's unit
+        #: the time up to which the errors were measured, in the scene's unit
         self.horizon: float = answer["horizon"]
 
     def plot(self, axes: Any = None, cost: str = "seconds") -> Any:
@@ -169,17 +170,18 @@ class Advice:
     horizon: float  #: the time up to which the error is predicted, in the scene's unit
     units: str  #: of dt and horizon, the scene's: "reduced" or "SI"
     space: str  #: the execution space in which `seconds` holds
-    threads: int  #: the number of its threads
+    threads: int  #: the number of threads of the space
     scene: Scene  #: with the method and its steps: Simulation(advice.scene, advice.precision)
     others: list[dict]  #: method and seconds of the other methods, cheapest first
 
 
 def trade(scene: Scene, seconds: float = 10, precision: str | None = None,
           space: str | None = None, threads: int | None = None) -> Trade:
-    """Tries the methods that can run the `scene`, except a few that only show a formula, with finer
-    and finer steps, as `cayspin trade` does. After a run that takes longer than `seconds`, its
-    method is not tried with finer steps. This takes minutes. `precision`, `space` and `threads` are
-    those of Simulation; by default both precisions and the program's space and threads.
+    """Tries the methods that can run the `scene`, except a few that exist only to show a formula,
+    with finer and finer steps, as `cayspin trade` does. After a run that takes longer than
+    `seconds`, its method is not tried with finer steps. This takes minutes. `precision`, `space`
+    and `threads` are those of Simulation; by default both precisions and the program's space and
+    threads.
 
     Raises CayspinError for a scene that the program cannot run, such as one with functions or
     arrays.

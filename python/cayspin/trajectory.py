@@ -111,7 +111,7 @@ class Trajectory:
 
     def topological_charge(self, boundary: Sequence[str] | None = None) -> np.ndarray:
         """The topological charge of each plane, (frame, nz), for a crystal (frame, site, nz), as
-        cayspin.topological_charge() says. `boundary` is that of the scene by default.
+        cayspin.topological_charge() defines it. `boundary` is that of the scene by default.
 
         Raises CayspinError for an invalid `boundary`. Without `boundary`, raises it also before
         Python 3.11 if tomli is missing.
@@ -128,9 +128,9 @@ class Trajectory:
 
     def dispersion(self, path: Any, frames: slice = slice(None),
                    **options: Any) -> observables.Dispersion:
-        """S(k, w) of the `frames` of a slice, along a `path` of wave vectors; see
-        cayspin.dispersion(), which also has the other options. By default the boundaries, the cell
-        and the positions of its sites are those of the scene.
+        """S(k, w) of the frames that the slice `frames` selects, along a `path` of wave vectors;
+        see cayspin.dispersion(), which also has the other options. By default the boundaries, the
+        cell and the positions of its sites are those of the scene.
 
         Raises CayspinError as that function does, and for frames that are not equally spaced in
         time.
@@ -140,9 +140,9 @@ class Trajectory:
                                       **with_lattice(self.path, self.scene, options))
 
     def structure_factor(self, frames: slice = slice(None), **options: Any) -> StructureFactor:
-        """S(k, w) of the `frames` of a slice, at all wave vectors of the lattice; see
-        cayspin.structure_factor(), which also has the other options. By default the boundaries, the
-        cell and the positions of its sites are those of the scene.
+        """S(k, w) of the frames that the slice `frames` selects, at all wave vectors of the
+        lattice; see cayspin.structure_factor(), which also has the other options. By default the
+        boundaries, the cell and the positions of its sites are those of the scene.
 
         Raises CayspinError as that function does, and for frames that are not equally spaced in
         time.
@@ -155,8 +155,8 @@ class Trajectory:
              **options: Any) -> Any:
         """Draws the spins of a `frame` into matplotlib `axes` (default: new ones), which it
         returns: films and planes as colours with arrows, crystals by their sites, chains as lines.
-        `difference_to`: another frame, and |difference| is drawn. Frames count from 0, or from the
-        end if negative. Lengths are in the units of the scene.
+        `difference_to`: another frame; the |difference| of the spins is drawn. Frames count from 0,
+        or from the end if negative. Lengths are in the units of the scene.
 
         Options are those of texture.draw(): plane="z=0", quantity="charge", colors="safe", limit,
         key. Raises CayspinError for a frame, plane or option that does not exist.
@@ -236,7 +236,7 @@ class Trajectory:
 
 
 def open(path: str | os.PathLike) -> Trajectory | Ensemble:
-    """Opens the file `path` of a run, or of an ensemble. It needs h5py.
+    """Opens the file `path` of a run, or of an ensemble. Needs h5py.
 
     Raises CayspinError for a file that cannot be opened, or is neither.
     """

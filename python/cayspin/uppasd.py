@@ -14,7 +14,7 @@ from cayspin._cayspin import CayspinError
 from cayspin.bonds import File, as_float, couplings, reversed_bond, unit_of
 
 NEAR = 0.05  # largest distance from the end of a vector to its atom, in units of alat
-MOST_CELLS = 1e6  # in a vector or a position
+MOST_CELLS = 1e6  # largest number of cells in a vector or a position
 
 _TURN_X = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
 _TURN_Z = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]])
@@ -154,7 +154,8 @@ def _both_ends(file, cell, names, posfiletype, maptype, sym):
 
 
 def _once(file, both, sign):
-    """The bonds of _both_ends(), each only once, with the mean of its two ends."""
+    """Returns the bonds of _both_ends(), each only once, with the mean of the values at its two
+    ends."""
     once: dict = {}
     largest = max((np.abs(values).max() for _, values in both.values()), default=0)
     for key, (line, values) in both.items():
@@ -209,19 +210,19 @@ def read_uppasd(jfile: str | os.PathLike, *, posfile: str | os.PathLike | None =
 
     - `posfiletype`: "C" for Cartesian numbers, "D" for multiples of the cell's vectors
     - `maptype`: 1 for vectors between atoms, 2 for the cells between them
-    - `sym`: 0 for none, 1 cubic, 2 cubic in the plane, 3 hexagonal; it turns only J
+    - `sym`: 0 for none, 1 cubic, 2 cubic in the plane, 3 hexagonal; it is applied only to J
 
     As in UppASD, a line applies to all atoms with the types of its two sites.
 
     UppASD counts each bond in both orders, so J and D of the result are twice those of the files.
-    Each bond is in the result once, with the mean of its two ends. `dm_sign` is the sign of
-    D.(m x m') in UppASD's energy: -1 in its manual and up to version 6.0.2, 1 in its source of
-    August 2026.
+    Each bond is in the result once, with the mean of the values at its two ends. `dm_sign` is the
+    sign of D.(m x m') in UppASD's energy: -1 in its manual and up to version 6.0.2, 1 in its source
+    of August 2026.
 
-    Returns {"lattice": {"cell", "basis"}, "field": {"couplings"}} and, with `momfile`, "material":
-    {"mu_s"}. Energies are { mRy = .. } and moments { bohr_magnetons = .. } for units = "SI"; with
-    `unit`, in mRy, they are numbers divided by it, for a scene in reduced units, with
-    lattice.moments in Bohr magnetons.
+    Returns {"lattice": {"cell", "basis"}, "field": {"couplings"}} and, with `momfile`, also
+    "material": {"mu_s"}. Energies are { mRy = .. } and moments { bohr_magnetons = .. }, for a scene
+    with units = "SI". With `unit`, an energy in mRy, energies are numbers in units of `unit`, for a
+    scene in reduced units, and `momfile` gives lattice.moments in Bohr magnetons.
 
     Raises CayspinError, with file and line, for an invalid file, for alloys, for a bond with only
     one end or whose ends differ by more than 1e-4 of the largest number, and for a vector that ends

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Pictures of the files (docs/reference/file_format.md) and the measurements of cayspin."""
+"""Draws pictures of cayspin's files (docs/reference/file_format.md) and measurements."""
 
 import logging
 import pathlib

@@ -6,7 +6,8 @@ import statistics
 
 
 class Results:
-    """The cases in the JSON files of a folder, such as small, medium and one_thread."""
+    """The cases in the JSON files of a folder. Files have names such as small.json and
+    one_thread.json."""
 
     def __init__(self, folder):
         self.context = {}
@@ -45,13 +46,13 @@ class Results:
         return int(self.context[file]["threads"])
 
     def copy_rate(self, file, kind="stream copy, non-temporal"):
-        """Bytes per second, read and written."""
+        """Returns the bytes per second that a copy reads and writes."""
         return 1e9 * self.median(kind, "GB/s", file)
 
     def limit(self, case):
-        """Lower limit of the time of a step, in ns per spin, and what sets it: moving the numbers
-        to and from memory, or the arithmetic, measured with all fields in the second-level
-        cache."""
+        """Returns a lower limit of the time of a step, in ns per spin, and what sets it. That is
+        either "memory", moving the numbers to and from memory, or "arithmetic", measured with all
+        fields in the L2 cache and divided by the number of threads."""
         precision, method, _ = case.split("/")
         file = next(iter(self.files(case)), None)
         words = self.median(case, "words", file)

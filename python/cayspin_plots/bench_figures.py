@@ -21,7 +21,8 @@ def bytes_of(precision):
 
 
 def draw_caches(axis, context, precision):
-    """Marks the sizes at which the spins fill the cache of one core (L2) or the shared one (L3)."""
+    """Marks the sizes at which the spins fill the cache of one core (L2) or the shared cache
+    (L3)."""
     for name, key in (("L2", "l2_bytes"), ("L3", "l3_bytes")):
         spins = int(context.get(key, 0)) / (3 * bytes_of(precision))
         if spins > 0:
@@ -32,7 +33,8 @@ def draw_caches(axis, context, precision):
 
 
 def draw_memory_limit(axis, results, precision, method, color):
-    """Draws the limit for sizes beyond the caches, from the speed of memory at the largest size."""
+    """Draws the limit that the speed of memory sets beyond the caches, computed for the largest
+    size."""
     case = f"{precision}/{method}/{EDGES[-1]}"
     words = results.median(case, "words")
     if words:

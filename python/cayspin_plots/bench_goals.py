@@ -46,7 +46,7 @@ def ratio(above, below):
 
 
 def worst(text, values, goal, floor=None, at_most=False):
-    """The goal for the worst of {case: value}, whose case it names."""
+    """Returns the goal for the worst value of {case: value}. Its text names the case."""
     values = {case: value for case, value in values.items() if value is not None}
     if not values:
         return Goal(text, None, goal, floor, at_most)
@@ -60,8 +60,8 @@ def speedup(results, precision, method, size):
 
 
 def against_hand_written(results):
-    """Speed over that of hand-written loops: of each method beyond the caches, of the worst one in
-    cache."""
+    """Goals for a method's speed / the speed of the hand-written loop: for each method beyond the
+    caches, and for the worst method in cache."""
     for method, goal, floor in (("Heun tangent", 2.2, 1.9), ("RKMK4 tangent", 2.4, 2),
                                 ("Heun", 1.5, 1.3), ("RKMK4", 2, 1.6),
                                 ("Heun orthogonal", 1.5, 1.3), ("RKMK4 orthogonal", 1.8, 1.5)):
@@ -77,8 +77,8 @@ def against_hand_written(results):
 
 
 def against_probes(results):
-    """On one core, in the second-level cache: the time of a step over that of a step written out
-    for this scene (a probe)."""
+    """Goals for the time of a step / the time of a probe, which is a step written out for this
+    scene. Both run on one core, in the L2 cache."""
     for precision in PRECISIONS:
         for method in METHODS:
             case = f"{precision}/probe {method}/L2"
@@ -133,8 +133,8 @@ def few_spins(results):
 
 
 def per_evaluation(results):
-    """Time per evaluation of methods of high order and adaptive ones, over that of RKMK4 in the
-    same run."""
+    """Goals for methods of high order and adaptive methods: their time per evaluation / that of
+    RKMK4 in the same run."""
     def time(precision, method, size):
         return results.median(f"evaluations/{precision}/{method}/{size}", "ns/evaluation",
                               "evaluations")

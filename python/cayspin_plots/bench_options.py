@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Cost of options, and how much of it bytes and arithmetic explain."""
+"""Cost of options, and how much of that cost memory traffic and arithmetic explain."""
 
 SIZES = ("100", "32", "128")
 PLAIN = ("Euler", "Heun of bodies", "RKMK4 of bodies")
@@ -8,14 +8,15 @@ ALLOWED = 1.15
 
 
 def beside(method):
-    """The plain form of the same method; Euler for one that has none."""
+    """Returns the plain form of a method with options; Euler for a method that is plain itself."""
     base = method.split(",")[0]
     return base if base != method else "Euler"
 
 
 def predicted(results, method, size):
-    """The explained time of a step, in ns per spin: that of Results.limit(). Code on the host runs
-    after the kernels, on one thread, so its time is added to the limit of the plain method."""
+    """Returns the explained time of a step, in ns per spin. This is Results.limit(), except for
+    code on the host: that runs after the kernels, on one thread, so its time is added to the limit
+    of the plain method."""
     def in_cache(name):
         return results.median(f"options/{name}/L2", "ns/spin")
     bound = results.limit(f"options/{method}/{size}")

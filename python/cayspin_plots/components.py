@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The components of the spins along x over time, as images."""
+"""Images of the components of the spins, over time and position along x."""
 
 import numpy as np
 
@@ -33,6 +33,7 @@ def draw_components(axes, trajectory):
 
 
 def _limit(component):
-    """The largest magnitude; 1 if it is only rounding, which is not worth its own scale."""
+    """Returns the largest magnitude, or 1 if that is only round-off, which needs no scale of its
+    own."""
     largest = float(np.abs(component).max())
     return largest if largest > 1e-9 else 1.0

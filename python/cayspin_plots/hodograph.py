@@ -23,7 +23,8 @@ def project(points):
 
 
 def draw_sphere(axis, reach=1.0):
-    """A shaded unit sphere with circles of latitude and longitude; the page shows |x| <= reach."""
+    """Draws a shaded unit sphere with circles of latitude and longitude. The page shows
+    |x| <= reach."""
     ticks = np.linspace(-1, 1, 400)
     x, y = np.meshgrid(ticks, ticks)
     depth = np.sqrt(np.clip(1 - x**2 - y**2, 0, 1))
@@ -83,7 +84,7 @@ def draw_path(axis, path, color, linewidth=1.4, fade=True):
 
 
 def draw_ends(axis, path, color):
-    """An open circle at the start of the path, a full one at its end."""
+    """Draws an open circle at the start of the path, and a filled circle at its end."""
     page, _ = project(path[[0, -1]])
     axis.plot(*page[0], "o", markersize=6, markerfacecolor="white", markeredgecolor=INK, zorder=5)
     axis.plot(*page[1], "o", markersize=7, color=color, markeredgecolor="white", zorder=5)
@@ -95,7 +96,8 @@ def reach_of(path):
 
 
 def draw_hodograph(axis, path, color, reference=None, reach=None):
-    """The sphere with one path on it, or beside it, and a reference path under it."""
+    """Draws the sphere with a path on it (or beside it, if the spins leave the sphere), and a
+    reference path under that path."""
     draw_sphere(axis, reach or reach_of(path))
     if reference is not None:
         draw_path(axis, reference, INK, linewidth=0.8, fade=False)

@@ -79,7 +79,7 @@ def together(places, extent):
 
 
 def _draw_spectrum(file, axis):
-    """Each mode at its frequency and decay, with its number."""
+    """Draws each mode as a point at its frequency and decay, with its number."""
     si = file.attrs["units"] == "SI"
     scale = 1e-9 if si else 1
     frequency, decay = scale * file["frequency"][:], scale * file["decay"][:]

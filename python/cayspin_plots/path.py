@@ -34,8 +34,8 @@ def texture_of(file, image, before, texture):
 
 
 def _smooth(distance, energy):
-    """A piecewise cubic through the images. It is flat at the images that are extrema, and has no
-    other extrema."""
+    """Returns points of a piecewise cubic through the images. The curve is flat at the images that
+    are extrema, and has no other extrema."""
     step = np.diff(distance)
     rise = np.diff(energy) / step
     slope = np.zeros(len(energy))
@@ -60,7 +60,7 @@ def _has_pictures(file, texture):
 
 
 def _pictures(file):
-    """The images to draw: both ends, the saddles and some between."""
+    """The images to draw: both ends, the saddles and some images between."""
     last = len(file["spins"]) - 1
     chosen = [0, last]
     if "saddles" in file:

@@ -49,7 +49,7 @@ class Trajectory:
 
 @contextlib.contextmanager
 def opened(path, what):
-    """An HDF5 file; an error ends the program with one line."""
+    """Opens an HDF5 file for a `with`. An error ends the program with a one-line message."""
     try:
         require_file(path)
     except ValueError as error:
@@ -63,7 +63,8 @@ def opened(path, what):
 
 
 def _dataset(file, name, rank, columns=()):
-    """A dataset of numbers with `rank` extents, the last of them `columns` where it is given."""
+    """Returns a dataset of numbers with `rank` extents, the last of which are `columns`. Raises
+    ValueError for any other."""
     dataset = file[name]
     if (not isinstance(dataset, h5py.Dataset) or dataset.dtype.kind not in "fiu"
             or len(dataset.shape or ()) != rank or dataset.shape[rank - len(columns):] != columns):

@@ -17,7 +17,7 @@ def draw_energy(axis, trajectory):
 
 
 def draw_norm_defect(axis, trajectory, **line):
-    """max | |m| - 1 | over the sites, on a logarithmic axis."""
+    """Draws max | |m| - 1 | over the sites, on a logarithmic axis."""
     line.setdefault("color", BLUE)
     defect = np.maximum(trajectory.scalars.norm_defect, SMALLEST)
     axis.set_ylim(SMALLEST, max(1e-12, 30 * float(defect.max())))
@@ -27,7 +27,7 @@ def draw_norm_defect(axis, trajectory, **line):
 
 
 def draw_means(axis, x, m, *line, **look):
-    """The three components of means (n, 3)."""
+    """Draws the three components of means (n, 3)."""
     for component, name in enumerate("xyz"):
         axis.plot(x, m[:, component], *line, color=COMPONENTS[component],
                   label=f"$\\langle m_{name} \\rangle$", **look)

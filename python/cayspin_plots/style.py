@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""One look for every picture; nothing is shown on a display."""
+"""Gives all pictures one look. Nothing is shown on a display."""
 
 import contextlib
 import os
@@ -53,7 +53,7 @@ def _reason(error):
 
 @contextlib.contextmanager
 def replacing(path, what):
-    """The name of a new file, which takes the place of `path` once it is complete."""
+    """Yields the name of a new file, which replaces `path` at the end of the `with`."""
     target = pathlib.Path(os.path.realpath(path))
     is_device = target.exists() and not target.is_file()
     written = target if is_device else target.with_name(f".cayspin{os.getpid()}{target.suffix}")

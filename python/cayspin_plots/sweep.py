@@ -10,7 +10,7 @@ from .read import opened
 
 @dataclass
 class Sweep:
-    """Arrays have an axis for each key, in the order of `keys`."""
+    """A sweep. The arrays have one axis for each key, in the order of `keys`."""
 
     path: str
     keys: list  # of names
@@ -23,7 +23,7 @@ class Sweep:
 
 
 def read_sweep(path):
-    """Runs that failed or are still to do have done = False, and NaN as numbers."""
+    """Reads a sweep. Runs that failed or are still to do have done = False, and NaN as results."""
     with opened(path, "sweep") as file:
         if "sweep_format" not in file.attrs:
             raise ValueError("it has no sweep")

@@ -38,7 +38,7 @@ def draw(sweep, axes_keys):
     for row, fixed in zip(axes, rows):
         where = ", ".join(f"{sweep.keys[i]} = {sweep.values[i][v]}" for i, v in zip(others, fixed)
                           if len(sweep.values[i]) > 1)
-        # Reorders the axes of the arrays to those of the picture.
+        # Puts the keys of the picture's axes first among the axes of the arrays.
         order = axes_keys + others
         energy = sweep.energy.transpose(order)[(Ellipsis, *fixed)]
         m = sweep.magnetization.transpose(*order, len(order))[(Ellipsis, *fixed, slice(None))]
@@ -122,7 +122,7 @@ def _draw_maps(axes, sweep, keys, energy, m, where):
 
 
 def _edges(positions):
-    """Edges of cells around positions that may have any distances."""
+    """Returns the edges of cells around positions, which need not be equally spaced."""
     positions = np.asarray(positions, dtype=float)
     if len(positions) == 1:
         return positions[0] + np.array([-0.5, 0.5])

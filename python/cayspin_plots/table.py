@@ -7,7 +7,7 @@ import numpy as np
 
 
 def read_table(path, texts, numbers):
-    """Columns by name: texts as arrays of str, numbers as arrays of float."""
+    """Returns columns by name: `texts` as arrays of str, `numbers` as arrays of float."""
     try:
         with open(path, newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
@@ -21,7 +21,8 @@ def read_table(path, texts, numbers):
 
 
 def groups(table, *names):
-    """(values, part) for each combination of the texts `names`, in the order of the file."""
+    """Yields (values, part) for each combination of values in the columns `names`, in the order of
+    the file. `part` is the table with only the rows that have these values."""
     keys = list(zip(*(table[name] for name in names)))
     for key in dict.fromkeys(keys):
         chosen = np.array([other == key for other in keys])

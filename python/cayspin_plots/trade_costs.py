@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Cost of an error, from `cayspin trade --json`."""
+"""Cost of reaching an error, from `cayspin trade --json`."""
 
 import math
 import pathlib
@@ -39,15 +39,16 @@ def cost(method, key, error):
 
 
 def cheapest(methods, error, key="seconds"):
-    """(cost, method), or (infinity, None)."""
+    """Returns (cost, method) of the method that reaches the error at the lowest cost, or (infinity,
+    None) if none reaches it."""
     return min([(math.inf, None), *((cost(method, key, error), method) for method in methods)],
                key=lambda found: found[0])
 
 
 def gain(trade, error):
-    """Time of the best baseline over that of the best method that is neither a baseline nor
-    WITHOUT_GEOMETRY, in double precision, and that method. None if no such method reaches the
-    error; infinite if no baseline does."""
+    """Returns the time of the fastest baseline / the time of the fastest method that is neither a
+    baseline nor WITHOUT_GEOMETRY, and the name of that method. All are in double precision. Returns
+    None if no such method reaches the error. The ratio is infinite if no baseline reaches it."""
     double = [method for method in trade["methods"] if is_double(method)]
     here, winner = cheapest([method for method in double
                              if method["method"] not in (*BASELINES, WITHOUT_GEOMETRY)], error)

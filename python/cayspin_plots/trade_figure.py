@@ -78,7 +78,7 @@ def draw_methods(axis, trade, key, everything):
 
 
 def draw_front(axis, trade):
-    """The lower envelope, each piece in the colour of its method."""
+    """Draws the Pareto front as steps, each piece in the colour of its method."""
     front, _ = chosen(trade)
     rungs = sorted(((rung["seconds"], rung["error"], method) for method in trade["methods"]
                     for rung in method["rungs"] if rung["front"] and rung["error"] > 0),

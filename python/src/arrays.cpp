@@ -27,7 +27,8 @@ std::shared_ptr<nb::object> kept(nb::object object) {
 }
 
 // Returns false for a complex number (of which NumPy would take the real part) and for an array
-// with axes (even if NumPy would convert its one element). The cast refuses what is no number.
+// with axes (even if NumPy would convert its one element). The caller's cast to double refuses what
+// is no number.
 bool is_real_number(nb::object const& number) {
   if (PyFloat_CheckExact(number.ptr())) return true;
   if (PyComplex_Check(number.ptr())) return false;

@@ -20,7 +20,7 @@ namespace nb = nanobind;
 
 /// An array with four axes in host memory, with any strides. vectors_of() checks its type.
 using NumbersIn = nb::ndarray<nb::ro, nb::ndim<4>, nb::device::cpu>;
-/// One number for each site, x fastest.
+/// One number for each site. The index along x varies fastest.
 using SiteNumbersIn = nb::ndarray<nb::ro, double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using SiteNumbersOut = nb::ndarray<nb::numpy, double, nb::ndim<3>>;
 using NumbersOut = nb::ndarray<nb::numpy, nb::ro>;

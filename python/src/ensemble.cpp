@@ -94,7 +94,8 @@ NumbersOut spins(EnsembleRun& run) {
              : array_of_bytes<float>(bytes, shape);
 }
 
-// Returns energies, norm defects and magnetizations of the replicas.
+// Returns lists of the energies, the norm defects and the magnetizations of the replicas. The last
+// has three numbers for each replica, one after another.
 nb::tuple sample(EnsembleRun& run) {
   std::vector<io::Scalars> scalars;
   {

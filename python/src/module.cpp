@@ -90,7 +90,7 @@ Minimum relax(SceneRun& run, double torque, std::int64_t evaluations,
   return found;
 }
 
-// Returns frequencies, decays, errors, shapes, whether all have converged, and evaluations.
+// Returns frequencies, decays, errors, shapes, whether all modes have converged, and evaluations.
 nb::tuple modes(SceneRun& run, std::int64_t count, double tolerance, std::int64_t evaluations) {
   FoundModes found;
   {
@@ -151,7 +151,7 @@ nb::dict path(SceneRun const& run, StateIn const& start, StateIn const& end, std
   return as_dict(std::move(*found), run.scene().lattice.shape);
 }
 
-// Refuses a list of fields, which would take several runs.
+// Returns the scene. Refuses a list of fields, which would need several runs.
 io::Scene with_one_field(io::Scene scene) {
   if (!scene.field.applied_in_turn.empty())
     throw io::scene_error(scene, "field.applied",

@@ -28,7 +28,7 @@ struct cayspin_simulation {
 
 namespace {
 
-/// Returns the text of cayspin_last_error.
+/// Returns the calling thread's text for cayspin_last_error.
 std::string& last_error() {
   thread_local std::string message;
   return message;
@@ -104,7 +104,7 @@ SceneRun& run_of(cayspin_simulation const* simulation) {
   return *required(simulation, "simulation").run;
 }
 
-/// Calls work(run) while no other thread is in a call on the simulation.
+/// Calls work(run) while no other thread is in a call that `turn` serialises.
 template <class Work>
 cayspin_status in_turn(cayspin_simulation* simulation, Work const& work) {
   return guarded([&] {
@@ -266,7 +266,7 @@ cayspin_status cayspin_set_spins(cayspin_simulation* simulation, cayspin_array c
     vectors.is_double = precision_of(spins->precision) == Precision::double_precision;
     vectors.shape = {spins->shape[0], spins->shape[1], spins->shape[2]};
     std::ranges::copy(spins->strides, vectors.strides.begin());
-    // The source may be the borrowed spins, so they are kept until it has been read.
+    // `spins` may be the borrowed spins, so these are kept until `spins` has been read.
     run.set_spins(vectors);
     simulation->borrowed.reset();
   });

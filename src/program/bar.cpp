@@ -12,7 +12,8 @@
 namespace cayspin::program {
 namespace {
 
-// Returns zeros if no stream is a terminal.
+// Returns the size of the terminal that standard output or standard error is. Returns zeros if
+// neither is a terminal.
 winsize terminal_size() {
   winsize size{};
   for (int const stream : {STDOUT_FILENO, STDERR_FILENO})
@@ -49,7 +50,7 @@ int terminal_lines() {
 std::string fitted(std::string line) {
   auto const columns = terminal_size().ws_col;
   std::size_t const width = columns > 0 ? columns : 80;
-  // Counts columns, not bytes: continuation bytes of UTF-8 take none.
+  // Counts columns, not bytes: a continuation byte of UTF-8 takes no column.
   std::size_t column = 0;
   for (std::size_t byte = 0; byte < line.size(); ++byte) {
     if ((static_cast<unsigned char>(line[byte]) & 0xC0U) == 0x80U) continue;

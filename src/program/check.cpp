@@ -36,7 +36,8 @@ double bytes_per_site(Plan const& plan) {
   return static_cast<double>(plan.memory.simulation()) / static_cast<double>(plan.lattice.sites());
 }
 
-/// Returns the share of work that a step repeats on the requested ranks; nothing without --ranks.
+/// Returns the work that a step repeats on the requested ranks, relative to the work of a part.
+/// Returns nothing without --ranks.
 std::optional<double> repeated_on(CheckOptions const& options, io::Scene const& scene,
                                   Plan const& plan) {
   if (!options.ranks) return std::nullopt;
@@ -140,15 +141,15 @@ std::string output_text(io::Scene const& scene, Plan const& plan) {
   return text;
 }
 
-// The numbers of the start and of the inertia are checked up to this many sites, which takes only
-// seconds.
+// The spins of the start and the inertia tensors are read and checked only up to this many sites,
+// which takes only seconds.
 constexpr std::int64_t most_sites_checked = 10'000'000;
 
 bool is_start_checked(Plan const& plan) {
   return plan.lattice.sites() <= most_sites_checked && fits(plan);
 }
 
-// Checks the start and the inertia, and returns the spins.
+// Checks the start and, for rigid bodies, the inertia. Returns the spins of the start.
 std::vector<double> check_start(io::Scene const& scene) {
   if (scene.system.kind == io::SystemKind::rigid_body) io::inertia(scene);
   return io::initial_spins(scene);
@@ -159,7 +160,8 @@ void draw(io::Scene const& scene, std::vector<double> const& start) {
     fmt::print("{}", terminal_picture(scene.lattice, start));
 }
 
-// Returns why a run would not write the scene's output file now.
+// Returns why a run would now refuse to write the scene's output file. Returns nothing if the run
+// would write it.
 std::optional<std::string> refusal_of_output(io::Scene const& scene) {
   try {
     if (scene.output.file) output_file(scene, {});
@@ -201,8 +203,8 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
   print_output(scene, plan);
 }
 
-// Names only what is known beforehand. Other choices depend on the field, and are made when the
-// search starts.
+// Describes the search as far as it is known beforehand. The other choices depend on the field, and
+// are made when the search starts.
 std::string search_text(io::Scene const& scene) {
   return fmt::format(
       "L-BFGS {}, until max |m x H| is below the --torque of cayspin relax{}",
@@ -259,7 +261,8 @@ int check_in_stages(CheckOptions const& options, io::Scene const& scene) {
   return Status::done;
 }
 
-// Prints how many replicas there are, and returns the scene of the first, which is checked.
+// Returns the scene of the first replica, which the command then checks. Without --json, also
+// prints the number of replicas.
 io::Scene first_replica(CheckOptions const& options, io::Scene const& scene) {
   auto const& ensemble = scene.ensemble;
   std::vector<std::string> keys;

@@ -15,7 +15,7 @@
 namespace cayspin::program {
 namespace {
 
-// Returns a time in the scene's units; in SI followed by the reduced number.
+// Returns a time in the scene's units. In SI, the value in reduced units follows in parentheses.
 std::string both(io::Units const& units, double time, int digits) {
   auto const text = time_text(units, time, digits);
   return units.si ? fmt::format("{} ({:.{}g})", text, time, digits) : text;
@@ -48,7 +48,8 @@ std::string noise_text(io::Scene const& scene, Plan const& plan) {
       plan.noise_turn > Plan::most_noise ? ", which is too large" : "");
 }
 
-// Describes the features of fields and torques that depend on t.
+// Describes the shortest feature and the number of jumps of the fields and torques that depend on
+// t.
 std::string features_text(io::Scene const& scene, TimeFeatures const& features) {
   std::string text;
   if (auto const& shortest = features.shortest)
@@ -71,7 +72,7 @@ int order(io::Scene const& scene, Variant const& variant) {
   return has_slow_field(scene) ? order_with_multirate(scene, variant) : variant.order;
 }
 
-// With an expensive field, a step goes through the substeps of the method twice.
+// With an expensive field, each step takes all its substeps twice.
 std::optional<std::int64_t> evaluations(io::Scene const& scene, Variant const& variant) {
   if (!variant.evaluations || !has_slow_field(scene)) return variant.evaluations;
   return 2 * scene.integrator.substeps * *variant.evaluations;

@@ -17,19 +17,20 @@ namespace cayspin::program {
 
 using namespace simulation;
 
-/// Prints one line, with its name in a column.
+/// Prints one line: the name, padded to the width of a column, and the text.
 void print(std::string_view name, std::string_view text);
 
 inline bool has_stable_dt(Plan const& plan) { return std::isfinite(plan.stable_dt); }
-/// Returns the order of the method; with an expensive field, that of its combination with substeps.
+/// Returns the order of the method. With an expensive field, that is the order of the multirate
+/// method.
 int order(io::Scene const& scene, Variant const& variant);
 std::optional<std::int64_t> evaluations(io::Scene const& scene, Variant const& variant);
 
-/// Prints method, time, stable dt and cost; also features of fields in t, and noise, if there are
-/// any.
+/// Prints the method, the time, the stable dt and the cost. Also prints the features of fields that
+/// depend on t, and the thermal noise, if the scene has them.
 void print_steps(io::Scene const& scene, Plan const& plan);
 
-/// Returns a whole number, unless it is so large that the double is not exact.
+/// Returns `bytes` as an integer, or as a double from 2^53 on, where doubles skip integers.
 Json bytes_json(double bytes);
 
 struct CheckedStage {
@@ -39,7 +40,8 @@ struct CheckedStage {
 
 /// Plans all stages of a scene. Throws io::SceneError.
 std::vector<CheckedStage> plan_stages(io::Scene const& scene, Precision precision);
-/// Prints what each stage changes, and its steps.
+/// Prints for each stage where it starts, how its scene differs from that of the stage before, and
+/// its steps or its relaxation.
 void print_stages(std::vector<CheckedStage> const& stages);
 Json stages_json(std::vector<CheckedStage> const& stages);
 

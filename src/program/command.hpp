@@ -22,20 +22,20 @@ namespace cayspin::program {
 
 using namespace simulation;
 
-/// A command of the program: its option parser, and its action. `perform` returns the exit status,
-/// or throws.
+/// A command of the program: the parser of its options, and its action. `perform` returns the exit
+/// status, or throws.
 struct Command {
   CLI::App* parser;
   std::function<int(Ranks&)> perform;
 };
 
-/// Each of these functions adds the command of its name, with description and options. It is in the
-/// source file of that name (advise: trade.cpp).
+/// Each of these functions adds to the program the command that it is named after, with description
+/// and options. It is defined in the source file of the same name (add_advise: trade.cpp).
 using AddCommand = Command(CLI::App& program);
 AddCommand add_run, add_relax, add_modes, add_path, add_sweep, add_check, add_new, add_trade,
     add_advise, add_methods, add_info, add_export;
 
-/// All commands, in the order of --help.
+/// All commands that this program performs itself, in the order of --help.
 inline constexpr std::array all_commands{add_run,    add_relax,   add_modes, add_path,
                                          add_sweep,  add_check,   add_new,   add_trade,
                                          add_advise, add_methods, add_info,  add_export};
@@ -55,7 +55,8 @@ struct DeviceOptions : SceneOptions {
   bool overwrite = false;
 };
 
-/// Returns the precision "double" or "single". Throws UsageError for any other name.
+/// Returns the precision with this name, "double" or "single". Throws UsageError for any other
+/// name.
 Precision precision_named(std::string const& name);
 
 /// Adds SCENE, --set and --precision.
@@ -73,8 +74,8 @@ void add_scene_options(CLI::App& command, Options& options,
       ->type_name("NAME");
 }
 
-/// Adds an option that may be repeated only with an equal value. Throws UsageError for two
-/// different values.
+/// Adds an option that may be repeated only with the same value. If it is given two different
+/// values, parsing the command line throws UsageError.
 template <class Value>
 CLI::Option* add_one_value(CLI::App& command, std::string const& name, std::optional<Value>& value,
                            char const* description) {
@@ -104,21 +105,22 @@ void add_space_options(CLI::App& command, Options& options) {
 
 void add_device_options(CLI::App& command, DeviceOptions& options);
 
-/// Adds --ranks, "Y,Z".
+/// Adds --ranks, whose value has the form "Y,Z". `what`: its description in --help.
 void add_ranks_option(CLI::App& command, std::optional<std::string>& ranks, char const* what);
 
-/// Throws UsageError for the empty name of an output file.
+/// Throws UsageError if the name of the output file is empty.
 void require_name(std::filesystem::path const& output);
 
 inline constexpr std::string_view another_output = "another file for --output";
 
-/// Throws UsageError if a command that writes `output`, with a checkpoint beside it, would replace
-/// `file`, which it reads.
+/// Throws UsageError if `file`, which a command reads, is one of the files that the command writes:
+/// `output`, its .partial file, or the checkpoint beside it. `accepted`: what the message proposes.
 void require_not_written(std::filesystem::path const& file, std::filesystem::path const& output,
                          std::string_view accepted = another_output);
 
-/// Returns the file that a scene writes: `output`, or the scene's own. Throws io::SceneError if
-/// there is neither, and UsageError for an empty name and for a file that the scene reads.
+/// Returns the file that a command writes: `output` if it is given, otherwise the scene's
+/// output.file. Throws io::SceneError if there is neither. Throws UsageError if the name is empty,
+/// or if writing would replace a file that the scene reads.
 std::filesystem::path output_file(io::Scene const& scene,
                                   std::optional<std::filesystem::path> const& output);
 

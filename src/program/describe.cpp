@@ -196,7 +196,8 @@ std::string of_site_text(int site) {
   return site < 0 ? std::string() : fmt::format(", site {}", site);
 }
 
-// Returns a formula's constant in SI, as in " (K = 1e-21 J)"; empty in reduced units.
+// Returns a formula's constant in SI, such as " (K = 1e-21 J)", or an empty string for a scene in
+// reduced units.
 std::string in_si_text(io::Scene const& scene, char const* name, double constant) {
   if (!scene.material) return {};
   auto const& [x, y, z] = scene.lattice.spacing;

@@ -8,9 +8,9 @@
 
 namespace cayspin::program {
 
-/// Returns the status of a child that is about to end, as waitpid() gives it. If the child has not
-/// ended within `longest`, kills it. Returns nothing if there is no status, or if the system does
-/// not end the child within another 10 s.
+/// Waits for a child process that is about to end, and returns its status as waitpid() gives it. If
+/// the child has not ended within `longest`, kills it. Returns nothing if waitpid() fails, as it
+/// does when SIGCHLD is ignored, or if a killed child has not ended after another 10 s.
 std::optional<int> end_of_process(pid_t child,
                                   std::chrono::milliseconds longest = std::chrono::seconds(10));
 

@@ -19,7 +19,8 @@ inline std::string end_text(MinimizeEnd end, std::int64_t evaluations) {
   return std::string(to_string(end)) + " after " + count;
 }
 
-/// Returns why a search without a result ended. `end`: the word of its enumeration.
+/// Returns why a search ended without converging, such as "evaluation limit reached". `end`: the
+/// text of the enumerator, from to_string().
 inline std::string why_ended(std::string_view end) {
   return std::string(end) + (end == to_string(MinimizeEnd::evaluation_limit) ? " reached" : "");
 }

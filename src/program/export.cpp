@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 
 struct ExportOptions {
   fs::path file, folder;
-  std::optional<io::OvfFormat> format;  // default: the one that keeps the bits of /spins
-  std::string frames = "last";          // or "all", or a number from 0; -1: the last
+  std::optional<io::OvfFormat> format;  // default: the binary format in the precision of /spins
+  std::string frames = "last";          // or "all", or a frame counted from 0; -1: the last
   bool overwrite = false;
 };
 
@@ -58,8 +58,9 @@ bool is_rectangular(io::Lattice const& lattice) {
   return true;
 }
 
-// Returns a mesh with nodes in the middle of the lattice's cells. Ignores the start of the scene
-// and its values per site, which may have been in the memory of the program that ran it.
+// Returns a mesh with a node at the center of each cell of the lattice. The scene is read without
+// its start and without values per site, because a program that ran it may have passed these from
+// memory.
 io::OvfMesh mesh_of(io::TrajectoryInfo const& info) {
   auto const scene = io::parse_scene_to_run_or_relax(info.header.scene_text, info.path,
                                                      {"initial={uniform=[0,0,1]}"},

@@ -44,7 +44,8 @@ void print_frame(char const* name, io::TrajectoryInfo const& info, std::size_t f
   }
 }
 
-// Prints those numbers of the last sample that are not in its scalars.
+// Prints the optional values of the last sample: those of regions, the energies of terms, and the
+// shift.
 void print_more(io::TrajectoryInfo const& info) {
   constexpr std::int64_t most_regions = 16;
   auto const& more = info.header.more;

@@ -8,7 +8,7 @@
 namespace cayspin::program {
 namespace {
 
-// Retries for a while: a half-written part may soon be complete.
+// Retries for about a second, because a half-written part may soon be complete.
 io::TrajectoryInfo read_beside_writer(std::filesystem::path const& file) {
   for (int tries = 20;; --tries) {
     try {

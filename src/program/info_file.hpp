@@ -14,19 +14,20 @@
 
 namespace cayspin::program {
 
-/// Contents of a file for `cayspin info`: everything but its spins.
+/// Contents of a file for `cayspin info`: everything but the arrays with values per site.
 struct InfoFile {
   std::filesystem::path path;
-  std::optional<bool> being_written;  ///< by io::is_being_written, before the file was read
+  std::optional<bool> being_written;  ///< from io::is_being_written, before the file was read
   std::variant<io::TrajectoryInfo, io::SweepInfo, io::EnsembleInfo, io::Path, io::BandsContents>
       contents;
 };
 
-/// Reads a file of any kind, and a trajectory also while a run writes it. Throws std::runtime_error
-/// with one line.
+/// Reads a file that cayspin wrote, of any kind. A trajectory can be read while a run writes it.
+/// Throws std::runtime_error with a one-line message.
 InfoFile read_info_file(std::filesystem::path const& path);
 
-/// Returns the numbers of a file by the names of its attributes and datasets.
+/// Returns the contents as one object. Values that are in the file have the names of their
+/// attributes and datasets as keys.
 Json as_json(InfoFile const& file);
 
 }  // namespace cayspin::program

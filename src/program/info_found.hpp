@@ -9,12 +9,13 @@
 
 namespace cayspin::program {
 
-/// Returns the unit of the prefactor in one direction of a path with rates, with a leading space;
-/// empty in reduced units. The rate is prefactor * T^(n / 2) * exp(-barrier / kT), where the
-/// initial state has n more zero modes than the saddle.
+/// Returns the unit of the rate prefactor in one direction of a path, with a leading space, or an
+/// empty string in reduced units. In SI, `path` must have rates. The rate is
+///   prefactor * T^(n / 2) * exp(-barrier / kT),
+/// where the state that is left in this direction has n more zero modes than the saddle.
 std::string unit_of_prefactor(io::Path const& path, bool forward);
 
-/// Summarise the file of a path, or of modes or waves.
+/// Print a summary of a file of a path, or of a file of modes or spin waves.
 void print_path(std::filesystem::path const& file, io::Path const& path);
 void print_modes(std::filesystem::path const& file, io::BandsContents const& found);
 

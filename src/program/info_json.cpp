@@ -42,7 +42,7 @@ void add_cost(Json& object, io::RunCost const& cost) {
   object["step_seconds"] = has_ended ? Json(cost.step_seconds) : Json();
 }
 
-// Returns a table whose rows are stored one after another.
+// Returns `values`, in which the rows of a table are stored one after another, as a list of rows.
 template <class Value>
 Json in_rows(std::vector<Value> const& values, std::size_t rows) {
   auto table = Json::array();
@@ -125,8 +125,8 @@ void add_contents(Json& object, InfoFile const& file, io::TrajectoryInfo const& 
   object["resolved_scene"] = text_or_null(header.resolved_scene);
 }
 
-// The file does not name the units, so they are read from the scene. Their values are left out,
-// because they may differ from run to run.
+// Returns "SI" or "reduced". The file does not name the units, so they are read from the scene. The
+// SI values of the units are left out, because they may differ from run to run.
 Json units_of_sweep(InfoFile const& file, io::SweepInfo const& sweep) {
   io::Scene scene;
   scene.path = file.path;
@@ -144,7 +144,7 @@ void add_runs(Json& object, io::SweepInfo const& sweep) {
     for (auto const& run : sweep.runs) values.push_back(value_of(run));
     return values;
   };
-  // Runs that have not ended have no results.
+  // The status of a run that has not ended is null.
   auto const results = [&](auto const& value_of) {
     return column([&](io::SweptRun const& run) {
       return run.status == io::SweptRun::not_run ? Json() : Json(value_of(run));

@@ -19,10 +19,10 @@ using namespace simulation;
 
 namespace {
 
-/// Ages in seconds.
+/// Times of a file, in seconds.
 struct FileAge {
-  double idle = 0;     // since it was last written
-  double written = 0;  // from its creation until then; 0 if the file system does not know
+  double idle = 0;     // since the file was last written
+  double written = 0;  // from the file's creation to its last write; 0 if unknown
 };
 
 FileAge age_of(std::filesystem::path const& path) {
@@ -44,15 +44,15 @@ FileAge age_of(std::filesystem::path const& path) {
 #endif
 }
 
-/// Planned steps of the scene in a file. They are unknown if a newer version has written a scene
-/// that this one cannot read.
+/// Planned steps of the scene in a file. They are unknown if this version cannot read the scene,
+/// which a newer version may have written.
 struct PlannedSteps {
   std::int64_t steps = 0;    // 0 if unknown
   bool equal_steps = false;  // the method has no internal steps
 };
 
 PlannedSteps planned_steps(io::TrajectoryInfo const& info) {
-  if (info.cost.relaxed) return {};  // its frames are equilibria, not steps
+  if (info.cost.relaxed) return {};  // frames are equilibria, not steps
   auto const& header = info.header;
   io::Scene scene;
   scene.path = info.path;

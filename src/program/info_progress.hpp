@@ -11,14 +11,14 @@
 
 namespace cayspin::program {
 
-/// How far an incomplete run has got.
+/// Progress of an incomplete run.
 struct RunProgress {
-  std::optional<bool> is_running = {};            ///< unknown where files are not locked
-  double idle = 0;                                ///< seconds since the file was last written
-  std::optional<io::Sample> last = {};            ///< the last frame or sample
-  std::optional<std::int64_t> steps = {};         ///< planned
-  std::optional<double> seconds = {};             ///< so far, if the file has no cost yet
-  std::optional<double> updates_per_second = {};  ///< of spins
+  std::optional<bool> is_running = {};     ///< nothing if it cannot be found out
+  double idle = 0;                         ///< seconds since the file was last written
+  std::optional<io::Sample> last = {};     ///< the last frame or sample
+  std::optional<std::int64_t> steps = {};  ///< planned
+  std::optional<double> seconds = {};      ///< so far; nothing if the file has the run's cost
+  std::optional<double> updates_per_second = {};  ///< spin updates
   std::optional<double> seconds_left = {};
 };
 

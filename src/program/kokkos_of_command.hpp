@@ -8,8 +8,8 @@
 
 namespace cayspin::program {
 
-/// Scope in which a command uses Kokkos. The worker of a sweep has initialised Kokkos for all its
-/// commands, because a process can do so only once.
+/// Scope in which a command uses Kokkos. Initialises Kokkos unless this process is the worker of a
+/// sweep, which has done so for all its commands: a process can initialise Kokkos only once.
 class KokkosOfCommand {
  public:
   /// Throws like KokkosSession.

@@ -42,8 +42,8 @@ struct ModesCommand : DeviceOptions {
   double torque = 1e-6;
   ModesOptions search{.poll = [] { return interrupt_requested() ? Next::stop : Next::proceed; }};
   bool at_rest = false, hessian = false, quiet = false, json = false;
-  std::vector<std::string> corners;  // of a path of wave vectors
-  int points = 50;                   // from one corner to the next
+  std::vector<std::string> corners;  // wave vectors at the corners of a path
+  int points = 50;                   // wave vectors from one corner to the next
 };
 
 using WaveVector = std::array<double, 3>;
@@ -93,7 +93,8 @@ std::string as_start(std::filesystem::path const& file) {
                      io::toml_string(std::filesystem::absolute(file).string()));
 }
 
-// Checks the files of a scene. If the start is a trajectory file, errors name it as it was typed.
+// Checks the files of a scene. If a trajectory file was given in place of a scene file, errors name
+// it as it was typed.
 void check_files(io::Scene const& scene, std::filesystem::path const& file) {
   try {
     io::check_files(scene);
@@ -106,8 +107,8 @@ void check_files(io::Scene const& scene, std::filesystem::path const& file) {
   }
 }
 
-// Reads the scene. The scene of a trajectory file starts at the last frame, in the field of that
-// frame if that scene has a list of fields.
+// Reads the scene from a scene file or a trajectory file. The scene in a trajectory file starts at
+// the last frame. A scene with a list of fields gets the field of that frame.
 io::Scene scene_of(ModesCommand const& options) {
   if (!is_hdf5(options.scene)) {
     auto const scene =
@@ -185,8 +186,8 @@ class ModesOfScene {
   }
 
  private:
-  // Finds the equilibrium. With --at-rest, keeps the start, and warns if its torque is above
-  // --torque.
+  // Finds the equilibrium of the energy. With --at-rest, keeps the start. Then, if the scene has no
+  // [torque], warns of a start whose torque is above --torque.
   Minimum equilibrium(SceneField<Spins> const& field) {
     SceneMinimizer<Real, Space> minimizer(spins_);
     MinimizeOptions minimize{.torque = options_.torque / scene_.units.field,
@@ -209,7 +210,8 @@ class ModesOfScene {
     return found;
   }
 
-  // Finds the equilibrium under [torque], starting at an equilibrium of the energy.
+  // Finds the equilibrium under [torque], starting at the result of equilibrium(). `evaluations`:
+  // the number that equilibrium() took.
   Minimum equilibrium_with_torques(std::int64_t evaluations) {
     auto found =
         find_rest_with_torques<Real, Space>(exec_, scene_, spins_, options_.search,

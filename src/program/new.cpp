@@ -39,7 +39,7 @@ int write_new(NewOptions const& options) {
   auto const path = options.output.value_or(options.kind + ".toml");
   require_name(path);
   io::FileBeside file(path, options.overwrite);
-  // The names of the shipped scene and of its results are replaced by the new ones.
+  // Replaces the names of the shipped scene and of its results by the new names.
   auto const results = [](std::filesystem::path name) {
     return name.filename().replace_extension(".h5").string();
   };

@@ -30,7 +30,7 @@ struct PathCommandOptions : DeviceOptions {
   bool quiet = false, json = false;
 };
 
-/// The option that names the file of an end of the path.
+/// The option that names the file of one end of the path.
 struct EndOption {
   char const* name;
   std::filesystem::path const& file;
@@ -40,7 +40,8 @@ struct EndOption {
   }
 };
 
-/// Calls work(). If the file is at fault, the error names the option, and the file as it was typed.
+/// Calls work() and returns its result. If the option's file is at fault, throws UsageError with
+/// the option and the file as it was typed.
 template <class Work>
 auto for_option(EndOption const& option, Work const& work) {
   try {
@@ -56,7 +57,7 @@ auto for_option(EndOption const& option, Work const& work) {
   }
 }
 
-/// Returns the scene with one end as its start.
+/// Returns the scene with one end of the path as its start.
 io::Scene scene_from(PathCommandOptions const& options, EndOption const& option) {
   auto overrides = options.overrides;
   overrides.push_back(option.as_start());

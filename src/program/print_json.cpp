@@ -10,7 +10,7 @@ CLI::Option* add_json_option(CLI::App& command, bool& json) {
 }
 
 void print_json(Json const& object) {
-  // Names of files need not be valid UTF-8, and dump() would refuse invalid ones.
+  // File names need not be valid UTF-8, and by default dump() throws for invalid bytes.
   fmt::print("{}\n", object.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 

@@ -11,16 +11,16 @@
 // The option --json, which is the same for all commands that have it.
 namespace cayspin::program {
 
-/// Keeps the order of its keys.
+/// A JSON value. Objects keep their keys in the order in which they were added.
 using Json = nlohmann::ordered_json;
 
 /// Adds --json.
 CLI::Option* add_json_option(CLI::App& command, bool& json);
 
-/// Prints one line on standard output. Numbers that are not finite become null.
+/// Prints the object on standard output, in one line. Numbers that are not finite become null.
 void print_json(Json const& object);
 
-/// Adds `units`, and in SI the value of each reduced unit.
+/// Adds the key "units" and, in SI, the SI value of each reduced unit.
 void add_units(Json& object, io::Units const& units);
 
 /// Returns the value, or null if there is none.

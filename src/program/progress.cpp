@@ -109,7 +109,7 @@ void Progress::close(Summary const& summary, std::int64_t frames, std::string co
 
 TrialProgress::TrialProgress(bool quiet, bool lines)
     : quiet_(quiet), lines_(lines), terminal_(is_terminal(stderr)) {
-  if (terminal_) shown_ = {};  // shows the first one at once
+  if (terminal_) shown_ = {};  // the first call of show() draws at once
 }
 
 void TrialProgress::announce(double most_seconds) {

@@ -10,8 +10,8 @@
 
 namespace cayspin::program {
 
-/// Makes SIGINT and SIGTERM end a run after its step instead of killing it, and makes a write past
-/// the file size limit fail like any other write.
+/// Makes the first SIGINT or SIGTERM set interrupt_requested() instead of killing the program. A
+/// second signal kills the program. A write past the file size limit becomes an ordinary error.
 void catch_signals();
 
 /// Returns true once SIGINT or SIGTERM has arrived.
@@ -20,17 +20,18 @@ bool interrupt_requested();
 /// The reader of a run's progress messages.
 enum class Listener { nobody, user, program };
 
-/// Progress report of a run on standard output: a bar on a terminal, otherwise a line now and then.
-/// For a program, a line with the current and the last step several times a second.
+/// Progress report of a run on standard output. For a user it is a bar on a terminal, otherwise a
+/// line every few seconds. For a program it is a line with the numbers of the current step and of
+/// the last step, several times a second.
 class Progress {
  public:
   Progress(std::int64_t sites, Listener listener);
 
-  /// Call before a stage, or a run without stages, continues from step `first`. `end`: the last
-  /// step of the run. `equal_steps`: the method has no internal steps. `name`: of the stage, or
-  /// empty.
+  /// Call before each stage, or before a run without stages. `first`: the step at which it starts.
+  /// `end`: the last step of the whole run. `equal_steps`: true if the method has no internal
+  /// steps. `name`: the name of the stage, or empty.
   void begin_stage(std::int64_t first, std::int64_t end, bool equal_steps, std::string name);
-  /// Counts the steps of a stage.
+  /// Adds the steps of a stage to the total that close() reports.
   void add(Summary const& summary);
   /// Prints a line about the stage.
   void tell(std::string const& text);
@@ -49,18 +50,19 @@ class Progress {
   Listener listener_;
   bool terminal_, equal_steps_ = true;
   std::int64_t sites_, first_ = 0, steps_ = 0, next_ = 0;
-  std::int64_t method_steps_ = 0;  // internal ones, if the method has such
+  std::int64_t method_steps_ = 0;  // steps of all stages; internal steps, if the method has them
   std::string stage_;
   std::optional<Clock::time_point> begin_;  // start of the run
   Clock::time_point stage_begin_, shown_;
   bool on_line_ = false;
 };
 
-/// Progress report of trials, with an estimate of the time left: a bar if standard error is a
-/// terminal, so that results in a file or a pipe stay clean; otherwise lines on standard output.
+/// Progress report of trials, with an estimate of the time left. If standard error is a terminal,
+/// it is a bar there, so that results in a file or a pipe stay clean. Otherwise it is lines on
+/// standard output.
 class TrialProgress {
  public:
-  /// `lines`: standard output may be used.
+  /// `lines`: true if lines may be printed on standard output.
   TrialProgress(bool quiet, bool lines);
   /// Removes the bar.
   ~TrialProgress() { clear(); }
@@ -70,8 +72,8 @@ class TrialProgress {
   /// Call before the first trial. `most_seconds`: the longest time that all trials together may
   /// take.
   void announce(double most_seconds);
-  /// Call before each trial. `share`: the share of the work that is done; `what`: the name of the
-  /// trial.
+  /// Call before each trial. `share`: the fraction of the work that is done; `what`: the name of
+  /// the trial.
   void show(double share, std::string const& what);
   void clear();
 

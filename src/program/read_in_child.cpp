@@ -57,8 +57,8 @@ void lower_limit(decltype(RLIMIT_CPU) resource, rlim_t most, rlim_t spare = 0) {
   return pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
 }
 
-// Returns the processor time that a child may take, by the size of the file: a megabyte may
-// decompress to a gigabyte, but not to a hundred.
+// Returns the processor time in seconds that a child may take. It depends on the size of the file:
+// a megabyte may decompress to a gigabyte, but not to a hundred gigabytes.
 rlim_t most_seconds(std::filesystem::path const& path) {
   std::error_code error;
   auto const bytes = std::filesystem::file_size(path, error);
@@ -80,7 +80,7 @@ void settle_signals(pid_t parent) {
 }
 
 void limit_resources(std::filesystem::path const& path) {
-  std::ofstream("/proc/self/oom_score_adj") << "1000";  // killed first when memory runs out
+  std::ofstream("/proc/self/oom_score_adj") << "1000";  // it is killed first when memory runs out
 #ifndef CAYSPIN_SHADOW_MEMORY
   auto const room = static_cast<rlim_t>(io::available_memory()), used = address_space();
   if (room < RLIM_INFINITY - used) lower_limit(RLIMIT_AS, used + room);
@@ -107,7 +107,7 @@ std::string answer(std::function<void()> const& reading) {
     return std::string(1, out_of_memory);
   } catch (std::length_error const&) {
     return std::string(1, out_of_memory);
-  } catch (...) {  // the parent reads the file, too, and gets the exception
+  } catch (...) {  // the parent then reads the file and gets the same exception
   }
   return std::string(1, survived);
 }
@@ -124,13 +124,13 @@ std::string answer(std::function<void()> const& reading) {
   ::_exit(0);  // skips the parent's exit handlers
 }
 
-// Returns a limit far above what a disk or a busy machine needs: only a child that hangs reaches
-// it.
+// Returns a limit on the elapsed time. It is far above the time needed with a slow disk or on a
+// busy machine, so only a child that hangs reaches it.
 std::chrono::seconds longest_reading(std::filesystem::path const& path) {
   return std::chrono::seconds(60 + 10 * most_seconds(path));
 }
 
-// All output of a child, up to the deadline.
+// The output of a child up to the deadline. `is_late`: the child was still running then.
 struct Received {
   std::string text;
   bool is_late = false;
@@ -180,7 +180,7 @@ void try_in_child(std::filesystem::path const& path, std::function<void()> const
   pid_t const parent = ::getpid(), child = ::fork();
   if (child == 0) read_as_child(ends[1], parent, path, reading);
   ::close(ends[1]);
-  if (child < 0) {  // if no process can be started, the file is read without trial
+  if (child < 0) {  // if no process can be started, the file is read without a trial
     ::close(ends[0]);
     return;
   }

@@ -7,10 +7,10 @@
 
 namespace cayspin::program {
 
-/// Runs `reading` in a forked child. A damaged file can make HDF5 crash, loop, or ask for any
-/// amount of memory; then only the child suffers. Throws std::runtime_error with one line if that
-/// happens, or with the child's message if `reading` threw std::runtime_error. To be passed to
-/// io::set_trial().
+/// Runs `reading` in a forked child. A damaged file can make HDF5 crash, loop forever, or ask for
+/// any amount of memory; then only the child fails. Throws std::runtime_error with a one-line
+/// message if that happens, or with the child's message if `reading` threw std::runtime_error
+/// there. Pass this function to io::set_trial().
 void try_in_child(std::filesystem::path const& path, std::function<void()> const& reading);
 
 /// Like the above, but with a time limit of `longest` for the child, instead of one that depends on

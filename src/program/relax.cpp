@@ -34,7 +34,7 @@ namespace {
 
 struct RelaxOptions : DeviceOptions {
   double torque = 1e-6;
-  std::int64_t evaluations = 100000;  // for each field
+  std::int64_t evaluations = 100000;  // at most, for each field
   bool keep_saddles = false, quiet = false, json = false;
 };
 

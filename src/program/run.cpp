@@ -52,8 +52,9 @@ Restart restart_of(EarlierRun left, io::Stage const& stage, Plan const& plan,
   });
 }
 
-// Reads the scene as typed, and makes all checks that need nothing else. Throws UsageError if the
-// ranks were given different scenes, precisions, spaces, divisions or files.
+// Reads the scene as typed, which may have the method "auto", and checks its files. Throws
+// UsageError if the ranks were given different scenes, or different values of --precision,
+// --restart, --output, --space or --ranks.
 io::Scene typed_scene(RunOptions const& options, Ranks& ranks) {
   auto typed = ranks.together([&] {
     auto scene = io::with_shape_of_start(io::read_scene(options.scene, options.overrides));
@@ -100,7 +101,7 @@ Plan plan_of(io::Stage const& stage, Precision precision) {
                      : make_plan(stage.scene, precision);
 }
 
-// Returns all stages. Those before the one in which the run continues have no plan.
+// Returns all stages. A stage that the earlier run has completed has no plan.
 std::vector<PlannedStage> planned_stages(io::Scene const& scene, EarlierRun* left,
                                          RunOptions const& options, Ranks& ranks) {
   return ranks.together([&] {

@@ -43,7 +43,7 @@ std::string kept(io::EnsembleFile const& file, std::filesystem::path const& path
              : fmt::format("the last good frame is {} in {}", file.frames() - 1, path.string());
 }
 
-/// Runs an ensemble from frame to frame, and writes its file.
+/// Runs an ensemble, and writes its frames and samples into a file.
 class RecordedEnsemble {
  public:
   RecordedEnsemble(io::Scene const& scene, RunOptions const& options, std::string const& space)
@@ -53,7 +53,7 @@ class RecordedEnsemble {
         progress_(io::sites(scene) * scene.ensemble.replicas, options.listener),
         path_(output_file(scene, options.output)) {
     if (options.restart) continue_from(*options.restart);
-    // Throws if the scene sets refuse_unstable and the dt of any replica is too large.
+    // warning() throws if the scene sets refuse_unstable and the dt of any replica is too large.
     if (auto const warning = run_.warning()) fmt::print(stderr, "warning: {}\n", *warning);
     file_.emplace(open_file(scene, options, run_));
   }
@@ -70,8 +70,8 @@ class RecordedEnsemble {
         auto const next =
             std::min({end, after(scene_.output.every), after(scene_.output.scalars_every)});
         ending = run_.advance(next - run_.steps(), looks_);
-        // The run asks only now and then whether it is interrupted: frames may follow one another
-        // faster.
+        // advance() calls interrupt_requested only now and then, and may reach the next frame
+        // without doing so.
         if (interrupt_requested() && run_.steps() < end) ending = Advanced::interrupted;
         if (ending == Advanced::interrupted) break;
         look(ending == Advanced::at_rest || run_.steps() == end);

@@ -38,7 +38,7 @@ struct RunOptions : DeviceOptions {
   Listener listener = Listener::user;
 };
 
-/// A stage with its plan. Stages before the one in which a restart continues have no plan.
+/// A stage with its plan. Stages before the one that a restart continues have no plan.
 struct PlannedStage {
   io::Stage stage;
   std::optional<Plan> plan;
@@ -60,16 +60,16 @@ auto as_restart(Work const& work) {
   }
 }
 
-/// Runs one stage after another, beginning with the first that has a plan, and writes all into one
-/// file.
+/// Runs one stage after another, starting with the first that has a plan, and writes all frames and
+/// samples into one file.
 template <class Real, class Space>
 class RunOfStages {
   using Spins = SpinField<Real, typename Space::memory_space>;
 
  public:
-  /// `typed`: the whole scene, as typed; `resolved`: the scene with the method that was
-  /// chosen for "auto", or empty. `plan_of`: plans a stage again if it starts at another step than
-  /// planned.
+  /// `typed`: the scene as typed, with all stages. `resolved`: the text of the scene with the
+  /// method that was chosen for "auto"; empty if the method is not "auto". `plan_of`: returns a new
+  /// plan for a stage that starts at another step than planned.
   RunOfStages(io::Scene const& typed, std::string resolved, std::vector<PlannedStage> stages,
               std::function<Plan(io::Stage const&)> plan_of, RunOptions const& options,
               Restart const* restart, Ranks& ranks)
@@ -221,7 +221,8 @@ class RunOfStages {
     finish_file();
     if (failure_) return;
     if (!stores_checkpoints()) return;
-    // A method without a memory of steps can continue from the last frame, and needs no checkpoint.
+    // A method that does not remember earlier steps can continue from the last frame, and needs no
+    // checkpoint.
     auto const step = writer_.last_frame()->step;
     if (remembers(scene(), plan()))
       store({step, plan().times.at(step), plan().times.dt, true});
@@ -229,8 +230,8 @@ class RunOfStages {
       remove_checkpoint();
   }
 
-  // If the stage has ended early, plans the later stages again, and stores a checkpoint, because no
-  // frame tells where the next stage starts.
+  // Sets where the next stage begins. If the current stage has ended early, also plans the later
+  // stages again, and stores a checkpoint, because no frame tells where the next stage begins.
   void enter_next() {
     auto& next = stages_[now_ + 1];
     auto const planned = next.stage.scene.begin;

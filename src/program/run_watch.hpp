@@ -21,8 +21,9 @@ namespace cayspin::program {
 
 using namespace simulation;
 
-/// Observer of a stage of `cayspin run`: writes frames, scalars and checkpoints, ends the stage
-/// early, and shows progress. It is due at the same steps on all ranks.
+/// Observer of a stage of `cayspin run`: writes frames, scalars and checkpoints, shows progress,
+/// and ends the stage early at rest, on an interrupt or on a failure. It is due at the same steps
+/// on all ranks.
 template <class Real, class Space>
 class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_space>> {
   using Spins = SpinField<Real, typename Space::memory_space>;
@@ -82,7 +83,8 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   /// Returns why the run failed, if it did.
   std::optional<std::string> const& failure() const { return failure_; }
   bool interrupted() const { return interrupted_; }
-  /// Returns true if the run ended below until_torque, but at a saddle or a maximum of the energy.
+  /// Returns true if the run ended with the torque below until_torque, but at a saddle or a maximum
+  /// of the energy.
   bool at_saddle() const { return at_saddle_; }
 
  private:
@@ -102,7 +104,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   RunWriter<Real, Space>& writer_;
   Progress& progress_;
   io::Scene const& scene_;
-  std::int64_t first_;  // the step after which the run starts
+  std::int64_t first_;  // the step from which the run starts
   StoreCheckpoint store_checkpoint_;
   CheckpointSchedule checkpoints_;
   bool is_written_ = false;

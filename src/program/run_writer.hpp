@@ -34,8 +34,8 @@ class RunWriter {
  public:
   using OpenFile = std::function<io::RunOutput()>;
 
-  /// `open_file` is called at the first write, when all memory of the run has been allocated.
-  /// `sites`: of this rank.
+  /// `open_file` is called on the first rank at the first write, when all memory of the run has
+  /// been allocated. `sites`: the number of sites of this rank's part.
   RunWriter(io::Scene const& scene, std::int64_t sites, OpenFile open_file, Ranks& ranks)
       : ranks_(ranks),
         output_(scene.output),
@@ -44,9 +44,9 @@ class RunWriter {
         frame_("cayspin::frame", on_host ? 0 : static_cast<std::size_t>(sites)),
         part_("cayspin::part_of_frame", ranks.many() ? static_cast<std::size_t>(sites) : 0) {}
 
-  /// `scene`: gives the stage and the units of the state; `shift`: of the lattice; `frame`: true to
-  /// write a frame; `more`: the numbers of a sample that are not in its scalars. Without `more` no
-  /// sample is written.
+  /// Writes a sample if `more` is given, and a frame if `frame` is true. `scene`: the scene of the
+  /// stage, which gives the frame's stage and the units. `shift`: the cells by which the lattice
+  /// has moved. `more`: the values of the sample that are not in its scalars.
   void write(Space const& exec, io::Scene const& scene, Sample const& now, Spins const& spins,
              std::int64_t shift, bool frame, std::optional<std::vector<double>> const& more) {
     auto const scalar_values = as_scalars(now, scene.units);
@@ -71,10 +71,10 @@ class RunWriter {
   }
 
   std::optional<io::RunOutput>& file() { return file_; }
-  /// Returns the last written frame, if any.
+  /// Returns the step, time and scalars of the last frame written, if any.
   std::optional<Sample> const& last_frame() const { return last_frame_; }
   io::Units const& last_units() const { return last_units_; }
-  /// Waits until queued data are written, because HDF5 is in use until then.
+  /// Waits until queued data are written. Until then, another thread uses HDF5.
   void wait() {
     ranks_.together([&] {
       if (file_) file_->frames();
@@ -93,8 +93,8 @@ class RunWriter {
     exec.fence("cayspin::RunWriter: frame copied");
   }
 
-  // Gathers the frame piece by piece, and writes all pieces but the last, which stays in `room` for
-  // write_frame().
+  // Gathers the frame piece by piece, and writes all pieces but the last, which stays in the file's
+  // buffer for write_frame().
   void gather_pieces(Lattice const& local, Real const* own, Real* room) {
     auto const& shape = whole(local).shape;
     io::TrajectoryStorage const storage{output_.compression, output_.chunk};
@@ -118,9 +118,9 @@ class RunWriter {
   std::int64_t cell_sites_;
   OpenFile open_file_;
   std::optional<io::RunOutput> file_;
-  Frame frame_;  // on a device, before it is copied to the host
-  Kokkos::View<Real* [3], Kokkos::LayoutRight, Kokkos::HostSpace>
-      part_;  // to be sent to the first rank
+  Frame frame_;  // the frame on a device, before its copy to the host; empty on a host
+  // The frame on this rank's part, to be sent to the first rank.
+  Kokkos::View<Real* [3], Kokkos::LayoutRight, Kokkos::HostSpace> part_;
   std::optional<Sample> last_frame_;
   io::Units last_units_;
 };

@@ -36,8 +36,8 @@ std::string escape(int ground, Color const& color) {
                      16 + 36 * level(color[0]) + 6 * level(color[1]) + level(color[2]));
 }
 
-// Returns the colour of a spin (right, up, normal): hue by its angle in the plane, lightness by its
-// normal component.
+// Returns the colour of a spin: its hue is given by the angle in the plane, its lightness by the
+// normal component. `spin`: the components to the right, upwards and along the normal.
 Color color_of(std::array<double, 3> const& spin) {
   double const length = std::hypot(spin[0], spin[1], spin[2]);
   if (!(length > 0)) return {255, 255, 255};
@@ -54,14 +54,15 @@ Color color_of(std::array<double, 3> const& spin) {
   return color;
 }
 
-// A plane of cells.
+// The plane of cells in the picture.
 class Plane {
  public:
   Plane(io::Lattice const& lattice, std::vector<double> const& spins) : spins_(spins) {
     sites_ = static_cast<std::int64_t>(lattice.basis.size());
     cells_ = lattice.shape;
     cells_[2] /= sites_;
-    // The normal is the axis with the fewest cells; of equal ones z, then y.
+    // The normal is the axis with the fewest cells. If several have equally few, it is z rather
+    // than y, and y rather than x.
     axes_ = {0, 1, 2};
     for (std::size_t axis : {1, 0})
       if (cells_[axis] < cells_[axes_[2]]) axes_ = {axis == 0 ? 1U : 0U, 2, axis};

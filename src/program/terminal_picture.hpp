@@ -8,12 +8,13 @@
 
 namespace cayspin::program {
 
-/// Returns true if standard output is a terminal that shows colours and block characters.
+/// Returns true if standard output is a terminal that shows colours and block characters, unless
+/// NO_COLOR is set.
 bool terminal_shows_pictures();
 
 /// Returns a picture of the middle plane normal to the axis with the fewest cells, as lines of
-/// coloured blocks with a legend; a chain is one line. For a crystal it shows the first site of
-/// each cell. Colours are those of `cayspin plot`. `spins`: (sites, 3).
+/// coloured blocks with a legend; a chain is one line. If cells have several sites, the picture
+/// shows the first site of each. The colours are those of `cayspin plot`. `spins`: (sites, 3).
 std::string terminal_picture(io::Lattice const& lattice, std::vector<double> const& spins);
 
 }  // namespace cayspin::program

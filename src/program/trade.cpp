@@ -24,14 +24,14 @@ using namespace trade;
 
 /// Options of commands that try methods.
 struct TryOptions : SceneOptions {
-  std::optional<Precision> precision;  // the only one to try
+  std::optional<Precision> precision;  // if given, only this one is tried
   std::optional<std::string> space;
   std::optional<int> threads;
   bool json = false, quiet = false;
 };
 
 struct TradeOptions : TryOptions {
-  double seconds = 10;  // after a longer run, its method is not tried with finer steps
+  double seconds = 10;  // a method whose run takes longer is not tried with finer steps
   bool advice = false;
 };
 
@@ -52,7 +52,7 @@ std::string steps_text(Pilot const& pilot, Candidate const& candidate, Run const
              : fmt::format("dt {:.3e}{}", run.dt * units.time, units.si ? " s" : "");
 }
 
-// Returns the number of threads of a space; 1 on devices.
+// Returns the number of threads of a space, which is 1 on devices.
 int threads_in(std::string const& space) {
   return in_space(space, Precision::double_precision,
                   []<class, class Space>() { return threads_of(Space()); });
@@ -236,8 +236,8 @@ io::Scene scene_to_try(std::filesystem::path const& path,
   auto const scene = io::with_shape_of_start(io::read_scene(path, overrides));
   io::require_no_stages(scene, "cayspin trade or advise");
   io::check_files(scene);
-  // Refuses substeps without an expensive field. With one, the scene's own method need not fit,
-  // because candidates replace it.
+  // Refuses substeps without an expensive field. With an expensive field, the scene's own method
+  // need not fit, because candidates replace it.
   if (!scene.integrator.method->automatic && !has_slow_field(scene))
     require_slow_field_fits(scene, find_variant(scene));
   return scene;

@@ -204,8 +204,8 @@ TEST(CInterfaceErrors, RunsAndFiles) {
   std::filesystem::remove_all(folder);
 }
 
-// With this dt, classical Euler makes spins 1e300 times longer in each step until they overflow:
-// the guard reports it, and the last good state is kept.
+// With this dt, classical Euler makes spins 1e300 times longer in each step until they overflow.
+// The guard reports the overflow, and the last good state is kept.
 TEST(CInterfaceErrors, NumbersThatFail) {
   auto text = scene_text();
   text.replace(text.find("rkmk4"), 5, "classical_euler");
@@ -233,7 +233,7 @@ TEST(CInterfaceErrors, NumbersThatFail) {
   EXPECT_EQ(energy, -2);  // along the field, where nothing turns
 }
 
-// The guard looks at more than 4096 sites at every tenth step only, but at each frame.
+// Above 4096 sites the guard checks only every tenth step, and each frame.
 TEST(CInterfaceErrors, NumbersThatFailInTheLastFrame) {
   auto text = scene_text({}, "steps = 5");
   text.replace(text.find("[2]"), 3, "[4100]");

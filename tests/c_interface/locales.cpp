@@ -46,7 +46,8 @@ std::string film(std::string const& start) {
          "[output]\nevery = 5\nscalars_every = 1\ntable = true\nxdmf = true\n";
 }
 
-/// A pulse that an adaptive method finds only by its time in the text.
+/// A pulse that is so short that an adaptive method finds it only by the times in the expression's
+/// text.
 std::string const pulse = R"([system]
 kind = "llg"
 damping = 0.5

@@ -45,15 +45,15 @@ std::vector<double> spins_of(cayspin_simulation* simulation) {
   return numbers;
 }
 
-/// The scenes of one thread of the test. It runs `scene`, which writes `file`, and opens
+/// The scenes of one thread of the test. The thread runs `scene`, which writes `file`, and opens
 /// `from_file`, a scene that starts from that file.
 struct Course {
   cayspin_precision precision;
   std::string file, scene, from_file;
-  std::array<std::vector<double>, 2> expected = {};  // of a round without the other thread
+  std::array<std::vector<double>, 2> expected = {};  // results of a round without the other thread
 
   /// Returns the spins at the end of a run that writes the file, and the initial spins of the scene
-  /// that starts from it. They differ only by the rounding of a normalisation.
+  /// that starts from it. The two differ only by the rounding of a normalisation.
   std::array<std::vector<double>, 2> round() const {
     auto const simulation = open(scene, precision);
     EXPECT_EQ(cayspin_run(simulation.get(), file.c_str(), 1), CAYSPIN_OK) << cayspin_last_error();

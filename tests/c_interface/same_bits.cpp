@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The C interface, and example programs in C and Fortran, give the bits of `cayspin run`.
+// Runs by the C interface, and by example programs in C and Fortran, are bitwise identical to
+// `cayspin run`.
 #include "../program/program_test.hpp"
 #include "c_interface_test.hpp"
 

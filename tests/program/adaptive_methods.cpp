@@ -10,7 +10,8 @@ namespace {
 struct AdaptiveMethods : ProgramTest {
   std::vector<double> end(Arguments const& more) const { return end_of(chain_scene(), more); }
 
-  /// Expects a run of the chain to end with this status, and one line that contains `part`.
+  /// Expects a run of the chain to end with this status, and with one line on standard error that
+  /// contains `part`.
   void expect_end(int status, std::string const& part, Arguments const& more) const {
     auto const outcome = run_into("out.h5", chain_scene(), more);
     EXPECT_EQ(outcome.status, status);
@@ -58,7 +59,7 @@ TEST_F(AdaptiveMethods, WriteFramesAtTheTimesAskedFor) {
   EXPECT_LT(distance(second, exact), 30e-7);
 }
 
-// Observing a run more often changes no bit of its end and costs no evaluation.
+// Observing a run more often does not change a bit of its final spins, and costs no evaluation.
 TEST_F(AdaptiveMethods, TakeTheSameStepsHoweverOftenTheyAreLookedAt) {
   std::vector<double> ends[3];
   std::int64_t evaluations[3];
@@ -88,7 +89,7 @@ TEST_F(AdaptiveMethods, ComeToRestUnderTheGuard) {
              set("integrator={method='" + method + "',tolerance=" + tolerance + ",end=400.0}"));
 }
 
-// The rate counts internal steps of the method, not observations.
+// The printed rate counts internal steps of the method, not observations.
 TEST_F(AdaptiveMethods, TheRateCountsTheirOwnSteps) {
   auto const output = output_of({"run", "chain.toml", "--output", "out.h5", "--set",
                                  "integrator={method='tsit5',tolerance=1e-6,dt=40,steps=1}"});

@@ -32,8 +32,8 @@ class AllMethods : public ProgramTest {
       checked.insert(choice.method.word);
       Arguments changes;
       for (auto const& assignment : choice.overrides()) changes = joined(changes, set(assignment));
-      // These methods move one colour of the spins at a time. They refuse a field of the host,
-      // which computes all sites at once.
+      // These methods move one colour of the spins at a time. They refuse a field that the host
+      // computes, because it is computed at all sites at once.
       if (choice.method.by_colour)
         changes = joined(changes, set("field.slab_demag={normal=[1,0,0]}"));
       auto const name = testing::PrintToString(changes);
@@ -107,8 +107,9 @@ TEST_F(AllMethods, OnRigidBodiesHaveTheirOrder) {
   expect_orders(tensor_bodies_scene(), io::SystemKind::rigid_body, 1e-12);
 }
 
-// In a field that depends on time, the analytic sigma needs dH/dt. With it, runs with the analytic
-// and the finite-difference sigma differ at second order in dt; without it, at first order.
+// In a field that depends on time, the analytic sigma needs dH/dt. With dH/dt, runs with the
+// analytic and the finite-difference sigma differ at second order in dt; without dH/dt, at first
+// order.
 TEST_F(AllMethods, AnalyticSigmaSeesAFieldInTime) {
   auto const with = [&](std::string const& isotropy, char const* dt) {
     return end(spins_scene(),

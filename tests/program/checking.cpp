@@ -55,9 +55,9 @@ TEST_F(Checking, StableDtOfLattices) {
         .at("stable_dt")
         .get<double>();
   };
-  // The stable dt is never above the measured one. On the fine chain they are equal. On the coarse
-  // one, where the bound on the field is not sharp, it may be up to 35 % below, and on the others
-  // up to 3 %.
+  // `check` never prints a stable dt above the measured one. On the fine chain the two are equal.
+  // On the coarse chain, the bound on the field is not sharp, so the printed dt may be as much as
+  // 35 % below the measured one, and on the other lattices 3 %.
   EXPECT_NEAR(stable_dt("[100]", "0.01"), 7.26586e-5, 4e-8);
   EXPECT_LT(stable_dt("[100]", "1.0"), 3.88384e-1);
   EXPECT_GT(stable_dt("[100]", "1.0"), 3.88384e-1 * 0.65);
@@ -134,8 +134,8 @@ TEST_F(Checking, CountsBytesOfFilesThatNoDiskHolds) {
   EXPECT_TRUE(contains(text, "1000000000001 frames, 24 EB, to"));
 }
 
-// Fields for rkmk4: the state, two levels, an increment and the sum of the increments. For euler:
-// the state and one level.
+// Vector fields in memory. For rkmk4: the state, two intermediate states, an increment and the sum
+// of the increments. For euler: the state and the next state.
 TEST_F(Checking, CountsMemory) {
   auto const bytes = [&](std::string const& method, std::string const& precision) {
     return check(chain_scene(), {"--set", "lattice.shape=[64,64,64]", "--set",
@@ -146,15 +146,15 @@ TEST_F(Checking, CountsMemory) {
   EXPECT_NEAR(bytes("euler", "double") / (2 * 24), 1, 0.15);
   EXPECT_NEAR(bytes("euler", "single") / (2 * 12), 1, 0.3);
   EXPECT_NEAR(bytes("euler", "double") / bytes("series4", "double"), 2. / 8, 1e-12);
-  // rkmk4 has the buffers of a sweep, or, if the cores' caches are large, the five fields of
+  // rkmk4 needs the buffers of a sweep or, if the cores' caches are large, the five fields of
   // passes.
   EXPECT_GT(bytes("rkmk4", "double"), bytes("euler", "double"));
   EXPECT_LE(bytes("rkmk4", "double"), 5. / 2 * bytes("euler", "double") * (1 + 1e-12));
 }
 
-// Compares predicted memory with the system's count of the peak in runs of one step. The margin is
-// for buffers on the host, since the C library may keep freed ones and the writing thread allocates
-// its own in pieces.
+// Compares the predicted memory with the peak that the system measures in runs of one step. The
+// margin is for buffers on the host: the C library may keep freed buffers, and the writing thread
+// allocates its buffers in pieces.
 TEST_F(Checking, MemoryIsWhatARunTakes) {
   if (address_sanitizer) GTEST_SKIP() << "the sanitizer's own memory is counted, too";
   struct Bytes {
@@ -245,7 +245,7 @@ TEST_F(Checking, SaysWhatRanksRepeat) {
                        "ranks       each does 9.38 % more work than on its own sites, and holds "));
 }
 
-// A film that is periodic in its plane and uniform has N = 1 along its normal.
+// A uniform film that is periodic in its plane has the demagnetizing factor N = 1 along its normal.
 TEST_F(Checking, PeriodicFilmsGoOnForEver) {
   std::string const film =
       "[system]\nkind='llg'\ndamping=0.1\n[lattice]\nshape=[20,20,1]\nboundary='periodic'\n"

@@ -57,7 +57,7 @@ TEST_F(EarlyEnd, InterruptEndsAdaptiveSteps) {
 TEST_F(EarlyEnd, RestEndsARun) {
   auto const info =
       run(macrospin_scene(), set("integrator.end=1000.0", "integrator.until_torque=1e-6"));
-  // sin(theta) starts at about 1 and falls as exp(-damping t).
+  // sin(theta) starts at about 1 and falls as exp(-damping * t).
   EXPECT_GT(info.frame_times.back(), std::log(1e6) / 0.5 - 2);
   EXPECT_LT(info.frame_times.back(), std::log(1e6) / 0.5 + 4);
   EXPECT_EQ(info.frames, 2);

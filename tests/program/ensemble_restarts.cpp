@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// --restart with [ensemble]: two runs in sequence have the bits of one.
+// --restart with [ensemble]: two runs in sequence are bitwise identical to one run.
 #include "program_test.hpp"
 
 #include <fmt/format.h>

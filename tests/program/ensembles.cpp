@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// [ensemble]: each replica has the bits of its own run, in one file.
+// [ensemble]: one file, in which each replica is bitwise identical to a separate run.
 #include "program_test.hpp"
 
 #include <fmt/format.h>
@@ -40,7 +40,7 @@ class Ensembles : public ProgramTest {
     return found;
   }
 
-  /// Expects that a separate run of the scene has the same bits as the replica, in the datasets of
+  /// Expects a separate run of `scene` to be bitwise identical to the replica, in the datasets of
   /// frames and of samples.
   void expect_run(std::int64_t replica, std::string const& scene, Arguments const& more) const {
     write("one.toml", scene);

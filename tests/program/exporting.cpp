@@ -128,7 +128,8 @@ TEST_F(Exporting, FullDiskLeavesNoFile) {
   EXPECT_EQ(files(), 0U);
 }
 
-// A start from a file is normalised, whatever its format, so both runs start with equal bits.
+// A start from a file is normalised, whatever the file's format, so both runs start with bitwise
+// equal spins.
 TEST_F(Exporting, RunsFromOvfAreRunsFromTheTrajectory) {
   for (std::string const precision : {"double", "single"}) {
     run(chain_scene(), {"--precision", precision});

@@ -62,7 +62,8 @@ TEST_F(Info, SaysHowFarARunIs) {
   auto const first = step(output);
   EXPECT_EQ(first % 1000, 0);
   ASSERT_TRUE(eventually([&] { return step(info()) > first; }));
-  // A file that is still open belongs to a running run, even if it was not written for some time.
+  // As long as a run has its file open, `info` reports it as running, even if the file was not
+  // written for some time.
   fs::last_write_time(in_folder("run.h5"),
                       fs::file_time_type::clock::now() - std::chrono::minutes(2));
   EXPECT_TRUE(contains(info(), "still running"));

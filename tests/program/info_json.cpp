@@ -163,7 +163,7 @@ TEST_F(JsonOutput, MatchesTheFileOfAnEnsemble) {
                     {"scene", "written_by", "space", "precision", "units"});
 }
 
-// Names of files may be any bytes.
+// The name of a file may have any bytes. In JSON, bytes that are not UTF-8 are replaced.
 TEST_F(JsonOutput, IsUtf8) {
   run(chain_scene());
   std::filesystem::rename(in_folder("out.h5"), in_folder("out\xff.h5"));

@@ -24,7 +24,7 @@ class InterfacialDmi : public ProgramTest {
 };
 
 TEST_F(InterfacialDmi, AFreeSpiralTurnsByItsAngle) {
-  // With open ends the spins turn about e x n by the angle atan(D spacing / A) per bond along e.
+  // With open ends the spins turn about e x n by the angle atan(D * spacing / A) per bond along e.
   auto const spiral = scene(1, "shape = [24]\nspacing = [0.5]\n",
                             "exchange = 0.75\ndmi = { interfacial = 0.6, normal = [0, 0, 1] }\n",
                             "method = \"rkmk4\"\ndt = 0.05\nsteps = 20000\n",
@@ -56,7 +56,7 @@ TEST_F(InterfacialDmi, EnergyIsThatOfTheBonds) {
   auto const dot = [](Vector const& a, Vector const& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   };
-  // Each bond from m to m' along e adds D / spacing (m_n m'_e - m_e m'_n).
+  // Each bond from m to m' along e adds D / spacing * (m_n m'_e - m_e m'_n) to the energy.
   double expected = 0;
   for (int j = 0; j < ny; ++j)
     for (int i = 0; i < nx; ++i) {

@@ -80,7 +80,7 @@ steps = 1
 )toml";
 
 // Frequencies w of the two sublattices: w^2 + w (a2 b2 - a1 b1) = a1 a2 (b1 b2 - J^2), where a is
-// the gyromagnetic ratio over the moment, and b = J + K +- moment H.
+// the gyromagnetic ratio / the moment, and b = J + K +- moment * H.
 TEST_F(Modes, OfAFerrimagnet) {
   auto const outcome = modes(ferrimagnet, {"--torque", "1e-11", "--hessian"});
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
@@ -181,8 +181,8 @@ TEST_F(Modes, OfSpinsThatAreFrozenOrMissing) {
   }
 }
 
-// The hexagonal anisotropy has no constant Hessian, so products with it are finite differences. At
-// rest the curvatures are 6 K and 36 K, from E = K sin(theta)^6 cos(6 phi).
+// The Hessian of the hexagonal anisotropy is not constant, so products with it are finite
+// differences. At rest the curvatures are 6 K and 36 K, from E = K sin(theta)^6 cos(6 phi).
 TEST_F(Modes, OfASpinWithAHexagonalAxis) {
   auto const outcome = modes(
       "[system]\nkind = \"llg\"\ndamping = 0.9\n[lattice]\nshape = [1]\n[field]\n"
@@ -253,8 +253,8 @@ random = {{ seed = {} }}
 using Branches = std::vector<double>;
 
 struct Bands : Modes {
-  /// Expects the branches at each wave vector of a path, for spins along z. `exact` returns them
-  /// for the phases 2 pi q along the vectors of the cell.
+  /// Compares the frequencies of the branches at each wave vector of a path, for spins along z,
+  /// with those of `exact`. Its arguments are the phases 2 pi q along the vectors of the cell.
   template <class Exact>
   void expect_bands(std::string const& lattice_and_field, Exact const& exact) const {
     auto const scene = "[system]\nkind = \"llg\"\ndamping = 0\n" + lattice_and_field +

@@ -125,7 +125,8 @@ applied = [[0.5, 0, 0], [0, 0, 1.0]]
   EXPECT_NEAR(terms[5], -8, 1e-9);
 }
 
-// The shift goes on from stage to stage, also after a restart; relaxing does not change it.
+// The shift continues from stage to stage, also after a restart. Relaxing does not change the
+// shift.
 TEST_F(MoreInFiles, GoOnFromStageToStage) {
   auto const scene = wall + R"([[stage]]
 relax.torque = 1e-2
@@ -195,11 +196,11 @@ TEST_F(MoreInFiles, TheShiftIsInTheFileAndGoesOnAfterARestart) {
     EXPECT_EQ(std::vector(all.end() - static_cast<std::ptrdiff_t>(rest.size()), all.end()), rest)
         << name;
   }
-  // The shift also goes on if the method begins again.
+  // The shift also continues if the method starts afresh.
   auto const in_other_field = joined({"--restart", "first.h5"}, set("field.applied=[0,0,0.015]"));
   EXPECT_EQ(run_into("second.h5", wall, in_other_field).status, 0);
   EXPECT_EQ(of("second.h5", "shift").front(), of("first.h5", "shift").back());
-  // A run without `follow` has no shift, so the shift starts at 0.
+  // A run without `follow` has no shift, so a run that continues it starts with the shift 0.
   write("wall.toml", wall.substr(0, wall.find("follow")) + wall.substr(wall.find("[field]")));
   output_of(
       {"run", "wall.toml", "--quiet", "--output", "third.h5", "--set", "integrator.steps=100"});

@@ -92,7 +92,8 @@ TEST_F(MultirateFields, AreTraded) {
     ASSERT_GE(rungs.size(), 2u);
     EXPECT_LT(rungs.back()["error"].get<double>(), 0.5 * rungs.front()["error"].get<double>());
     for (auto const& rung : rungs) {
-      // Evaluations of the other terms: two passes in each step, but one in the first.
+      // Evaluations of the other terms: a step takes its substeps twice, but the first step only
+      // once.
       auto const steps = std::llround(1 / rung["dt"].get<double>());
       EXPECT_EQ(rung["evaluations"], 4 * substeps * (2 * steps - 1));
     }

@@ -72,8 +72,8 @@ uniform = [1, 0, 0]
     EXPECT_EQ(energy.at(static_cast<std::size_t>(image[i])), of_saddles[i]);
 }
 
-// With moments and constants of a thousandth, H and the path are the same, and energies are a
-// thousandth.
+// If moments and constants are divided by a thousand, H and the path stay the same, and energies
+// are divided by a thousand.
 TEST_F(PathCommand, BoundsTheTorqueOfSmallMoments) {
   auto const chain = [](std::string const& moments, std::string const& scale) {
     return "[system]\nkind = \"llg\"\ndamping = 0.1\n[lattice]\nshape = [12]\n" + moments +
@@ -140,7 +140,8 @@ TEST_F(PathCommand, GivesTheRateOfABiaxialParticle) {
   EXPECT_EQ(outcome.status, 2);  // the ends have three sites
   EXPECT_EQ(start(arguments({"--rates", "--set", "field.applied=[0, 0, 0]"})).status, 0);
   double const easy = 1.3, hard = 0.7;
-  // At the saddle, too, the exchange modes are 20 and 60 above the uniform ones.
+  // At the saddle, too, the curvatures of the exchange modes are 20 and 60 above those of the
+  // uniform modes.
   double rest = 1;
   for (double const stiff : {20.0, 60.0})
     rest *= (stiff + easy) * (stiff + easy + hard) / ((stiff - easy) * (stiff + hard));
@@ -181,8 +182,8 @@ TEST_F(PathCommand, GivesTheRateBesideAFrozenSpin) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(beside[i] / in_field[i], 1, 1e-6) << i;
 }
 
-// In SI: a particle of one cell has a barrier of K V, and a prefactor of gamma sqrt(H_K (H_K +
-// H_hard)) / (2 pi).
+// In SI: the barrier of a particle of one cell is K * V, and its prefactor is
+//   gamma * sqrt(H_K * (H_K + H_hard)) / (2 pi).
 TEST_F(PathCommand, InSi) {
   std::string const text = R"toml(units = "SI"
 [material]

@@ -49,7 +49,7 @@ void limit(int resource, long value) {
   ::_exit(122);
 }
 
-// Converts a status from wait() to that of Outcome.
+// Converts a status from wait() to one as in Outcome::status.
 int status_of(int waited) {
   return WIFEXITED(waited) ? WEXITSTATUS(waited) : 128 + WTERMSIG(waited);
 }

@@ -28,8 +28,8 @@ Arguments set(Texts const&... assignments) {
   return all;
 }
 
-/// The program's default space, and one that gives equal bits; with the emulated device there is
-/// only one space.
+/// The program's default space, and another space with bitwise equal results. With the emulated
+/// device there is only one space.
 #if defined(CAYSPIN_HOST_DEVICE)
 inline std::string const default_space = "host_device", another_space = "host_device";
 #else
@@ -82,10 +82,11 @@ class ProgramTest : public testing::Test {
   /// Starts the program and waits for its end.
   Outcome start(Arguments const& arguments, Treatment const& treatment = {}) const;
 
-  /// Starts the program, and expects this status and, unless it is 0, one line on standard error.
+  /// Starts the program. Expects this status, and one line on standard error, or nothing there if
+  /// `status` is 0.
   Outcome expect_status(int status, Arguments const& arguments,
                         Treatment const& treatment = {}) const;
-  /// Expects status 2, and one line that contains `part`.
+  /// Expects status 2, no standard output, and one line on standard error that contains `part`.
   void expect_refused(Arguments const& arguments, std::string const& part,
                       Treatment const& treatment = {}) const;
   /// Returns the standard output of the program. Expects success without output on standard error.
@@ -97,7 +98,7 @@ class ProgramTest : public testing::Test {
   /// Sends a signal, unless it is 0, and waits for the end. Returns a status like Outcome::status.
   static int end(pid_t process, int signal);
 
-  /// Waits until something is true, for at most a minute. Returns false if it never was.
+  /// Waits until is_so() returns true, for at most a minute. Returns false if it never did.
   static bool eventually(std::function<bool()> const& is_so);
 
   /// Writes a scene, and runs it with --quiet into a file in the folder.

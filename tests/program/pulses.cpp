@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // `advise`, `trade` and the method "auto" for fields that change within a small part of a run: the
-// method that they choose has the requested error, or one line says that there is none.
+// method that they choose has the requested error, or one line says that no method has it.
 #include "../support/larger.hpp"
 #include "../support/random_pulses.hpp"
 #include "program_test.hpp"

@@ -123,7 +123,7 @@ slab_demag = { normal = [0, 0, 1] }
   EXPECT_NEAR(info.frame_scalars[0].magnetization[2], 0.5, 2e-4);
 }
 
-// It takes no steps, so no method or tolerance is refused.
+// `relax` takes no steps, so it refuses no method or tolerance.
 TEST_F(Relax, IgnoresTheIntegrator) {
   for (std::string const precision : {"double", "single"}) {
     Arguments const same{"--precision", precision, "--overwrite"};
@@ -252,7 +252,7 @@ TEST_F(Relax, IsRefusedByCheck) {
   EXPECT_TRUE(contains(start({"check", body}).errors, "integrator: is missing"));
 }
 
-// A small moment makes the bound on the gradient smaller than the least one.
+// With a small moment, the bound on the gradient is smaller than Minimizer::least_bound.
 TEST_F(Relax, TakesTheLeastTorqueWithAnyMoment) {
   for (std::string const moment : {"0.5", "1e-3"}) {
     auto const outcome =

@@ -60,7 +60,7 @@ TEST_F(Reproducing, OrdersOfTheTables) {
     std::string table, bodies, update, dt;
     double low, high;
   };
-  // Orders from mean errors of ten bodies, at dt and at 10 dt.
+  // Orders from mean errors of ten bodies, at dt and at 10 * dt.
   for (auto const& [table, bodies, update, dt, low, high] :
        std::vector<Expected>{{"table2.csv", "triaxial", "F^Eul_def", "0.01", 0.9, 1.1},
                              {"table2.csv", "triaxial", "F^Eul_orth", "0.01", 0.9, 1.1},

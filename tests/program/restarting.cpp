@@ -130,7 +130,8 @@ TEST_F(Restarting, NamesWhatElseDiffers) {
   output_of(to_second(set("field.exchange=1", "output.every=3", "initial={uniform=[0,0,1]}")));
 }
 
-// After 5000002 steps of .3, the time is not that of 15000006 steps of .1, by the last bit.
+// In floating point, the time after 5000002 steps of 0.3 differs in its last bit from the time
+// after 15000006 steps of 0.1.
 TEST_F(Restarting, AllowsForTheRoundOffOfALongRun) {
   auto const step = [](std::string const& dt, std::string const& steps) {
     return joined(set("integrator={method='euler',dt=" + dt + ",steps=" + steps + "}",
@@ -150,8 +151,8 @@ TEST_F(Restarting, NamesASeedThatWouldBeEqualAsDouble) {
   expect_named(set("thermal={temperature=0.01,seed=9007199254740992}"), "thermal.seed");
 }
 
-// After a change of the field, the method's memory (a previous rate, a step length) would be wrong,
-// so the method begins again.
+// After a change of the field, what the method remembers (a previous rate, a step length) would be
+// wrong, so the method starts afresh.
 TEST_F(Restarting, ForgetsTheStepsOfAnotherMotion) {
   for (std::string const method : {"ab2", "dp5"}) {
     SCOPED_TRACE(method);

@@ -44,8 +44,8 @@ class Rests : public ProgramTest {
     return text;
   }
 
-  /// Returns an expression for spins near a pole, at about this angle, in directions that vary by
-  /// site.
+  /// Returns an expression for spins at about this angle from a pole, in directions that vary from
+  /// site to site.
   static std::string near_pole(double angle, unsigned seed, char const* pole = "-1") {
     std::mt19937 engine(seed);
     std::uniform_real_distribution<double> phase(0, 6.28);
@@ -118,7 +118,7 @@ TEST_F(Rests, ByMethods) {
     expect_minimum({scene(pair, near_pole(1e-9, 7), 0.2, method, 0.05)});
 }
 
-// Nothing moves a spin exactly at the maximum. The run reports where it ended.
+// Nothing moves a spin that is exactly at the maximum. The run reports that it ended there.
 TEST_F(Rests, AtATopAreNamed) {
   write("top.toml", scene(apart, "expression = [\"i\", \"0\", \"-1\"]"));
   auto const outcome = start({"run", "top.toml", "--output", "top.h5"});
@@ -147,7 +147,7 @@ TEST_F(Rests, AreTheSameAfterABreak) {
   }
 }
 
-// ctest -C long -L long
+// A long test, which runs with ctest -C long -L long.
 TEST_F(Rests, DISABLED_FromManyStartsByAllMethods) {
   std::mt19937 engine(20);
   for (std::string const method : {"euler",

@@ -62,7 +62,7 @@ TEST_F(SamePhysics, StartFromFileGoesOn) {
   EXPECT_LT(distance({second.end() - 180, second.end()}, end), 1e-14);
 }
 
-// The exact solution without damping: m turns about H by |H| t, right-handed.
+// The exact solution without damping: m turns about H by the angle |H| * t, right-handed.
 TEST_F(SamePhysics, PrecessionIsRightHanded) {
   auto const m = spins(macrospin_scene(), set("system.damping=0", "initial.uniform=[1,0,0]",
                                               "integrator={method='rkmk4',dt=0.01,end=1.0}"));

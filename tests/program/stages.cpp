@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// [[stage]]: one file with the bits of separate runs; it can be continued from any point.
+// [[stage]]: a run in stages writes one file, bitwise identical to separate runs. It can be
+// continued from any point.
 #include "program_test.hpp"
 
 #include <fmt/format.h>
@@ -62,7 +63,7 @@ TEST_F(Stages, HaveTheBitsOfRunsByHand) {
     auto const second = by_hand(
         "first.h5", joined(same, set(turned, "integrator={method='heun',dt=0.01,steps=80}")));
     EXPECT_EQ(second, spins("out.h5", 6));
-    // relax normalises spins from a file, so bits differ.
+    // `relax` normalises spins from a file, so the spins are not bitwise equal.
     output_of(joined(joined({"relax", "chain.toml", "--quiet", "--output", "relaxed.h5", "--torque",
                              "1e-5", "--overwrite"},
                             same),
@@ -210,7 +211,7 @@ integrator = { method = "rkmk4", dt = 0.1, end = 5.0 }
   EXPECT_NEAR(info.frame_scalars[2].magnetization[0], std::tanh(0.5 * 5), 1e-4);
 }
 
-// A checkpoint is stored between stages. A run that ends in rest needs none.
+// A checkpoint is stored between stages. A run whose last stage relaxes needs none at its end.
 TEST_F(Stages, LeaveNoCheckpointAfterALastRest) {
   EXPECT_TRUE(run(chain_scene() + "[[stage]]\nrelax.torque = 1e-4\n").complete);
   EXPECT_FALSE(exists("out.checkpoint.h5"));

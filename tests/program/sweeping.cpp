@@ -135,11 +135,11 @@ TEST_F(Sweeping, RefusesADamagedRunUntilItIsDeleted) {
   EXPECT_EQ(end(process, SIGKILL), 128 + SIGKILL);
   auto const right = read_dataset("torn.h5.runs/0000.h5", "/spins").values;
   damage_spins(io::swept_run_file(file, 0), right);
-  auto const outcome = expect_status(2, all);  // still runs the last one
+  auto const outcome = expect_status(2, all);  // the last run is still performed
   EXPECT_TRUE(contains(outcome.errors, "torn.h5.runs/0000.h5: "));
   EXPECT_TRUE(fs::exists(io::swept_run_file(file, 2)));
   fs::remove(io::swept_run_file(file, 0));
-  fs::resize_file(io::swept_run_file(file, 1), 1000);  // the sweep runs a truncated one again
+  fs::resize_file(io::swept_run_file(file, 1), 1000);  // a truncated file: the run is repeated
   EXPECT_TRUE(contains(output_of(all), "2 of 2  run 0001"));
   EXPECT_EQ(spins("torn.h5", 0), right);
 }
@@ -173,7 +173,7 @@ TEST_F(Sweeping, RecordsARunThatFails) {
   EXPECT_FALSE(contains(again.output, "of 3  run"));
 }
 
-// Returns the processes of a sweep's runs, which are children of its process.
+// Returns the processes of a sweep's runs, which are children of the sweep's process.
 std::vector<pid_t> children_of(pid_t process) {
   std::ifstream list(fmt::format("/proc/{0}/task/{0}/children", process));
   return {std::istream_iterator<pid_t>(list), {}};

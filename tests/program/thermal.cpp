@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// [thermal]: bits do not depend on interruptions or observations of a run; the output of `check`.
+// [thermal]: interruptions and observations of a run do not change a bit of it. Also the output of
+// `check`.
 #include "program_test.hpp"
 
 #include <nlohmann/json.hpp>
@@ -86,7 +87,7 @@ TEST_F(Thermal, EveryOneStepMethodGoesAndKeepsLengths) {
   }
 }
 
-// At temperature 0 there is no pass of noise.
+// At temperature 0 no noise is applied.
 TEST_F(Thermal, TemperatureZeroIsNoTemperature) {
   EXPECT_EQ(end_of("zero.h5", set("thermal.temperature=0")),
             end_of("none.h5", set("thermal={temperature=0,seed=4}")));

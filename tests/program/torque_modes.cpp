@@ -13,7 +13,8 @@
 namespace cayspin::program::test {
 namespace {
 
-// An interrupted relax leaves fewer frames than fields, as here the longer list does.
+// An interrupted `relax` leaves a file with fewer frames than fields. A list of more fields has the
+// same effect here.
 TEST_F(Modes, AreThoseInTheFieldOfTheLastFrame) {
   auto const scene = write(
       "scene.toml",
@@ -95,7 +96,7 @@ TEST_F(TorqueModes, AreWavesWithADopplerShiftInACurrent) {
 }
 
 // A mode decays by e^(-d) and turns by w between two frames. Its deviations x, x' and x'' in three
-// frames obey x'' = 2 e^(-d) cos(w) x' - e^(-2 d) x.
+// successive frames obey x'' = 2 e^(-d) cos(w) x' - e^(-2 d) x.
 TEST_F(TorqueModes, MoveAsInARun) {
   auto const text = scene(
       "shape = [3]\n[field]\nexchange = 2.0\nanisotropy = { constant = 1.0, axis = [0, 0, 1] }"

@@ -365,7 +365,7 @@ TEST_F(Trading, AnAdviceNamesTheSpaceAndThreadsOfItsTime) {
   EXPECT_TRUE(contains(command, " --space " + another_space)) << command;
   auto const threads = advise("1e-3", {"--precision", "double"});
   EXPECT_TRUE(contains(threads, " --space " + default_space + " --threads 1\n")) << threads;
-  // The scene names no output file, so the advice does.
+  // The scene names no output file, so the advised command names one.
   EXPECT_TRUE(contains(threads, "--set 'output.file=\"scene.h5\"'")) << threads;
 }
 

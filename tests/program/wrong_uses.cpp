@@ -111,7 +111,7 @@ TEST_P(WrongCommand, IsOneLineAndStatusTwo) {
 INSTANTIATE_TEST_SUITE_P(Program, WrongCommand, testing::ValuesIn(wrong_commands()),
                          [](auto const& use) { return std::string(use.param.name); });
 
-#if !defined(CAYSPIN_HOST_DEVICE)  // cayspin-reproduce is not built with it
+#if !defined(CAYSPIN_HOST_DEVICE)  // with it, cayspin-reproduce is not built
 INSTANTIATE_TEST_SUITE_P(
     Siblings, WrongCommand,
     testing::Values(WrongUse{"UnknownPartOfThePaper", {"reproduce", "table9"}, "table1"},

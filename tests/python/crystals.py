@@ -40,7 +40,7 @@ class Dispersions(PackageTest):
         np.testing.assert_allclose(found.intensity, expected.intensity, rtol=1e-12)
         np.testing.assert_allclose(edges, run_of.cell[0] + run_of.cell[1], atol=1e-15)
         self.assertAlmostEqual(found.corners[1], 4 * np.pi / 3 / 0.5)
-        # Each peak is on one of the bands, 0.5 (3 -+ |f|), except near Gamma, where the mode
+        # Each peak is on one of the bands, 0.5 * (3 -+ |f|), except near Gamma, where the mode
         # involves all spins.
         h, k, _ = 2 * np.pi * found.wave_vectors.T
         f = np.abs(1 + np.exp(-1j * h) + np.exp(-1j * k))
@@ -110,7 +110,7 @@ class Arrays(PackageTest):
 
 class Modes(PackageTest):
     def test_shapes_have_the_sites_first(self):
-        """Only spins of the second site in the plane k = 1 move."""
+        """All spins are frozen but those of the second site in the plane k = 1."""
         frozen = "s == 0 || k != 1"
         of = scene({"shape": [3, 2, 2], "frozen": frozen}, initial={"uniform": [0, 0, 1]},
                    field={"applied": [0, 0, 1]})

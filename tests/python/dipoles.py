@@ -51,7 +51,7 @@ class ClosedForms(PackageTest):
                           "damping_form": "gilbert"})
             self.assertAlmostEqual(sim.energy() / meV, expected * pair, delta=1e-5 * pair)
 
-    # Spins point along the ring: a pair at an angle f has -(3 + cos f) / (2 r^3).
+    # Spins point along the ring: a pair at the angle f has the energy -(3 + cos f) / (2 r^3).
     def test_rings(self):
         for count in (3, 6, 11):
             f = 2 * np.pi * np.arange(count) / count
@@ -62,7 +62,7 @@ class ClosedForms(PackageTest):
             found = energy_per_site({"shape": [1, 1, 1], "basis": basis.tolist()}, spins)
             self.assertAlmostEqual(found / expected, 1, delta=1e-13)
 
-    # Open chains, and the infinite one, which has -2 zeta(3) per site.
+    # Open chains, and the infinite chain, whose energy per site is -2 zeta(3).
     def test_chains(self):
         for count in (2, 9):
             expected = -2 * sum((count - n) / n**3 for n in range(1, count)) / count
@@ -82,8 +82,8 @@ class LowestStates(PackageTest):
         return min(found)
 
     # Lowest energies per dipole by Luttinger and Tisza, Phys. Rev. 70, 954 (1946), in units of n
-    # mu^2 with n dipoles in a^3: of antiparallel states in spheres, and of parallel dipoles in long
-    # needles, which have -2 pi/3.
+    # mu^2, where n is the number of dipoles in a^3: those of antiparallel states in spheres, and
+    # that of parallel dipoles in long needles, -2 pi / 3.
     def test_three_dimensions(self):
         cells = {"shape": [2, 2, 2], "boundary": "periodic"}
         sphere = {"demagnetizing_factors": [1 / 3] * 3}
@@ -103,8 +103,8 @@ class LowestStates(PackageTest):
         planes = (1 - 2 * (plane % 2))[..., None] * [1.0, -1.0, 0.0]
         self.assertAlmostEqual(energy_per_site(fcc, planes, sphere) / 4, -1.808, delta=1e-3)
 
-    # With all images, the lowest state of a square lattice has -2.549, and that of a triangular one
-    # -11.034/4.
+    # With all images, the lowest state of a square lattice has the energy -2.549, and that of a
+    # triangular lattice -11.034 / 4.
     def test_planes(self):
         square = {"shape": [2, 2], "boundary": "periodic"}
         self.assertAlmostEqual(self.lowest(square), -2.549, delta=6e-4)
@@ -114,8 +114,8 @@ class LowestStates(PackageTest):
 
 
 class OtherPrograms(PackageTest):
-    # Sunny's test_ewald.jl: one dipole in a cube has -1/6 without a surface, and so does each of
-    # several cells. A surface adds M.N M / (2 V).
+    # Sunny's test_ewald.jl: one dipole in a cube has the energy -1/6 without a surface, and so does
+    # each of several cells. A surface adds M.(N M) / (2 V).
     def test_sunny(self):
         for shape in ([1, 1, 1], [2, 3, 4]):
             lattice = {"shape": [max(2, n) for n in shape], "boundary": "periodic"}

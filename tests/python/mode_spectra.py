@@ -14,7 +14,7 @@ class OfModes(PackageTest):
     FREQUENCY = np.linspace(-12, 12, 4801)
 
     def ellipses(self, damping):
-        """Returns modes of a chain that is stiffer by 0.5 along x."""
+        """Returns the modes and the spins of a chain that is stiffer by 0.5 along x."""
         return modes_of(chain(
             system={"kind": "llg", "damping": damping},
             field={"exchange": 1.0, "anisotropy": [{"constant": 1.0, "axis": [0, 0, 1]},

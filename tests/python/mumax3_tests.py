@@ -63,8 +63,8 @@ class Mumax3Tests(PackageTest):
             sim = cayspin.Simulation(one_cell(
                 {"anisotropy": {"cubic": first, "axes": [[1, 0, 0], [0, 1, 0]],
                                 "constant2": second}}, {"uniform": m}, Ms=1e6))
-            # The script allows 1e-2. The closed form, 35254.001, differs from its first value by
-            # more.
+            # The script allows 1e-2. The closed form, 35254.001, differs from the script's first
+            # value by more.
             self.assertAlmostEqual(sim.energy() / 1e-27 / joules_per_volume, 1, delta=1e-6)
 
     # Cubic and both uniaxial terms: if one had a wrong factor, the energy would oscillate.
@@ -191,8 +191,8 @@ class Mumax3Tests(PackageTest):
             {"expression": ["abs(i-63.5) < 16 ? 15.5-j : 63.5-i", "abs(i-63.5) < 16 ? i-63.5 : 0",
                             "(i-63.5)^2 + (j-15.5)^2 < 9 ? 30 : 0"]},
             field={"demag": True, "applied": [0, 0.01, 0], "nonlocal": lambda m, t: of_charges},
-            # The energy of an own field is computed as if it were linear in the spins, which is
-            # wrong for this field, so energy_guard is off.
+            # The energy of an own field is computed as if the field were linear in the spins. This
+            # field is not, so energy_guard is off.
             integrator={**steps_to(1e-9, 4e-12), "energy_guard": False}))
         sim.run()
         self.assertAlmostEqual(sim.magnetization()[1], 0.0633, delta=1e-3)

@@ -82,8 +82,8 @@ class TopologicalCharge(PackageTest):
 
 def wave(shape, frames, dt, numbers, turns, amplitude=0.01, positions=((0, 0, 0),)):
     """Returns a spin wave of wave vector numbers / shape, (frame, site, nz, ny, nx, 3), and its
-    angular frequency. It turns about z `turns` times in all, right-handed if that is positive, and
-    runs along its vector."""
+    angular frequency. The wave turns about z `turns` times in all, right-handed if `turns` is
+    positive, and runs along its wave vector."""
     nx, ny, nz = shape
     z, y, x = np.meshgrid(np.arange(nz), np.arange(ny), np.arange(nx), indexing="ij")
     time = np.arange(frames) * dt
@@ -141,7 +141,8 @@ class Dispersions(PackageTest):
             sums = ((m[..., 0] - 1j * m[..., 1]) * phase).sum((1, 2, 3))
             expected = (np.abs(sums)**2 * window**2).sum() / (window**2).sum() / 60
             self.assertAlmostEqual(found.intensity[number].sum() / expected, 1, delta=1e-12)
-        # Two equal sites at one place have twice the sum, which is normalised by twice the sites.
+        # Two equal sites at one place double the sum. Its square is divided by twice the number of
+        # sites.
         twice = cayspin.dispersion(np.stack((m, m), 1), 0.1, [(0, 0, 0), (0.4, 0, 0)],
                                    positions=np.zeros((2, 3)), about=(0, 0, 1))
         np.testing.assert_allclose(twice.intensity, 2 * found.intensity, rtol=1e-12)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""A program's own field adds to each term of a scene, and can replace it."""
+"""A program's own field adds to the terms of a scene, and can replace any of them."""
 
 import unittest
 

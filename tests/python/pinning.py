@@ -10,7 +10,7 @@ import cayspin
 MU0 = 4e-7 * math.pi
 HARD = {"Ms": 1 / MU0, "A": 1e-11, "Ku": 1e6}
 SOFT = {"Ms": 0.25 / MU0, "A": 2.5e-12, "Ku": 1e5}
-LETTERS = {"Ms": "j", "A": "a", "Ku": "k"}  # a case names what jumps
+LETTERS = {"Ms": "j", "A": "a", "Ku": "k"}  # of what jumps, in the name of a case
 
 # Relative errors of the discrete equations for 80 cells of 1 nm: Newton's method finds the fold of
 # their solutions. Cases a and aj exceed 2 %, since walls in the soft half have a width of only

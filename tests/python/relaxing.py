@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Simulation.relax finds the states of the program, and says how it ended."""
+"""Simulation.relax finds the states that `cayspin relax` finds, and says how the search ended."""
 
 import os
 import signal
@@ -88,7 +88,7 @@ class Relaxing(PackageTest):
                                 lambda limit=limit: sim.modes(evaluations=limit))
 
     # With the polarization along the spins, the torque adds a = damping_like to the decay and
-    # -damping a to both stiffnesses.
+    # -damping * a to both stiffnesses.
     def test_a_torque_makes_modes_grow(self):
         torque = {"slonczewski": {"damping_like": -0.2, "polarization": [1, 0, 0]}}
         film = {"torque": torque, "lattice": {"shape": [4, 3]}}

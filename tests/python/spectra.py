@@ -156,7 +156,7 @@ class Thermal(PackageTest):
         np.testing.assert_allclose(linear, 2 * TEMPERATURE / w, rtol=1e-10)
         measured = (self.found.integrated["xx"] + self.found.integrated["yy"])[0, 0]
         # The intensity of a mode has an exponential distribution, and its correlation falls as
-        # exp(-2 damping w t). `integrated` has the mean of the modes k and -k.
+        # exp(-2 * damping * w * t). `integrated` has the mean of the modes k and -k.
         apart = np.abs(np.subtract.outer(np.arange(FRAMES), np.arange(FRAMES))) * DT
         variance = np.array([self.share @ np.exp(-2 * DAMPING * one * apart) @ self.share
                              for one in w]) / REPLICAS

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Simulation.set: a run whose keys are changed equals the program's run in stages."""
+"""Simulation.set: a run whose keys are changed on the way equals the program's run in stages."""
 
 import os
 import unittest
@@ -113,8 +113,8 @@ class Stages(PackageTest):
         np.testing.assert_allclose(sim.spins, other.spins, rtol=0, atol=1e-14)
 
     def assert_replaced(self, table, old, key, new, **tables):
-        """Expects that setting `key` of `table`, which is `old`, to `new` keeps nothing of the old
-        value."""
+        """Expects that setting `key` of `table`, whose value is `old`, to `new` keeps nothing of
+        the old value of the key."""
         first, _, inner = key.partition(".")
         expected = {**old, first: {**old[first], inner: new} if inner else new}
         with self.subTest(key=key, new=new):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Simulation has the bits of the program, ends with a complete step after Ctrl-C, and runs while
-other threads do."""
+"""A Simulation gives bitwise the same results as `cayspin run`, ends with a complete step after
+Ctrl-C, and runs while other Python threads do."""
 
 import os
 import signal

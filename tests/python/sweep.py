@@ -15,7 +15,7 @@ from cayspin_plots.sweep import read_sweep
 
 PROGRAM = sys.argv[2]
 
-# One damped spin from the equator has m_z = tanh(damping t).
+# A damped spin that starts at the equator has m_z = tanh(damping * t).
 SCENE = """
 [system]
 kind = "llg"

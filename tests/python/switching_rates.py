@@ -12,7 +12,8 @@ EASY, DAMPING = 1.0, 0.5
 
 
 def brown(barrier, functions=24):
-    """Returns the lowest eigenvalue of -[(1 - x^2) f']' - 2 barrier x (1 - x^2) f' for odd f."""
+    """Returns the lowest eigenvalue of -[(1 - x^2) f']' - 2 * barrier * x * (1 - x^2) f' for odd
+    f."""
     x, weight = np.polynomial.legendre.leggauss(200)
     weight = weight * np.exp(barrier * (x**2 - 1))
     degrees = 2 * np.arange(functions) + 1
@@ -30,7 +31,7 @@ def scene(shape, **tables):
 
 class SwitchingRates(PackageTest):
     def langer(self, barrier):
-        """Returns the rate of cayspin.path at the temperature at which the barrier is `barrier`
+        """Returns the rate of cayspin.path at the temperature at which the barrier is `barrier` *
         kT."""
         up = np.array([[[[0, 0, 1.0]]]])
         path = cayspin.path(scene([1]), up, -up, torque=1e-9, rates=True)

@@ -18,7 +18,8 @@ from texture.colors import hue_colors, map_colors
 UP, LEFT, HOME = "\ue013", "\ue012", "\ue011"  # keys of WebDriver
 RENDERER = """const gl = document.createElement("canvas").getContext("webgl2");
 return gl.getParameter(gl.getExtension("WEBGL_debug_renderer_info").UNMASKED_RENDERER_WEBGL);"""
-# Frames per second that appear while the slider is dragged for a number of milliseconds.
+# A script that returns how many frames per second appear while the slider is dragged for a number
+# of milliseconds.
 RATE = """const [milliseconds, done] = arguments, frame = document.getElementById("frame");
 let count = -1;
 const next = () => {
@@ -30,7 +31,7 @@ const observer = new MutationObserver(next);
 observer.observe(document.body, {attributeFilter: ["data-shown"]});
 setTimeout(() => { observer.disconnect(); done(count / milliseconds * 1000); }, milliseconds);
 next();"""
-# The page is hidden for a second, from its second request on.
+# A script that makes the page count as hidden for a second, from the second time it asks on.
 HIDDEN = """let looks = 0, hidden = false;
 Object.defineProperty(document, "hidden", {get: () => {
   if (++looks === 2) {

@@ -249,7 +249,7 @@ class Data(ScriptTest):
             data["checksum"][20] = checksum.of_frame(
                 data["step"][20], [*numbers, *data["magnetization"][20]], data["spins"][20])
             data.flush()
-            # The frame may be half written at first.
+            # At first the new frame may be half written, so it is not sent.
             self.assertEqual(page.news(20, 20)["times"], [])
             news = page.news(20, 20)
             self.assertEqual((news["times"], len(news["rows"])), ([2.5], 1))

@@ -58,7 +58,8 @@ class Page:
         self.token = urllib.parse.parse_qs(parts.query).get("token", [""])[0]
 
     def ask(self, path, method="GET", headers=None, **query):
-        """Returns the answer to a path, which is not quoted. Adds the token unless it is given."""
+        """Returns the answer to a request for a path, which is not quoted. Adds the token unless
+        `query` has one."""
         query = urllib.parse.urlencode({"token": self.token, **query})
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=20)
         try:

@@ -21,11 +21,10 @@ def _half_solid_angle(a, b, c):
 
 
 def half_solid_angles(spins: np.ndarray, boundary: Sequence[str]) -> np.ndarray:
-    """Half the solid angle of the two triangles in each square of neighbours, together, for spins
-    (..., ny, nx, 3). The result is (..., ny - 1, nx - 1), one larger along periodic axes of two or
-    more spins.
-    `boundary`: "open" or "periodic" for x and y. The sum, divided by 2 pi, is the topological
-    charge."""
+    """Returns, for each square of neighbouring spins, half the sum of the solid angles of its two
+    triangles. `spins`: (..., ny, nx, 3). The result is (..., ny - 1, nx - 1), one larger along
+    periodic axes of two or more spins. `boundary`: "open" or "periodic" for x and y. The sum of the
+    result, divided by 2 pi, is the topological charge."""
     for axis, word in zip((-2, -3), boundary):
         if word == "periodic" and spins.shape[axis] > 1:
             spins = np.concatenate((spins, spins.take([0], axis)), axis)

@@ -43,8 +43,9 @@ def of_frame(step, numbers, spins, more=None):
 
 
 def require_undamaged(file, first, spins):
-    """Compares frames of an open trajectory file, from number `first` on, with their checksums.
-    Files of early versions have none. Raises ValueError."""
+    """Compares frames of an open trajectory file, from frame `first` on, with their checksums.
+    Raises ValueError for a damaged frame. Files of early versions have no checksums, and pass.
+    `spins`: the spins of these frames."""
     if "checksum" not in file:
         return
     those = slice(first, first + len(spins))

@@ -46,8 +46,9 @@ def map_colors(values: np.ndarray, name: str, lowest: float, highest: float) -> 
 
 
 def wheel_colors(pixels: int) -> np.ndarray:
-    """The key of hue_colors, (pixels, pixels, 4): the middle along the normal, half way out in the
-    plane, the rim against the normal; transparent beyond."""
+    """Returns the key of hue_colors, an image (pixels, pixels, 4). Its middle has the colour of a
+    spin along the normal, the points half way out those of spins in the plane, and the rim that of
+    a spin against the normal. It is transparent beyond the rim."""
     across = (np.arange(pixels) + 0.5) / pixels * 2 - 1
     right, up = np.meshgrid(across, across)
     radius = np.hypot(right, up)
@@ -70,7 +71,7 @@ def _beside(axes, width, height, below=0.0):
 
 
 def draw_wheel(axes: Any, plane: Plane) -> Any:
-    """The wheel of the colours to the right of axes, with the names of its directions."""
+    """Draws the wheel of the colours to the right of `axes`, with the names of its directions."""
     key = _beside(axes, 1.1, 1.1, 0.12)
     key.imshow(wheel_colors(256), origin="lower", extent=(-1, 1, -1, 1))
     key.set_axis_off()
@@ -85,7 +86,7 @@ def draw_wheel(axes: Any, plane: Plane) -> Any:
 
 
 def draw_scale(axes: Any, painter: Any, label: str) -> Any:
-    """The scale of a colour map to the right of axes."""
+    """Draws the scale of a colour map to the right of `axes`."""
     key = _beside(axes, 0.15, "100%")
     axes.figure.colorbar(painter, cax=key, label=label)
     key.grid(False)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Films, planes of boxes and of crystals, and chains, drawn into matplotlib axes."""
+"""Draws films, planes of boxes and of crystals, and chains into matplotlib axes."""
 
 from __future__ import annotations
 
@@ -84,7 +84,8 @@ def _new_axes(width, height):
 
 
 def _steps(axes, extents, lengths):
-    """Returns the cells per arrow along right and up, odd so that the arrow is in the middle."""
+    """Returns how many cells share an arrow along right and up. Both numbers are odd, so that the
+    arrow is on the middle cell."""
     box = axes.get_window_extent().width, axes.get_window_extent().height
     inches = min(side / length for side, length in zip(box, lengths)) / axes.figure.dpi
     count = max(1.0, min(_ARROWS, max(lengths) * inches / _INCHES_OF_ARROW))
@@ -94,7 +95,7 @@ def _steps(axes, extents, lengths):
 
 
 def _middles(count, step):
-    """The middles of the blocks of `step` cells that fit into `count`."""
+    """The middles of the blocks of `step` cells that fit into `count` cells."""
     step = min(step, count)
     return np.arange(step // 2 + count % step // 2, count, step)[:count // step]
 
@@ -239,8 +240,8 @@ def _picture(texture, plane, quantity, colors, before, limit):
 
 def largest(texture: Texture, *, plane: str | None = None, quantity: str = "spins",
             before: np.ndarray | None = None) -> float:
-    """Returns the limit that draw() would choose. The largest limit of several pictures gives them
-    a common scale."""
+    """Returns the limit that draw() would choose. Pass the largest limit of several pictures to
+    draw() to give them a common scale."""
     return _picture(texture, plane, quantity, "hue", before, None)[0].largest()
 
 

@@ -66,8 +66,8 @@ class Plane:
 
 
 def plane_of(shape: Sequence[int], plane: str | None) -> Plane:
-    """The plane of a text such as "z=0", or for None the middle one across the shortest axis.
-    `shape`: (..., nz, ny, nx, 3)."""
+    """Returns the plane that a text such as "z=0" names, or for None the middle plane across the
+    axis of fewest cells. `shape`: (..., nz, ny, nx, 3)."""
     extents = shape[-2:-5:-1]
     if plane is None:
         normal = min((2, 1, 0), key=lambda axis: extents[axis])
@@ -132,7 +132,7 @@ def frame_number(file: Any, frame: int) -> int:
 
 
 def require_trajectory(file: Any) -> None:
-    """Raises ValueError for an open file of other content."""
+    """Raises ValueError if the open file is not a trajectory."""
     missing = [name for name in ("spins", "time") if name not in file]
     if missing or file["spins"].ndim not in (5, 6) or file["spins"].shape[-1] != 3:
         lacks = missing[0] if missing else "frames of spins"
@@ -142,7 +142,7 @@ def require_trajectory(file: Any) -> None:
 def of_file(file: Any, frame: int = -1,
             before: int | None = None) -> tuple[Texture, np.ndarray | None]:
     """A frame of an open trajectory file (h5py.File), and the spins of the frame `before`. Raises
-    ValueError for frames that are not in it, and for a file of other content."""
+    ValueError for frames that are not in the file, and for a file that is not a trajectory."""
     require_trajectory(file)
     number = frame_number(file, frame)
     spacing, boundary, si = lattice_of(file.attrs.get("scene", ""))

@@ -59,9 +59,9 @@ class View:
 
 
 def view(path: str | os.PathLike) -> View:
-    """Shows the trajectory file `path`, or starts the run of a scene file and shows it. It needs
-    h5py and tornado.
+    """Shows the spins of the trajectory file `path` on a page in the browser. If `path` is a scene
+    file, starts its run and shows the trajectory. Needs h5py and tornado.
 
-    Raises CayspinError for other files, and where the page does not start.
+    Raises CayspinError for other files, and if the page does not start.
     """
     return View(path)

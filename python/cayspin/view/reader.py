@@ -45,8 +45,8 @@ def _is_locked(path):
 
 
 class Reader:
-    """Opens the file for each answer, and only reads it. During a run it trusts only rows that were
-    there in two readings: the last row may be half written."""
+    """Reads a trajectory file, which it opens for each answer. During a run it trusts only rows
+    that were there in two successive readings, because the last row may be half written."""
 
     def __init__(self, path: str | pathlib.Path):
         self.path = pathlib.Path(path)
@@ -59,7 +59,8 @@ class Reader:
         self._read(self._look)
 
     def _read(self, read: Callable) -> Any:
-        """Returns the result of `read` on the open file; retries, since it may soon be complete."""
+        """Returns the result of `read` on the open file. Retries if that fails, because a
+        half-written file may soon be complete."""
         for tries_left in range(10, -1, -1):
             try:
                 with h5py.File(self.path, "r", locking=False) as file:
@@ -118,7 +119,8 @@ class Reader:
                 "plane": plane.number}
 
     def frame(self, number: int, plane: str) -> bytes:
-        """Spins of a plane, 3 bytes each, in rows from the bottom up."""
+        """Returns the spins of a plane in frame `number`, 3 bytes each, in rows from the bottom
+        up."""
         if number >= self.frames:
             accepted = f"0 to {self.frames - 1}" if self.frames else "a file that holds frames"
             raise ValueError(f"frame {number}; accepted: {accepted}")
@@ -134,8 +136,8 @@ class Reader:
         return self._read(read).astype("<f4").tobytes()
 
     def path_of(self, place: int, plane: str, first: int) -> bytes:
-        """The spins of one site in up to 500 frames from `first` on, 3 floats each. `place`: the
-        site's number in frame()."""
+        """Returns the spins of one site in up to 500 frames from `first` on, 3 floats each.
+        `place`: the site's number in the result of frame(), counted from 0."""
         def read(file):
             shape = file["spins"].shape[1:-1]
             numbers = np.arange(np.prod(shape)).reshape(*shape, 1)

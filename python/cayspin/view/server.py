@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Serves the page and its data, only on this machine and only with the token."""
+"""Serves the page and its data to this machine only. All but the page's scripts, style and icon
+requires the token."""
 
 from __future__ import annotations
 

@@ -7,8 +7,8 @@
 
 namespace cayspin::program {
 
-/// Returns the ranks that the program was launched as: one, unless it is built with MPI and a
-/// launcher such as mpiexec started more.
+/// Returns the ranks with which the program was launched. There is one rank unless the program is
+/// built with MPI, and a launcher such as mpiexec has started more.
 std::unique_ptr<simulation::Ranks> launched_ranks();
 
 /// Prevents processes that this one starts from becoming ranks.

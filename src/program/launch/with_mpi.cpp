@@ -32,7 +32,7 @@ class Type {
     MPI_Type_contiguous(static_cast<int>(bytes), MPI_BYTE, &type_);
     MPI_Type_commit(&type_);
   }
-  /// Describes the sites of a box in the whole lattice.
+  /// Describes the sites of a box within a lattice of this shape.
   Type(io::SiteBox const& box, std::array<std::int64_t, 3> const& shape, Type const& site) {
     std::array<int, 3> sizes{}, extents{}, begins{};  // the slowest axis first
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -181,7 +181,7 @@ class MpiRanks final : public Ranks {
 
   static void wait(MPI_Request& request) { mpi::detail::wait_for({&request, 1}); }
 
-  /// Waits without occupying a core that other ranks still need.
+  /// Waits for all ranks, without occupying a core that other ranks still need.
   static void wait_for_all() {
     MPI_Request all = MPI_REQUEST_NULL;
     MPI_Ibarrier(MPI_COMM_WORLD, &all);
@@ -192,7 +192,7 @@ class MpiRanks final : public Ranks {
   }
 
   MPI_Comm comm_ = MPI_COMM_NULL;
-  std::vector<io::SiteBox> boxes_;  // of all parts, on the first rank
+  std::vector<io::SiteBox> boxes_;  // the boxes of all parts, on the first rank
   int threads_ = 0, count_ = 0, rank_ = 0, on_this_machine_ = 1;
 };
 

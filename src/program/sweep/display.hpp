@@ -11,17 +11,17 @@
 
 namespace cayspin::program::sweep {
 
-/// A run in progress and its share of steps done.
+/// A run in progress, and the fraction of its steps that are done.
 struct Running {
   std::int64_t run;
   double share;
 };
 
 /// Progress report of a sweep on standard output: a line for each run that has ended; on a terminal
-/// also a bar for each run in progress, as far as they fit, and one for all runs.
+/// also bars, one for each run in progress, as many as fit, and one for all runs.
 class Display {
  public:
-  /// `open`: the runs to do.
+  /// `open`: the runs that are still to do.
   Display(Grid const& grid, std::vector<std::int64_t> const& open, bool quiet);
 
   void ended(std::int64_t number, io::SweptRun const& run, std::vector<Running> const& running);
@@ -40,7 +40,7 @@ class Display {
   std::size_t count_, ended_ = 0;
   double cost_ = 0, cost_ended_ = 0;
   Clock::time_point begin_ = Clock::now(), shown_;
-  int lines_ = 0;  // of bars on the terminal
+  int lines_ = 0;  // number of lines with bars on the terminal
 };
 
 }  // namespace cayspin::program::sweep

@@ -25,8 +25,8 @@ constexpr double most_runs = 1e5;
 // Starts are checked before the first run, up to this many sites in all.
 constexpr std::int64_t most_checked = 20'000'000;
 
-// Returns true if two keys, given as for --set, are equal, or one is a table that contains the
-// other.
+// Returns true if two keys are equal, or if one is a table that contains the other. Both may be
+// followed by =VALUE, which is ignored.
 bool overlap(std::string const& a, std::string const& b) {
   auto const path = [](std::string const& assignment) {
     auto key = assignment.substr(0, assignment.find('='));
@@ -64,13 +64,13 @@ std::vector<io::SweptKey> read_keys(SweepOptions const& options) {
 }
 
 // Searches fields for features in time only if the scene sets refuse_unstable, because each run
-// searches again.
+// repeats this search.
 Plan plan_of(io::Stage const& stage, Precision precision) {
   auto const& scene = stage.scene;
   if (stage.relax) return make_plan_to_relax(scene, precision);
   auto const no_features = std::make_shared<TimeFeatures const>();
   auto plan = make_plan(scene, precision, scene.integrator.refuse_unstable ? nullptr : no_features);
-  dt_warning(scene, plan);  // an error if the scene sets refuse_unstable
+  dt_warning(scene, plan);  // throws if dt is too large and the scene sets refuse_unstable
   return plan;
 }
 

@@ -21,13 +21,14 @@ struct SweepOptions : SceneOptions {
 /// A sweep whose scenes have all been checked.
 struct Grid {
   io::SweepHeader header;
-  std::vector<std::string> texts;  // of the scenes
-  std::vector<double> costs;       // steps times sites of each run
+  std::vector<std::string> texts;  // text of each run's scene
+  std::vector<double> costs;       // steps * sites of each run
   std::int64_t largest = 0;        // memory of the largest run, in bytes
 };
 
-/// Reads and checks the scene of every run. Throws UsageError or io::SceneError, which names the
-/// combination that is wrong.
+/// Reads and checks the scene of every run. Throws UsageError for wrong options. Throws
+/// io::SceneError for a wrong scene; if there are several runs, the message names its combination
+/// of values.
 Grid make_grid(SweepOptions const& options);
 
 /// Returns, for example, "system.damping=0.1 integrator.dt=0.02".

@@ -27,7 +27,8 @@ bool has_ended(io::SweptRun const& run) {
   return run.status == Status::done || run.status == Status::numbers_failed;
 }
 
-// Describes the sweep in the file if it is not this one; otherwise returns an empty text.
+// Describes the sweep in the file, `before`, by what differs from this sweep, `now`. Returns an
+// empty text if they are equal.
 std::string difference(io::SweepHeader const& now, io::SweepHeader const& before) {
   auto const keys = [](io::SweepHeader const& header) {
     std::string text;
@@ -67,7 +68,7 @@ Session::Session(fs::path file, Grid const& grid, bool overwrite)
 
 void Session::open(bool is_new) {
   if (!is_new) {
-    // Reads the file again, because another process may have completed it meanwhile.
+    // Reads the file again, because another process may have completed the sweep meanwhile.
     auto const before = io::read_sweep(file_);
     info_.runs = before.runs;
     info_.complete = before.complete;
@@ -83,7 +84,7 @@ void Session::open(bool is_new) {
     io::SweptRun found;
     bool const is_whole = read_run(number, found);
     if (run.has_file && !found.has_file) {
-      run = {};  // its file is missing or damaged: it runs again
+      run = {};  // the file is missing or damaged, so the run is repeated
     } else if (is_whole && run.status != Status::numbers_failed) {
       found.message = run.message;
       run = found;
@@ -147,8 +148,8 @@ std::vector<std::int64_t> Session::open_runs() const {
 
 bool Session::is_finished() const { return std::ranges::all_of(info_.runs, has_ended); }
 
-// Reads the last frame of a run's own file, even if the run failed. Returns true if the file is
-// complete and of this sweep.
+// Reads the last frame of a run's own file into `run`, even if the run failed. Returns true if the
+// file is complete and belongs to this sweep.
 bool Session::read_run(std::int64_t number, io::SweptRun& run) const {
   auto const path = run_file(number);
   if (!fs::exists(path)) return false;
@@ -181,7 +182,7 @@ void Session::take(std::int64_t number, std::int64_t status, std::string const& 
   }();
   taken.status = status;
   taken.is_new = whole;
-  // In the message, the run's group replaces the name of its file.
+  // In the message, replaces the name of the run's own file by its group in the sweep's file.
   auto const name = run_file(number).string();
   taken.message = message;
   if (auto const place = message.find(name); place != message.npos)

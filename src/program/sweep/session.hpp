@@ -16,9 +16,9 @@ namespace cayspin::program::sweep {
 /// other processes.
 class Session {
  public:
-  /// Continues the sweep in the file; without a file, or with `overwrite`, starts one. Throws
-  /// UsageError if the file has other contents (without `overwrite`), if its folder does not exist
-  /// or the file cannot be written, and if another process works on it.
+  /// Continues the sweep in the file. If the file does not exist, or with `overwrite`, starts a new
+  /// sweep. Throws UsageError if the file has other contents (without `overwrite`), if its folder
+  /// does not exist, if the file cannot be written, and if another process is writing it.
   Session(std::filesystem::path file, Grid const& grid, bool overwrite);
   ~Session();
   Session(Session const&) = delete;
@@ -31,15 +31,15 @@ class Session {
   /// Returns the runs that are still to do.
   std::vector<std::int64_t> open_runs() const;
 
-  /// Records the end of a run. Its status becomes wrong_usage if it is done, but its file is not
-  /// that of the planned scene.
+  /// Records the end of a run. If `status` is done, but the run's file does not hold a complete run
+  /// of the planned scene, the recorded status is wrong_usage.
   void take(std::int64_t number, std::int64_t status, std::string const& message);
 
   /// Writes the recorded results.
   void write();
-  /// Writes the results; if all runs have ended, copies their files into the sweep's file and
-  /// removes them with their checkpoints, and the folder if nothing else is in it. Returns false if
-  /// interrupted.
+  /// Writes the results. If all runs have ended, copies their files into the sweep's file, and
+  /// removes these files, their checkpoints, and the folder if nothing else is in it. Returns false
+  /// if interrupted.
   bool close();
 
  private:

@@ -85,7 +85,7 @@ void stop(std::vector<Job>& jobs) {
   jobs.clear();
 }
 
-// Does all runs that are still to do. Returns false if interrupted.
+// Performs all runs that are still to do. Returns false if interrupted.
 bool run_all(SweepOptions const& options, Grid const& grid, Session& session) {
   auto const list = session.open_runs();
   std::deque<std::int64_t> open(list.begin(), list.end());

@@ -28,8 +28,8 @@ std::string status_text(io::SweptRun const& run) {
   }
 }
 
-// Spins of classical methods may leave the sphere and become so long that six digits after the
-// point are too many.
+// Some baseline methods do not keep spins on the unit sphere. Their components may become so large
+// that six digits after the point are too many.
 std::string component_text(double m) {
   return std::abs(m) < 10 ? fmt::format("{:.6f}", m) : fmt::format("{:.3g}", m);
 }

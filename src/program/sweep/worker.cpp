@@ -30,7 +30,7 @@ namespace cayspin::program::sweep {
 namespace {
 
 constexpr std::size_t most_text = 4096;
-// The line of the worker's output that ends a command consists of this word and the status.
+// After each command the worker prints a line that consists of this word and the exit status.
 constexpr std::string_view end_word = "end ";
 
 using Pipe = std::array<int, 2>;
@@ -42,7 +42,8 @@ Pipe open_pipe() {
   return ends;
 }
 
-// Makes a forked child a worker. Must not allocate memory, because it runs between fork and exec.
+// Turns a forked child into a worker. Must not allocate memory, because it runs between fork and
+// exec.
 [[noreturn]] void become(char* const* words, Pipe const& requests, Pipe const& output,
                          Pipe const& errors, pid_t parent) {
   // Leaves the terminal's process group, so that an interrupt comes only once, from the parent.
@@ -113,7 +114,8 @@ void Worker::begin(std::vector<std::string> const& arguments) {
   std::string request;
   for (auto const& argument : arguments) request += argument + '\0';
   request += '\0';
-  // If the process has ended, the write fails; the closed streams tell that later.
+  // If the process has ended, the write fails. Then has_ended() becomes true, because the streams
+  // are closed.
   auto const before = std::signal(SIGPIPE, SIG_IGN);
   for (std::size_t sent = 0; sent < request.size();) {
     auto const count = ::write(requests_, request.data() + sent, request.size() - sent);

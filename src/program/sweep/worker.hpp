@@ -39,12 +39,13 @@ class Worker {
   bool has_ended() const { return status_.has_value() || has_closed(); }
   /// Returns the exit status of the command, or 128 + the signal that ended the process.
   int status();
-  /// Returns false after a crash.
+  /// Returns true if the process can perform another command, and false after a crash.
   bool can_go_on() const { return process_ > 0 && !has_closed(); }
   /// Sends a signal, after which no command can begin.
   void stop(int signal);
 
-  /// Returns the share of steps done, from `run --report-progress`.
+  /// Returns the fraction of the command's steps that are done, which `run --report-progress`
+  /// reports.
   double share() const { return share_; }
   /// Returns the last line of the command's standard error.
   std::string message() const;
@@ -62,11 +63,12 @@ class Worker {
   double share_ = 0;
 };
 
-/// The first argument of a worker's process, followed by the space and the threads, or "".
+/// The first argument of a worker's process. The second is the space; the third is the number of
+/// threads, or empty.
 inline constexpr char worker_word[] = "--work";
 
 /// Performs the commands that a Worker requests on standard input, in one session of Kokkos.
-/// `perform`: returns a command's exit status.
+/// `perform`: performs a command, and returns its exit status.
 int work(std::string const& space, std::string const& threads, int (*perform)(int, char**));
 
 }  // namespace cayspin::program::sweep

@@ -16,27 +16,29 @@
 namespace cayspin::program::trade {
 namespace {
 
-// Limits of a search: a share of the duration of the run, but at least this many seconds.
+// The time limit of a search: this fraction of the duration of the run, but at least this many
+// seconds.
 constexpr double most_share = 0.1, least_limit = 2;
-// Approximate shares of that limit: for a coarse run, for the fine solution, and those at which the
-// first trials and all trials end.
+// Approximate fractions of that limit: for a coarse run, for the fine solution, and those at which
+// the first trials and all trials end.
 constexpr double coarse_share = 1.0 / 40, fine_share = 0.4, first_share = 0.65, try_share = 0.9;
 
-constexpr double accepted = 0.95;  // share of the requested error, with its uncertainty included
-constexpr double aim = 0.9;        // share of the accepted error
-constexpr double unlikely = 16;    // ratio of expected evaluations to the fewest
-constexpr double hope = 0.8;       // ratio of time to the prediction, at best
-constexpr double doubt = 6;        // ratio of time to the best; a larger one is not due to noise
-constexpr double contender = 1.7;  // ratio of time to the best, for candidates that are timed again
-constexpr int rounds = 3;          // of repeated timing
-constexpr int tries = 12;          // per candidate
-constexpr int all_finer = 30;      // how often the coarsest steps are made finer, if refused
-constexpr int refinements = 4;     // how often final steps that miss the error are shortened
-constexpr int horizons = 20;       // number to try, each half of the previous one
+constexpr double accepted = 0.95;  // limit of (error + uncertainty) / requested error
+constexpr double aim = 0.9;  // fraction of the accepted error that predicted steps should have
+// Candidates with more than this many times the fewest expected evaluations are tried last.
+constexpr double unlikely = 16;
+constexpr double hope = 0.8;  // smallest ratio of an actual time to its prediction
+constexpr double doubt = 6;   // ratio of a time to the best one; a larger ratio is not due to noise
+constexpr double contender = 1.7;  // candidates within this ratio of the best time are timed again
+constexpr int rounds = 3;          // number of rounds of repeated timing
+constexpr int tries = 12;          // largest number of trials of a candidate
+constexpr int all_finer = 30;      // how many times refused coarsest steps are made finer
+constexpr int refinements = 4;     // how many times final steps that miss the error are shortened
+constexpr int horizons = 20;       // number of horizons to try, each half of the previous one
 
 constexpr Repeats quick{1, 2e-3};
 
-/// A solution and its estimated error.
+/// A fine solution and its estimated error.
 struct Known {
   FineSolution solution;
   double error;  // estimated from a solution at ten times the tolerance
@@ -61,8 +63,8 @@ class Search {
   }
 
   /// Tries each likely candidate once, then repeatedly the one predicted to be the cheapest, until
-  /// none promises an improvement; then repeats this with all candidates. Stops early when time is
-  /// up, but not before one candidate works.
+  /// none promises an improvement; then repeats this with all candidates. Stops early when the time
+  /// is up, but not before a trial of one candidate has succeeded.
   void run() {
     if (prospects_.empty()) return;
     double const least = prospects_.front().expected_evaluations();
@@ -73,7 +75,8 @@ class Search {
     time_again();
   }
 
-  /// Tries candidates until one meets the error, whatever the time. Returns false if none does.
+  /// Tries candidates until one meets the error, however long that takes. Returns false if none
+  /// does.
   bool find_any() {
     for (auto& prospect : prospects_)
       while (!prospect.is_dropped()) {
@@ -112,12 +115,12 @@ class Search {
 
   void add(Candidate const& candidate) {
     if (!pilot_.fits(candidate)) return;
-    // Only adaptive steps can resolve features that come after this part of the run.
+    // Only adaptive steps can resolve features of the field that come after the horizon.
     if (!candidate.method->adaptive && !is_representative_) return;
     auto coarsest = coarsest_steps(pilot_, candidate, horizon_.time, horizon_.own_steps);
     if (pilot_.scene().integrator.refuse_unstable && !candidate.method->adaptive) {
-      // Starts at the stable dt, since a larger one is the usual reason for a refusal. Not without
-      // refuse_unstable, because with a sigma the stable dt takes long to compute.
+      // Starts at the stable dt, because a larger dt is the usual reason for a refusal. Without
+      // refuse_unstable the stable dt is not needed, and with a sigma it takes long to compute.
       double const stable = pilot_.plan(candidate, horizon_.time, coarsest).stable_dt;
       if (!(stable > 0)) return;
       coarsest.count =
@@ -157,7 +160,7 @@ class Search {
     return clock_.seconds() > share * std::clamp(of_best, least_limit, limit_);
   }
 
-  // Returns the time of a trial that meets the error; infinite if there is none.
+  // Returns the time of the coarsest trial that meets the error; infinite if no trial meets it.
   double seconds_of_passing(Prospect const& prospect) const {
     auto const* const passing = prospect.passing(error_);
     return passing ? passing->seconds : infinite;
@@ -185,8 +188,8 @@ class Search {
         return;
   }
 
-  // Returns the candidate predicted to be the cheapest; null if none may be cheaper than the best
-  // that meets the error.
+  // Returns the candidate predicted to be the cheapest; null if none is likely to be cheaper than
+  // the best trial that meets the error.
   Prospect* most_promising() {
     Prospect* promising = nullptr;
     double least = least_seconds() / hope;
@@ -209,7 +212,7 @@ class Search {
     if (prospect.tries().size() >= tries || prospect.is_round_off(error_)) prospect.drop();
   }
 
-  // Repeats timings that noise may have lengthened. Returns true if there were any.
+  // Repeats timings that noise may have lengthened. Returns true if it has repeated any.
   bool time_doubtful() {
     bool any = false;
     double const most = doubt * least_seconds();
@@ -301,10 +304,10 @@ Known fine_solution(Pilot const& pilot, Horizon& horizon, double error, double s
                       ": there is no solution to compare with: " + horizon.why_shorter);
 }
 
-// Tries the steps of the actual run, if no trial has shown their error. An extrapolated error may
-// be far off; and in a field that depends on t, the error depends on where the steps are, which the
-// times of the scene's frames may have changed. Shortens the steps until they meet the error;
-// returns false if they do not.
+// Returns true if the steps of the actual run meet the error. Tries these steps if their error was
+// only extrapolated, because it may be far off. Also tries constant steps in a field that depends
+// on t: then the error depends on the times of the steps, which the times of the scene's frames may
+// have moved. Shortens steps that miss the error a few times before it returns false.
 bool holds(Pilot const& pilot, Horizon const& horizon, Known const& fine, double error,
            Advice& advice) {
   bool const adaptive = advice.candidate.method->adaptive;
@@ -342,7 +345,8 @@ Advised advise(Pilot const& pilot, AdviceRequest const& request) {
   Search search(pilot, horizon, fine, request, clock, limit);
   search.run();
   Advised advised;
-  // Trials of steps that were only extrapolated could take any time.
+  // If an error was only extrapolated, holds() tries the steps. That could take arbitrarily long,
+  // so advice whose trial would exceed the limit is dropped.
   double const part = horizon.time / pilot.end();
   auto const is_too_long = [&](Advice const& one) {
     return !one.measured && one.seconds * part > limit;

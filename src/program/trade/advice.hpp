@@ -15,30 +15,31 @@ struct Advice {
   double dt = 0;
   double error = 0;  // up to the horizon of the trials
   double seconds = 0;
-  std::int64_t memory = 0;  // of the choice, in bytes
-  bool measured = true;     // otherwise the error is an extrapolation from other steps
+  std::int64_t memory = 0;  // in bytes; only Advised::choice has it
+  bool measured = true;     // false: the error is extrapolated from other steps
 };
 
 struct AdviceRequest {
   double error = 1e-4;
   std::optional<double> budget;        // seconds that the run may take
-  std::optional<Precision> precision;  // the only one to try
+  std::optional<Precision> precision;  // if given, only this one is tried
   TrialProgress* progress = nullptr;
 };
 
-/// Result of a search, and its horizon.
+/// Result of a search for advice, with the horizon of its trials.
 struct Advised {
-  std::optional<Advice> choice;  // empty if nothing meets the error, or the budget
+  std::optional<Advice> choice;  // empty if no method meets both the error and the budget
   std::vector<Advice> others;    // cheapest first
   double horizon = 0;
   std::string why_shorter;
   double seconds = 0;  // duration of the search
 };
 
-/// Tries the candidates with coarse steps, compares them with one fine solution, and continues with
-/// those predicted to be the cheapest. Takes at most a tenth of the duration of the run, or 2 s if
-/// that is longer, plus the trials that measure the advice; longer only if nothing has met the
-/// error by then.
+/// Finds the cheapest method whose error is at most the requested one. Tries the candidates with
+/// coarse steps, compares their results with one fine solution, and continues with those predicted
+/// to be the cheapest. This search takes at most a tenth of the duration of the run, or 2 s if that
+/// is longer, and continues beyond this limit only if no candidate has met the error by then. The
+/// trials that check the advice itself come in addition.
 Advised advise(Pilot const& pilot, AdviceRequest const& request);
 
 }  // namespace cayspin::program::trade

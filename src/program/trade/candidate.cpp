@@ -24,7 +24,7 @@ std::string Candidate::name() const {
 }
 
 double Candidate::least_tolerance() const {
-  // As measured on films; it does not depend on the number of steps.
+  // This value was measured on films. It does not depend on the number of steps.
   if (compensated && precision == Precision::single_precision)
     return 4 * double(std::numeric_limits<float>::epsilon());
   return precision == Precision::single_precision ? StepOptions::least_tolerance<float>()
@@ -33,8 +33,8 @@ double Candidate::least_tolerance() const {
 
 namespace {
 
-// Returns the rate gyromagnetic ratio / moment * the sum of a site's couplings by exchange; 0 if
-// the sites differ in it, or if it depends on t.
+// Returns a rate: the gyromagnetic ratio / moment * the sum of a site's exchange couplings. Returns
+// 0 if this rate is not the same at all sites, or if it depends on t.
 double rate_of_couplings(io::Scene const& scene) {
   auto const& lattice = scene.lattice;
   auto const rates = io::noise_of_cell_sites(scene);
@@ -62,10 +62,12 @@ bool is_possible(io::Scene const& scene, Candidate const& candidate) {
   }
 }
 
-// Returns the candidates in double precision that the rows of the list of methods ask for.
+// Returns the candidates in double precision. The list of methods says which variants of each
+// method are tried.
 std::vector<Candidate> in_double(io::Scene const& scene) {
-  // Exchange adds a multiple of the spin itself to H, which does not turn the spin. A constant
-  // sigma removes it if it is equal at all sites, and only the sum of the neighbours remains.
+  // Exchange adds a multiple of the spin itself to H, which does not turn the spin. If this
+  // multiple is the same at all sites, a constant sigma removes it, and only the sum over the
+  // neighbours remains.
   double const couplings = rate_of_couplings(scene);
   std::vector<Candidate> all;
   for (auto const* const method : io::methods()) {

@@ -21,7 +21,8 @@ struct Candidate : MethodChoice {
   Precision precision = Precision::double_precision;
 
   double least_tolerance() const;
-  /// Returns the error of a run due to round-off. The candidate is not tried for smaller errors.
+  /// Returns an estimate of the error of a run due to round-off. The candidate is not tried for
+  /// smaller errors.
   double least_error() const { return 2 * least_tolerance(); }
   /// Returns a name such as "rkmk4 tangent, single" or "rkmk4, multirate, 4 substeps".
   std::string name() const;
@@ -41,13 +42,13 @@ struct Try {
   std::int64_t evaluations = 0;
 };
 
-/// Returns all candidates that can run a scene, in double and then in single precision, each with
-/// high orders first; only those in `precision`, if it is given. Some evaluate an expensive field
-/// once a step, others in each stage.
+/// Returns all candidates that can run a scene: those in double precision, then those in single
+/// precision, each by falling order. If `precision` is given, returns only those in this precision.
+/// Some candidates evaluate an expensive field once a step, others in each stage.
 std::vector<Candidate> candidates(io::Scene const& scene, std::optional<Precision> precision = {});
 
-/// Returns the scene up to `horizon` with a candidate. An adaptive method is observed at the ends
-/// of `intervals` equal intervals.
+/// Returns the scene with a candidate as its method and `horizon` as its end. For an adaptive
+/// method, `intervals` equal intervals become the steps of the scene.
 io::Scene with(io::Scene scene, Candidate const& candidate, double horizon, std::int64_t intervals,
                Steps const& steps);
 

@@ -7,9 +7,9 @@
 namespace cayspin::program::trade {
 namespace {
 
-constexpr double finer_by = 1.5;  // ratio of steps between rungs
+constexpr double finer_by = 1.5;  // ratio of the numbers of steps of successive rungs
 
-// Returns a whole number of steps, at least four, so that there is some motion to observe.
+// Rounds up to a whole number of steps, at least four, so that there is some motion to observe.
 std::int64_t whole(double steps) {
   return static_cast<std::int64_t>(std::max<double>(4, std::ceil(steps)));
 }
@@ -18,8 +18,8 @@ double amount(Rung const& rung, bool of_evaluations) {
   return of_evaluations ? static_cast<double>(rung.evaluations) : rung.seconds;
 }
 
-// Returns the cost to reach an error that this rung meets: that of the rung or, if the previous
-// rung misses the error, a lower one by logarithmic interpolation between both.
+// Returns the cost of reaching an error that this rung meets. That is the rung's own cost or, if
+// the previous rung misses the error, a lower cost interpolated logarithmically between the two.
 double interpolated(Rung const* before, Rung const& rung, double error, bool of_evaluations) {
   double const last = amount(rung, of_evaluations);
   if (!before || !(before->error > error) || !(rung.error > 0)) return last;

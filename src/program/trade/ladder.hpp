@@ -8,9 +8,9 @@
 
 namespace cayspin::program::trade {
 
-/// A run of a ladder.
+/// One run of a ladder, with certain steps.
 struct Rung : Try {
-  double dt = 0;          // of methods with constant steps
+  double dt = 0;          // 0 for adaptive methods
   bool on_front = false;  // no other run is faster and at least as accurate
 };
 
@@ -23,12 +23,12 @@ struct Ladder {
 inline constexpr Repeats measured_well{3, 5e-3};
 
 struct LadderLimits {
-  double least_error = 1e-9;  // nothing finer is run
-  double seconds = 10;        // after a longer run nothing finer is run
-  double far_behind = 30;     // nor after one this many times as long as another candidate's
+  double least_error = 1e-9;  // after a run with a smaller error, no finer steps are run
+  double seconds = 10;        // after a run that takes longer, no finer steps are run
+  double far_behind = 30;     // no finer steps after a run this many times slower than others
   int rungs = 40;
   TrialProgress* progress = nullptr;
-  double share = 0;  // share of all ladders done
+  double share = 0;  // fraction of all ladders that are done
 };
 
 /// Return the steps of a candidate's first rung, which are the coarsest, and those of the rung that
@@ -38,15 +38,15 @@ Steps coarsest_steps(Pilot const& pilot, Candidate const& candidate, double hori
 Steps finer(Candidate const& candidate, Steps const& steps);
 
 /// Runs a candidate with finer and finer steps, until a limit is reached. `others`: the ladders of
-/// other candidates so far.
+/// the candidates that have been run before.
 Ladder climb(Pilot const& pilot, Candidate const& candidate, Reference const& reference,
              std::vector<Ladder> const& others, LadderLimits const& limits = {});
 
 /// Marks the Pareto front of all rungs, by error and seconds.
 void mark_front(std::vector<Ladder>& ladders);
 
-/// Returns the time in which a ladder's candidate reaches an error, interpolated logarithmically
-/// between rungs; infinite if it does not reach it.
+/// Returns the time that a ladder's candidate takes to reach an error, interpolated logarithmically
+/// between rungs; infinite if no rung reaches the error.
 double seconds_to(Ladder const& ladder, double error);
 /// Returns the ladder with only the rungs that determine seconds_to: two, one or none.
 Ladder around(Ladder const& ladder, double error);

@@ -13,7 +13,7 @@ namespace cayspin::program::trade {
 
 /// Steps at which a run's spins are stored.
 struct Looks {
-  std::int64_t intervals;           // equal intervals, which adaptive methods use as steps
+  std::int64_t intervals;           // number of equal intervals: the steps of an adaptive run
   std::vector<std::int64_t> steps;  // ascending, including the last step
 };
 
@@ -25,31 +25,31 @@ struct Stretch {
   bool guarded = false;  // true: the run fails if the guard of `cayspin run` would stop it
 };
 
-/// How often a run is repeated to measure its time; the shortest counts. Runs that fail or take
-/// more than 0.3 s are not repeated, and no run is done more than a hundred times.
+/// How often a run is repeated to measure its time. The shortest time counts. Runs that fail or
+/// take more than 0.3 s are not repeated, and no run is done more than a hundred times.
 struct Repeats {
-  int least = 1;       // runs, even if they take longer than `seconds`
-  double seconds = 0;  // runs are repeated until they take this long in all
+  int least = 1;       // number of runs, even if they take longer than `seconds`
+  double seconds = 0;  // runs are repeated until all together have taken this long
 };
 
 /// Result of a run without files.
 struct Outcome : Ending {
-  std::vector<std::vector<double>> states;  // at the stored steps, (sites, 3)
+  std::vector<std::vector<double>> states;  // spins at the stored steps, each (sites, 3)
 
   double seconds() const { return summary.step_seconds; }
 };
 
-/// Returns the largest distance of any spin between two states.
+/// Returns the largest distance between corresponding spins of two states.
 double distance(std::vector<double> const& a, std::vector<double> const& b);
-/// Returns the largest distance at any stored step; infinite if a run has failed.
+/// Returns the largest such distance at any stored step; infinite if a run has failed.
 double distance(Outcome const& a, Outcome const& b);
 
 /// Runs one scene with different methods, in one execution space. Exists only inside a
 /// KokkosSession.
 class Pilot {
  public:
-  /// `error`: the smallest requested. Throws io::SceneError for a scene without steps or with a
-  /// temperature, and if memory does not suffice.
+  /// `error`: the smallest error that will be requested. Throws io::SceneError for a scene without
+  /// steps or with a temperature, and if there is too little memory.
   Pilot(io::Scene scene, std::string space, double error);
 
   io::Scene const& scene() const { return scene_; }
@@ -59,7 +59,7 @@ class Pilot {
   /// Returns the longest constant step: the scene's max_dt or, if that is shorter, the shortest
   /// feature of its field.
   double longest_step() const;
-  /// Returns true if fields that depend on t show all their features up to `horizon`.
+  /// Returns true if the run up to `horizon` shows all features of the fields that depend on t.
   bool is_representative(double horizon) const;
   /// Returns true if there is memory for a candidate's runs.
   bool fits(Candidate const& candidate) const;
@@ -69,11 +69,11 @@ class Pilot {
               Repeats const& repeats = {}) const;
   Outcome run(Candidate const& candidate, Stretch const& stretch, Steps const& steps,
               Repeats const& repeats = {}) const;
-  /// Returns the plan of such a run.
+  /// Returns the plan of a candidate's run.
   Plan plan(Candidate const& candidate, double horizon, Steps const& steps) const;
 
  private:
-  /// Returns the bytes of a run, and of all states that are stored at the same time.
+  /// Returns the memory, in bytes, of a run and of all states that are stored at the same time.
   std::int64_t bytes(Candidate const& candidate) const;
 
   io::Scene scene_;

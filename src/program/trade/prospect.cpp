@@ -7,8 +7,8 @@
 namespace cayspin::program::trade {
 namespace {
 
-constexpr double near = 4;  // ratio of error to requested error below which orders may be exceeded
-constexpr double most_finer = 5;  // ratio of cost to that of the finest trial
+constexpr double near = 4;        // largest error / requested error at which an excess order counts
+constexpr double most_finer = 5;  // largest ratio of a cost to that of the finest trial
 constexpr double close = 0.94;    // ratio of two costs above which they count as equal
 
 }  // namespace
@@ -55,7 +55,7 @@ Try const* Prospect::passing(double error) const {
   return coarsest;
 }
 
-// Returns the order from the last two trials; the method's own if they do not show it.
+// Returns the order that the two finest trials show, or the method's own if they show none.
 double Prospect::seen_order() const {
   if (tries_.size() < 2) return order_;
   auto const &a = tries_[tries_.size() - 2], &b = tries_.back();
@@ -64,8 +64,9 @@ double Prospect::seen_order() const {
   return std::isfinite(seen) ? seen : order_;
 }
 
-// Interpolates by a power law. Errors drop abruptly where steps become stable; there it bisects,
-// until the drop is close.
+// Returns the resolution that should have this error, interpolated by a power law. Where steps
+// become stable, errors drop too abruptly for that. Then bisects the interval, until its ends cost
+// about the same.
 double Prospect::between(Try const& failing, Try const& passing, double error) const {
   double const from = resolution(failing.steps), to = resolution(passing.steps);
   double const slope = std::log(failing.error / passing.error) / std::log(to / from);
@@ -108,7 +109,7 @@ Steps Prospect::next(double error) const {
   if (tries_.empty()) return first_;
   double const most = resolution(tries_.back().steps) * std::pow(most_finer, 1 / cost_order_);
   auto steps = steps_of(std::min(resolution(needed(error)), most));
-  for (auto const& one : tries_)  // rounded to steps that were tried
+  for (auto const& one : tries_)  // steps that were tried already are made slightly finer
     if (one.steps.count == steps.count && one.steps.tolerance == steps.tolerance)
       steps = steps_of(1.01 * resolution(steps) + 1e-6);
   return steps;

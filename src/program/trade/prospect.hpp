@@ -12,7 +12,7 @@ namespace cayspin::program::trade {
 class Prospect {
  public:
   /// `order`, `cost_order`: the error falls as resolution^-order, and the cost grows as
-  /// resolution^cost_order. `evaluations`: the number expected before any trial.
+  /// resolution^cost_order. `evaluations`: the number of evaluations expected before any trial.
   Prospect(Candidate const& candidate, Steps const& coarsest, Steps const& first, double order,
            double cost_order, double evaluations)
       : candidate_(candidate),
@@ -31,20 +31,22 @@ class Prospect {
 
   /// Adds a trial, whose error is known to within `unknown`.
   void add(Try one, double unknown);
-  /// Adds the duration of a run with these steps.
+  /// Adds the duration of another run of the trial with these steps. The shorter one counts.
   void add_time(Steps const& steps, double seconds);
 
   /// Returns the coarsest trial such that it and all finer ones have at most this error; nullptr if
   /// there is none.
   Try const* passing(double error) const;
-  /// Returns the predicted steps for this error, which allows() may refuse.
+  /// Returns the steps predicted to have this error. allows() may refuse them.
   Steps needed(double error) const;
-  /// Returns the predicted time, from the shortest time per evaluation of all trials.
+  /// Returns the predicted duration of a run with these steps, from the shortest time per
+  /// evaluation of all trials.
   double seconds_of(Steps const& steps) const;
-  /// Returns the next steps to try: the predicted ones, if they do not take far longer than the
-  /// finest trial.
+  /// Returns the next steps to try: those predicted to have this error, or coarser ones if these
+  /// would cost more than five times as much as the finest trial.
   Steps next(double error) const;
-  /// Returns true if the passing trial takes about as long as the predicted steps.
+  /// Returns true if the predicted steps, needed(goal), are hardly cheaper than the trial
+  /// passing(error).
   bool is_settled(double error, double goal) const;
   /// Returns true if finer steps no longer reduce the error, because of round-off.
   bool is_round_off(double error) const;

@@ -16,7 +16,7 @@ constexpr double enough = 1e-10;
 constexpr double tightest = 1e-13;
 constexpr int most_halvings = 20;
 constexpr int most_fewer = 4;   // halvings at once
-constexpr int most_short = 10;  // steps of a run that is never too long
+constexpr int most_short = 10;  // a run of at most this many steps is never too long
 
 // Returns a method that computes the reference.
 Candidate by(char const* method) { return {{.method = io::find_method(method)}}; }
@@ -108,7 +108,7 @@ Try FineSolution::measure(Candidate const& candidate, Steps const& steps, bool g
 }
 
 // Returns the state after `step` of `steps` steps to the horizon: the stored one, or one continued
-// from the last stored time before.
+// from the last stored time before it.
 std::vector<double> FineSolution::at(std::int64_t step, std::int64_t steps) const {
   auto const of = [&](std::int64_t time) {
     return static_cast<double>(time) / static_cast<double>(parts);

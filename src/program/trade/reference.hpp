@@ -10,8 +10,8 @@
 
 namespace cayspin::program::trade {
 
-/// Returns the times, in units of 1/1024 horizon, at which runs are compared: a dozen, and up to
-/// sixteen just after a field jumps or has its shortest feature.
+/// Returns the times at which runs are compared, in units of horizon / 1024: a dozen, and up to
+/// sixteen more just after a field jumps or has its shortest feature.
 std::vector<std::int64_t> times_of_looks(TimeFeatures const& features, double horizon);
 
 /// A solution by an adaptive method up to a horizon, with which runs are compared.
@@ -36,9 +36,10 @@ class FineSolution {
     return distance(solution_, other.solution_);
   }
 
-  /// From now on continues the solution by constant steps of `method`: the longest whose error is
-  /// at most `error` at all times at which they can be compared. Without such steps, changes
-  /// nothing. Constant steps make short continuations cheaper than steps by the tolerance.
+  /// From now on continues the solution by constant steps of `method`. These are the longest, of
+  /// those tried, whose error is at most `error` at all times at which they can be compared. If
+  /// none meets `error`, changes nothing. For short continuations, constant steps are cheaper than
+  /// adaptive ones.
   void continue_by(Candidate const& method, double error);
 
   /// Measures a candidate's run to the horizon. `guarded`: the run fails if the guard of `cayspin
@@ -54,26 +55,26 @@ class FineSolution {
   double horizon_, tolerance_;
   std::vector<std::int64_t> times_;
   Outcome solution_;
-  std::int64_t equal_steps_ = 0;  // of continuations, to the horizon; 0: they use the tolerance
+  std::int64_t equal_steps_ = 0;  // number of constant steps up to the horizon; 0: adaptive steps
 };
 
 /// The first part of a scene's run, and the results of a coarse run over that part.
 struct Horizon {
   double time = 0;
-  std::int64_t own_steps =
-      0;               // of tsit5 at a tolerance of 0.01: a measure of how much there is to resolve
-  double seconds = 0;  // duration of that run
+  // Steps of tsit5 at a tolerance of 0.01: a measure of how much there is to resolve.
+  std::int64_t own_steps = 0;
+  double seconds = 0;            // duration of this coarse run
   std::string why_shorter = {};  // empty if `time` is the scene's end
 
   void halve(std::string why);
 };
 
-/// Returns tsit5 in a form whose error follows its tolerance.
+/// Returns tsit5 with the tangent generator, whose error follows its tolerance.
 Candidate fine_tsit5();
 
-/// Returns a horizon that a coarse run covers in `seconds`, or in ten steps: the scene's end,
-/// halved at most twenty times, after which the run may take longer. It is the longest of those
-/// that were tried, up to four halvings apart. Throws NumbersFailed if a coarse run fails.
+/// Returns the longest horizon tried that a coarse run covers within `seconds` or within ten steps.
+/// Tries the scene's end / 2^n, where n starts at 20 and falls by at most four at a time. If even
+/// the first run takes longer, returns its horizon. Throws NumbersFailed if a coarse run fails.
 Horizon horizon_within(Pilot const& pilot, double seconds);
 
 /// A converged solution of a scene, up to its end or as far as it converges.
@@ -83,8 +84,9 @@ struct Reference {
   double uncertainty;  // distance between the solutions of two methods
 };
 
-/// Starts from a horizon that a coarse run covers in a tenth of `seconds`, and halves it until two
-/// methods at a tolerance of 1e-13 agree. Throws NumbersFailed if they never do.
+/// Returns the reference solution. Starts from a horizon that a coarse run covers in a tenth of
+/// `seconds`, and halves it until two methods at a tolerance of 1e-13 agree. Throws NumbersFailed
+/// if they never do.
 Reference converged_reference(Pilot const& pilot, double seconds);
 
 }  // namespace cayspin::program::trade

@@ -31,7 +31,8 @@ std::int64_t steps_between_looks(io::Scene const& scene, bool adaptive) {
                            within(integrator, scene.output.scalars_every)));
 }
 
-// Returns those flags of [integrator] that can be set with any method, in order of the keys.
+// Returns the flags of [integrator] that the choice of a method does not set, in the order of the
+// keys. These include energy_control only if the method is not adaptive.
 std::vector<std::pair<std::string_view, bool>> flags_for_any_method(
     io::Integrator const& integrator, bool adaptive) {
   std::vector<std::pair<std::string_view, bool>> flags;
@@ -98,7 +99,7 @@ Resolved resolve(io::Scene const& scene, Advice const& advice) {
   if (has_slow_field(scene) && advice.candidate.substeps == 0)
     resolved.overrides.emplace_back(without_multirate(scene));
   add_output_keys(scene, resolved.overrides, [&](std::int64_t every) {
-    // Those of checkpoints may be no multiple of `together`.
+    // Periods of checkpoints need not be multiples of `together`.
     auto const all = within(integrator, every);
     return std::max<std::int64_t>(1, all / together * parts + all % together * parts / together);
   });

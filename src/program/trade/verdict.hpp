@@ -13,7 +13,7 @@ struct Verdict {
   double asked;
   Advised advised;
   double error = 0, seconds = 0;  // of the advised run
-  double best = 0;                // seconds, of all ladders
+  double best = 0;                // seconds; the shortest time of all ladders
 };
 
 /// `pilot`: runs the scene up to the reference's horizon, where the ladders end. The advised run
