@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Numbers over time, and the path of one spin on its sphere.
+// Draws numbers over time, and the path of one spin on the unit sphere.
 const ink = name => getComputedStyle(document.body).getPropertyValue(`--${name}`);
 
 function begin(canvas) {
@@ -20,7 +20,8 @@ function stroke(pen, points, color) {
   pen.stroke();
 }
 
-// rows: [time, ...]; columns: {number of the column: color}; `now`: the time of a line across.
+// rows: [time, ...]; columns: {number of the column: color}; `now`: the time that a vertical line
+// marks.
 export function drawLines(canvas, rows, columns, now, clock) {
   const [pen, width, height] = begin(canvas);
   let [low, high] = [Infinity, -Infinity];
@@ -54,7 +55,8 @@ function seen([x, y, z]) { // right, up and towards the eye
     z * Math.sin(RISE) + towards * Math.cos(RISE)];
 }
 
-// path: directions one after another; `now`: the number of the one that has a dot.
+// path: the directions of the spin in successive frames; `now`: the frame whose direction has a
+// dot.
 export function drawSphere(canvas, path, now) {
   const [pen, width, height] = begin(canvas), radius = Math.min(width, height) / 2 - 16;
   const at = ([right, up]) => [width / 2 + radius * right, height / 2 - radius * up];

@@ -30,7 +30,7 @@ async function ask(what, parameters, method = "GET") {
 }
 const bytes = async (what, parameters) => (await ask(what, parameters)).arrayBuffer();
 
-// `work`, which runs once more when it is asked for while it runs.
+// Returns a function that runs `work`. A call while `work` runs makes it run once more afterwards.
 function lastOf(name, work) {
   let running = null, again = false;
   const run = async () => {
@@ -83,7 +83,7 @@ async function layOutCrystal() {
   fit(half[0], half[1]);
 }
 
-// Cells by their spacing, sites of a crystal by their positions.
+// Lays out cells by their spacing, and the sites of a crystal by their positions.
 async function layOut() {
   const [right, up] = across().map(axis => "xyz"[axis]), of = about.extents[number("normal")];
   $("plane").max = of - 1;
@@ -168,8 +168,9 @@ const readNews = lastOf("news", async () => {
   trace();
 });
 
-// A run under way loses about a hundredth of its time to this page: a look takes the browser and the
-// server about twice as long as can be timed here, on a processor for which all threads wait.
+// Waits long enough between two looks that a run under way loses about a hundredth of its time to
+// this page. A look takes the browser and the server about twice as long as is measured here, on a
+// core for which all threads of the run wait.
 async function follow() {
   while (!news || news.more || news.state === "under way" || (news.run ?? "ended") !== "ended") {
     const start = about ? performance.now() : Infinity, before = news; // the first look takes long

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Spins as colors: films as cells, crystals as discs. The colors are those of texture/colors.py.
+// Draws spins as colors: films as cells, crystals as discs. The colors are those of
+// texture/colors.py.
 const WIDTH = 2048; // of the texture that holds the spins one after another
 
 const COLORED = `#version 300 es
@@ -78,13 +79,14 @@ export class Spins {
     gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
   }
 
-  // positions: of the discs, between -1 and 1; size: their diameter over the height of the picture.
+  // positions: of the discs, between -1 and 1; size: their diameter / the height of the picture.
   place(positions, size) {
     Object.assign(this, {positions, size});
     this.gl.bufferData(this.gl.ARRAY_BUFFER, positions, this.gl.STATIC_DRAW);
   }
 
-  // spins: an Int8Array, three to a site; rows of `extents` from the bottom up.
+  // spins: an Int8Array, three numbers for each site, row by row from the bottom up; extents: the
+  // numbers of columns and rows.
   load(spins, extents) {
     const rows = Math.ceil(spins.length / 3 / WIDTH), whole = new Int8Array(3 * WIDTH * rows);
     whole.set(spins);
@@ -115,7 +117,8 @@ export class Spins {
     }
   }
 
-  // Where a site is in the picture, from 0 to 1 to the right and up; and the site nearest to there.
+  // at(): where a site is in the picture, from 0 to 1 to the right and up. nearest(): the site
+  // nearest to such a point.
   at(site) {
     const {positions, extents: [columns, rows]} = this;
     if (positions) return [0, 1].map(axis => (positions[3 * site + axis] + 1) / 2);
@@ -132,7 +135,8 @@ export class Spins {
     return best;
   }
 
-  // The key: the middle along the normal, half way out in the plane, the rim against the normal.
+  // Draws the key: spins along the normal in the middle, in the plane half way out, against the
+  // normal at the rim.
   drawKey(onto, safe) {
     const side = 160, spins = new Int8Array(3 * side * side);
     for (let site = 0; site < side * side; ++site) {
