@@ -114,8 +114,8 @@ class Scene:
     SI. `field["nonlocal"]` may be a function of (spins, t) that returns H of all sites in the shape
     of the spins, in SI also in T. It is called with a copy of the spins whenever a step or an
     energy needs the field. H has to be linear in the spins, and with the moments mu the matrix of
-    mu H has to be symmetric, so that the energy of this field is -sum mu m.H / 2. H may depend on t,
-    so the energy guard is off, and the steps of adaptive methods are at most dt.
+    mu H has to be symmetric, so that the energy of this field is -sum mu m.H / 2. H may depend on
+    t, so the energy guard is off, and the steps of adaptive methods are at most dt.
 
     Raises SceneError with one line that names the key, what is wrong and what is accepted.
     """
