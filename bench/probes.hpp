@@ -28,7 +28,7 @@ class Probe {
   void chart_rk4(Real dt);
   void projected_rk4(Real dt);
 
-  /// Set or return the spins as (sites, 3), x fastest.
+  /// Set or return the spins as an array (sites, 3); among the sites, x varies fastest.
   void set(std::vector<double> const& spins);
   std::vector<double> get() const;
 

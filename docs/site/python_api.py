@@ -63,7 +63,7 @@ class Thing(Member):
 
 
 class Module:
-    """The definitions of a file."""
+    """A Python source file and its top-level functions, classes and annotated names."""
 
     def __init__(self, path):
         self.source = path.read_text(encoding="utf-8")

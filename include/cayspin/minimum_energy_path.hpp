@@ -148,10 +148,12 @@ class PathFinder {
     return PathEnd::no_saddle;
   }
 
-  /// Relaxes the string until the gradient across it is below `bound` times the strongest field: at
-  /// the highest image if `of_highest`, otherwise at all images. Takes at most `most_steps` steps.
-  /// If the gradient no longer falls, gives up if `of_highest`; otherwise first tries sweeps, with
-  /// shorter and shorter steps. Returns why the whole search ends, or nothing if it goes on.
+  /// Relaxes the string until the gradient perpendicular to the path is below `bound` times the
+  /// strongest field: at the highest image if `of_highest`, otherwise at all images. Returns early
+  /// after `most_steps` steps. Also returns early if the gradient stops falling; but unless
+  /// `of_highest`, it first switches from L-BFGS to sweeps (PathString::sweep) and shortens their
+  /// steps whenever the gradient stops falling again. is_settled_ tells whether all images reached
+  /// the bound. Returns the reason if the whole search must end, otherwise nothing.
   std::optional<PathEnd> relax(double bound, bool of_highest,
                                int most_steps = std::numeric_limits<int>::max()) {
     double share = 1, least = std::numeric_limits<double>::infinity();
@@ -327,11 +329,11 @@ constexpr int path_work_fields(std::size_t images) {
 ///
 /// `minimize` relaxes the first and the last image; the images between them become the path. By
 /// default, the search starts from a path on which each spin follows the great circle between its
-/// two ends (through x or y if these are opposite), with an asymmetric disturbance of up to 0.1
-/// rad. The images descend perpendicular to the path by preconditioned L-BFGS. From the maxima of
-/// the energy along the path, Newton's method climbs to saddles until the torque is below its
-/// bound; then the images relax between them. `saddle` receives the highest saddle, if one is
-/// found.
+/// two end directions (through x or y if they are opposite), with an asymmetric perturbation of up
+/// to 0.1 rad. Preconditioned L-BFGS relaxes the images perpendicular to the path. From the energy
+/// maxima along the path, Newton's method climbs to saddles until the torque is below
+/// options.torque; then the images between the saddles are relaxed. `saddle` receives the highest
+/// saddle, if one is found.
 ///   std::vector<Spins> images = ...;  // the first and the last are the states
 ///   Spins saddle("saddle", lattice);
 ///   auto const path = cayspin::minimum_energy_path(exec, field, images, saddle);

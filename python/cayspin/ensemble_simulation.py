@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""A scene with [ensemble] that runs."""
+"""Simulation of a scene that has an [ensemble] table."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""A scene that runs."""
+"""Simulation of a scene."""
 
 from __future__ import annotations
 

@@ -110,11 +110,12 @@ class Trajectory:
             return bool(self.file.attrs["complete"])
 
     def topological_charge(self, boundary: Sequence[str] | None = None) -> np.ndarray:
-        """The topological charge of each plane, (frame, nz), for a crystal (frame, site, nz), as
-        cayspin.topological_charge() defines it. `boundary` is that of the scene by default.
+        """The topological charge of each plane, as defined by cayspin.topological_charge(). The
+        array has the shape (frame, nz), or (frame, site, nz) for a crystal. `boundary` defaults to
+        that of the scene.
 
-        Raises CayspinError for an invalid `boundary`. Without `boundary`, raises it also before
-        Python 3.11 if tomli is missing.
+        Raises CayspinError for an invalid `boundary`. Reading the scene's boundary needs tomli on
+        Python versions before 3.11; if it is missing, CayspinError is raised, too.
         """
         if boundary is None:
             boundary = along_axes(self.path, self.scene, "boundary", "open", "boundary")[:2]

@@ -14,9 +14,10 @@ def beside(method):
 
 
 def predicted(results, method, size):
-    """Returns the explained time of a step, in ns per spin. This is Results.limit(), except for
-    code on the host: that runs after the kernels, on one thread, so its time is added to the limit
-    of the plain method."""
+    """Returns the time of a step, in ns per spin, that memory traffic and arithmetic explain, or
+    None if it was not measured. This is Results.limit(), except for methods with code on the host.
+    Such code runs after the kernels, on one thread, so its time is added to the limit of the plain
+    method."""
     def in_cache(name):
         return results.median(f"options/{name}/L2", "ns/spin")
     bound = results.limit(f"options/{method}/{size}")

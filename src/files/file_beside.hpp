@@ -11,7 +11,7 @@ namespace cayspin::inline v0_2::io {
 /// std::runtime_error("PATH: cannot write the file: REASON").
 class FileBeside {
  public:
-  /// An existing file is an error unless `overwrite`, and always if it is not a regular file.
+  /// Throws if `path` exists, unless `overwrite` is true and it is a regular file.
   FileBeside(std::filesystem::path path, bool overwrite);
   /// Removes the written file unless commit() has renamed it.
   ~FileBeside();

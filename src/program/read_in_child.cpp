@@ -80,7 +80,8 @@ void settle_signals(pid_t parent) {
 }
 
 void limit_resources(std::filesystem::path const& path) {
-  std::ofstream("/proc/self/oom_score_adj") << "1000";  // it is killed first when memory runs out
+  // When memory runs out, the kernel kills this child first.
+  std::ofstream("/proc/self/oom_score_adj") << "1000";
 #ifndef CAYSPIN_SHADOW_MEMORY
   auto const room = static_cast<rlim_t>(io::available_memory()), used = address_space();
   if (room < RLIM_INFINITY - used) lower_limit(RLIMIT_AS, used + room);

@@ -13,9 +13,9 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// The datasets time, step, energy, norm_defect, magnetization and checksum of one group; for the
-/// frames of crystals with several sites per cell also sublattice_magnetization; then those of
-/// MoreScalars. Files of earlier versions have no checksums.
+/// The datasets of one group: time, step, energy, norm_defect, magnetization and checksum. Frames
+/// of crystals with several sites per cell also have sublattice_magnetization. The datasets of
+/// MoreScalars come last. Files of earlier versions have no checksums.
 class ScalarSeries {
  public:
   /// `cell_sites`: of the lattice for frames; 1 for samples that are not frames.

@@ -8,8 +8,8 @@ constexpr char const* head = R"(# Tables of extreme inputs
 
 These tables show how each method handles inputs that are tiny, huge or wrong; [the
 report](extremes.md) has a summary. The test `extremes` computes all tables but the last, compares
-them with this page, and checks most of the statements above them. The test `extremes_long`
-computes and compares the last table. After a change of a method or of these tests,
+them with this page, and checks most of the statements in the text before each table. The test
+`extremes_long` computes and compares the last table. After a change of a method or of these tests,
 `build/release/bin/test_extremes --write` rewrites this page in a few minutes.
 
 | word | meaning |

@@ -13,7 +13,7 @@ using enum Against;
 Section steps() {
   Section section{"Steps",
                   R"(
-The runs have one spin in a field of 1 with damping 0.1, or one rigid body without damping. At dt
+Each run has one spin in a field of 1 with damping 0.1, or one rigid body without damping. At dt
 1e-12 and below, the error of a step is far below epsilon, and runs are exact. At dt 1e-3 runs are
 bounded, except with `classical_*`. `run` warns if dt is above the stable dt. It also warns if a
 spin may turn by more than 3 radians per step, or by 2 radians where no stable dt is known. With ab2
@@ -31,11 +31,11 @@ and the orthogonal generator, the energy rises already at dt 1, which stops the 
 Section turns() {
   Section section{"Turns",
                   R"(
-The runs have one spin without damping, which turns in each step by the angle that heads the column,
-or a rigid body that turns about as fast. The Cayley map cannot rotate by pi. For the exponential,
-dexp^-1 has a pole at 2 pi. The square of 1e160 overflows, and an overflow stops the run at its
-first step. `run` warns in all four columns. With the exponential and a constant A, runs are exact
-for angles of up to 1e8; with some methods in single precision, only up to 2 pi.)",
+Each run has either one undamped spin, which turns by the angle at the head of the column in each
+step, or one rigid body, which turns about as fast. The Cayley map cannot rotate by pi. For the
+exponential, dexp^-1 has a pole at 2 pi. The square of 1e160 overflows, and an overflow stops the
+run at its first step. `run` warns in all four columns. With the exponential and a constant A, runs
+are exact for angles of up to 1e8; with some methods in single precision, only up to 2 pi.)",
                   {exact, warned},
                   {warned}};
   for (auto const& [name, turn] : {std::pair{"pi", std::numbers::pi},
@@ -49,7 +49,7 @@ for angles of up to 1e8; with some methods in single precision, only up to 2 pi.
 Section fields() {
   Section section{"Fields",
                   R"(
-The runs have one spin with damping 0.1, or one rigid body. A spin without a field, or along the
+Each run has one spin with damping 0.1, or one rigid body. A spin without a field, or along the
 field, stays at rest. On x86 and ARM processors, numbers below the smallest normal number (double
 precision: 2.2e-308, single: 1.2e-38) count as zero. An overflow stops the run at its first step. If
 a field is switched on within a step, the error of this step may be as large as dt |A|, whatever the
@@ -67,7 +67,7 @@ order of the method.)",
 Section dampings() {
   Section section{"Damping",
                   R"(
-The runs have one spin in a field of 1 with the damping that heads the column, or one rigid body,
+Each run has one spin in a field of 1 with the damping that heads the column, or one rigid body,
 which has no damping. At damping 1e-12 a method may add more energy than the damping removes. `run`
 then warns, or stops when the energy rises by more than round-off. At damping 1e12 the dt of these
 runs is far too large.)",
@@ -134,7 +134,7 @@ within ten steps), and writes no frame after the NaN.)",
 Section drift() {
   Section section{"Drift",
                   R"(
-The runs have one spin without damping, and take 5000 steps. In the last column,
+Each run has one spin without damping, and takes 5000 steps. In the last column,
 `Every(100, Normalize{})` takes a Newton step towards |m| = 1 every 100 steps. Except with
 `classical_*`, | |m| - 1 | then stays below some 400 epsilon, whatever the number of steps.)",
                   {bounded, warned},
@@ -165,7 +165,7 @@ Section longest_runs() {
   constexpr std::int64_t steps = 100'000'000;
   Section section{"1e8 steps",
                   R"(
-The runs have one spin in a field of 1 without damping, and use rkmk4 with dt 0.37 and either
+Each run has one spin in a field of 1 without damping, and uses rkmk4 with dt 0.37 and either
 rotation. Round-off accumulates, because all steps are alike: | |m| - 1 | grows by some 0.01 epsilon
 per step, to 3e-10 in double precision. In single precision it reaches 0.01 after some 7e6 steps,
 and the run stops. With a Newton step every 1000 steps, | |m| - 1 | stays below some 10 epsilon.)",

@@ -109,7 +109,7 @@ class Picture:
         return EDGE + (self.top - row) * ROW
 
     def free(self, row, wish):
-        """Takes the free place of a row that is nearest to the wanted one, and returns it."""
+        """Reserves the free x in a row that is nearest to `wish`, and returns it."""
         places = sorted(range(EDGE, int(self.width) - EDGE + 1), key=lambda x: (abs(x - wish), x))
         place = next(x for x in places
                      if all(abs(x - middle) >= half for middle, half in self.taken[row]))

@@ -12,8 +12,9 @@
 namespace cayspin::test {
 namespace {
 
-/// The Hessian of the energy, in two axes of each site's tangent plane, and the matrix `turning`:
-/// the rate of a displacement v is turning * hessian * v. The field is at most cubic in the spins.
+/// The Hessian of the energy, with two axes in each site's tangent plane as basis, and the matrix
+/// `turning`: a displacement v has the rate turning * hessian * v. Requires a field that is at most
+/// cubic in the spins.
 struct Dense {
   Eigen::MatrixXd hessian, turning;
   double largest = 0;

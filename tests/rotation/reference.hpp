@@ -10,7 +10,8 @@
 #include <array>
 #include <cmath>
 
-// The maps in long double, from their definitions and with other formulas than the library's.
+// Reference versions of the Cayley and exponential maps in long double, computed from their
+// definitions by different formulas from the library's.
 namespace cayspin::test {
 
 using Long = std::array<long double, 3>;

@@ -41,8 +41,8 @@ struct InitialSpins {
                at(i, j, k));
   }
 
-  /// Returns the topological charge of the plane k = 0 with periodic sides: the sum of the solid
-  /// angles of its triangles, divided by 4 pi (Berg and Luescher 1981).
+  /// Returns the topological charge of the plane k = 0 with periodic boundaries: the sum of the
+  /// solid angles of its triangles, divided by 4 pi (Berg and Luescher 1981).
   double charge() const {
     auto const& [nx, ny, nz] = lattice.shape;
     double angle = 0;

@@ -197,7 +197,8 @@ TEST(SiScene, OverridesAreInSi) {
   EXPECT_EQ(again.integrator.steps, 200);
 }
 
-// A number that is typed in another way may be stored in another unit.
+// The reduced unit of a stored value may depend on how the scene gives it: as a number, per region
+// or as an expression. The comparison must not depend on that.
 TEST(SiScene, LatticesAreComparedInSi) {
   auto const changed = [](std::string const& before, std::string const& now) {
     std::string const regions = "lattice.regions='i<4'";

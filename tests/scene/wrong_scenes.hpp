@@ -49,7 +49,8 @@ class SceneText {
       lines_.insert(at(begin), typed);
   }
 
-  /// Returns the line that a message about a key names: the key's, or else its table's, or else 1.
+  /// Returns the line number that an error message about `key` should give: the line of the key;
+  /// without one, the line of its table; without that, 1.
   std::size_t line_of(std::string_view key) const {
     auto const path = split(key.substr(0, key.find('[')), ".");
     if (auto const line = find(path[0], 0); line < lines_.size()) return line + 1;

@@ -72,8 +72,8 @@ TEST_F(TrajectoryTest, OutputIsTheSameWithAndWithoutChunks) {
   }
 }
 
-// Frames of zeros, of numbers with all bits set and of other numbers pass their checksums when they
-// are read. A frame has more words than are added between folds.
+// HDF5 accepts the checksums of frames of zeros, of NaNs with all bits set, and of other numbers.
+// Each frame has more than 2^20 words, after which Fletcher32 first reduces its sums.
 TEST_F(TrajectoryTest, ChecksumsAreThoseThatHdf5Expects) {
   auto header = small_header("single");
   header.shape = {100, 100, 100};

@@ -16,7 +16,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Memory layout of a DeviceConvolution.
+/// Extents of the lattice and of its padded period, and the sizes of a DeviceConvolution's arrays.
 struct DeviceSpectrum {
   std::int64_t cells[3], period[3], octant[3];
   std::int64_t waves;  // wave numbers along x that the planes hold at once
@@ -68,7 +68,7 @@ struct TakeRows {
 template <class Real>
 struct PadPlanes {
   DeviceSpectrum at;
-  Kokkos::complex<Real> const* spectrum;  // starts at the first of these lines
+  Kokkos::complex<Real> const* spectrum;  // points to the first line of this batch
   std::int64_t lines, all_lines;
   Kokkos::complex<Real>* planes;
 
@@ -102,7 +102,7 @@ struct CutPlanes {
 template <class Real>
 struct MultiplyPlanes {
   DeviceSpectrum at;
-  Real const* kernel;  // starts at the first of these wave numbers along x
+  Real const* kernel;  // points to the first wave number along x of this batch
   std::int64_t waves;
   Kokkos::complex<Real>* planes;
 

@@ -47,7 +47,7 @@ class UniformBulkDmi {
   }
 
  private:
-  /// Returns h + (D / spacing) * (m_next - m_previous) x e.
+  /// Returns h + (D / spacing) * (m_next - m_previous) x e, with the unit vector e along Axis.
   template <int Axis, class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector bonds(Stencil const& stencil, Vector const& h) const {
     using Value = typename Stencil::value_type;

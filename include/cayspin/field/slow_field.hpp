@@ -175,7 +175,7 @@ class SlowField {
     Interpolated& operator=(Interpolated const&) = delete;
     ~Interpolated() { state_.count = 0; }
 
-    /// Returns true if the field was read.
+    /// Returns true if the interpolated field was used since this object was constructed.
     bool was_read() const { return state_.reads > 0; }
 
    private:

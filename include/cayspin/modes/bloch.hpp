@@ -99,8 +99,9 @@ inline std::array<Point, 2> tangent_axes(Point const& m) {
   return {e, m.cross(e)};
 }
 
-/// The Hessian between the first cell and every cell, and the operator G by which the spins of a
-/// cell turn (vectors.hpp).
+/// The linearised dynamics of a lattice of equal cells: the Hessian blocks between the first cell
+/// and every cell, and the matrix `turning` of the operator G (vectors.hpp) in one cell. A
+/// displacement v has the rate dv/dt = turning * (Hessian v).
 class BlochProblem {
  public:
   struct Block {

@@ -56,7 +56,7 @@ template <class Spins>
 struct Curvature {
   double value = 0;
   double error = 0;  ///< error of the vector
-  Spins vector;      ///< the longest spin vector has length 1
+  Spins vector;      ///< one tangent vector per site; the longest has length 1
 };
 
 template <class Spins>

@@ -43,7 +43,7 @@ inline bool can_divide(Lattice const& lattice, Depth const& depth, Division cons
               static_cast<int>(in_whole_cells(depth, lattice).z / of_cell), division.z);
 }
 
-/// Describes the depth in words.
+/// Returns the depth as text for a message, such as "1 row or 2 planes".
 inline std::string to_text(Depth const& depth) {
   auto const* const row = depth.y == 1 ? " row" : " rows";
   auto const* const plane = depth.z == 1 ? " plane" : " planes";

@@ -66,8 +66,8 @@ struct StepIncrements {
   }
 };
 
-/// Arrays that the last stage writes. In a sweep these include the spins and, if spins are wanted
-/// at a time within the step, the increments. In passes, earlier stages have stored both.
+/// Arrays that the last stage writes. With Path::sweep these include the spins and, for dense
+/// output within the step, the increments. With Path::pass, earlier stages have stored both.
 template <class Tableau, class Real>
 struct EndOutputs {
   OutputArray<Real, 3> last;
