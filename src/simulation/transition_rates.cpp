@@ -190,13 +190,14 @@ class State {
         return Eigen::Vector3d::Unit(axis).cross(at(state_.spins, site));
       });
     Matrix const beside = turned - zeros_ * (zeros_.transpose() * turned);
-    // Axes in order of the part of the rotation that is not a zero mode, smallest first. For a
-    // single zero mode: only the axis of symmetry, if there is one.
+    // Axes in order of the part of the rotation that is not a zero mode, smallest first. If all
+    // rotations are zero modes, `beside` is only round-off, and axes that move no spin come last.
+    // For a single zero mode: only the axis of symmetry, if there is one.
     Eigen::Matrix3d const axes =
-        zero_modes() == 1
-            ? axes_of_symmetry()
-            : Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(beside.transpose() * beside)
-                  .eigenvectors();
+        zero_modes() == 1 ? axes_of_symmetry()
+                          : Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(
+                                beside.transpose() * beside - 1e-6 * turned.transpose() * turned)
+                                .eigenvectors();
     std::vector<Vector> found;
     for (Eigen::Index i = 0; i < 3; ++i) {
       Vector const v = turned * axes.col(i);

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
@@ -158,6 +159,32 @@ TEST_F(Rates, InAFieldAlongTheEasyAxis) {
         EXPECT_NEAR(found.rates.langer_backward / exact(k - h), 1, 1e-6) << h << ' ' << count;
         EXPECT_LT(found.rates.prefactor_forward, 1e-4 * exact(k + h));
       }
+}
+
+// For two spins at an angle phi, E = -J cos(phi) - b cos(phi)^2. Parallel and antiparallel spins
+// have two zero modes, which turn both spins, and two others with the curvature 2 E''. The saddle
+// has three zero modes and cos(phi) = -J / (2 b). The rate is
+//   damping sqrt(-2 E''(phi)) sin(phi) 2 E'' / (2 sqrt(pi kT)),
+// with the second E'' that of the minimum, whatever the direction of the spins.
+TEST_F(Rates, OfAnIsotropicPairInAnyDirection) {
+  double const j = 0.2, b = 1, damping = 0.4;
+  auto const lattice = cayspin::Lattice::chain(2);
+  auto bond = Coupling::of({0, 0}, {1, 0, 0}, j);
+  bond.biquadratic = b;
+  EffectiveField const field(PairCouplings(lattice, {bond}));
+  double const cosine = -j / (2 * b), sine = std::sqrt(1 - cosine * cosine);
+  double const top = 2 * (j * cosine + 2 * b * (2 * cosine * cosine - 1));
+  auto const exact = [&](double curvature) {
+    return damping * std::sqrt(-top) * sine * curvature / (2 * std::sqrt(std::numbers::pi));
+  };
+  double const root = std::sqrt(14.0);
+  for (auto const& [x, y, z] : {std::array{0.0, 0.0, 1.0}, {1 / root, 2 / root, 3 / root}}) {
+    auto const found =
+        rate(field, lattice, {x, y, z, x, y, z}, {x, y, z, -x, -y, -z}, damping).rates;
+    EXPECT_EQ(found.zero_modes, (std::array<std::int64_t, 3>{2, 3, 2})) << x;
+    EXPECT_NEAR(found.langer_forward / exact(2 * (2 * b + j)), 1, 1e-7) << x;
+    EXPECT_NEAR(found.langer_backward / exact(2 * (2 * b - j)), 1, 1e-7) << x;
+  }
 }
 
 // Parameters in mRy and results from tests/regressionGNEB of UppASD: 9 shells of exchange by von
