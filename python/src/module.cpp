@@ -117,7 +117,7 @@ EndOfPath end_of_path(char const* name, StateIn const& state) {
 
 nb::dict as_dict(ScenePath found, std::array<std::int64_t, 3> const& shape) {
   auto const& [nx, ny, nz] = shape;
-  auto& [end, path] = found;
+  auto& path = found.path;
   auto const images = static_cast<std::int64_t>(path.energy.size());
   nb::dict all;
   all["end"] = path.end;
@@ -148,6 +148,7 @@ nb::dict path(SceneRun const& run, StateIn const& start, StateIn const& end, std
     found = path_of_run(run, from, to, options, interrupted, CAYSPIN_GIT_COMMIT);
   }
   rethrow_interruption();
+  if (!found->rates_failed.empty()) throw NumbersFailed(found->rates_failed);
   return as_dict(std::move(*found), run.scene().lattice.shape);
 }
 

@@ -138,7 +138,7 @@ int find_path(PathCommandOptions const& options) {
   search.observer = [](PathProgress const&) {
     return interrupt_requested() ? Next::stop : Next::proceed;
   };
-  auto [end, path] =
+  auto [end, path, rates_failed] =
       find_scene_path(scene, from, to, space, options.precision, search, CAYSPIN_GIT_COMMIT);
   path.from = options.from.string();
   path.to = options.to.string();
@@ -156,8 +156,11 @@ int find_path(PathCommandOptions const& options) {
   else if (!options.quiet && !options.json && (end == PathEnd::converged || has_saddles))
     fmt::print("{} after {}, {}\n{}\n", path.end, counted(path.evaluations, "evaluation"),
                counted(std::ssize(path.energy), "image"), barrier_text(scene, path));
-  if (end == PathEnd::converged) return Status::done;
-  if (has_saddles)
+  if (end == PathEnd::converged && rates_failed.empty()) return Status::done;
+  if (end == PathEnd::converged)
+    fmt::print(stderr, "{}: {} has the path, but no {}\n", scene.path.string(), output.string(),
+               rates_failed);
+  else if (has_saddles)
     fmt::print(
         stderr,
         "{}: the saddles are found, but the path between them does not settle within {}; {} has "

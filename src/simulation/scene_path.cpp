@@ -68,6 +68,8 @@ class PathOfScene {
                                    found.saddle().curvature, poll);
     } catch (Interrupted const&) {
       result.end = PathEnd::interrupted;
+    } catch (NumbersFailed const& error) {
+      result.rates_failed = error.what();
     }
   }
 

@@ -38,11 +38,11 @@ Plan make_plan_of_path(io::Scene const& scene, Precision precision,
 struct ScenePath {
   PathEnd end;
   io::Path path;
+  std::string rates_failed = {};  // why a converged path has no rates, or empty
 };
 /// Finds a minimum energy path between two states, each given as sites x 3 numbers in the order of
 /// io::initial_spins. Fills all members of the path except `from` and `to`. Throws io::SceneError
-/// if a frozen spin differs between the states, NumbersFailed for a field that is not finite and,
-/// with rates, what rates_between throws.
+/// if a frozen spin differs between the states, and NumbersFailed for a field that is not finite.
 ScenePath find_scene_path(io::Scene const& scene, std::vector<double> const& from,
                           std::vector<double> const& to, std::string const& space,
                           Precision precision, ScenePathOptions const& options,

@@ -130,6 +130,21 @@ TEST_F(PathCommand, FindsTheBarrierOfAMacrospin) {
   EXPECT_EQ(read_dataset("path.h5", "/zero_modes").values, (std::vector<double>{0, 0, 0}));
 }
 
+TEST_F(PathCommand, KeepsThePathIfItsRatesFail) {
+  write_ends(scene);
+  auto const outcome = start(
+      arguments({"--rates", "--set", "system.damping=0", "--set", "system.precession=false"}));
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_TRUE(
+      outcome.errors.ends_with("scene.toml: path.h5 has the path, but no rates: a spin "
+                               "without precession and damping does not move\n"))
+      << outcome.errors;
+  EXPECT_TRUE(contains(outcome.output, "barriers 0.934615"));
+  EXPECT_FALSE(contains(outcome.output, "prefactors"));
+  EXPECT_NEAR(attribute("barrier_forward"), 3 * 0.5 * 1.3 * std::pow(1 - 0.4 / 1.3, 2), 1e-11);
+  EXPECT_THROW(attribute("prefactor_forward"), std::runtime_error);
+}
+
 // Three spins act as one, with the rate of Bessarab's formula for a biaxial particle.
 TEST_F(PathCommand, GivesTheRateOfABiaxialParticle) {
   auto const text = scene + "[output]\nfile = \"path.h5\"\n";

@@ -124,6 +124,10 @@ class Paths(PackageTest):
             cayspin.path(scene(), UP, UP)
         with self.assertRaisesRegex(cayspin.NumbersFailed, "path: an end could not be relaxed"):
             cayspin.path(scene(), UP, -UP, evaluations=1)
+        still = scene(system={"kind": "llg", "damping": 0, "precession": False})
+        self.assertTrue(cayspin.path(still, UP, -UP).converged)
+        with self.assertRaisesRegex(cayspin.NumbersFailed, "rates: a spin .* does not move"):
+            cayspin.path(still, UP, -UP, rates=True)
 
     def test_refusals(self):
         error, call = cayspin.CayspinError, cayspin.path
