@@ -33,8 +33,11 @@ using Numbers = std::vector<double>;
 constexpr double pi = std::numbers::pi;
 constexpr double boltzmann = 1.380649e-23;  // J/K
 constexpr Eigen::Index most_zeros = 8;      // zero modes that are counted
-/// Eigenvalues below this fraction of a bound on the largest one count as zero.
+/// Eigenvalues below this fraction of a bound on the largest one may be those of zero modes.
 constexpr double zero = 1e-5;
+/// Relative errors of torques and of curvatures, in double precision. Demagnetising tensors are
+/// accurate to 1e-10, and differences of fields that are not affine to about 1e-9.
+constexpr double error_of_torques = 1e-9, error_of_curvatures = 1e-8;
 
 Eigen::Map<Eigen::Vector3d const> at(Numbers const& spins, std::size_t site) {
   return Eigen::Map<Eigen::Vector3d const>(&spins[3 * site]);
@@ -50,8 +53,8 @@ Eigen::Vector3d way_between(Eigen::Vector3d const& m, Eigen::Vector3d const& p) 
 class State {
  public:
   /// `unstable`: approximate lowest curvature of a saddle; 0 for minima. Throws NumbersFailed if
-  /// another curvature is negative.
-  State(StateHessian const& state, char const* name, double unstable)
+  /// another curvature is negative, and for zero modes of unknown volume.
+  State(StateHessian const& state, char const* name, double unstable, io::Lattice const& lattice)
       : state_(state),
         name_(name),
         hessian_(Eigen::Map<
@@ -77,12 +80,14 @@ class State {
     auto const [vectors, values] = near_vectors(rest, factors, std::min(n, most_zeros));
     auto const count = (values.array() <= bound).count();
     zeros_ = vectors.leftCols(count);
-    rest += largest * zeros_ * zeros_.transpose();
+    Vector const soft = values.head(count);
+    rest += zeros_ * (largest - soft.array()).matrix().asDiagonal() * zeros_.transpose();
     factors.compute(rest);
     // The modes that are left out have the eigenvalue `largest` in `rest`.
     double const in_place = static_cast<double>(count) + (unstable < 0 ? 1 : 0);
     log_determinant_ =
         2 * factors.matrixLLT().diagonal().array().log().sum() - in_place * std::log(largest);
+    if (count > 0) find_volume(lattice, soft, largest);
   }
 
   Matrix const& hessian() const { return hessian_; }
@@ -93,34 +98,66 @@ class State {
   double log_determinant() const { return log_determinant_; }
 
   /// Returns the contribution of the zero modes: the volume of all states to which they lead.
-  double zero_volume(io::Lattice const& lattice) const {
+  double zero_volume() const { return zero_volume_; }
+
+ private:
+  /// Finds the volume of the modes `zeros_`, with the curvatures `soft`. Modes that no symmetry
+  /// explains are no zero modes if they are stiffer than errors of the Hessian.
+  void find_volume(io::Lattice const& lattice, Vector const& soft, double largest) {
     auto const count = zero_modes();
-    if (count == 0) return 1;
     auto const along_zeros = [&](Vector const& v) {
       return (zeros_.transpose() * v).norm() > 0.9 * v.norm() && v.norm() > 1e-6;
     };
     std::vector<Vector> translations;
+    bool drifts = false;  // along an open axis, where the volume is unknown
     for (std::size_t axis = 0; axis < 3; ++axis) {
       auto const [centred, whole] = translation(lattice, axis);
-      if (along_zeros(centred)) translations.push_back(whole.norm() / centred.norm() * centred);
+      if (!along_zeros(centred)) continue;
+      if (lattice.boundary[axis] == io::BoundaryKind::periodic)
+        translations.push_back(whole.norm() / centred.norm() * centred);
+      else
+        drifts = true;
     }
-    if (std::ssize(translations) == count) return volume_of(translations);
+    if (std::ssize(translations) == count) {
+      zero_volume_ = volume_of(translations);
+      return;
+    }
     auto const rotated = rotations();
-    if (std::ssize(rotated) != count)
+    // The Hessian of a state that is not quite at rest differs by about its torque.
+    double const error =
+        std::max(error_of_curvatures, 1e3 * state_.epsilon) * largest + 10 * state_.torque;
+    bool const may_be_stiff = translations.empty() && !drifts;
+    if (std::ssize(rotated) != count && !(may_be_stiff && keep_only(rotated, soft, error)))
       throw NumbersFailed(
           fmt::format("rates: {} has {}{}; accepted: none, translations along periodic axes, or "
                       "rotations of all spins",
                       name_, count == most_zeros && hessian_.rows() > most_zeros ? "at least " : "",
                       counted(count, "zero mode")));
-    // Volumes of all rotations about one, two and three axes.
-    constexpr std::array volumes{2 * pi, 4 * pi, 8 * pi * pi};
-    return volumes[rotated.size() - 1] * volume_of(rotated);
+    constexpr std::array volumes{1.0, 2 * pi, 4 * pi, 8 * pi * pi};  // of all angles
+    zero_volume_ = volumes[rotated.size()] * (rotated.empty() ? 1 : volume_of(rotated));
   }
 
- private:
-  /// Returns the `count` eigenvectors of `matrix` to which inverse iteration converges, and their
-  /// eigenvalues in ascending order. `inverse`: a factorisation of `matrix` plus a multiple of the
-  /// identity.
+  /// Restricts the zero modes to `rotated`, and adds the others to the determinant. Returns false
+  /// if a curvature of these is not above `error`.
+  bool keep_only(std::vector<Vector> const& rotated, Vector const& soft, double error) {
+    auto const kept = static_cast<Eigen::Index>(rotated.size()), others = zero_modes() - kept;
+    Matrix parts(zero_modes(), kept);
+    for (Eigen::Index i = 0; i < kept; ++i)
+      parts.col(i) = zeros_.transpose() * rotated[static_cast<std::size_t>(i)];
+    Matrix const axes = kept == 0 ? Matrix(Matrix::Identity(zero_modes(), zero_modes()))
+                                  : Matrix(Eigen::HouseholderQR<Matrix>(parts).householderQ());
+    Matrix const beside = axes.rightCols(others);
+    Eigen::SelfAdjointEigenSolver<Matrix> const found(beside.transpose() * soft.asDiagonal() *
+                                                      beside);
+    if (!(found.eigenvalues().minCoeff() > error)) return false;
+    log_determinant_ += found.eigenvalues().array().log().sum();
+    zeros_ = (zeros_ * axes.leftCols(kept)).eval();
+    return true;
+  }
+
+  /// Returns the `count` eigenvectors of a matrix that inverse iteration with `inverse` (the
+  /// inverse of the matrix, or of the shifted matrix) converges to, with their eigenvalues in
+  /// ascending order.
   static std::pair<Matrix, Vector> near_vectors(Matrix const& matrix, auto const& inverse,
                                                 Eigen::Index count) {
     auto const n = matrix.rows();
@@ -154,21 +191,23 @@ class State {
   }
 
   /// Returns the translation by a cell along an axis, from centred and from one-sided differences;
-  /// zero unless the axis is periodic.
+  /// zero for a single cell. Spins at open ends have a neighbour on one side only.
   std::pair<Vector, Vector> translation(io::Lattice const& lattice, std::size_t axis) const {
     Vector const none = Vector::Zero(static_cast<Eigen::Index>(state_.size()));
     auto shape = lattice.shape;
     auto const cell_sites = std::ssize(lattice.basis);
     shape[2] /= cell_sites;
-    if (lattice.boundary[axis] != io::BoundaryKind::periodic || shape[axis] < 2)
-      return {none, none};
+    if (shape[axis] < 2) return {none, none};
+    bool const repeats = lattice.boundary[axis] == io::BoundaryKind::periodic;
     auto const moved = [&](std::size_t site, std::int64_t by) {
       auto const n = static_cast<std::int64_t>(site);
       std::array<std::int64_t, 3> place{n % shape[0], n / shape[0] % shape[1],
                                         n / (shape[0] * shape[1])};
       auto const of_cell = place[2] % cell_sites;
       place[2] /= cell_sites;
-      place[axis] = (place[axis] + by + shape[axis]) % shape[axis];
+      auto const next = place[axis] + by;
+      place[axis] = repeats ? (next + shape[axis]) % shape[axis]
+                            : std::clamp<std::int64_t>(next, 0, shape[axis] - 1);
       return static_cast<std::size_t>(
           ((place[2] * cell_sites + of_cell) * shape[1] + place[1]) * shape[0] + place[0]);
     };
@@ -190,14 +229,7 @@ class State {
         return Eigen::Vector3d::Unit(axis).cross(at(state_.spins, site));
       });
     Matrix const beside = turned - zeros_ * (zeros_.transpose() * turned);
-    // Axes in order of the part of the rotation that is not a zero mode, smallest first. If all
-    // rotations are zero modes, `beside` is only round-off, and axes that move no spin come last.
-    // For a single zero mode: only the axis of symmetry, if there is one.
-    Eigen::Matrix3d const axes =
-        zero_modes() == 1 ? axes_of_symmetry()
-                          : Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(
-                                beside.transpose() * beside - 1e-6 * turned.transpose() * turned)
-                                .eigenvectors();
+    Eigen::Matrix3d const axes = axes_of_symmetry(turned);
     std::vector<Vector> found;
     for (Eigen::Index i = 0; i < 3; ++i) {
       Vector const v = turned * axes.col(i);
@@ -207,19 +239,27 @@ class State {
     return found;
   }
 
-  /// Returns the axis about which the energy is symmetric, as the first column, and zeros
-  /// elsewhere; only zeros if there is none. If all spins are collinear, the zero mode does not
-  /// determine the axis: adding a rotation about their common direction gives the same mode.
-  Eigen::Matrix3d axes_of_symmetry() const {
+  /// Returns orthogonal axes about which the energy is symmetric, as columns: one, or three if it
+  /// is isotropic. The other columns are zero. `turned`: rotations about x, y and z. If all spins
+  /// are collinear, the zero modes do not determine the axes: adding a rotation about the common
+  /// direction gives the same modes.
+  Eigen::Matrix3d axes_of_symmetry(Matrix const& turned) const {
     Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
     for (auto const& torque : state_.torques) {
       Eigen::Map<Eigen::Vector3d const> const t(torque.data());
       squares += t * t.transpose();
     }
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> const axes(squares);
+    double const none = std::max(error_of_torques, 4 * state_.epsilon) * state_.torque_scale;
+    if (squares.trace() <= none * none)
+      return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(turned.transpose() * turned)
+          .eigenvectors();
+    Eigen::Vector3d const axis =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(squares).eigenvectors().col(0);
+    double along = 0;  // the eigenvalue has the round-off of the largest
+    for (auto const& torque : state_.torques)
+      along = std::hypot(along, axis.dot(Eigen::Map<Eigen::Vector3d const>(torque.data())));
     Eigen::Matrix3d found = Eigen::Matrix3d::Zero();
-    if (axes.eigenvalues()[0] < 1e-4 * axes.eigenvalues()[1])
-      found.col(0) = axes.eigenvectors().col(0);
+    if (along <= none) found.col(0) = axis;
     return found;
   }
 
@@ -228,7 +268,7 @@ class State {
   Matrix hessian_;
   Matrix zeros_;
   Vector mode_;
-  double log_determinant_ = 0;
+  double log_determinant_ = 0, zero_volume_ = 1;
 };
 
 /// Returns the gyromagnetic ratio divided by the moment, in reduced units, for each site of
@@ -266,6 +306,12 @@ double square_of_velocity(State const& saddle, Numbers const& mobilities) {
 
 }  // namespace
 
+void StateHessian::set_torque(std::vector<double> const& field) {
+  torque = 0;
+  for (auto const site : sites)
+    torque = std::max(torque, at(spins, site).cross(at(field, site)).norm());
+}
+
 std::vector<double> StateHessian::far_state(unsigned sample) const {
   std::mt19937 generator(sample);
   auto const number = [&] {
@@ -282,7 +328,11 @@ std::vector<double> StateHessian::far_state(unsigned sample) const {
 
 void StateHessian::add_torque(std::vector<double> const& state, std::vector<double> const& field) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (auto const site : sites) sum += at(state, site).cross(at(field, site));
+  for (auto const site : sites) {
+    Eigen::Vector3d const of_spin = at(state, site).cross(at(field, site));
+    sum += of_spin;
+    torque_scale += of_spin.norm();
+  }
   torques.push_back({sum.x(), sum.y(), sum.z()});
 }
 
@@ -291,12 +341,12 @@ io::RatesOfPath rates_between(io::Scene const& scene, StateHessian const& start,
                               double saddle_curvature) {
   if (!(saddle_curvature < 0))
     throw NumbersFailed("rates: the energy does not fall from the saddle: it is a plateau");
-  State const of_saddle(saddle, "the saddle", saddle_curvature);
+  State const of_saddle(saddle, "the saddle", saddle_curvature, scene.lattice);
   // Round-off may make a square of 0 negative.
   double const velocity =
       std::sqrt(std::max(square_of_velocity(of_saddle, mobilities(scene, saddle)), 0.0)) / (2 * pi);
   auto const saddle_modes = of_saddle.zero_modes();
-  double const saddle_volume = of_saddle.zero_volume(scene.lattice);
+  double const saddle_volume = of_saddle.zero_volume();
 
   io::RatesOfPath rates;
   rates.zero_modes[1] = saddle_modes;
@@ -310,9 +360,9 @@ io::RatesOfPath rates_between(io::Scene const& scene, StateHessian const& start,
   double const langer = growth / (2 * pi * std::sqrt(-curvature) * scene.units.time);
   // Computes the prefactor without the flux.
   auto const factor = [&](StateHessian const& minimum, char const* name, std::size_t place) {
-    State const state(minimum, name, 0);
+    State const state(minimum, name, 0, scene.lattice);
     auto const modes = rates.zero_modes[place] = state.zero_modes();
-    double const volume = rates.volumes[place] = state.zero_volume(scene.lattice);
+    double const volume = rates.volumes[place] = state.zero_volume();
     double const power = 0.5 * static_cast<double>(modes - saddle_modes);
     return saddle_volume / volume * std::pow(2 * pi * thermal, power) *
            std::exp(0.5 * (state.log_determinant() - of_saddle.log_determinant()));

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -21,16 +22,21 @@ namespace cayspin::simulation {
 /// An equilibrium and the Hessian of its energy.
 struct StateHessian : TangentBasis {
   std::vector<double> numbers;  // matrix elements, row by row
+  double torque = 0;            // max |m x (-dE/dm)|
   /// Sums of m x (-dE/dm) in states far from the equilibrium. The components of the sums along an
   /// axis vanish if turning all mobile spins about this axis does not change the energy.
   std::vector<std::array<double, 3>> torques;
+  double torque_scale = 0;  // sum of |m x (-dE/dm)| over all spins of these states
+  double epsilon = std::numeric_limits<double>::epsilon();  // of the numbers' precision
 
   using TangentBasis::TangentBasis;
 
+  /// Sets `torque`. `field`: -dE/dm at the equilibrium.
+  void set_torque(std::vector<double> const& field);
   /// Returns the spins after a random rotation, common to all that are not frozen, and a random
   /// change of each of these. `sample`: the seed of the random numbers.
   std::vector<double> far_state(unsigned sample) const;
-  /// Appends the sum for one state to `torques`. `field`: -dE/dm in that state.
+  /// Appends the torque of a state, and adds to `torque_scale`. `field`: -dE/dm there.
   void add_torque(std::vector<double> const& state, std::vector<double> const& field);
 };
 
@@ -54,6 +60,7 @@ StateHessian hessian_of(Exec const& exec, Field const& field, Spins const& spins
   auto const& lattice = spins.lattice();
   auto const numbers = copy_to_host(spins);
   StateHessian state({numbers.begin(), numbers.end()}, frozen);
+  state.epsilon = std::numeric_limits<Real>::epsilon();
   ScalarField<Real, typename Spins::memory_space> const is_mobile("rates::is_mobile", lattice,
                                                                   Real(1));
   auto const fields = cayspin::detail::numbered_fields<Spins, 5>("rates", lattice);
@@ -61,6 +68,8 @@ StateHessian hessian_of(Exec const& exec, Field const& field, Spins const& spins
   cayspin::detail::Hessian hessian(
       exec, field, 0, spins, is_mobile,
       cayspin::detail::HessianArrays<Spins>{fields[2], fields[3], fields[4]});
+  auto const at_rest = copy_to_host(fields[3]);
+  state.set_torque({at_rest.begin(), at_rest.end()});
   std::size_t const n = state.size();
   state.numbers.resize(n * n);
   std::vector<Real> given(numbers.size());
