@@ -248,9 +248,11 @@ Curvatures<Spins> lowest_curvatures(Exec const& exec, Field const& field, Spins 
 /// is equal in all cells along the periodic axes. This takes two products of the Hessian with a
 /// vector for each mobile site of a cell, up to four to compare the cells, and then the eigenvalues
 /// of a small matrix for each wave vector. A wave vector need not fit the lattice, unless the
-/// interaction reaches around the lattice. Bonds must not be longer than half the lattice. If there
-/// is only one cell along a periodic axis, bonds along it join the cell to itself, and a wave has
-/// the same phase at both ends of such a bond.
+/// interaction reaches around the lattice, as a demagnetising field does. This is noticed only for
+/// even numbers of cells: for odd ones, such a field gives wrong rates of waves that do not fit.
+/// Bonds must not be longer than half the lattice. If there is only one cell along a periodic axis,
+/// bonds along it join the cell to itself, and a wave has the same phase at both ends of such a
+/// bond.
 /// `poll` is called before each product and each wave vector; after Next::stop the result is empty.
 /// Throws std::invalid_argument if cells differ, for a wave vector that must fit but does not or
 /// that has a component along an open axis, and for parts of a lattice and replicas.

@@ -211,16 +211,30 @@ std::int64_t sites_of_a_cell(io::Lattice const& lattice) {
   return lattice.boundary[2] == io::BoundaryKind::periodic ? count * sites : count;
 }
 
-// Returns a lower bound on the number of cells over which the terms of a scene reach along an axis.
+// Returns a lower bound on the number of cells over which the terms of a scene, except demag and
+// dipoles, reach along an axis.
 std::int64_t reach_along(io::Scene const& scene, std::size_t axis) {
   auto const& field = scene.field;
   std::int64_t reach = field.exchange || field.has_dmi() || !field.exchange_between.empty() ||
-                               !field.interlayers.empty() || field.demag
+                               !field.interlayers.empty()
                            ? 1
                            : 0;
   for (auto const& bond : io::couplings(scene))
     reach = std::max(reach, static_cast<std::int64_t>(std::abs(bond.offset[axis])));
   return reach;
+}
+
+// The fields of demag and dipoles reach around any lattice. Between the wave vectors that fit the
+// lattice, the products of the Hessian do not determine their sums.
+void require_whole_waves(io::Scene const& scene, double wave, std::size_t axis,
+                         std::int64_t cells) {
+  double const around = wave * static_cast<double>(cells);
+  if (scene.field.demag && std::abs(around - std::round(around)) > 1e-9)
+    throw UsageError(fmt::format(
+        "--wave-vector: {:.7g} along {}, and the field of {} reaches around the lattice; accepted: "
+        "{} there, also between corners (--points)",
+        wave, "xyz"[axis], scene.field.demag->key,
+        cells == 1 ? "whole numbers" : fmt::format("multiples of 1/{}", cells)));
 }
 
 }  // namespace
@@ -252,6 +266,7 @@ void require_bands(io::Scene const& scene, std::vector<std::array<double, 3>> co
                         "xyz"[axis]));
       continue;
     }
+    for (auto const& wave : wave_vectors) require_whole_waves(scene, wave[axis], axis, cells[axis]);
     // A single cell is its own neighbour, so bonds between cells would have no phase.
     auto const reach = reach_along(scene, axis);
     bool const varies = any_wave([](double k) { return std::abs(k - std::round(k)) > 1e-9; });
