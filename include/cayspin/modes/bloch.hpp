@@ -112,7 +112,6 @@ class BlochProblem {
   Eigen::MatrixXd turning;
   std::array<bool, 3> reaches_around{};  // true if the interaction reaches half the lattice
   CellsOfLattice::Cell cells{};
-  double round_off = 0;  // of elements of the matrices, relative to the largest
 
   /// Returns the complex rates of waves with this wave vector (in cycles per cell): a wave grows as
   /// e^(rate * t). Only the half with the higher frequencies is returned, the lowest of these
@@ -137,14 +136,16 @@ class BlochProblem {
         turns += wave[axis] * static_cast<double>(distance[axis]);
       sum += std::polar(1.0, -2 * std::numbers::pi * turns) * hessian;
     }
+    // Without round-off the sum is Hermitian. Only then are rates without damping imaginary, and
+    // those without precession real, so that round-off of the Hessian does not mix the two.
+    sum = (0.5 * (sum + sum.adjoint())).eval();
     Eigen::ComplexEigenSolver<Eigen::MatrixXcd> const found(turning * sum, false);
     // For a wave e^(i * (k.r - w * t)), the imaginary part of the rate is -w.
     std::vector<std::complex<double>> rates(found.eigenvalues().begin(), found.eigenvalues().end());
     double largest = 0;
     for (auto const& rate : rates) largest = std::max(largest, std::abs(rate));
-    auto const is_real = [&](auto const& rate) {
-      return std::abs(rate.imag()) <= round_off * largest;
-    };
+    double const round_off = 1e3 * std::numeric_limits<double>::epsilon() * largest;
+    auto const is_real = [&](auto const& rate) { return std::abs(rate.imag()) <= round_off; };
     std::ranges::sort(rates, {}, [&](auto const& rate) {
       return is_real(rate) ? std::pair(0.0, -rate.real()) : std::pair(rate.imag(), 0.0);
     });
@@ -326,8 +327,7 @@ BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Sp
           "spins near the state");
     largest = std::max(largest, block.cwiseAbs().maxCoeff());
   }
-  problem.round_off = 1e3 * std::numeric_limits<Real>::epsilon();
-  double const least = problem.round_off * largest;
+  double const least = 1e3 * std::numeric_limits<Real>::epsilon() * largest;
   auto const& [nx, ny, nz] = cells.cells;
   for (std::int64_t z = 0; z < nz; ++z)
     for (std::int64_t y = 0; y < ny; ++y)
