@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr auto unlimited = std::numeric_limits<std::int64_t>::max();
 
-/// The folder of a version of control groups, and names of files in a group.
+/// One version of Linux control groups: its folder, and the names of files in each group.
 struct Group {
   char const* folder;
   char const* limit;
@@ -54,8 +54,8 @@ std::int64_t left_in(Group const& group, fs::path const& folder) {
   return std::max<std::int64_t>(0, *limit - std::max<std::int64_t>(0, used));
 }
 
-// Returns the least memory that is left in a group or in one of the groups that contain it. In a
-// container only the root folder exists; it describes the container's group.
+// Returns the smallest amount of memory that is left in the group `name` or in one of the groups
+// that contain it. In a container only the root folder exists; it describes the container's group.
 std::int64_t left_around(Group const& group, fs::path const& root, fs::path const& name) {
   auto least = unlimited;
   for (auto inner = name.relative_path();; inner = inner.parent_path()) {

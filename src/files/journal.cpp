@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t journal_magic =
-    0x314c4e4a59414321;  // identifies this layout and the byte order
+    0x314c4e4a59414321;  // identifies the layout of journals and the byte order
 
 struct Head {
   std::uint64_t magic, mark_offset, mark, sectors, checksum;
@@ -83,8 +83,8 @@ struct Record {
   std::vector<Sector> sectors;
 };
 
-// Returns nothing if the journal is incomplete. The file does not need such a journal, because it
-// is changed only after the whole journal is on the disk.
+// Returns nothing if the journal is incomplete. Such a journal is not needed, because the file is
+// changed only after the whole journal is on the disk.
 std::optional<Record> read_record(int file) {
   struct stat status {};
   Head head{};

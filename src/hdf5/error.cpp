@@ -26,7 +26,7 @@ std::string system_words(std::string const& description) {
 }  // namespace
 
 // At exit, HDF5 would close open files, and crash on a file whose disk has failed. This library
-// leaves no file open, so it turns this clean-up off. HDF5 allows that only before it is
+// leaves no file open, so it turns this clean-up off. That has to be done before HDF5 is
 // initialised.
 QuietErrors::QuietErrors() {
   [[maybe_unused]] static auto const told = H5dont_atexit();

@@ -9,10 +9,10 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Runs `reading` in a trial (set_trial); does nothing if no trial is set.
+/// Runs `reading` in the trial that set_trial() has set; does nothing if none is set.
 void try_before(std::filesystem::path const& path, std::function<void()> const& reading);
 
-/// Runs `reading` in a trial; if no trial is set, runs it directly.
+/// Runs `reading` in the trial that is set; if none is set, runs it directly.
 void try_reading(std::filesystem::path const& path, std::function<void()> const& reading);
 
 /// Rethrows the exception being handled. If memory ran out, throws a std::runtime_error about the

@@ -9,7 +9,8 @@
 namespace cayspin::inline v0_2::io {
 
 /// While in scope, no other thread of the library uses HDF5. Scopes may be nested. A child process
-/// forked in a scope holds the lock, too; it would not hold a std::recursive_mutex.
+/// that is forked in a scope holds the lock, too. If the lock were a std::recursive_mutex, the
+/// child would not own it.
 class TurnOfHdf5 {
  public:
   TurnOfHdf5();
@@ -33,7 +34,7 @@ class Handle {
 
   hid_t get() const { return id_; }
 
-  /// Closes now, and returns the result, which the destructor ignores.
+  /// Closes the identifier now, and returns the result of `Close`. The destructor ignores it.
   herr_t close() {
     auto const id = std::exchange(id_, H5I_INVALID_HID);
     if (id < 0) return 0;

@@ -13,7 +13,8 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// A file that HDF5 writes, and that a power cut leaves in the state of the last commit().
+/// A file that HDF5 writes. After a power cut, complete_from_journal() restores its state of the
+/// last commit().
 ///
 /// HDF5 overwrites blocks that it wrote before. New content for committed bytes stays in memory
 /// until commit(), which writes it to a journal first and then to the file. Appended data go to the

@@ -44,8 +44,8 @@ void FieldInPass<Spins>::Terms::add_exchange_at_faces(io::Scene const& scene,
   sweeps_of_faces_ = ratio > 0 ? 1 + static_cast<std::int32_t>(std::ceil(steps / 2)) : 1;
 }
 
-// The arrays store, at each site, the bond to the next site along an axis. If the lattice is
-// divided, the bond stored at a part's last site leads to a site of another part.
+// The arrays filled here store, at each site, the bond to the next site along an axis. If the
+// lattice is divided, the bond stored at a part's last site leads to a site of another part.
 template <class Spins>
 void FieldInPass<Spins>::Terms::add_bonds_between(io::Scene const& scene, io::SiteBox const& box) {
   auto const& field = scene.field;

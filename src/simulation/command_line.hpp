@@ -62,8 +62,8 @@ inline void require_output_written() {
                                        errno == 0 ? "some of it was lost" : std::strerror(errno)));
 }
 
-/// Calls perform(argc, argv) and returns the exit status. If `perform` throws, or standard output
-/// cannot be written, reports the error.
+/// Calls perform(argc, argv) and returns the exit status. Reports the error if `perform` throws, or
+/// if it returns 0 but standard output cannot be written.
 inline int perform_and_report(int (*perform)(int, char**), int argc, char** argv) {
   try {
     int const status = perform(argc, argv);

@@ -123,7 +123,7 @@ template <class Spins>
 auto FieldInPass<Spins>::Terms::in_stages(SceneFieldNow<Real> const& usual, double t) const
     -> std::optional<SceneFieldNow<Real>> {
   // If terms reach far, several ranks compute the whole H in memory. A run on one rank has to sum
-  // the terms in the same order.
+  // the terms in the same order, so its stages do not evaluate some of them separately.
   if (lattice_.cell_sites > 1 || reaches_far() || per_moments_) return std::nullopt;
   auto const& site = cell_[0];
   double const seen = site.gyromagnetic * site.per_moment;
@@ -191,7 +191,7 @@ SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::along_rows(
     FieldFor purpose) const {
   if constexpr (cayspin::detail::is_host_execution<Exec>) {
     // On a part of a lattice, distant bonds may need ghosts that no stage updates; evaluate_with()
-    // below updates all.
+    // below updates all ghosts.
     bool const reaches_ghosts = terms_->reaches_far() && terms_->lattice_.part != nullptr;
     if (!reaches_ghosts && purpose == FieldFor::generator) {
       auto& last = terms_->last_along_rows_;

@@ -10,8 +10,8 @@ namespace cayspin::simulation {
 
 /// Anisotropy of a crystal with optionally site-dependent constants and axes. With components a, b,
 /// c of m along the axes e1, e2 and e1 x e2, a cubic crystal has
-///   E = constant * (a^2 b^2 + b^2 c^2 + c^2 a^2) + second * a^2 b^2 c^2,
-/// and a hexagonal one has E = constant * Re (b + i c)^6.
+///   E = constant * (a^2 * b^2 + b^2 * c^2 + c^2 * a^2) + second * a^2 * b^2 * c^2,
+/// and a hexagonal one has E = constant * Re((b + i * c)^6).
 template <class Real>
 struct CrystalAnisotropyOfSites {
   bool hexagonal = false;

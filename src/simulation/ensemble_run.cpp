@@ -74,8 +74,8 @@ std::optional<std::string> EnsembleRun::continue_from(std::filesystem::path cons
   auto const plan = make_plan(first().scene(), settings_.precision);
   auto const end =
       scene_.integrator.steps > 0 ? plan.times.steps : std::numeric_limits<std::int64_t>::max();
-  // Times are counted as in the file, which has the units of the first replica. They differ from
-  // those of the ensemble's own scene if damping, for example, is varied.
+  // Times are in the units of the first replica, as in the file. These units differ from those of
+  // the ensemble's own scene if, for example, the damping is varied.
   auto scene = scene_;
   scene.units = first().scene().units;
   scene.integrator.dt = first().scene().integrator.dt;

@@ -33,8 +33,8 @@ class EnsembleRun {
   EnsembleRun& operator=(EnsembleRun const&) = delete;
 
   std::size_t replicas() const { return at_rest_.size(); }
-  /// Returns the run of the first replica. If the replicas are columns, its spins do not advance
-  /// with them.
+  /// Returns the run of the first replica. If the replicas are columns, this run's spins do not
+  /// advance with them.
   SceneRun const& first() const { return *runs_.front(); }
   /// Continues from the last frame of an ensemble's file. If the scene of the file differs
   /// unexpectedly, returns one line that names the differences. Throws UsageError for a file that
@@ -46,7 +46,7 @@ class EnsembleRun {
   std::optional<std::string> warning() const;
 
   /// Returns the number of steps that every replica has taken, not counting replicas that ended
-  /// early. If all did, returns the largest number of steps.
+  /// early. If all ended early, returns the largest number of steps.
   std::int64_t steps() const { return steps_; }
   std::int64_t last_step() const { return first().last_step(); }
   double time() const { return first().time_at(steps_); }  // at steps()

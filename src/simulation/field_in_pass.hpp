@@ -75,8 +75,8 @@ class FieldInPass {
   std::optional<ScalarField<Real, Memory>> const& moves() const;
 
  private:
-  /// `adds_applied`: the kernels of the methods add the applied field. Otherwise the pass includes
-  /// it in H.
+  /// `adds_applied`: if true, the kernels of the methods add the applied field; if false, the pass
+  /// includes that field in H.
   template <class Exec>
   SceneFieldNow<Real> evaluate_with(Exec const& exec, SceneFieldNow<Real> const& usual,
                                     Spins const& spins, double t, FieldFor purpose,

@@ -83,7 +83,8 @@ struct TakeNeighbor {
 
 namespace {
 
-// Smallest difference between the means at the two ends of a wall.
+// There is a wall if the means of the component at the two ends of the lattice differ by at least
+// this much.
 constexpr double least_step = 0.2;
 constexpr double least_charge = 0.25;
 

@@ -17,7 +17,7 @@ template <class Real>
 struct DistantBonds {
   std::int32_t offset[3] = {};
   cayspin::SiteArray<Real, 1> bilinear, biquadratic;  // 0 where there is no bond
-  cayspin::SiteArray<Real, 1> exchange = {};          // A at the other end; may have no data
+  cayspin::SiteArray<Real, 1> exchange = {};          // constant at the other end; may have no data
   double per_square = 0;                              // 2 / spacing^2
 };
 
@@ -26,7 +26,7 @@ struct DistantBonds {
 /// between the cells. `bilinear` (J) and `biquadratic` (B) hold the bonds to the next sites along
 /// each axis; without data there are none along that axis. In the half cell between the centre and
 /// the face, exchange A adds the energy k * (1 - m.s), where m is the spin of the cell and
-/// k = 2 A / spacing^2. The spins s and s' minimise the total energy of the bond and its two half
+/// k = 2 * A / spacing^2. The spins s and s' minimise the total energy of the bond and its two half
 /// cells. This boundary condition of exchange at the face makes thick layers accurate to second
 /// order in the spacing (as in Suess et al., PRB 107, 104424, 2023). Where A is 0, and if
 /// `exchange` has no data, s is m.

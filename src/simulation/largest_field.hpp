@@ -16,8 +16,8 @@ double largest_damping(io::Scene const& scene);
 double least_damping(io::Scene const& scene);
 
 /// Returns an upper bound on |H| times the gyromagnetic ratio at any site, including torques, at
-/// 1001 times of a run and at its time features. For a demagnetising field, the bound is one on its
-/// eigenvalues, which |H| at a single site may exceed. A program's own nonlocal field is not
+/// 1001 times of a run and at its time features. A demagnetising field contributes a bound on its
+/// eigenvalues; |H| at a single site may exceed that bound. A program's own nonlocal field is not
 /// included. Throws io::SceneError for an invalid applied field or site-dependent constant.
 double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& times,
                    TimeFeatures const& features);
@@ -25,8 +25,8 @@ double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& 
 /// Returns an upper bound on |H| due to point dipoles; 0 without them.
 double bound_of_dipoles(io::Scene const& scene, Lattice const& lattice);
 
-/// Returns an upper bound on |A|, from field_bound; for rigid bodies the largest row sum of |I^-1|,
-/// or 0 if the inertia is in a file.
+/// Returns an upper bound on the length |A| of the generator, from field_bound; for rigid bodies
+/// the largest row sum of |I^-1|, where I is the inertia, or 0 if the inertia is in a file.
 double largest_rate(io::Scene const& scene, Lattice const& lattice, Times const& times,
                     TimeFeatures const& features);
 

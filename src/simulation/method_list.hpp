@@ -141,7 +141,8 @@ struct Series {
                           std::conditional_t<std::is_same_v<Isotropy, isotropy::Energy>,
                                              isotropy::Energy, isotropy::Zero>,
                           Of>;
-  /// Without a sigma and for linear equations, steps of Series4 equal those of RKMK4.
+  /// Stepper whose largest stable step is used: without a sigma and for linear equations, steps of
+  /// Series4 equal those of RKMK4.
   template <class Spins>
   using StableAs = Rkmk4<Spins, isotropy::Zero, Cayley>;
   static constexpr bool distinguishes_rigid_bodies = true;

@@ -185,13 +185,13 @@ struct PassTerms {
   AnisotropyOfSites<Real> const* anisotropies_of_sites;
   CrystalAnisotropyOfSites<Real> const* crystals_of_sites;
   std::int32_t dmis, anisotropies, crystals, cubics_of_cell;
-  std::int32_t anisotropies_in_time;          // number with anisotropy_factor; they come first
+  std::int32_t anisotropies_in_time;          // how many, from the first on, have anisotropy_factor
   double exchange_factor, anisotropy_factor;  // uniform exchange already includes its factor
   cayspin::SiteArray<Real, 1> moments;        // 0 where there is no spin
   SourcesNow<Real> sources;
-  cayspin::SiteArray<Real, 1> per_moments;       // without data: the same in every cell
-  cayspin::SiteArray<Real, 1> per_gyromagnetic;  // for torques; may have no data
-  cayspin::detail::StoredField<Real> of_all;     // acts on moments like an applied field
+  cayspin::SiteArray<Real, 1> per_moments;       // 1 / moment; without data: CellSite::per_moment
+  cayspin::SiteArray<Real, 1> per_gyromagnetic;  // for torques: 1 / gyromagnetic ratio; or no data
+  cayspin::detail::StoredField<Real> of_all;     // due to all spins; acts like an applied field
   Vec3<double> applied_in_field;  // zero if the kernels of the methods add the applied field
   bool has_usual, has_pairs, has_zhang_li, has_slonczewski, has_slonczewski_of_sites;
   bool has_vacancies, has_of_all;
@@ -219,7 +219,7 @@ struct PassTerms {
     return found;
   }
 
-  /// Returns a stencil in which vacancies are missing neighbours.
+  /// Returns a stencil in which vacancies count as missing neighbours.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION cayspin::detail::StencilAmongVacancies<Stencil, Real> among_spins(
       Stencil const& stencil) const {

@@ -239,8 +239,8 @@ Plan make_plan(io::Scene const& scene, Precision precision,
   if (has_positions(scene.lattice))
     plan.file_bytes += static_cast<double>(position_bytes(scene.lattice)) +
                        24 * frames * static_cast<double>(scene.lattice.basis.size());
-  // The scene with the field that a step must resolve. The modes of exchange and couplings are the
-  // fastest; the stable dt, or a stiff method, already takes care of them.
+  // The scene with only the terms whose motion a step must resolve. Exchange and couplings have the
+  // fastest modes; if there is a stable dt, or the method is stiff, steps need not resolve these.
   io::Scene followed = scene;
   if (plan.variant.method->stiff || std::isfinite(plan.stable_dt)) {
     followed.field.exchange.reset();

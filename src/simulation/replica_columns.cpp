@@ -57,7 +57,7 @@ bool can_be_columns(io::Scene const& scene, io::Scene const& one) {
          });
 }
 
-constexpr std::int64_t lanes = 16;  // a register has no more
+constexpr std::int64_t lanes = 16;  // a register has at most this many
 
 // Returns how many columns a lattice may have if its kernels are to stay on one thread.
 std::int64_t columns_on_a_thread(std::int64_t sites) {

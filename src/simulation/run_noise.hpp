@@ -54,9 +54,10 @@ class RunNoise {
   void visit_memory(Visit const& visit) {
     visit("noise.begun", begun_);
   }
-  /// Call it if the run goes on from the spins of another run, at the same step.
+  /// Takes over the state of the noise from another run. The spins must be those of that run, at
+  /// the same step.
   void go_on_from(RunNoise const& other) { begun_ = other.begun_; }
-  /// Returns the time spent on noise since the last call.
+  /// Returns the seconds spent on noise since the last call.
   double take_seconds() { return std::exchange(seconds_, 0.0); }
 
  private:

@@ -86,8 +86,8 @@ class RunningScene : public Simulation<Real, Space> {
     return ending;
   }
 
-  /// Sets the step at which the run will end, in the next call of advance() or in a later one. It
-  /// matters only beyond the scene's end.
+  /// Sets the step at which the run will end, in the next call of advance() or in a later one. This
+  /// has an effect only if that step is beyond the scene's end.
   void set_run_end(std::int64_t step) { run_end_ = step; }
 
   Guard const& guard() const { return guard_; }

@@ -116,7 +116,8 @@ struct SceneFieldNow {
 
   // Set by begin_row, for its row.
   cayspin::detail::RowInput<Real> row = {};  // H found so far
-  std::ptrdiff_t compiled_sites = 0;  // number of sites in packs other than the first and last
+  // Number of sites in neither the first nor the last pack; 0 if along_rows.is_whole.
+  std::ptrdiff_t compiled_sites = 0;
   bool adds_row = false, adds_more = false;
 
   static constexpr int row_fields = 1;
@@ -208,7 +209,7 @@ struct SceneFieldNow {
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Value e(static_cast<cayspin::detail::scalar_t<Value>>(lattice_terms.magnitude));
-    // lattice_terms.magnitude lacks a program's own field, which the sum of all terms includes.
+    // lattice_terms.magnitude lacks a program's own field, which `energies` includes.
     if (energies.data) return e + Kokkos::abs(stencil.site().load(energies));
     if (quadratic.present()) e = e + quadratic.magnitude(stencil.center());
     if (has_applied) e = e + Kokkos::abs(zeeman.energy_density(stencil));

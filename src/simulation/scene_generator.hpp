@@ -36,7 +36,7 @@ struct SceneGeneratorNow {
     llg.begin_row(row, begin, end, fields);
     is_changed = orthogonal || own.any();
   }
-  /// For rigid bodies, stores A on the whole piece of the row, instead of H at its ends.
+  /// Stores H at the ends of the row or, for rigid bodies, A at all sites of the piece.
   void find_row_ends(cayspin::detail::RowOfSpins<typename Spins::value_type> const& row,
                      std::int32_t begin, std::int32_t end,
                      cayspin::detail::RowFields<typename Spins::value_type> const& fields,

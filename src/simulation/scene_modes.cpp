@@ -224,8 +224,8 @@ std::int64_t reach_along(io::Scene const& scene, std::size_t axis) {
   return reach;
 }
 
-// The fields of demag and dipoles reach around any lattice. Between the wave vectors that fit the
-// lattice, the products of the Hessian do not determine their sums.
+// Demag and dipoles couple all cells, also around a periodic lattice. The Hessian of the lattice
+// determines their sums over cells only for waves that fit the lattice a whole number of times.
 void require_whole_waves(io::Scene const& scene, double wave, std::size_t axis,
                          std::int64_t cells) {
   double const around = wave * static_cast<double>(cells);

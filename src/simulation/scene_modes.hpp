@@ -15,9 +15,9 @@ namespace cayspin::simulation {
 /// Returns the scene without [torque], for functions that need an energy.
 io::Scene without_torque(io::Scene scene);
 
-/// Plans a search for modes after one for the equilibrium. Throws like make_plan_to_relax, except
-/// that torques are accepted, for up to most_sites_with_torques sites. Throws io::SceneError also
-/// for spins that have neither precession nor damping.
+/// Plans a search for modes that follows a search for the equilibrium. Throws like
+/// make_plan_to_relax, except that torques are accepted, for up to most_sites_with_torques sites.
+/// Throws io::SceneError also for spins that have neither precession nor damping.
 Plan make_plan_of_modes(io::Scene const& scene, Precision precision, ModesOptions const& options,
                         bool with_hessian);
 
@@ -48,8 +48,9 @@ constexpr std::int64_t most_sites_of_a_cell = 1024;
 
 /// Throws io::SceneError if a scene has no precession and no damping, no periodic axis, more than
 /// most_sites_of_a_cell sites in a cell (which extends over the whole lattice along open axes), or
-/// bonds that are too long for its lattice; UsageError for wave vectors with a component along an
-/// open axis. Wave vectors are in cycles per cell.
+/// bonds that are too long for its lattice. Throws UsageError for wave vectors with a component
+/// along an open axis and, with demag or dipoles, for waves that do not fit the lattice a whole
+/// number of times. Wave vectors are in cycles per cell.
 void require_bands(io::Scene const& scene, std::vector<std::array<double, 3>> const& wave_vectors);
 
 /// Returns the bytes that find_bands takes in addition to those of a search for an equilibrium.

@@ -9,8 +9,8 @@
 namespace cayspin::simulation {
 
 /// The field of cayspin::Slonczewski, H = a * c * (m x p) + b * p, with the angular dependence
-/// c = 2 L^2 / ((L^2 + 1) + (L^2 - 1) * m.p). If an array has data, it multiplies a or b, or
-/// replaces p, at each site.
+/// c = 2 * L^2 / ((L^2 + 1) + (L^2 - 1) * m.p), where L is the key lambda. If an array has data, it
+/// multiplies a or b, or replaces p, at each site.
 template <class Real>
 struct SlonczewskiOfSites {
   // Factors of a and b.

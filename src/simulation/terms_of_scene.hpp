@@ -79,7 +79,7 @@ class FieldInPass<Spins>::Terms {
   /// Returns true if bonds may reach beyond the neighbours of a site.
   bool reaches_far() const { return has_pairs_ || distant_bonds_.size() > 0; }
 
-  /// Returns true if all sites of a cell have equal anisotropy axes, and a moment and a
+  /// Returns true if all sites of a cell have equal uniaxial anisotropies, and a moment and a
   /// gyromagnetic ratio of 1.
   bool sites_are_alike() const {
     return !per_moments_ && std::ranges::all_of(cell_, [&](auto const& site) {

@@ -39,8 +39,8 @@ std::optional<Jump> bisect(TimeSamples& samples, std::size_t component, double a
   return Jump{a - 2 * epsilon * std::abs(a), b + 2 * epsilon * std::abs(b)};
 }
 
-// Returns the jumps between samples whose values differ by far more than those of samples nearby;
-// nothing if that takes too many evaluations.
+// Returns the jumps, which are sought where two successive samples differ by far more than others
+// nearby; nothing if the search takes too many evaluations.
 std::optional<std::vector<Jump>> find_jumps(TimeSamples& samples, std::int64_t most_evaluations) {
   std::vector<Jump> jumps;
   std::vector<std::pair<double, double>> cells;
@@ -117,7 +117,8 @@ class Parts {
   }
 
   // Bounds the steps in the rest of a span by a single length: the shortest bound so far, halved
-  // until there are no features at any of 256 places. Returns false if that fails.
+  // until spans of this length have no features at any of 256 places. Returns false if none of 12
+  // lengths is short enough, or if the evaluations are used up.
   bool bound_the_rest(double begin, double end, std::vector<StepBound>& bounds) {
     constexpr int places = 256, halvings = 12;
     // Earlier spans have used up the evaluations.

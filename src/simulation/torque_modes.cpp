@@ -44,8 +44,8 @@ std::int64_t evaluations_to_linearise(TangentBasis const& basis) {
 }
 
 /// Computes the matrix by finite differences of order 4, with a shift that balances their error
-/// with round-off. Shifted spins are off the sphere, where the rates continue smoothly; this does
-/// not change derivatives in the tangent planes.
+/// with round-off. Shifted spins are off the sphere. The rates are smooth there, too, so this does
+/// not change their derivatives along tangent vectors.
 Linearised linearise(TorqueMotion const& motion, TangentBasis const& basis) {
   auto const n = static_cast<Eigen::Index>(basis.size());
   Linearised found{basis, components(basis, motion.rates(basis.spins)), Matrix(n, n), false};

@@ -94,7 +94,7 @@ class State {
   /// Returns the unstable mode of a saddle.
   Vector const& mode() const { return mode_; }
   std::int64_t zero_modes() const { return zeros_.cols(); }
-  /// Returns the sum of the logarithms of the positive eigenvalues.
+  /// Returns the sum of the logarithms of the positive eigenvalues, without those of zero modes.
   double log_determinant() const { return log_determinant_; }
 
   /// Returns the contribution of the zero modes: the volume of all states to which they lead.
@@ -123,7 +123,7 @@ class State {
       return;
     }
     auto const rotated = rotations();
-    // The Hessian of a state that is not quite at rest differs by about its torque.
+    // If a state is not quite at rest, its Hessian has an error of about its torque.
     double const error =
         std::max(error_of_curvatures, 1e3 * state_.epsilon) * largest + 10 * state_.torque;
     bool const may_be_stiff = translations.empty() && !drifts;
@@ -137,8 +137,8 @@ class State {
     zero_volume_ = volumes[rotated.size()] * (rotated.empty() ? 1 : volume_of(rotated));
   }
 
-  /// Restricts the zero modes to `rotated`, and adds the others to the determinant. Returns false
-  /// if a curvature of these is not above `error`.
+  /// Restricts the zero modes to `rotated`, and adds the other modes to the determinant. Returns
+  /// false, and changes nothing, if the curvature of one of the others is not above `error`.
   bool keep_only(std::vector<Vector> const& rotated, Vector const& soft, double error) {
     auto const kept = static_cast<Eigen::Index>(rotated.size()), others = zero_modes() - kept;
     Matrix parts(zero_modes(), kept);
@@ -155,9 +155,8 @@ class State {
     return true;
   }
 
-  /// Returns the `count` eigenvectors of a matrix that inverse iteration with `inverse` (the
-  /// inverse of the matrix, or of the shifted matrix) converges to, with their eigenvalues in
-  /// ascending order.
+  /// Returns the `count` eigenvectors of `matrix` to which inverse iteration converges, and their
+  /// eigenvalues, in ascending order. `inverse`: factors of the matrix, or of the shifted matrix.
   static std::pair<Matrix, Vector> near_vectors(Matrix const& matrix, auto const& inverse,
                                                 Eigen::Index count) {
     auto const n = matrix.rows();
@@ -239,10 +238,10 @@ class State {
     return found;
   }
 
-  /// Returns orthogonal axes about which the energy is symmetric, as columns: one, or three if it
-  /// is isotropic. The other columns are zero. `turned`: rotations about x, y and z. If all spins
-  /// are collinear, the zero modes do not determine the axes: adding a rotation about the common
-  /// direction gives the same modes.
+  /// Returns orthogonal axes about which the energy is symmetric, as columns: none, one, or three
+  /// if the energy is isotropic. The other columns are zero. `turned`: rotations about x, y and z.
+  /// The axes are found from state_.torques, because the zero modes do not determine them if all
+  /// spins are collinear: adding a rotation about the common direction gives the same modes.
   Eigen::Matrix3d axes_of_symmetry(Matrix const& turned) const {
     Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
     for (auto const& torque : state_.torques) {
@@ -255,7 +254,7 @@ class State {
           .eigenvectors();
     Eigen::Vector3d const axis =
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(squares).eigenvectors().col(0);
-    double along = 0;  // the eigenvalue has the round-off of the largest
+    double along = 0;  // the eigenvalue is less accurate: its round-off is that of the largest
     for (auto const& torque : state_.torques)
       along = std::hypot(along, axis.dot(Eigen::Map<Eigen::Vector3d const>(torque.data())));
     Eigen::Matrix3d found = Eigen::Matrix3d::Zero();

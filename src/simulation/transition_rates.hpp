@@ -40,11 +40,11 @@ struct StateHessian : TangentBasis {
   void add_torque(std::vector<double> const& state, std::vector<double> const& field);
 };
 
-/// Returns the prefactors of harmonic transition state theory, in the units of the scene.
-/// `saddle_curvature`: the approximate curvature along the unstable mode of the saddle. Throws
-/// NumbersFailed for zero modes that are neither translations nor rotations of all spins, for a
-/// saddle on a plateau, for states with other negative curvatures, and for spins with neither
-/// precession nor damping.
+/// Returns the prefactors of harmonic transition state theory and of Langer's theory, in the units
+/// of the scene. `saddle_curvature`: the approximate curvature along the unstable mode of the
+/// saddle. Throws NumbersFailed for zero modes that are neither translations nor rotations of all
+/// spins, for a saddle on a plateau, for states with other negative curvatures, and for spins with
+/// neither precession nor damping.
 io::RatesOfPath rates_between(io::Scene const& scene, StateHessian const& start,
                               StateHessian const& saddle, StateHessian const& end,
                               double saddle_curvature);

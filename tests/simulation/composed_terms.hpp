@@ -28,7 +28,7 @@ inline ScalarField<double, Memory> field_of_sites(Lattice const& lattice,
   return field;
 }
 
-/// H = moment * (applied + source * cos(3 t)), E = -m.H. Moments, and sources along x, depend on
+/// H = moment * (applied + source * cos(3 * t)), E = -m.H. Moments, and sources along x, depend on
 /// the site; the source along y is uniform.
 struct SiteDependentApplied {
   ScalarField<double, Memory> moments, along_x;
@@ -61,7 +61,7 @@ struct SiteDependentApplied {
   }
 };
 
-/// Slonczewski's field with a damping-like strength that is a site-dependent number times cos(2 t),
+/// Slonczewski's field with a damping-like strength that is a site-dependent number * cos(2 * t),
 /// a constant field-like strength, and p along (along_x, 0.6, 0.8).
 struct SiteDependentSlonczewski {
   ScalarField<double, Memory> damping_like, along_x;
@@ -133,7 +133,7 @@ struct CrystalByPolynomials {
     using Value = typename Stencil::value_type;
     auto const& [x, y, z] = stencil.center();
     Value const a = x * x, b = y * y, c = z * z, two(-2 * cubic2), six(-6 * hexagonal);
-    // The derivatives of Re (y - i x)^6 along x and y, divided by 6.
+    // The derivatives of Re((y - i * x)^6) along x and y, divided by 6.
     Value const along_x = x * (Value(10.0) * a * b - Value(5.0) * b * b - a * a),
                 along_y = y * (b * b - Value(10.0) * a * b + Value(5.0) * a * a);
     return {two * x * b * c + six * along_x, two * y * c * a + six * along_y, two * z * a * b};
@@ -149,7 +149,7 @@ struct CrystalByPolynomials {
   }
 };
 
-/// Multiplies H and E of a field by 1 + part * sin(5 t).
+/// Multiplies H and E of a field by 1 + part * sin(5 * t).
 template <class Field>
 struct ChangesInTime {
   Field inner;

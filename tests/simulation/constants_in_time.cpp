@@ -140,7 +140,8 @@ TEST(ConstantsInTime, AreTheConstantsTimesTheirFactors) {
   EXPECT_GT(compared, 40);
 }
 
-// In SI, t is in seconds: spins turn by gamma * m_z * (2 Ku / Ms) times the integral of the factor.
+// In SI, t is in seconds: spins turn by gamma * m_z * (2 * Ku / Ms) times the integral of the
+// factor.
 TEST(ConstantsInTime, AreInSecondsInSi) {
   auto const scene = scene_of(R"toml(
 units = "SI"

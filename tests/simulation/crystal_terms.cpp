@@ -208,7 +208,7 @@ TEST(CrystalTerms, SpinsTurnAtTheFrequencyOfTheirResonance) {
 }
 
 // A spin along an easy direction in the plane leaves that direction if the opposite field exceeds
-// 36 |K|.
+// 36 * |K|.
 TEST(CrystalTerms, AHexagonalSpinSwitchesWhereItsStiffnessEnds) {
   for (double const share : {0.99, 1.01}) {
     auto const scene = llg_scene(

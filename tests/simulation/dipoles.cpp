@@ -56,8 +56,8 @@ Moments moments_of(io::Scene const& scene, std::vector<double> const& spins) {
   return all;
 }
 
-/// Returns the sum of mu * (3 r (r.m) - m r^2) / (4 pi r^5) over all other sites, where r is the
-/// vector from the other site.
+/// Returns the sum of mu * (3 * (r.m) * r - r^2 * m) / (4 * pi * r^5) over all other sites, where r
+/// is the vector from the other site.
 Vec3<double> field_at(Moments const& all, std::size_t site) {
   Vec3<double> h{0, 0, 0};
   for (std::size_t other = 0; other < all.m.size(); ++other) {
@@ -130,7 +130,7 @@ TEST(Dipoles, AreTheDemagOfCrystalsAndNotOfCells) {
             1e-3);
 }
 
-// At a distance r = 0.25 nm along its moment mu, the field of an atom in T is mu0 * mu / (2 pi
+// At a distance r = 0.25 nm along its moment mu, the field of an atom in T is mu0 * mu / (2 * pi *
 // r^3).
 TEST(Dipoles, AreInTeslaAndJoules) {
   auto const scene = scene_of(R"toml(
@@ -180,7 +180,7 @@ TEST(Dipoles, OfPeriodicCrystalsHaveLorentzsField) {
   }
 }
 
-// Dipoles in a chain align along it. Each dipole then has an energy of -2 zeta(3) / (4 pi).
+// Dipoles in a chain align along it. Each dipole then has an energy of -2 * zeta(3) / (4 * pi).
 TEST(Dipoles, OfAChainRelaxAlongIt) {
   auto const scene = with_dipoles("shape = [24]\nboundary = 'periodic'", "dipoles = true");
   auto const run = SceneRun::open(scene, {});
@@ -241,7 +241,7 @@ TEST(Dipoles, CountTheirMemory) {
   std::int64_t const expected = 8 * (17 * 32 * 32 * 24 + 2 * 3 * 17 * 512);
   auto const found = bytes("dipoles = true") - bytes("applied = [0, 0, 1]");
   EXPECT_GE(found, expected);
-  EXPECT_LE(found, expected + 8 * 3 * 32 * 18 * 18 * 3);  // room for H
+  EXPECT_LE(found, expected + 8 * 3 * 32 * 18 * 18 * 3);  // memory for H
 }
 
 }  // namespace

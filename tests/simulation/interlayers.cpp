@@ -155,7 +155,7 @@ steps = 1
         << name;
   }
   // Stiff exchange holds the spins at the interface near those of the cells. The energy is lower by
-  // torque^2 / k, where k = 2 A / d^2 is the stiffness of a half cell and d the spacing.
+  // torque^2 / k, where k = 2 * A / d^2 is the stiffness of a half cell and d the spacing.
   double const torque = 0.04 * 0.8 + 2 * 0.02 * 0.6 * 0.8, k = 2 * 1e3 / 0.25;
   EXPECT_NEAR(energy("exchange = 1e3", turned), -0.04 * 0.6 - 0.02 * 0.36 - torque * torque / k,
               1e-10);
@@ -193,7 +193,7 @@ TEST(Interlayers, AreRefusedBesideNegativeExchange) {
 }
 
 // Two layers of thickness d with an antiferromagnetic bond saturate at the field B for which
-// 2 A k * tanh(k d) = 2 |J|, with k^2 = Ms * B / (2 A).
+// 2 * A * k * tanh(k * d) = 2 * |J|, with k^2 = Ms * B / (2 * A).
 TEST(Interlayers, OfThickLayersSaturateWhereTheContinuumDoes) {
   constexpr double A = 1.5e-11, Ms = 1e6, J = 1.5e-3, thickness = 2e-8;
   auto const excess = [](double B) {

@@ -19,7 +19,7 @@ namespace cayspin::simulation::test {
 namespace {
 
 // Each moment keeps its m_z and turns by gamma * H * t in its own field along z,
-// H = B + (2 Ku / Ms - mu0 * Ms) * m_z.
+// H = B + (2 * Ku / Ms - mu0 * Ms) * m_z.
 TEST(MomentsOfSites, PrecessInTheFieldOfTheirOwnMagnetization) {
   auto const scene = scene_of(R"toml(
 units = "SI"

@@ -52,7 +52,7 @@ TEST(MultirateFields, OfScenesHaveOrderThreeOrFour) {
   }
 }
 
-// Expensive fields also work beside terms that are evaluated for all spins at once.
+// Expensive fields also work with torques, and with vacant and frozen sites.
 TEST(MultirateFields, BesideCurrentsAndSitesOfTheirOwn) {
   std::vector<std::string> const others{
       "torque={ zhang_li = { velocity = [0.2, 0, 0], nonadiabaticity = 0.1 } }",

@@ -107,7 +107,7 @@ TEST_F(NumbersOrExpressions, TermsAddUpWithFreeBoundaries) {
 }
 
 // With free boundaries, each end of a chain along x has x as a hard axis, with the energy
-// D^2 / (2 A) * m_x^2.
+// D^2 / (2 * A) * m_x^2.
 TEST_F(NumbersOrExpressions, TheEndsOfAChainWithBulkDmiHaveAnAnisotropy) {
   auto const run =
       SceneRun::open(llg_scene("0.1", "rkmk4", 1,

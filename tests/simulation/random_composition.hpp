@@ -24,7 +24,7 @@ struct CompositionNumbers {
   Lattice lattice;
   double exchange = 0, interfacial = 0, bulk = 0, cubic = 0, moment = 1, gyromagnetic = 1;
   double cubic2 = 0, hexagonal = 0;
-  double exchange_in_time = 0, anisotropy_in_time = 0, dmi_in_time = 0;  // a in 1 + a * sin(5 t)
+  double exchange_in_time = 0, anisotropy_in_time = 0, dmi_in_time = 0;  // a in 1 + a * sin(5*t)
   double constant[2] = {}, damping_like = 0, field_like = 0, nonadiabaticity = 0, damping = 0;
   Vec3<double> axis[2] = {{0, 0, 1}, {0, 0, 1}}, axis_of_sites{0, 0, 1}, applied{0, 0, 0},
                velocity{0, 0, 0};
@@ -64,7 +64,7 @@ class Composition {
 
  private:
   double uniform(double least, double most) { return least + (most - least) * engine_() * 0x1p-32; }
-  /// Returns a number with four decimal places, as it is typed.
+  /// Returns a number rounded to four decimal places, like the numbers in the scene's text.
   double number(double least, double most) { return std::round(1e4 * uniform(least, most)) / 1e4; }
   Vec3<double> vector(double size) {
     return {number(-size, size), number(-size, size), number(0.1 * size, size)};

@@ -93,7 +93,7 @@ TEST_F(Rates, OfABiaxialParticleWithDamping) {
 TEST_F(Rates, OfAStiffChainWithDamping) {
   double const easy = 1.3, damping = 0.3;
   auto const lattice = cayspin::Lattice::chain(3);
-  // The smallest one is much weaker than exchange, but the saddles are still two points, no ring.
+  // The smaller `hard` is much weaker than exchange, but there are still two saddles, not a ring.
   for (double const hard : {0.7, 0.005}) {
     EffectiveField const field(Exchange(lattice, 1e4), UniaxialAnisotropy(easy, {0, 0, 1}),
                                UniaxialAnisotropy(-hard, {0, 1, 0}));
@@ -116,7 +116,7 @@ TEST_F(Rates, FindARotationOfAllSpins) {
   EXPECT_NEAR(found.rates.volumes[1], 2 * std::numbers::pi, 1e-6);
   EXPECT_LT(found.rates.prefactor_forward, 1e-6);  // no precession leads over the barrier
   EXPECT_LT(found.rates.langer_forward, 1e-6);
-  // Damping does lead over it: Brown (1963).
+  // With damping, spins do cross the barrier: Brown (1963).
   for (double const damping : {0.01, 1.0}) {
     auto const damped = rate(UniaxialAnisotropy(1, {0, 0, 1}), cayspin::Lattice::chain(1),
                              {0, 0, 1}, {0, 0, -1}, damping);
@@ -124,17 +124,17 @@ TEST_F(Rates, FindARotationOfAllSpins) {
   }
 }
 
-/// An easy axis in a chain, with a field along the axis.
+/// A chain with an easy axis, in a field along this axis.
 struct ChainWithAxis {
   double k, h, exchange;
   std::int64_t count;
 
-  /// Returns Langer's prefactor over damping for a well with this curvature.
+  /// Returns Langer's prefactor divided by the damping, for a well with this curvature.
   ///
   /// Brown's diffusion: the cosine z of the angle to the axis diffuses in the potential
-  /// -K z^2 / 2 - h z; the diffusion coefficient is damping * kT * (1 - z^2). The flux of
+  /// -K * z^2 / 2 - h * z; the diffusion coefficient is damping * kT * (1 - z^2). The flux of
   /// probability over the top at z = -h / K gives the rate of one spin: exp(-barrier / kT) times
-  ///   damping * (1 - z^2) * sqrt(K / (2 pi kT)) * (K +- h).
+  ///   damping * (1 - z^2) * sqrt(K / (2 * pi * kT)) * (K +- h).
   /// In a chain of N spins this is multiplied by sqrt(N) and, for each exchange mode, by the ratio
   /// of its curvatures in the well and at the top. At the top, a mode has one curvature along the
   /// ring of saddles and one across it.
@@ -189,11 +189,11 @@ TEST_F(Rates, WithAnisotropyMuchWeakerThanExchange) {
   }
 }
 
-// For two spins at an angle phi, E = -J cos(phi) - b cos(phi)^2. Parallel and antiparallel spins
-// have two zero modes, which turn both spins, and two others with the curvature 2 E''. The saddle
-// has three zero modes and cos(phi) = -J / (2 b). The rate is
-//   damping sqrt(-2 E''(phi)) sin(phi) 2 E'' / (2 sqrt(pi kT)),
-// with the second E'' that of the minimum, whatever the direction of the spins.
+// For two spins at an angle phi, E = -J * cos(phi) - b * cos(phi)^2. Parallel and antiparallel
+// spins have two zero modes, which turn both, and two modes of curvature c = 2 * E''(phi). The
+// saddle has three zero modes and cos(phi) = -J / (2 * b). The rate is
+//   damping * sqrt(-2 * E''(phi)) * sin(phi) * c / (2 * sqrt(pi * kT)),
+// with phi at the saddle and c at the minimum, whatever the direction of the spins.
 TEST_F(Rates, OfAnIsotropicPairInAnyDirection) {
   double const j = 0.2, b = 1, damping = 0.4;
   auto const lattice = cayspin::Lattice::chain(2);

@@ -30,8 +30,7 @@ StateHessian state_of(std::vector<double> const& curvatures) {
   return state;
 }
 
-/// A part curvature v v^T of a Hessian. At each spin, v has the component `spins` along the
-/// direction.
+/// A term curvature * v * v^T of a Hessian. At spin i, the vector v is spins[i] * direction.
 struct Mode {
   double curvature;
   std::vector<double> spins;
@@ -93,7 +92,7 @@ TEST(RatesOfMatrices, CountSoftModesThatNoSymmetryExplains) {
 }
 
 // If the direction of the spins changes by the same angle from site to site, turning all of them is
-// a shift along the chain. In a chain with open ends its volume is unknown.
+// a shift along the chain. In a chain with open ends, the volume of this shift is unknown.
 TEST(RatesOfMatrices, RefuseAShiftAlongAnOpenAxis) {
   io::Scene scene;
   scene.lattice.shape = {4, 1, 1};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // With every method, a run that is stored and continued gives bitwise the same results, and the
-// same counts, as one that is not interrupted. A run that is interrupted early reports it.
+// same counts, as one that is not interrupted. A run that is interrupted early reports that.
 #include "random_run.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/failure.hpp"

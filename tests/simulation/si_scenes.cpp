@@ -233,8 +233,8 @@ TEST(SiScenes, IronHasTheExchangeFieldOfItsEightNeighbours) {
 }
 
 // A current moves a spiral of 24 cells. If the nonadiabaticity equals Gilbert's damping, the spiral
-// keeps its shape and moves with the electrons, at 28.9755 m/s * sin(q a) / (q a) for 1e12 A/m^2.
-// Here q is the wave number of the spiral and a the spacing.
+// keeps its shape and moves with the electrons, at 28.9755 m/s * sin(q * a) / (q * a) for 1e12
+// A/m^2. Here q is the wave number of the spiral and a the spacing.
 TEST(SiScenes, ASpiralOfPermalloyMovesWithTheElectrons) {
   auto const text = [](double alpha) {
     return fmt::format(R"toml(units = "SI"

@@ -19,7 +19,7 @@ Vector cross(Vector const& a, Vector const& b) {
 }
 double dot(Vector const& a, Vector const& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// z = m.p obeys dz/dt = a * c(z) * (1 - z^2), with c(z) = 2 L^2 / ((L^2 + 1) + (L^2 - 1) * z).
+// z = m.p obeys dz/dt = a * c(z) * (1 - z^2), with c(z) = 2 * L^2 / ((L^2 + 1) + (L^2 - 1) * z).
 TEST(SlonczewskiOfSites, TurnsAFreeSpinByItsImplicitForm) {
   constexpr double a = 0.3, L = 1.7, t = 2, z0 = -0.6;
   auto const integral = [](double z) {

@@ -43,7 +43,7 @@ TEST(StandardProblems, OneIsReversedAlongItsLongAxis) {
   EXPECT_LT(along(-100e-3), -0.95);
 }
 
-// Donahue et al. 2000: in a field along (1, 1, 1) a small particle has Hc = 0.057069478 Ms.
+// Donahue et al. 2000: in a field along (1, 1, 1) a small particle has Hc = 0.057069478 * Ms.
 TEST(StandardProblems, TwoHasTheCoercivityOfASmallParticle) {
   auto const run = open("2", {"field.applied=[0, 0, 0]", "lattice.spacing=0.01"});
   auto const along = [&](double field) {
@@ -57,7 +57,8 @@ TEST(StandardProblems, TwoHasTheCoercivityOfASmallParticle) {
   EXPECT_LT(along(-0.05709), 0);
 }
 
-// Half a hysteresis loop of a larger particle, including its jump, on cells of 3 and 1.5 l_ex.
+// Half a hysteresis loop of a larger particle, including its jump, on cells of 3 and 1.5 exchange
+// lengths.
 TEST(StandardProblems, TwoTakesFewEvaluationsAState) {
   for (std::string const cells : {"lattice={ shape = [50, 10, 1], spacing = [3, 3, 3] }",
                                   "lattice={ shape = [100, 20, 1], spacing = [1.5, 1.5, 3] }"}) {
@@ -72,8 +73,8 @@ TEST(StandardProblems, TwoTakesFewEvaluationsAState) {
   }
 }
 
-// Rave, Fabian and Hubert 1998: in a cube with edges of 8.47 l_ex flower and vortex have equal
-// energies, 0.3027 Km. The flower is a saddle.
+// Rave, Fabian and Hubert 1998: in a cube with edges of 8.47 exchange lengths, flower and vortex
+// have equal energy densities, 0.3027 * Km with Km = mu0 * Ms^2 / 2. The flower is a saddle.
 TEST(StandardProblems, ThreeHasAFlowerAndAVortexOfOneEnergy) {
   for (std::string const cells : {"10", "20"}) {
     std::string const shape = "lattice.shape=[" + cells + "," + cells + "," + cells + "]";
