@@ -16,7 +16,8 @@ class Comparison {
       : context(context),
         file_(context.folder, "errata.csv", "erratum,quantity,printed,corrected") {}
 
-  /// Starts erratum `number`: its place in the paper, the printed formula and the correct one.
+  /// Starts the rows of erratum `number`. `where`: its place in the paper. `printed`, `corrected`:
+  /// the two formulas.
   void begin(int number, std::string_view where, std::string_view printed,
              std::string_view corrected);
   /// Prints a quantity as computed with both formulas.

@@ -10,7 +10,8 @@
 
 namespace cayspin::paper {
 
-/// One method of a table, with the values printed in the paper for each dt. NaN: not recoverable.
+/// One method of a table, with the values printed in the paper for each dt. NaN: the paper has a
+/// misprint, from which the value cannot be recovered.
 struct Column {
   std::string_view name;
   MethodChoice choice;

@@ -9,7 +9,7 @@
 
 namespace cayspin::paper {
 
-/// Returns the [integrator] of a scene with this method, which steps from 0 to `end`.
+/// Returns the section [integrator] of a scene, with this method and steps of dt from 0 to `end`.
 io::Integrator integrator_of(MethodChoice const& choice, double dt, double end);
 
 /// Results for each body.
@@ -18,7 +18,7 @@ struct EnsembleRun {
   std::vector<Vector> ends;
 };
 
-/// Runs the bodies side by side by a method of the program, in double precision on the host.
+/// Runs all bodies together, with a method of the program, in double precision on the host.
 void run_bodies(std::vector<Body> const& bodies, MethodChoice const& choice, double dt, double end,
                 HostObserver& observer);
 EnsembleRun run_ensemble(std::vector<Body> const& bodies, MethodChoice const& choice, double dt,

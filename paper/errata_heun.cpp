@@ -33,7 +33,7 @@ double invariant_sigma_def(Body const& body, Vector const& m) {
   return dot(bv, trace * bv - body.velocity(bv)) / (4 * dot(v, v));
 }
 
-/// Returns a function that measures the energy error of a body for a dt. The method is Heun on
+/// Returns a function that, called as f(dt)(body), measures the energy error. The method is Heun on
 /// A = -I^-1 m, with factor * dt^power * sigma_def * m added to F, where sigma_def is the printed
 /// one.
 auto energy_error(double factor, int power) {

@@ -7,7 +7,7 @@
 namespace cayspin::paper {
 namespace {
 
-// Returns sigma in the second form of F^Eul_cor, but for its sign: the sum of the u_i divided by
+// Returns sigma in the second form of F^Eul_cor, up to its sign: the sum of the u_i divided by
 // the sum of the I_i * u_i, with u_i = (I_j - I_k)^2 * I_i * (m_j * m_k)^power.
 double second_form(Body const& body, Vector const& m, int power) {
   auto const& moment = body.moments;

@@ -55,8 +55,8 @@ auto energy_error(Form form) {
   };
 }
 
-// Returns the component along A_o of the error of one step, divided by dt^2. With the right sigma
-// it tends to zero as dt -> 0.
+// Returns a function of a body: the magnitude of the component along A_o of the error of one step,
+// divided by dt^2. With the right sigma, this quotient tends to zero as dt -> 0.
 auto local_error(Form form, double dt) {
   return [=](Body const& body) {
     auto const& m = body.start;
@@ -71,7 +71,8 @@ auto local_error(Form form, double dt) {
   };
 }
 
-// Returns |s - sigma|, where s is sigma computed with a forward difference of A_o over dt.
+// Returns a function of a body: |s - sigma|, where s is sigma computed with a forward difference of
+// A_o over dt.
 auto remainder(double dt) {
   return [=](Body const& body) {
     auto const& m = body.start;
@@ -82,8 +83,8 @@ auto remainder(double dt) {
   };
 }
 
-// Returns the energy error of implicit Euler, xi = A(cay(dt * xi) m), with sigma * m added to xi,
-// where sigma = sign * <A', A x m> / |A_o|^2.
+// Returns a function that, called as f(dt)(body), measures the energy error of implicit Euler,
+// xi = A(cay(dt * xi) m), with sigma * m added to xi, where sigma = sign * <A', A x m> / |A_o|^2.
 auto implicit_energy_error(double sign) {
   return [=](double dt) {
     return [=](Body const& body) {

@@ -12,8 +12,8 @@ HostSpins run_on_host(io::Scene const& scene, std::vector<double> const& starts,
   Simulation<double, HostSpace> simulation(
       lattice, Times{0, integrator.dt, integrator.steps}, starts,
       SceneGenerator<HostSpins>(scene, lattice, inverse_inertia));
-  // Opens the method without a plan of the run, whose search for the stable dt would take longer
-  // than the run itself.
+  // Opens the method without planning the run: the search for the stable dt would take longer than
+  // the run itself.
   auto const method = find_variant(scene).open(
       &simulation, {integrator.rotation, integrator.sigma, integrator.isotropy_cap, {}});
   auto const ending = simulation.advance(*method, observer);

@@ -5,7 +5,7 @@
 
 namespace cayspin::paper {
 
-/// Prints text after an empty line, broken into indented lines.
+/// Prints an empty line, and then the text, broken into indented lines.
 void print_paragraph(std::string_view text);
 
 }  // namespace cayspin::paper

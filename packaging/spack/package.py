@@ -16,8 +16,8 @@ class Cayspin(CMakePackage):
 
     license("Apache-2.0 WITH LLVM-exception")
 
-    # No public address yet: `dev-build` takes the clone, `install` an archive in the current
-    # folder.
+    # cayspin has no public address yet: `dev-build` builds the clone, and `install` builds an
+    # archive in the current folder.
     url = f"file://{os.getcwd()}/cayspin-0.2.0.tar.gz"
     manual_download = True
     download_instr = (
@@ -39,7 +39,7 @@ class Cayspin(CMakePackage):
     depends_on("cxx", type="build")
     depends_on("fortran", type="build", when="+program+examples")
     depends_on("cmake@3.25:", type="build")
-    # Backends and architecture are those of Kokkos: cayspin ^kokkos+cuda cuda_arch=90
+    # The Kokkos package sets backends and architecture, as in: cayspin ^kokkos+cuda cuda_arch=90
     depends_on("kokkos@4.5:5")
     depends_on("kokkos+pic", when="+shared")
     depends_on("fftw@3 precision=float,double", when="+fftw")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""try_wheel.py LEVEL: run from an environment with the wheel; fails unless LEVEL's libraries run."""
+"""try_wheel.py LEVEL: tries the wheel in the environment of this Python. Fails unless the loader
+has taken the libraries for the x86-64 level LEVEL."""
 
 import pathlib
 import subprocess

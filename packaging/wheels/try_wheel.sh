@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # Usage: bash packaging/wheels/try_wheel.sh WHEEL [PYTHON]
-# Installs a wheel into a new environment of PYTHON, and computes and draws with it, from Python and
-# by the command `cayspin`, once for each level of x86-64 that this processor has. Needs no clone.
+# Installs a wheel into a new environment of PYTHON. Then, for each level of x86-64 that this
+# processor has, computes from Python and with the command `cayspin`, and draws a plot. Needs no
+# clone, only try_wheel.py in the same folder.
 set -euo pipefail
 wheel=$1
 python=${2:-python3}

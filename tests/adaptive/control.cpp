@@ -334,7 +334,7 @@ struct EndingField {
   }
 };
 
-// times.at(steps) and times.at(steps - 1) + dt may differ by the round-off of a late t.
+// times.at(steps) and times.at(steps - 1) + dt may differ by the round-off of a large t.
 TEST(AdaptiveEnd, IsReachedLateInARun) {
   Slab const slab = coupled_chain(0.05);
   for (std::int64_t steps = 1; steps <= 20; ++steps) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Events seen by profilers: the library's kernels and allocations have its prefix, and a step does
-// not allocate, copy or fence.
+// Events seen by profilers: the names of the library's kernels and allocations begin with
+// "cayspin::", and a step does not allocate, copy or fence.
 #include "../support/landau_lifshitz.hpp"
 
 #include <cayspin_paper/analytic_sigma.hpp>

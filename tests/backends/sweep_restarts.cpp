@@ -50,7 +50,7 @@ class Draws {
 };
 
 /// Takes `change` steps under the first generator and the rest under the second. `cut`: step at
-/// which a second stepper continues; -1: never.
+/// which a second stepper continues; -1: never. `paths`: those of the first and the second stepper.
 template <class Stepper, class First, class Second>
 auto end_of(First const& first, Second const& second, typename Stepper::spins_type const& start,
             std::int64_t change, std::int64_t cut, std::array<Path, 2> const& paths) {

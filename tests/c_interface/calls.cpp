@@ -93,7 +93,7 @@ TYPED_TEST(CInterface, LendsAndTakesBack) {
 }
 
 // An easy axis along z and a field h along x that is too weak for saturation: at equilibrium,
-// m_x = h / K and H = (h, 0, K m_z).
+// m_x = h / K and H = (h, 0, K * m_z).
 TYPED_TEST(CInterface, RelaxesAndLendsTheField) {
   std::string text = scene_text("anisotropy = { constant = 2.0, axis = [0, 0, 1] }\n");
   text.replace(text.find("[0.0, 0.0, 1.0]"), 15, "[1.0, 0.0, 0.0]");
@@ -125,7 +125,7 @@ TYPED_TEST(CInterface, RelaxesAndLendsTheField) {
   cayspin_array field{};
   ASSERT_EQ(cayspin_borrow_field(simulation, &field), CAYSPIN_OK) << cayspin_last_error();
   for (int x = 0; x < 2; ++x) {
-    EXPECT_EQ(this->number(field, x, 0), 1);  // from the scene
+    EXPECT_EQ(this->number(field, x, 0), 1);  // the applied field of the scene
     EXPECT_EQ(this->number(field, x, 1), 0);
     EXPECT_NEAR(this->number(field, x, 2), 2 * 0.6, 2 * limit);
   }

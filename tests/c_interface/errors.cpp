@@ -153,7 +153,7 @@ TEST(CInterfaceErrors, WrongSpins) {
             "spins: the spin of site (1, 0, 0)");
     EXPECT_EQ(std::string(cayspin_last_error()).find("spins: "), 0u) << cayspin_last_error();
   };
-  refuses_second();  // of length 0
+  refuses_second();  // the spin has length 0
   numbers[3] = std::nan("");
   refuses_second();
   double m[3] = {};
@@ -230,7 +230,7 @@ TEST(CInterfaceErrors, NumbersThatFail) {
   ASSERT_EQ(cayspin_set_spins(failed, &start), CAYSPIN_OK) << cayspin_last_error();
   EXPECT_EQ(cayspin_step(failed, 3), CAYSPIN_OK) << cayspin_last_error();
   EXPECT_EQ(cayspin_energy(failed, &energy), CAYSPIN_OK);
-  EXPECT_EQ(energy, -2);  // along the field, where nothing turns
+  EXPECT_EQ(energy, -2);  // the new spins are along the field and do not turn
 }
 
 // Above 4096 sites the guard checks only every tenth step, and each frame.

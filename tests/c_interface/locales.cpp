@@ -46,8 +46,8 @@ std::string film(std::string const& start) {
          "[output]\nevery = 5\nscalars_every = 1\ntable = true\nxdmf = true\n";
 }
 
-/// A pulse that is so short that an adaptive method finds it only by the times in the expression's
-/// text.
+/// A scene with a pulse so short that an adaptive method finds it only from the times in the text
+/// of the expression.
 std::string const pulse = R"([system]
 kind = "llg"
 damping = 0.5

@@ -108,7 +108,7 @@ def toml_value(value):
 
 
 def scene_text(scene, combination, steps):
-    """Returns the scene with another method, fewer steps and, if it is large, a smaller lattice."""
+    """Returns a scene's text with another method, fewer steps and, if large, a smaller lattice."""
     in_si = scene.get("units") == "SI"
     top = {key: value for key, value in scene.items() if not isinstance(value, dict)}
     scene = {section: dict(keys) for section, keys in scene.items() if isinstance(keys, dict)}

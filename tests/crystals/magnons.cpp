@@ -147,9 +147,10 @@ TYPED_TEST(Magnons, OfAHoneycomb) {
     }
 }
 
-// At the corner K of the Brillouin zone, one sublattice can precess while the other is at rest. D
-// between second neighbours, along z and in the sense of the hexagons, splits the two frequencies
-// by 6 * sqrt(3) * D * cos(opening).
+// At the corner K of the Brillouin zone, one sublattice can precess while the other is at rest. A
+// Dzyaloshinskii-Moriya vector of length D between second neighbours, along z for bonds that go
+// round a hexagon in one direction, and along -z for the other direction, splits the two
+// frequencies by 6 * sqrt(3) * D * cos(opening).
 TYPED_TEST(Magnons, OfAHoneycombWithAGap) {
   Cells const cells{12, 12, 1};
   constexpr double D = 0.04;
@@ -197,8 +198,8 @@ TYPED_TEST(Magnons, OfAKagome) {
       6 * 0.75 * std::cos(opening));
 }
 
-// omega = sqrt((h + K)^2 - (h * gamma)^2) at small openings, with h = 8 * |J| and
-// gamma = cos(kx / 2) * cos(ky / 2) * cos(kz / 2). It is positive if spins up have the larger
+// At small openings |omega| = sqrt((h + K)^2 - (h * gamma)^2), with h = 8 * |J| and
+// gamma = cos(kx / 2) * cos(ky / 2) * cos(kz / 2). omega is positive if spins up have the larger
 // amplitude, and negative if spins down do.
 TYPED_TEST(Magnons, OfAnAntiferromagnet) {
   Cells const cells{24, 6, 5};

@@ -33,7 +33,7 @@ def compile_entry(arguments):
 
 
 def output_of(command, directory):
-    """Returns the output of a command. Ends the script if it fails."""
+    """Returns the output of a command. If the command fails, ends the script."""
     done = subprocess.run(command, cwd=directory, text=True, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT)
     if done.returncode != 0:

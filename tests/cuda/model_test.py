@@ -15,7 +15,8 @@ import gpu_report  # noqa: E402
 import model_gpu  # noqa: E402
 
 H100 = model_gpu.CARDS["H100"]
-# Counts of geometric Euler in double precision, from a version whose loop divided and branched.
+# Instruction counts of geometric Euler in double precision, from a version whose loop divided and
+# branched.
 BRANCHING = model_gpu.Kernel("f64_LieEuler_0 577 126 21 388 3 39 45")
 
 

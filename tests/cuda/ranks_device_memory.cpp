@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Compiles the example as with -DCAYSPIN_MPI_DEVICE_MEMORY=ON: messages do not pass through the
+// Compiles examples/ranks as with -DCAYSPIN_MPI_DEVICE_MEMORY=ON: messages do not pass through the
 // host.
 #define CAYSPIN_MPI_DEVICE_MEMORY
 #include "../../examples/ranks/main.cpp"

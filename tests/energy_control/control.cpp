@@ -178,8 +178,9 @@ Field turned(Source const& source, Field const& start, double higher,
   return spins;
 }
 
-// Compares with the Cayley map of kappa * (m x A), with one kappa for all spins, written out for
-// each spin: m + kappa * A_o + O(kappa^2), where A_o is the part of A orthogonal to m.
+// Compares turned() with the Cayley map of kappa * (m x A), written out here for each spin, with
+// one kappa for all spins. To first order in kappa, the map adds kappa * A_o to m, where A_o is the
+// part of A orthogonal to m.
 template <class Source, class Field>
 void expect_turn(Source const& source, Field const& start) {
   using Real = typename Field::value_type;

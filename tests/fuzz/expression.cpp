@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// One formula, compiled and evaluated.
+// Fuzzes formulas: each is compiled and evaluated.
 #include "io/expression.hpp"
 
 #include "fuzz.hpp"

@@ -13,8 +13,8 @@
 
 namespace cayspin::fuzz {
 
-/// Calls `reading`, which may throw only std::runtime_error with one line. Anything else ends the
-/// process.
+/// Calls `reading`, which may throw only a std::runtime_error whose message is one line. Anything
+/// else ends the process.
 template <class Reading>
 void refuse_or_read(Reading const& reading) {
   try {

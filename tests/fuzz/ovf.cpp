@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// An OVF file in any of its formats.
+// Fuzzes OVF files in all their formats.
 #include "io/ovf.hpp"
 
 #include "fuzz.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The text of a scene. Expressions are evaluated; small lattices get their initial spins.
+// Fuzzes the texts of scenes. Expressions are evaluated; initial spins are computed on small
+// lattices.
 #include "io/scene.hpp"
 
 #include "fuzz.hpp"

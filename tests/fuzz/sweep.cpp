@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The file of a sweep. Each reading is tried in a child process.
+// Fuzzes the files of sweeps. Each file is read in a child process first.
 #include "io/sweep.hpp"
 
 #include "../support/reads_in_child.hpp"

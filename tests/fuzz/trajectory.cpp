@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A trajectory file. Each reading is tried in a child process, so that faults of HDF5 stay there.
+// Fuzzes trajectory files. Each file is read in a child process first, so that faults of HDF5 stay
+// there.
 #include "io/trajectory.hpp"
 
 #include "../support/reads_in_child.hpp"

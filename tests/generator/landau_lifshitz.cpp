@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A of the Landau-Lifshitz equation, its orthogonal part, and sigma added to it.
+// The generator A of the Landau-Lifshitz equation, its orthogonal part, and sigma added to it.
 #include "../support/evaluate.hpp"
 #include "../support/larger.hpp"
 
@@ -38,7 +38,7 @@ TYPED_TEST(LandauLifshitzGenerator, MovesSpinsByTheEquation) {
         double const p = precession ? 1 : 0;
         expect_near(at(a, site), p * field + damping * turn, this->bound);
         expect_near(cross(at(a, site), m), (-p) * turn - damping * cross(m, turn), this->bound);
-        double const gain = dot(field, cross(at(a, site), m));  // of m.H
+        double const gain = dot(field, cross(at(a, site), m));  // d(m.H)/dt
         EXPECT_NEAR(gain, damping * dot(turn, turn), this->bound * 10);
       }
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A and the energy of rigid bodies: principal axes, full tensors, one tensor for each body.
+// The generator A and the energy of rigid bodies: principal axes, full tensors, one tensor for each
+// body.
 #include "../support/evaluate.hpp"
 
 #include <cayspin/cayspin.hpp>

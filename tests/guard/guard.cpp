@@ -41,8 +41,8 @@ class GuardIn : public ::testing::Test {
 using Precisions = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(GuardIn, Precisions);
 
-// The limit is 64 * epsilon at the start. Later it is 64 * epsilon * max(steps, 1e6), but at most
-// 0.01.
+// The limit of | |m| - 1 | is 64 * epsilon at the start. Later it is 64 * epsilon * max(steps,
+// 1e6), but at most 0.01.
 TYPED_TEST(GuardIn, LengthsMayBeOffByRoundOff) {
   double const of_a_step = 64 * std::numeric_limits<TypeParam>::epsilon();
   this->expect_limit_of_length(0, of_a_step);

@@ -148,7 +148,7 @@ void run_blocks(std::int64_t count, std::int64_t block, void const* body,
   using Policy =
       Kokkos::RangePolicy<Kokkos::DefaultHostExecutionSpace, Kokkos::IndexType<std::int64_t>>;
   Blocks const blocks{count, block, body, run};
-  // Without profiling events of a kernel, since this is part of one.
+  // Unlike parallel_for, this reports no kernel to profilers: the blocks are a part of one.
   Kokkos::Impl::ParallelFor<Blocks, Policy>(blocks, Policy(0, (count + block - 1) / block))
       .execute();
 }
@@ -285,7 +285,8 @@ void HostDevice::print_configuration(std::ostream& out, bool) const {
 }  // namespace cayspin::test
 
 namespace Kokkos::Impl {
-// Initialised after the host's spaces, whose threads it uses.
+// The number 900 makes Kokkos initialise the device after the host's spaces, whose threads the
+// device uses.
 int const host_device_registered =
     initialize_space_factory<cayspin::test::HostDevice>("900_HostDevice");
 }  // namespace Kokkos::Impl

@@ -99,8 +99,8 @@ class ParallelFor<Functor, MDRangePolicy<Traits...>, cayspin::test::HostDevice> 
   Tiles const tiles_;
 };
 
-/// The result has to be in host memory, as it is in every reduction to a number. It is there on
-/// return.
+/// A reduction whose result is in host memory, as it is in every reduction to a number. execute()
+/// returns once the result is there.
 template <class FunctorReducer, class... Traits>
 class ParallelReduce<FunctorReducer, RangePolicy<Traits...>, cayspin::test::HostDevice> {
  public:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Makes a copy of cayspin with another version in its namespace and with lattices whose number of
-# sites is negative, and builds a program that uses both versions.
+# Makes a copy of cayspin that has another version in its namespace, and in which sites() returns
+# the negative number of sites. Builds a program that uses both versions.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK})
 file(COPY ${CAYSPIN_SOURCE}/include DESTINATION ${WORK}/other)

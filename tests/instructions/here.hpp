@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-// Steppers without the Kokkos library, which may contain instructions unknown to valgrind, and for
-// a processor that does not depend on the machine.
+// Compiles steppers without the Kokkos library, which may contain instructions unknown to valgrind,
+// and for processors with AVX2, whatever the machine has.
 #include <Kokkos_Macros.hpp>
 
 #undef KOKKOS_ARCH_AVX512XEON

@@ -49,7 +49,7 @@ class InterchangeTest(unittest.TestCase):
         return result.stdout
 
     def run_scene(self, file, *words):
-        """Runs the scene into a file of the folder."""
+        """Runs the scene, writes `file` in the test's folder, and returns its path."""
         self.cayspin("run", "scene.toml", "--quiet", "--output", file, *words)
         return self.folder / file
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// How the threads of a device find their sites and the numbers of these sites, and how they compute
-// quotients.
+// How the threads of a device find their sites and the memory of these sites and their neighbours,
+// and how they compute quotients.
 #include <cayspin/detail/device_site.hpp>
 #include <cayspin/detail/device_tiles.hpp>
 #include <cayspin/detail/quotient.hpp>
@@ -158,7 +158,9 @@ RowLayout large_layout(std::int32_t nz) {
 }
 
 TEST(DeviceSites, LongIndicesWhereNumbersNeedThem) {
-  std::int32_t const most = (1 << 11) - 2;  // one more plane is counted: 2^11 would wrap
+  // reaches() counts one plane more than there is, and 2^11 planes have 2^31 numbers, too many for
+  // an int32.
+  std::int32_t const most = (1 << 11) - 2;
   using Short = detail::DeviceLayout<std::int32_t>;
   auto const fits = large_layout(most), beyond = large_layout(most + 1);
   EXPECT_TRUE(Short::reaches(fits, 1));

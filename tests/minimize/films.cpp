@@ -49,8 +49,8 @@ TYPED_TEST(Films, TakeSeventyEvaluations) {
   }
 }
 
-// Long waves have to vanish before walls form: vortices in walls move by only a cell in an
-// iteration.
+// Long waves have to vanish before walls form. Otherwise there are vortices in the walls, which
+// move by only one cell per iteration.
 TYPED_TEST(Films, TakeFewEvaluationsFarWiderThanAWall) {
   auto const lattice = Lattice::square(96, 96);
   for (unsigned const seed : {1U, 2U, 3U, 4U, 5U}) {

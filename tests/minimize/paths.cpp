@@ -94,8 +94,8 @@ TYPED_TEST(Paths, OfAMacrospinWithALowBarrier) {
   EXPECT_NEAR(found.barrier_forward(), 0.5 * easy * std::pow(1 - applied / easy, 2), this->exact());
 }
 
-// Between close images the energy falls steeply, and each image turns the direction of the path at
-// its lower neighbour. A chain with strong exchange turns as one spin.
+// The energy falls steeply between close images, and the direction of the path at an image depends
+// on the neighbour with the higher energy. A chain with strong exchange turns as one spin.
 TYPED_TEST(Paths, SettleWithManyImagesInAnyField) {
   std::mt19937 engine(7);
   std::uniform_real_distribution<double> fields(0.2, 0.9);

@@ -50,8 +50,10 @@ class EqualBits : public ::testing::Test {
   using Spins = typename Backend::Spins;
   using Real = typename Backend::Real;
 
-  /// make(spins) returns a stepper. Lattices for which it throws std::invalid_argument are skipped.
-  /// `one_in`: 2 takes only every second lattice, and so on, for steppers that communicate often.
+  /// Expects runs on divided lattices, with ghosts of this depth, to be bitwise identical to runs
+  /// on one rank. make(spins) returns a stepper; lattices for which it throws std::invalid_argument
+  /// are skipped. `one_in`: 2 takes only every second lattice, and so on, for steppers that
+  /// communicate often.
   template <class Motion = Turning, class Make>
   void expect_equal_bits(int depth, Make const& make, int steps = 3, std::size_t one_in = 1) {
     int compared = 0;

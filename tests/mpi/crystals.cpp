@@ -48,7 +48,8 @@ applied = ["0.5*cos(7*t)", "0.1", "0.4"])toml";
 
 class CrystalsOnRanks : public OnRanks {
  protected:
-  /// Expects runs that are divided in these ways, (ranks, --ranks), to equal a run on one rank.
+  /// Expects divided runs to equal a run on one rank. `divisions`: pairs of the number of ranks and
+  /// the value of --ranks.
   void expect_bits_of_one(std::string const& text,
                           std::vector<std::pair<int, std::string>> const& divisions,
                           Arguments const& more = {}) const {

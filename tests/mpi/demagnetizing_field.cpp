@@ -40,8 +40,8 @@ class DemagnetizingFieldOnRanks : public ::testing::Test {
     return {numbers.begin(), numbers.end()};
   }
 
-  /// work(body, spins) returns numbers: first those of the sites, (sites, 3), then any that are
-  /// equal on all ranks.
+  /// Expects work(body, spins) to return bitwise identical numbers on divided lattices and on one
+  /// rank: first three for each of the sites, then any that are equal on all ranks.
   template <class Work>
   void expect_equal_bits(Boundary boundary, int depth, Work const& work) {
     int compared = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The demagnetising field of examples/ranks, by FFTs over all ranks, against that of one rank.
+// The demagnetising field of examples/ranks, computed by FFTs over all ranks, compared with that of
+// DemagnetizingField on one rank.
 #include "../../examples/ranks/film_demagnetising_field.hpp"
 #include "../support/backends.hpp"
 

@@ -22,7 +22,7 @@ extern "C" int MPI_Send_init(void const* data, int count, MPI_Datatype type, int
 extern "C" int MPI_Recv_init(void* data, int count, MPI_Datatype type, int from, int tag,
                              MPI_Comm comm, MPI_Request* request) {
   int const result = PMPI_Recv_init(data, count, type, from, tag, comm, request);
-  sends.erase(*request);  // it may have the handle of a freed request to send
+  sends.erase(*request);  // MPI may reuse the handle of a freed send
   return result;
 }
 extern "C" int MPI_Startall(int count, MPI_Request* requests) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Ghosts equal the neighbours' sites, after messages in place and after packed ones, as on devices.
+// Ghosts equal the neighbours' sites, both if messages are sent in place, as on hosts, and if they
+// are packed, as on devices.
 #include <cayspin/detail/ghosts.hpp>
 #include <cayspin/mpi/domain.hpp>
 #include <cayspin/spin_field.hpp>
@@ -67,7 +68,7 @@ TEST(Ghosts, HoldWhatTheNeighboursHold) {
   for (auto const boundary : {Boundary::open, Boundary::periodic})
     for (Division const& division :
          {Division{1, ranks}, Division{ranks, 1}, Division{2, ranks / 2}})
-      for (std::int64_t const nx : {1, 5, 19, 700}) {  // 700: sent by components
+      for (std::int64_t const nx : {1, 5, 19, 700}) {  // at 700, components are sent one by one
         if (division.y * division.z != ranks) continue;
         SCOPED_TRACE(testing::Message() << division.y << " x " << division.z << ", " << nx);
         Domain const domain(MPI_COMM_WORLD, Lattice::cubic(nx, 13, 15, 1, boundary), 3, division);

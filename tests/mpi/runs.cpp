@@ -99,7 +99,7 @@ TEST_F(OnRanks, RunEveryShippedScene) {
     SCOPED_TRACE(entry.path().filename());
     auto const scene = entry.path().string();
     auto const text = (std::ostringstream() << std::ifstream(scene).rdbuf()).str();
-    if (!contains(text, "[integrator]")) continue;  // relaxed on one rank
+    if (!contains(text, "[integrator]")) continue;  // `relax` runs on one rank
     auto const short_run = text.find("\nend =") != std::string::npos ? "" : "x";
     Arguments more;
     if (*short_run) more = {"--set", "integrator.steps=40"};
@@ -120,7 +120,7 @@ TEST_F(OnRanks, RunEveryShippedScene) {
         expect_refused(outcome, "runs only on one rank");
         continue;
       }
-      // A chain or a film is not divided along every axis.
+      // A chain or a film cannot be divided along every axis.
       if (!cut.empty() && contains(outcome.errors, "--ranks " + cut + ": accepted:")) continue;
       ASSERT_EQ(outcome.status, 0) << outcome.errors;
       expect_same("one.h5", "other.h5");

@@ -143,8 +143,8 @@ TEST(SlowField, SecondPassKeepsTheEnergyLaw) {
   EXPECT_GT(one_pass.back(), two_passes.front());
   EXPECT_GT(rk4.back(), rk4.front());
 
-  // Compares with RK4 with steps as long as a substep, which evaluates the expensive field 20 times
-  // in a step instead of once.
+  // Also prints the error of RK4 with steps as long as a substep: that method evaluates the
+  // expensive field 20 times in the time of one long step.
   Spins spins = copy_of(start);
   stepper.reset();
   advance(stepper, generator, spins, dt, 20);

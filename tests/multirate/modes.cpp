@@ -58,8 +58,9 @@ Spins almost_along_x(Lattice const& lattice, double angle) {
   });
 }
 
-/// A linear mode about x: u' = M u for u = (m_y, m_z), with M = [-damping * a, -b; a,
-/// -damping * b], and the energy (a * m_y^2 + b * m_z^2) / 2, both in closed form.
+/// A mode of small deviations from x: u' = M * u for u = (m_y, m_z), with
+/// M = [-damping * a, -b; a, -damping * b]. Its energy (a * m_y^2 + b * m_z^2) / 2 is known in
+/// closed form at any later time.
 struct Mode {
   double along, y, z, damping;
 
@@ -76,7 +77,8 @@ struct Mode {
 };
 
 /// Returns the largest relative error of a linewidth among modes like those of a film of permalloy,
-/// with fields in units of Ms. The ferromagnetic resonance problem takes dt = 0.22.
+/// with fields in units of Ms. The standard problem of ferromagnetic resonance is run with dt =
+/// 0.22.
 template <int Order, class Field>
 double error_of_linewidths(double damping, double dt) {
   double worst = 0;
@@ -153,8 +155,8 @@ double growth(double damping, double dt_times_d, Elliptical const& shape, int st
   return worst;
 }
 
-// For its damping, a Case gives the largest dt * (largest eigenvalue of the expensive field) at
-// which no mode grows: `stable` at order 4, and `of_order_3`.
+// For its damping, a Case gives values of dt * (largest eigenvalue of the expensive field) at which
+// no mode grows: `stable` for order 4, and `of_order_3` for order 3.
 TEST(MultirateModes, DoNotGrow) {
   struct Case {
     double damping, stable, of_order_3;
@@ -165,7 +167,7 @@ TEST(MultirateModes, DoNotGrow) {
       EXPECT_LT(growth<4>(damping, stable, shape, 400), 1) << damping << " " << shape.z;
       EXPECT_LT(growth<3>(damping, of_order_3, shape, 400), 1) << damping << " " << shape.z;
     }
-  // The bounds are close to the largest possible ones.
+  // At somewhat larger values, some modes grow.
   EXPECT_GT((growth<4>(0.008, 0.35, {0, 1}, 400)), 10);
   EXPECT_GT((growth<3>(0.008, 0.22, {0, 1}, 400)), 10);
 }

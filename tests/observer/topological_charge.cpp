@@ -34,7 +34,8 @@ std::vector<double> by_angles(Lattice const& lattice, Angles const& angles) {
   return m;
 }
 
-/// t falls linearly from pi at the centre to 0 at `radius`, and p = winding * azimuth + helicity.
+/// Returns spins whose polar angle falls linearly from pi at the centre to 0 at `radius`. Their
+/// azimuth is winding * (azimuth of the site) + helicity.
 std::vector<double> texture(Lattice const& lattice, double radius, double winding,
                             double helicity) {
   auto const half = [&](std::size_t axis) {

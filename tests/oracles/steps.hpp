@@ -16,7 +16,7 @@
 
 namespace cayspin::test {
 
-/// 1e-13 in double; the same number of epsilons, 450, in float.
+/// Tolerance of a step: 1e-13 in double; the same number of epsilons, 450, in float.
 template <class Real>
 inline constexpr double step_tolerance = 1e-13 / epsilon<double> * epsilon<Real>;
 

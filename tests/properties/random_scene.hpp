@@ -42,7 +42,8 @@ struct RandomScene {
   Method method;
   bool single, orthogonal;
   Slab slab;
-  double share;  // dt / stable dt; if that is 0 or unknown, dt * rate
+  /// dt / (stable dt). If the stable dt is 0, infinite or unknown: dt * rate. Without a field: dt.
+  double share;
   int steps;
   unsigned start;
 

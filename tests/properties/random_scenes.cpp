@@ -94,8 +94,8 @@ class Check {
     return scene_.share / rate;
   }
 
-  // The chart loses digits where a stage comes close to -m0, which is possible if `share` is 0.85
-  // or more.
+  // The chart loses digits where a stage comes close to -m0, opposite to the spin m0 at the start
+  // of the step. That is possible if `share` is 0.85 or more.
   double share_of_norm() const { return scene_.method == Method::chart ? 0.7 : 1; }
 
   // The stable dt holds for nearly uniform states. From other states the energy may rise in rare

@@ -121,7 +121,7 @@ TYPED_TEST(ExponentialMap, InverseTangentThroughItsSwitch) {
   auto const check = [&](Vec3<Real> const& f) {
     auto const y = narrow<Real>(direction(++seed));
     Long const expected = exponential_inverse_tangent(widen(f), widen(y));
-    // The nearer |f| is to 2 pi, the more the coefficient depends on errors of its angle.
+    // The nearer |f| is to 2 * pi, the more the coefficient depends on errors of its angle.
     long double const n = norm(widen(f)), to_pole = 6.2831853L - n;
     EXPECT_LE(largest(widen(Exponential::inverse_differential(f, y)) - expected),
               this->eps * (4 + 8 * n * n / (to_pole * to_pole)))

@@ -98,7 +98,7 @@ TYPED_TEST(Laws, InverseTangentOfTheExponentialIsTheDerivative) {
       Long const g = widen(Exponential::inverse_differential(where, y));
       return largest(derivative(exponential, widen(f), g, widen(x)) - rate);
     };
-    // Near |f| = 2 pi, the map from f to the rotation amplifies errors.
+    // Near |f| = 2 * pi, the map from f to the rotation amplifies errors.
     EXPECT_LE(found(f), (16 * this->eps + 1e-13) / (1 - 0.1 * i / 6.3)) << i;
     if (i < 2) continue;
     EXPECT_GT(found({-f.x, -f.y, -f.z}), 1e-3L) << i;

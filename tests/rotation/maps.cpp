@@ -109,7 +109,8 @@ TYPED_TEST(Maps, Exponential) {
   }
 }
 
-// The tests above skip inverse tangents that overflow. The file flags those that overflow double.
+// The tests above skip values of the inverse differential that overflow. The file of reference
+// values flags those that overflow double.
 TEST(Maps, TheInverseTangentIsCheckedWhereItFits) {
   for (auto const& entry : oracles("maps")) {
     auto const value = read_long(entry.at("dcayinv_f_y"));

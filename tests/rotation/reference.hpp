@@ -11,7 +11,7 @@
 #include <cmath>
 
 // Reference versions of the Cayley and exponential maps in long double, computed from their
-// definitions by different formulas from the library's.
+// definitions by formulas other than the library's.
 namespace cayspin::test {
 
 using Long = std::array<long double, 3>;

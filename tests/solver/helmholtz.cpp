@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Approximations to (c + b K)^-1, where K is minus the Laplacian with couplings, compared with K
+// Approximations to (c + b * K)^-1, where K is minus the Laplacian with couplings, compared with K
 // applied site by site in double.
 #include "problems.hpp"
 
@@ -65,7 +65,7 @@ class Helmholtz : public ::testing::Test {
     numbers[i] = v.x, numbers[i + 1] = v.y, numbers[i + 2] = v.z;
   }
 
-  /// Returns spins that turn by a tenth of a radian along each axis.
+  /// Returns spins that turn by a tenth of a radian over the length of each axis.
   static Numbers turning_spins(Lattice const& lattice) {
     Numbers spins(static_cast<std::size_t>(3 * lattice.sites()));
     for (std::int64_t site = 0; site < lattice.sites(); ++site) {
@@ -89,8 +89,8 @@ class Helmholtz : public ::testing::Test {
     return vectors;
   }
 
-  /// Applies 1 + b K in the planes normal to the spins m, where the imaginary unit of b stands for
-  /// the cross product m x v. K acts on d = v x m, and a cross product with m turns the result
+  /// Applies 1 + b * K in the planes normal to the spins m, where the imaginary unit of b stands
+  /// for the cross product m x v. K acts on d = v x m, and a cross product with m turns the result
   /// back.
   static Numbers applied_about(Problem const& problem, Numbers const& spins, Number b,
                                Numbers const& v) {
@@ -178,7 +178,7 @@ TYPED_TEST(Helmholtz, LinesAreSolvedToRoundOff) {
   typename TypeParam::Exec const exec;
   for (Problem const& problem : lines()) {
     SCOPED_TRACE(problem.name);
-    // The norms of c + b K and of its inverse are at most about 8e4 and 1.
+    // The norms of c + b * K and of its inverse are at most about 8e4 and 1.
     double const tolerance = 1e5 * epsilon<Real>;
     EXPECT_LT(TestFixture::left_of(problem, 1, 1), tolerance);
     Kokkos::complex<Real> const b(Real(0.05), -1);

@@ -77,7 +77,7 @@ inline std::vector<Problem> alternating() {
           {"9 x 14 x 5 mixed", mixed, {60, -40, -55}}};
 }
 
-/// Returns (c + b K) u, where K is minus the Laplacian with the couplings of the axes; for a
+/// Returns (c + b * K) * u, where K is minus the Laplacian with the couplings of the axes; for a
 /// negative coupling, neighbours are added instead of subtracted.
 inline Numbers applied(Problem const& problem, double c, Number b, Numbers const& u) {
   auto const& shape = problem.lattice.shape;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Noise about a uniform state decays just below the measured limits and grows just above them. The
-// a-priori bound is lower than these limits.
+// Noise about a uniform state decays for dt just below the measured limit and grows just above it.
+// The a-priori bound is below the measured limits.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 

@@ -79,7 +79,8 @@ TYPED_TEST(Checkpoints, GoOnAsTheRunWouldHave) {
     Spins second = start();
     copy_from_host(copy_to_host(whole), second);
     TypeParam other = made_like<TypeParam>(second);
-    Spins elsewhere = start();  // the memory of another run, which is replaced
+    // Takes steps of another run, whose memory in `other` the checkpoint replaces.
+    Spins elsewhere = start();
     go(other, elsewhere, 0, 5);
     serialize(other, checkpoint);
     go(first, whole, cut, steps);

@@ -127,8 +127,8 @@ TEST(RedBlackOrder, OnALatticeWithVacancies) {
     EXPECT_EQ(length(spin(start, site) - spin(end, site)) == 0, site % 6 == 1) << site;
 }
 
-// The exact motion about h: tan(theta/2) shrinks by the factor exp(-damping * |h| * t), and the
-// azimuth turns by |h| * t.
+// The exact motion of a spin about h: with the angle theta to h, tan(theta/2) shrinks by the factor
+// exp(-damping * |h| * t), and the azimuth turns by |h| * t if there is precession.
 struct Macrospin {
   Vector axis, across, third;
   long double strength, theta;

@@ -100,7 +100,7 @@ TEST(StiffFields, Antiferromagnet) {
   EXPECT_LT(largest_distance(end, exact), 1e-3);
 }
 
-// A step that was refused is refused again: it must not continue where the refused one ended.
+// A second call is refused like the first: it must not continue from the end of the refused step.
 TEST(StiffFields, ReplicasAreRefusedAtEachStep) {
   auto const lattice = Lattice::chain(4).with_replicas(2);
   LandauLifshitz const generator(EffectiveField(Exchange(lattice, 1.0)), 0.1);

@@ -66,7 +66,8 @@ TYPED_TEST(GaussLegendreOn, KeepsTheLength) {
 }
 
 TYPED_TEST(GaussLegendreOn, ConstantFieldsTurnByPadesAngle) {
-  // The two-stage Gauss method multiplies by (1 + z/2 + z^2/12) / (1 - z/2 + z^2/12), z = i * |f|.
+  // The two-stage Gauss method multiplies m_x + i * m_y by (1 + z/2 + z^2/12) / (1 - z/2 + z^2/12),
+  // where z = i * |f|.
   using Real = TypeParam;
   for (double const size : {0.01, 0.5, 2.0, 3.0}) {
     Vec3<Real> const f[2] = {{0, 0, Real(size)}, {0, 0, Real(size)}};

@@ -26,7 +26,7 @@ def tracked_files(pattern):
 
 
 def commands(tools, fix):
-    """Yields the command of each tool with its files."""
+    """Yields the command line of each tool, with the files that it checks or formats."""
     clang_format, cmake_format, typos = (
         str(tools / "bin" / name) for name in ("clang-format", "cmake-format", "typos"))
     yield [clang_format, *(["-i"] if fix else ["--dry-run", "--Werror"]), *tracked_files(SOURCES)]

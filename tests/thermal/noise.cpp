@@ -24,7 +24,7 @@ class Thermal : public ::testing::Test {
   using Half = typename Noise::Half;
   typename Backend::Exec exec;
 
-  /// Returns independent spins in equilibrium with a field, after `steps` steps from +z.
+  /// Returns uncoupled spins in thermal equilibrium in a field, after `steps` steps from +z.
   template <class Field>
   Spins at_rest(Field const& field, double temperature, double dt, int steps) {
     Spins spins("spins", Lattice::square(256, 64));

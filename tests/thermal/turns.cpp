@@ -31,7 +31,8 @@ Vector logarithm(Columns const& columns) {
   return v;
 }
 
-/// Returns a moment of a normal number: for an even power the product of the odd numbers below it.
+/// Returns a moment of a standard normal variable: 0 for an odd power, and for an even one the
+/// product of the odd numbers below it.
 double normal_moment(int power) {
   if (power % 2 == 1) return 0;
   double product = 1;
@@ -148,7 +149,8 @@ TYPED_TEST(ThermalSites, TurnIndependently) {
   expect_independent(turns_of(6, Half::before), after, 0);
   expect_independent(turns_of(5, Half::before), after, 0);
   expect_independent(turns_of(6, Half::after), after, 0);
-  // Sites at these distances differ in words, halves of words, counters, registers or rows.
+  // Sites at these distances take their bits from different words, halves of words or counters, or
+  // are in different registers or rows.
   for (std::size_t const apart : {1, 2, 8, 16, 32, 64, 128, 77, 77 * 31})
     expect_independent(after, after, apart);
 }

@@ -20,7 +20,8 @@ Slab constant_field() {
 
 Vector unit(Vector const& v) { return (1 / length(v)) * v; }
 
-// tan(theta/2) shrinks exponentially, and the azimuth turns right-handed about the field.
+// With the angle theta to the field, tan(theta/2) shrinks exponentially, and the azimuth turns
+// right-handed about the field.
 Vector damped_precession(Vector const& field, double damping, Vector const& start, double t) {
   double const h = length(field);
   Vector const n = unit(field), u = unit(start - dot(start, n) * n), w = cross(n, u);

@@ -207,8 +207,8 @@ auto derivative(Function const& f, double h) {
   return (1 / (12 * h)) * (8.0 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h)));
 }
 
-/// Checks every member of a term. `factors`: H is -dE/dm * (factor of the site); if it is empty,
-/// the factors are 1.
+/// Checks every member of a term. `factors`: one for each site, with H = -dE/dm * factor; empty:
+/// all are 1.
 template <class Real, class Term>
 void expect_members(std::string const& name, Term const& term, Setting<Real> const& on,
                     std::vector<double> const& factors = {}) {
