@@ -9,7 +9,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Uniaxial anisotropy: H = (K (m.e) + K2 (m.e)^3) e.
+/// Uniaxial anisotropy: H = (K * (m.e) + K2 * (m.e)^3) e.
 struct Anisotropy {
   double constant = 0;        ///< K
   Triple axis = {};           ///< unit vector e
@@ -33,8 +33,8 @@ struct Anisotropy {
 
 /// Anisotropy of a crystal. Its energy depends on three components of m: those along two orthogonal
 /// axes and that along their cross product. If cubic, these are called a, b and c:
-///   E = constant (a^2 b^2 + b^2 c^2 + c^2 a^2) + constant2 a^2 b^2 c^2.
-/// If hexagonal, they are called c, a and b: E = constant Re[(a + i b)^6].
+///   E = constant * (a^2 b^2 + b^2 c^2 + c^2 a^2) + constant2 * a^2 b^2 c^2.
+/// If hexagonal, they are called c, a and b: E = constant * Re[(a + i b)^6].
 struct CrystalAnisotropy {
   bool hexagonal = false;
   double constant = 0;
@@ -43,7 +43,7 @@ struct CrystalAnisotropy {
   SiteNumbers factors = {};         ///< values per site; `constant` is then 1
   double constant2 = 0;
   SiteNumbers factors2 = {};                      ///< values per site; `constant2` is then 1
-  std::array<SiteVectors, 2> axes_of_sites = {};  ///< each, if set, replaces its axis
+  std::array<SiteVectors, 2> axes_of_sites = {};  ///< each, if set, replaces the axis of its index
 
   /// Returns true if the anisotropy is cubic, without constant2, and equal on all sites that have
   /// it.

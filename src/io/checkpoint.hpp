@@ -75,7 +75,8 @@ class CheckpointReader final : public Checkpoint {
   bool restores() const override { return true; }
   void number(std::string const& name, double& value) override;
   void field(std::string const& name, std::vector<double>& numbers) override;
-  /// Returns a field's numbers at the sites of a box. Needs memory for these and for some planes.
+  /// Returns a field's numbers at the sites of a box. Needs memory for these numbers and for some
+  /// planes of the field.
   std::vector<double> field(std::string const& name, SiteBox const& box) const;
 
  private:

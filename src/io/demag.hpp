@@ -12,7 +12,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// The demagnetising field of a slab in the local approximation, H = -strength (m.n) n.
+/// The demagnetising field of a slab in the local approximation, H = -strength * (m.n) n.
 struct SlabDemagnetization {
   Triple normal = {};  ///< unit vector n
   double strength = 1;
@@ -28,11 +28,13 @@ struct SlabDemagnetization {
   }
 };
 
-/// The demagnetising field of the cells, H = -strength sum N m, or the field of point dipoles.
+/// The demagnetising field of the cells, or the field of point dipoles. That of the cells is
+///   H = -strength * (sum of N m over all cells),
+/// where N is the demagnetising tensor of a pair of cells.
 struct Demagnetization {
   double strength = 1;
-  std::array<int, 3> periodic_images{};  ///< number per axis and side, beyond the nearest image
-  std::optional<Crystal> dipoles;        ///< cell and sites of the point dipoles; empty: cells
+  std::array<int, 3> periodic_images{};  ///< per axis: images on each side, besides the nearest one
+  std::optional<Crystal> dipoles;        ///< cell and sites of the dipoles; empty: field of cells
   Triple demagnetizing_factors = {};     ///< for dipoles with three periodic axes
   std::string key = "demag";             ///< name of the key in [field]: "demag" or "dipoles"
   std::optional<bool> multirate;         ///< default: true if method and scene allow it

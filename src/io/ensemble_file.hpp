@@ -22,8 +22,8 @@ struct RelaxedReplica {
   std::int64_t evaluations = 0;
 };
 
-/// The trajectory file of an ensemble (HDF5, laid out as docs/reference/file_format.md says).
-/// Errors are those of TrajectoryFile.
+/// The trajectory file of an ensemble (HDF5; docs/reference/file_format.md has the layout). Errors
+/// are those of TrajectoryFile.
 class EnsembleFile {
  public:
   /// `header`: that of one replica. The only options used are `overwrite`, `positions`,

@@ -29,7 +29,7 @@ double sum_over_axes(Lattice const& lattice, Part const& part) {
   return sum;
 }
 
-/// H = constant Lap(m).
+/// H = constant * Lap(m).
 struct Exchange {
   double constant = 0;
 
@@ -58,7 +58,7 @@ struct Exchange {
       return 2 * std::abs(constant) / (spacing * spacing);
     });
   }
-  /// Returns the library's class for this term, whose neighbor_field kernels call.
+  /// Returns an object of the library's class for this term. Kernels call its neighbor_field().
   template <class Lattice, class Term = cayspin::Exchange>
   Term term(Lattice const& lattice) const {
     return Term(lattice, constant);
@@ -67,7 +67,7 @@ struct Exchange {
 
 /// Interfacial Dzyaloshinskii-Moriya interaction of a film.
 struct InterfacialDmi {
-  double interfacial = 0;     ///< D in the energy density D (m_n div m - m.grad m_n)
+  double interfacial = 0;     ///< D in the energy density D * (m_n div m - m.grad m_n)
   Triple normal = {0, 0, 1};  ///< unit vector n
 
   double& strength() { return interfacial; }
@@ -81,7 +81,7 @@ struct InterfacialDmi {
   static constexpr std::string_view formula = "E = {} (m_n div m - m.grad m_n), n = {}";
 
   /// Returns an upper bound of |H|: along each axis e, each of the two neighbours contributes at
-  /// most |D| |n x e| / spacing.
+  /// most |D| * |n x e| / spacing.
   template <class Lattice>
   double field_bound(Lattice const& lattice) const {
     return 2 * energy_magnitude(lattice);
@@ -101,7 +101,7 @@ struct InterfacialDmi {
 
 /// Bulk Dzyaloshinskii-Moriya interaction. A scene has only one kind of DMI.
 struct BulkDmi {
-  double constant = 0;  ///< D in the energy density D m.(curl m)
+  double constant = 0;  ///< D in the energy density D * m.(curl m)
 
   double& strength() { return constant; }
 
@@ -128,9 +128,10 @@ struct BulkDmi {
   }
 };
 
-/// DMI of crystals with symmetry D2d. It is evaluated like a site-dependent term.
+/// DMI of crystals with symmetry D2d. It is evaluated as a site-dependent term, even if it is
+/// uniform.
 struct D2dDmi {
-  double constant = 0;  ///< D in the energy density D m.(dm/dx x e_x - dm/dy x e_y)
+  double constant = 0;  ///< D in the energy density D * m.(dm/dx x e_x - dm/dy x e_y)
 
   static constexpr std::string_view formula = "E = {} m.(dm/dx x e_x - dm/dy x e_y)";
   static constexpr auto keys() { return std::to_array<Key<D2dDmi>>({{"d2d", &D2dDmi::constant}}); }

@@ -12,10 +12,10 @@ struct ExchangeBetween {
   double factor = 1;
 };
 
-/// E = -J m.m' - B (m.m')^2 across each face between two regions, with J and B per area. m and m'
-/// are the spins at the two sides of the face. If Field::exchange_at_faces is set, they differ from
-/// the spins at the centres of the cells, because exchange turns a spin between the centre and the
-/// face.
+/// E = -J * m.m' - B * (m.m')^2 across each face between two regions, with J and B per area. m and
+/// m' are the spins at the two sides of the face. If Field::exchange_at_faces is set, they differ
+/// from the spins at the centres of the cells, because exchange turns a spin between the centre and
+/// the face.
 struct Interlayer {
   std::array<std::int64_t, 2> regions = {};
   double bilinear = 0, biquadratic = 0;  ///< J, B

@@ -63,7 +63,7 @@ struct Field {
   Torque torque;
   std::optional<std::array<AppliedComponent, 3>> applied;
   std::vector<Source> sources;          ///< added to applied
-  std::vector<Triple> applied_in_turn;  ///< for `cayspin relax`: an equilibrium in each field
+  std::vector<Triple> applied_in_turn;  ///< for `cayspin relax`, which finds an equilibrium in each
   std::optional<SlabDemagnetization> slab_demag;
   std::optional<Demagnetization> demag;
   /// Multiplies applied, sources, slab_demag and demag. Their numbers do not include this factor.

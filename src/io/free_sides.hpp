@@ -5,8 +5,8 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Returns true for site-dependent anisotropy constants that represent free_boundary. These are
-/// computed from the scene's exchange and DMI.
+/// Returns true for the anisotropy constants that represent the key free_boundary. They are not
+/// typed in the scene, but computed from its exchange and DMI.
 bool is_of_free_sides(SiteNumbers const& numbers);
 
 }  // namespace cayspin::inline v0_2::io

@@ -17,7 +17,7 @@ struct Integrator {
   Method const* method = nullptr;
   Generator generator = Generator::standard;
   Isotropy isotropy = Isotropy::zero;
-  double sigma = 0;  ///< isotropy constant, added to A along m
+  double sigma = 0;  ///< isotropy constant: sigma * m is added to the generator A
   double isotropy_cap = std::numeric_limits<double>::infinity();  ///< bound on |dt * sigma|
   Rotation rotation = Rotation::cayley;
   double dt = 0;                    ///< the step; if adaptive, the time between observations

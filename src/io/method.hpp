@@ -22,7 +22,7 @@ struct Method {
   bool keeps_length = true;           ///< |m| = 1 to round-off
   bool compensated = false;           ///< accepts integrator.compensated
   bool stiff = false;                 ///< exchange does not limit its steps
-  bool differentiates_field = false;  ///< refuses fields that depend on t
+  bool differentiates_field = false;  ///< needs derivatives of H; refuses fields that depend on t
   bool corrects_energy = false;       ///< accepts Isotropy::energy for rigid bodies
   bool by_colour = false;             ///< moves the spins of one colour of a checkerboard at a time
   SetOf<Rotation> rotations{};        ///< empty for baselines and "auto"

@@ -17,7 +17,7 @@ struct HostVectors {
   std::array<std::int64_t, 4> strides{};
 };
 
-/// Fields that a program adds to its scene; they are stored in no file. Both functions are called
+/// Fields that a program adds to its scene; they are not stored in files. Both functions are called
 /// on the host, by the stepping thread; an exception from them ends the run.
 struct OwnField {
   /// Returns the uniform field at t. It takes the place of field.applied, which must not be set,

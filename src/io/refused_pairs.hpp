@@ -12,7 +12,7 @@ struct Scene;
 /// is valid by itself. Options that a method never accepts, such as a rotation, are in the method's
 /// Method instead.
 struct RefusedPair {
-  std::string_view terms, with;  ///< names of both, for lists of pairs
+  std::string_view terms, with;  ///< names of the terms and of the key, for lists of pairs
   std::string_view why;          ///< reason for the message; "{}" stands for the method
   std::string_view key, accepted;
   bool (*has_terms)(Scene const&);

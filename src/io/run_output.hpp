@@ -15,9 +15,9 @@ namespace cayspin::inline v0_2::io {
 struct RunOutputOptions {
   bool overwrite = false;
   TrajectoryStorage storage = {};
-  std::int64_t most_planes = 0;               ///< planes in memory at most, as for frame_pieces()
-  bool xdmf = false;                          ///< FILE.xdmf, which describes FILE.h5 to viewers
-  bool table = false;                         ///< FILE.txt, a line for each sample
+  std::int64_t most_planes = 0;  ///< most planes of a piece, as in frame_pieces(); 0: all
+  bool xdmf = false;             ///< FILE.xdmf, which describes FILE.h5 to viewers
+  bool table = false;            ///< FILE.txt, a line for each sample
   std::array<double, 3> spacing = {1, 1, 1};  ///< of the lattice, for the XDMF file
   /// x, y and z of a crystal's sites in the order of the file; empty: a regular grid.
   std::vector<double> positions = {};

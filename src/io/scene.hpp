@@ -169,8 +169,8 @@ std::int64_t region_count(Scene const& scene);
 /// Refuses site-dependent numbers that vary along the axis of lattice.follow. Throws SceneError.
 void require_alike_where_followed(Scene const& scene);
 
-/// Returns one number for each site, in the order of initial_spins. `key`: of the scene, for
-/// messages. Throws SceneError.
+/// Returns one number for each site, in the order of initial_spins. `key`: the scene's key for
+/// these numbers, which messages name. Throws SceneError.
 std::vector<double> numbers_of_sites(Scene const& scene, SiteNumbers const& numbers,
                                      std::string_view key, SiteBox const& box);
 

@@ -23,7 +23,7 @@ struct SiteNumbers {
   double unit = 1;  ///< multiplies each number, which may be typed in SI
   std::string key;  ///< if set, the key that gives the numbers, for messages
   std::filesystem::path image = {};
-  std::vector<int> levels = {};  ///< grey values; a pixel's number is how many of them it reaches
+  std::vector<int> levels = {};  ///< a pixel's number is how many of these grey values it reaches
 
   bool there() const {
     return !expression.empty() || !file.empty() || !image.empty() || !per_region.empty() || given;

@@ -18,7 +18,7 @@ namespace cayspin::inline v0_2::io {
 
 /// A key of a scene and its values.
 struct SweptKey {
-  std::string key;                  ///< "system.damping"
+  std::string key;                  ///< such as "system.damping"
   std::vector<std::string> values;  ///< TOML, as typed, with quotes around words
   std::vector<double> numbers;      ///< the values as numbers; empty unless all are numbers
 };

@@ -24,7 +24,7 @@ struct System {
   double damping = 0;             ///< llg: lambda >= 0
   SiteNumbers dampings;           ///< llg: if set, replaces damping, which is then 0
   bool gilbert_of_sites = false;  ///< true: torques are divided by 1 + damping^2 at each site
-  bool precession = true;         ///< llg: if false, overdamped: A = lambda m x H
+  bool precession = true;         ///< llg: if false, overdamped: A = lambda * m x H
   std::variant<PrincipalMoments, InertiaTensor, InertiaFile> inertia;  ///< rigid_body
 };
 

@@ -9,7 +9,7 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// The torque of Zhang and Li 2004: t = -(u.grad) m + xi m x (u.grad) m.
+/// The torque of Zhang and Li 2004: t = -(u.grad) m + xi * m x (u.grad) m.
 struct ZhangLi {
   std::array<AppliedComponent, 3> velocity = {};  ///< u
   double nonadiabaticity = 0;                     ///< xi
@@ -23,7 +23,7 @@ struct ZhangLi {
 };
 
 /// The torque of Slonczewski 1996:
-///   t = a c m x (p x m) - b m x p, c = 2 L^2 / ((L^2 + 1) + (L^2 - 1) m.p).
+///   t = a * c * m x (p x m) - b * m x p, c = 2 * L^2 / ((L^2 + 1) + (L^2 - 1) * m.p).
 struct Slonczewski {
   AppliedComponent damping_like = 0.0, field_like = 0.0;   ///< a, b
   Triple polarization = {};                                ///< unit vector p

@@ -25,7 +25,7 @@ namespace cayspin::inline v0_2::io {
 
 /// Optional numbers of each sample, which follow its Scalars in this order.
 struct MoreScalars {
-  std::int64_t regions = 0;  ///< number of regions: all magnetizations, then all energies
+  std::int64_t regions = 0;  ///< number of regions; all magnetizations come before all energies
   std::vector<std::string> terms = {};  ///< energies of the terms with these names
   bool shift = false;  ///< number of cells by which the lattice has moved; also in frames
   bool stage = false;  ///< number of the stage; only in frames

@@ -12,7 +12,7 @@ namespace cayspin::inline v0_2::io {
 enum class SystemKind { llg, rigid_body };
 enum class BoundaryKind { open, periodic };
 
-/// `standard` is "default" in a scene: the system's own A, unchanged.
+/// `standard` is "default" in a scene: the system's own generator A, unchanged.
 enum class Generator { standard, orthogonal, tangent };
 enum class Isotropy {
   zero,

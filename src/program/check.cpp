@@ -28,7 +28,7 @@ namespace {
 
 struct CheckOptions : SceneOptions {
   Precision precision = Precision::double_precision;
-  std::optional<std::string> ranks;  // "y,z"
+  std::optional<std::string> ranks;  // Y,Z as typed
   bool json = false;
 };
 

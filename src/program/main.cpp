@@ -94,8 +94,8 @@ std::string group_of(std::string_view command) {
   return is_in(of_files) ? "Files" : "Paper";
 }
 
-// Throws UsageError with the name of an unknown command. CLI11 would only say that a command is
-// missing.
+// Throws UsageError if the command is missing, or with its name if it is unknown. CLI11 would only
+// say that a command is missing.
 void require_command(CLI::App const& app, std::string_view first) {
   if (first.starts_with('-')) return;
   std::string names;

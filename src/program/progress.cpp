@@ -22,7 +22,7 @@ void draw_over(std::FILE* stream, double share, std::string const& text) {
   fmt::print(stream, "\r{}\x1b[K", fitted(fmt::format("{} {}", bar(share), text)));
 }
 
-// Flushes, so that lines also reach a pipe one by one.
+// Prints a line and flushes, so that lines reach a pipe one by one, too.
 void say(std::string const& line) {
   fmt::print("{}\n", line);
   std::fflush(stdout);

@@ -34,7 +34,7 @@ namespace cayspin::program {
 
 struct RunOptions : DeviceOptions {
   std::optional<std::filesystem::path> restart;
-  std::optional<std::string> ranks;  // "y,z"
+  std::optional<std::string> ranks;  // Y,Z as typed
   Listener listener = Listener::user;
 };
 
@@ -118,8 +118,8 @@ class RunOfStages {
 
   std::vector<double> start() const {
     auto const own = own_sites(plan().lattice);
-    // Evaluates lattice.occupied and lattice.frozen inside together(), because an expression that
-    // fails at a site of one rank must end all ranks.
+    // run() calls start() inside together(), which ends all ranks if one throws. Therefore the
+    // expressions of lattice.occupied and lattice.frozen are tried here.
     io::occupied(scene(), own);
     io::frozen(scene(), own);
     if (!restart_) return io::initial_spins(scene(), own);

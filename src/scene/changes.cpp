@@ -61,9 +61,9 @@ bool same_sites(Scene const& before, Scene const& now, SiteNumbers Lattice::*num
   return true;
 }
 
-// Returns numbers per site in the scene's own units, because the units of reduced numbers may
-// differ between scenes. `of_cell`: the numbers of the cell's sites, used if the scene has none per
-// site.
+// Returns numbers per site, converted from reduced units to the units of the scene, because two
+// scenes in SI may have different reduced units. `unit`: the reduced unit of these numbers.
+// `of_cell`: the numbers of the cell's sites, used if the scene has none per site.
 std::vector<double> in_own_units(Scene const& scene, SiteBox const& box, OfSites<double> of_sites,
                                  std::vector<double> const& of_cell, double unit) {
   auto numbers = of_sites(scene, box);

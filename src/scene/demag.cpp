@@ -44,7 +44,7 @@ void set_usual_images(Item const& item, Lattice const& lattice, Demagnetization&
         "up to 1e4 : 1, or " + otherwise);
 }
 
-// The default, 0, means that the surface far away has no poles.
+// By default the factors are 0: there are no magnetic poles on the distant surface of the body.
 void read_demagnetizing_factors(Table const& table, Demagnetization& demag) {
   auto const item = table.find("demagnetizing_factors");
   if (!item) return;

@@ -136,7 +136,7 @@ struct Start {
                      "initial.state");
   }
 
-  // Draws a spin uniformly on the sphere: z and the azimuth are uniform (Archimedes).
+  // Draws each spin uniformly from the sphere: z and the azimuth are uniform (Archimedes).
   void operator()(RandomStart const& random) const {
     auto const seed = static_cast<std::uint64_t>(random.seed);
     auto const& shape = scene.lattice.shape;

@@ -35,7 +35,7 @@ struct SpinOfState {
   std::array<std::int64_t, 3> const& site;
 
   // Returns the vector to the site from a point given in fractions of the lattice. With
-  // `across_ends`, it takes the shorter way along x and y, also across periodic ends.
+  // `across_ends`, the vector crosses a periodic end of x or y if that way is shorter.
   Triple way_from(Triple const& point, bool across_ends = false) const {
     auto const values = site_values(lattice, site);
     auto const sites = static_cast<std::int64_t>(lattice.basis.size());

@@ -60,7 +60,7 @@ Lattice read_lattice(Table const& root, SystemKind kind) {
     }
   }
   if (root.scene().units.si && !bodies) {
-    // All three edges, for any shape: units depend on the volume of a cell.
+    // All three edges are needed, whatever the shape: units depend on the volume of a cell.
     constexpr std::string_view cell = "the size of a cell in m: one number, or three";
     auto const item = table.required("spacing", cell);
     if (item.node->is_array())

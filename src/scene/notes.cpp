@@ -101,8 +101,8 @@ class Notes {
     }
   }
 
-  /// Returns true if somewhere there are `range` cells without a spin between spins of these two
-  /// regions.
+  /// Returns true if, somewhere in the lattice, `range` cells without a spin lie between a spin of
+  /// one of these regions and a spin of the other.
   bool meet(std::array<std::int64_t, 2> const& regions, std::int64_t range) const {
     return any_axis([&](std::size_t axis) {
       auto const pairs = regions_across(scene_, {{0, 0, 0}, scene_.lattice.shape}, axis, range + 1);

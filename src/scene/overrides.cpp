@@ -73,7 +73,7 @@ bool is_bare_word(std::string_view value) {
   return value[0] != '-' && std::ranges::any_of(value, is_letter) && !is_toml(value);
 }
 
-// Parses one value. Its source, which messages name, is the override. Words may lack quotes,
+// Parses one value, with the override as its source, which messages name. Words may lack quotes,
 // because a shell removes them.
 toml::table parse_value(std::string const& place, std::string_view value) {
   toml::table parsed;
@@ -91,7 +91,7 @@ toml::table parse_value(std::string const& place, std::string_view value) {
   return parsed;
 }
 
-// Moves the value, because a copy forgets its source.
+// Moves the value, because a copied TOML node loses its source, which messages name.
 void put(toml::node& parent, std::string const& key, toml::node&& value, std::string const& place) {
   std::move(value).visit([&](auto&& typed) {
     if (auto* const table = parent.as_table()) {

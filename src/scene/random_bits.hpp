@@ -7,8 +7,8 @@
 
 namespace cayspin::inline v0_2::io::detail {
 
-/// Returns value number `counter` of the SplitMix64 sequence (Steele, Lea, Flood 2014, doi
-/// 10.1145/2660193.2660195), in constant time.
+/// Returns value number `counter`, counted from 0, of the SplitMix64 sequence with seed `start`
+/// (Steele, Lea, Flood 2014, doi 10.1145/2660193.2660195), in constant time.
 inline std::uint64_t random_bits(std::uint64_t start, std::uint64_t counter) {
   std::uint64_t z = start + (counter + 1) * 0x9e3779b97f4a7c15U;
   z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;

@@ -77,7 +77,7 @@ void check_purpose(Purpose purpose, Scene const& scene) {
   }
   if (scene.system.kind != SystemKind::llg)
     detail::refuse(scene, "system.kind", "rigid bodies have no equilibrium", "\"llg\"");
-  if (purpose == Purpose::start) return;  // these tables neither take steps nor relax
+  if (purpose == Purpose::start) return;  // this stage neither takes steps nor relaxes
   // `cayspin modes` accepts torques. relax and path, which read scenes for the same purpose, refuse
   // torques later.
   if (has_torque(scene.field) && purpose != Purpose::relax)

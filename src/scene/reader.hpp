@@ -31,7 +31,7 @@ std::string as_toml_value(std::string_view value);
                        std::string_view accepted = {});
 
 /// Returns `, did you mean "..."?` if a known word differs only in case, '_' and '-', or by one or
-/// two edits, fewer than half the longer word's letters; otherwise "".
+/// two edits that are fewer than half the letters of the longer word; otherwise "".
 std::string did_you_mean(std::string_view word, std::span<std::string_view const> known);
 
 /// A value of the scene with its full key and the place where it was typed.

@@ -72,8 +72,8 @@ void require_occupied(Scene const& scene);
 /// Returns true if a cell has several sites, or if its vectors are not along the axes with the
 /// lengths of the spacing.
 bool is_crystal(Lattice const& lattice);
-/// In a crystal, refuses terms that need neighbours along x, y and z, because it may have none
-/// there.
+/// In a crystal, refuses terms that need neighbours along x, y and z, because its sites may have
+/// none there.
 void check_crystal(Scene const& scene);
 /// Refuses the pairs of refused_pairs.hpp.
 void check_pairs(Scene const& scene);

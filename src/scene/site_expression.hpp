@@ -16,9 +16,9 @@ namespace cayspin::inline v0_2::io::detail {
 /// sites per cell, the index in the cell.
 std::vector<std::string> site_variables(Lattice const& lattice);
 
-/// Returns the values of these variables at a site (i, j, plane) of the lattice: plane k * sites +
-/// s has site s of the cells with number k along z. If a cell has only one site, the site counts as
-/// being in the middle.
+/// Returns the values of the site_variables() at a site (i, j, plane) of the lattice: plane k *
+/// sites + s has site s of the cells with number k along z. If a cell has only one site, the site
+/// counts as being in the middle.
 inline std::array<double, 7> site_values(Lattice const& lattice,
                                          std::array<std::int64_t, 3> const& site) {
   auto const sites = static_cast<std::int64_t>(lattice.basis.size());
@@ -36,7 +36,7 @@ inline std::array<double, 7> site_values(Lattice const& lattice,
   return values;
 }
 
-/// Compiles an expression in these variables. It may call the functions grain(size, seed) and
+/// Compiles an expression in the site_variables(). It may call the functions grain(size, seed) and
 /// random(n, seed). `length`: converts lattice.spacing to the unit of `size`. Throws like
 /// Expression.
 Expression site_expression(std::string text, Lattice const& lattice, double length = 1);

@@ -26,7 +26,8 @@ void apply_stage(toml::table& document, toml::table& stage, std::string const& p
 /// Reads the keys of the stage itself: name and relax.
 void read_stage(Table const& table, Stage& stage);
 
-/// Refuses a list of fields, "auto", and a unit-cell file that gives the stage another lattice.
+/// Refuses a list of fields, the method "auto", and a unit-cell file that gives the stage another
+/// lattice.
 void check_stage(Scene const& own, Scene const& stage);
 
 }  // namespace cayspin::inline v0_2::io::detail

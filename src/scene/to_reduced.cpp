@@ -20,7 +20,8 @@ std::string scaled_expression(std::string const& text, double time, double field
                      field);
 }
 
-// With site-dependent damping, alpha is 0 here, and each site applies its own factor.
+// If alpha is site-dependent, material.alpha is 0, and the unit of time has no factor 1 + alpha^2.
+// In Gilbert's form, that factor is then applied at each site.
 units::Damping damping_of(Material const& material) {
   return material.gilbert ? units::gilbert(material.alpha) : units::landau_lifshitz(material.alpha);
 }
@@ -63,7 +64,8 @@ void convert_material(Scene& scene, auto const& units) {
   auto const exchange = [&](double A) { return units.exchange(A); };
   auto const anisotropy = [&](double K) { return units.anisotropy(K); };
   auto const dmi = [&](double D) { return units.dmi(D); };
-  // The field of Ku is 2 Ku (m.e) e, and that of Ku2 is 4 Ku2 (m.e)^3 e: twice the factor.
+  // The field of Ku is 2 * Ku * (m.e) e, and that of Ku2 is 4 * Ku2 * (m.e)^3 e, so the factor for
+  // Ku2 is twice that for Ku.
   auto const anisotropy2 = [&](double K) { return 2 * units.anisotropy(K); };
   for (auto& term : field.anisotropies) {
     term.constant = constant(term.constant, term.factors, anisotropy);

@@ -36,9 +36,10 @@ inline constexpr UnitAttribute unit_attributes[] = {{"time_unit", &Units::time},
 inline constexpr std::int64_t most_chunks = 8180;
 
 /// Returns the number of frames in a chunk. `bytes`: size of one frame's part of the chunk.
-/// `chunks`: number of chunks if each held one frame. If that is above `most_chunks`, chunks hold
-/// more frames, up to about `most_chunk_bytes`. Chunks start on pages of the file, and at most a
-/// sixteenth of their pages stays empty.
+/// `chunks`: number of chunks if each held one frame. A chunk holds more than one frame in two
+/// cases: if `chunks` is above `most_chunks`, then up to about `most_chunk_bytes`; and if the empty
+/// end of its last page would be more than a sixteenth of its pages. (Chunks start on pages of the
+/// file.)
 inline std::int64_t frames_of_chunk(std::uint64_t bytes, std::int64_t chunks) {
   auto const empty_bytes = [&](std::uint64_t frames) {
     return (file_page_bytes - frames * bytes % file_page_bytes) % file_page_bytes;

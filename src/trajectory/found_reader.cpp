@@ -28,7 +28,7 @@ bool has_attribute(fs::path const& path, char const* name) {
   });
 }
 
-/// Returns all numbers of a dataset of `rank` extents.
+/// Returns all numbers of a dataset with `rank` axes.
 template <class Number>
 std::vector<Number> read_numbers(hid_t group, char const* name, std::size_t rank, hid_t type,
                                  fs::path const& path) {

@@ -51,9 +51,9 @@ Shape block_of(Shape shape, std::int64_t cell_sites) {
   return shape;
 }
 
-// Returns the extents of a chunk, which holds parts of such blocks. Without HDF5's filters, a chunk
-// may hold several frames, because a frame is then written without changing the bytes of the
-// others.
+// Returns the extents (frame, z, y, x, 3) of a chunk. With HDF5's filters, a chunk holds only one
+// frame. Without them, it may hold several, because a frame is then written without changing the
+// bytes of the others.
 std::array<hsize_t, 5> chunk_of(Shape const& block, std::int64_t cell_sites,
                                 std::size_t number_bytes, TrajectoryStorage const& storage) {
   auto chunk = frame_chunk(block, number_bytes, storage.chunk);

@@ -31,8 +31,8 @@ class FrameWriter {
   /// Adds the next planes: those of whole chunks, or all that are left. Other numbers throw
   /// std::logic_error.
   void add(std::int64_t planes, void const* spins);
-  /// Adds planes without a copy if possible. `spins` must have room for a whole piece; the part
-  /// after the planes is overwritten.
+  /// Adds planes without a copy if possible. `spins` must have room for a whole piece; the room
+  /// behind the planes may be overwritten.
   void add_in_room(std::int64_t planes, std::byte* spins);
 
   std::int64_t planes() const { return planes_; }  ///< added to the frame so far

@@ -14,8 +14,9 @@ namespace {
 using Branches = std::vector<double>;
 
 struct Bands : Modes {
-  /// Expects the branches at each wave vector of a path, for spins along z. `exact` returns them
-  /// for the phases 2 pi q along the vectors of the cell.
+  /// Expects the branches at each wave vector of a path, for spins along z. `exact` returns the
+  /// branches for the phases 2 * pi * q along the vectors of the cell, where q is the wave vector
+  /// in cycles per cell.
   template <class Exact>
   void expect_bands(std::string const& lattice_and_field, Exact const& exact) const {
     auto const scene = "[system]\nkind = \"llg\"\ndamping = 0\n" + lattice_and_field +
@@ -158,7 +159,7 @@ TEST_F(Bands, FitTheLatticeWithDipoles) {
 }
 
 // With the curvatures 0.1 and 1.1, the rates without precession are -0.1 and -1.1. With precession
-// and a damping of 1, rate^2 + 1.2 rate + 2 * 0.11 = 0.
+// and a damping of 1, rate^2 + 1.2 * rate + 2 * 0.11 = 0.
 TEST_F(Bands, KeepTheRealRateThatDecaysLeast) {
   for (auto const& [precession, decay] :
        {std::pair{"false", 0.1}, {"true", 0.6 - std::sqrt(0.36 - 0.22)}})

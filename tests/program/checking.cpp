@@ -15,8 +15,8 @@ class Checking : public ProgramTest {
   }
 };
 
-// For one spin in a field of 1, the stable dt is y*(damping), the limit of the method's stability
-// polynomial. The table has rounded values of y*.
+// For one spin in a field of 1, the stable dt is the limit of the method's stability polynomial,
+// which depends on the damping. The table has rounded values of this limit.
 TEST_F(Checking, StableDtIsThatOfTheStabilityPolynomial) {
   struct Row {
     char const* damping;

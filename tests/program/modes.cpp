@@ -78,8 +78,8 @@ dt = 0.01
 steps = 1
 )toml";
 
-// Frequencies w of the two sublattices: w^2 + w (a2 b2 - a1 b1) = a1 a2 (b1 b2 - J^2), where a is
-// the gyromagnetic ratio / the moment, and b = J + K +- moment * H.
+// Frequencies w of the two sublattices: w^2 + w * (a2 * b2 - a1 * b1) = a1 * a2 * (b1 * b2 - J^2),
+// where a is the gyromagnetic ratio / the moment, and b = J + K +- moment * H.
 TEST_F(Modes, OfAFerrimagnet) {
   auto const outcome = modes(ferrimagnet, {"--torque", "1e-11", "--hessian"});
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
@@ -164,7 +164,7 @@ TEST_F(Modes, OfSpinsThatAreFrozenOrMissing) {
 }
 
 // The Hessian of the hexagonal anisotropy is not constant, so products with it are finite
-// differences. At rest the curvatures are 6 K and 36 K, from E = K sin(theta)^6 cos(6 phi).
+// differences. At rest, E = K * sin(theta)^6 * cos(6 * phi) has curvatures 6 * K and 36 * K.
 TEST_F(Modes, OfASpinWithAHexagonalAxis) {
   auto const outcome = modes(
       "[system]\nkind = \"llg\"\ndamping = 0.9\n[lattice]\nshape = [1]\n[field]\n"

@@ -198,7 +198,7 @@ TEST_F(PathCommand, GivesTheRateBesideAFrozenSpin) {
 }
 
 // In SI: the barrier of a particle of one cell is K * V, and its prefactor is
-//   gamma * sqrt(H_K * (H_K + H_hard)) / (2 pi).
+//   gamma * sqrt(H_K * (H_K + H_hard)) / (2 * pi).
 TEST_F(PathCommand, InSi) {
   std::string const text = R"toml(units = "SI"
 [material]

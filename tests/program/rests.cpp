@@ -17,7 +17,7 @@ class Rests : public ProgramTest {
   struct Trial {
     std::string scene;
     Arguments more = {};
-    double end_z = 1;  // 0: either sign
+    double end_z = 1;  // the spins' z at the end; 0: 1 or -1 at each site
   };
 
   /// Expects the run to end early, at a minimum.

@@ -207,7 +207,7 @@ integrator = { method = "rkmk4", dt = 0.1, end = 5.0 }
   EXPECT_EQ(info.frame_steps, (std::vector<std::int64_t>{0, 0, 50}));
   auto const& m = info.frame_scalars[1].magnetization;
   EXPECT_NEAR(m[2], 1, 1e-12);
-  // With damping a, m_x = tanh(a t) from a start along z.
+  // With damping a, m_x = tanh(a * t) from a start along z.
   EXPECT_NEAR(info.frame_scalars[2].magnetization[0], std::tanh(0.5 * 5), 1e-4);
 }
 

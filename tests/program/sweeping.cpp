@@ -173,7 +173,7 @@ TEST_F(Sweeping, RecordsARunThatFails) {
   EXPECT_FALSE(contains(again.output, "of 3  run"));
 }
 
-// Returns the processes of a sweep's runs, which are children of the sweep's process.
+// Returns the children of a sweep's process, which perform its runs.
 std::vector<pid_t> children_of(pid_t process) {
   std::ifstream list(fmt::format("/proc/{0}/task/{0}/children", process));
   return {std::istream_iterator<pid_t>(list), {}};

@@ -43,7 +43,7 @@ struct TorqueModes : Modes {
 };
 
 // With the polarization along the axis, a small deviation d of a spin from the axis z obeys
-//   d' = -(H + b - damping a) d x z - (damping (H + b) + a) d.
+//   d' = -(H + b - damping * a) * d x z - (damping * (H + b) + a) * d.
 // H is the sum of the anisotropy and the applied field; a and b are damping_like and field_like.
 TEST_F(TorqueModes, OfAParticleWithAPolarizationAlongItsAxis) {
   double const damping = 0.1, b = 0.05, field = 1.3 + b;
@@ -63,9 +63,10 @@ TEST_F(TorqueModes, OfAParticleWithAPolarizationAlongItsAxis) {
     }
 }
 
-// In a ring with the spins along z, m_x + i m_y = e^(i k j) at site j is a mode, with the
+// In a ring with the spins along z, m_x + i * m_y = e^(i * k * j) at site j is a mode, with the
 // eigenvalue
-//   (i - damping) W - i u sin k (1 + damping xi) + (damping - xi) u sin k, W = H + 2 A (1 - cos k).
+//   (i - damping) * W - i * u * sin(k) * (1 + damping * xi) + (damping - xi) * u * sin(k),
+//   W = H + 2 * A * (1 - cos(k)).
 // H is the sum of the anisotropy and the applied field, A the exchange, u the velocity and xi the
 // nonadiabaticity.
 TEST_F(TorqueModes, AreWavesWithADopplerShiftInACurrent) {
@@ -96,7 +97,7 @@ TEST_F(TorqueModes, AreWavesWithADopplerShiftInACurrent) {
 }
 
 // A mode decays by e^(-d) and turns by w between two frames. Its deviations x, x' and x'' in three
-// successive frames obey x'' = 2 e^(-d) cos(w) x' - e^(-2 d) x.
+// successive frames obey x'' = 2 * e^(-d) * cos(w) * x' - e^(-2 * d) * x.
 TEST_F(TorqueModes, MoveAsInARun) {
   auto const text = scene(
       "shape = [3]\n[field]\nexchange = 2.0\nanisotropy = { constant = 1.0, axis = [0, 0, 1] }"
@@ -122,7 +123,7 @@ TEST_F(TorqueModes, MoveAsInARun) {
     }
 }
 
-// As without torques, H is the field per moment.
+// The H in the message is the field per moment, as it is without torques.
 TEST_F(TorqueModes, AreRefusedByTheFieldPerMoment) {
   auto const outcome =
       modes(scene("shape = [2]\nmoments = [2.5]\n[field]\nanisotropy = { constant = 1.0, axis = "

@@ -40,7 +40,7 @@ std::vector<double> constants_along(Scene const& scene, Triple const& axis) {
 }
 
 // Each open side adds a constant of -D^2 / A along the DMI vector of its bonds. A is the scene's
-// exchange: H = A Lap(m).
+// exchange: H = A * Lap(m).
 TEST(FreeBoundary, IsAHardAxisAtEachOpenSide) {
   auto const scene = scene_of(dmi_film);
   EXPECT_EQ(scene.field.anisotropies.size(), 2U);  // no DMI along the normal, z
@@ -58,8 +58,11 @@ TEST(FreeBoundary, IsAHardAxisAtEachOpenSide) {
                   .field.anisotropies.empty());
 }
 
-// With spacing h, the boundary condition gives the spin beyond the end: m' = m + (h D / A) m x d.
-// The field of its bond, A / h^2 (m' - m) + D / h d x m', exerts the torque of this anisotropy.
+// With spacing h, the boundary condition gives the spin beyond the end:
+//   m' = m + (h * D / A) * m x d.
+// The bond to that spin has the field
+//   (A / h^2) * (m' - m) + (D / h) * d x m',
+// which exerts the torque of this anisotropy.
 TEST(FreeBoundary, IsTheTorqueOfATurnedSpin) {
   using cayspin::detail::scalar_product, cayspin::detail::vector_product;
   std::mt19937_64 random(13);
@@ -147,7 +150,7 @@ TEST(FreeBoundary, IsAlsoThatOfVacancies) {
   }
 }
 
-// In mumax3, mirror spins at open sides act as a hard axis with Ku = -D^2/(4 A).
+// In mumax3, mirror spins at open sides act as a hard axis with Ku = -D^2 / (4 * A).
 TEST(FreeBoundary, InSiIsThatOfMumax) {
   std::string const si = R"toml(units = "SI"
 [material]

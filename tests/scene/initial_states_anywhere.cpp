@@ -29,8 +29,8 @@ TEST(InitialStates, AreTheSameInPartsOfALattice) {
     }
 }
 
-// A honeycomb has skew cells of two sites: cell (i, j) is at i a + j b, and its second site is at
-// (a + b)/3 from there.
+// A honeycomb has skew cells of two sites: cell (i, j) is at i * a + j * b, and its second site is
+// displaced by (a + b) / 3 from there.
 TEST(InitialStates, SeeWhereTheSitesOfACrystalAre) {
   std::string const lattice = "lattice={shape=[9, 7], crystal='honeycomb', spacing=0.5}";
   auto const spins_of = [&](std::string_view keys) {

@@ -79,7 +79,7 @@ TEST(SiCrystals, IronHasItsUnits) {
 
 TEST(SiCrystals, VampiresFileIsInJoules) {
   auto const scene = iron_with({"field.couplings={file='" CAYSPIN_TEST_DATA "/bcc_iron.ucf'}"});
-  expect_near(scene.units.energy, 2.22 * mu_B);  // of a moment in 1 T
+  expect_near(scene.units.energy, 2.22 * mu_B);  // energy of a moment in 1 T
   auto const bonds = couplings(scene);
   ASSERT_EQ(bonds.size(), 8U);
   for (auto const& bond : bonds) expect_near(bond.tensor[4], 7.05e-21 / (2.22 * mu_B));
@@ -161,8 +161,8 @@ TEST(SiCrystals, AnisotropiesAreEnergies) {
   expect_near(film.field.anisotropies.at(0).constant, 1000 / pressure);
 }
 
-// The typed strength is multiplied by mu0 mu^2 / (a^3 J), where mu is the moment of the first site,
-// a the lattice constant and J the exchange.
+// The typed strength is multiplied by mu0 * mu^2 / (a^3 * J), where mu is the moment of the first
+// site, a the lattice constant and J the exchange.
 TEST(SiCrystals, DipolesAreOfTheMoments) {
   auto const scene =
       iron_with({"field.dipoles={strength=0.5}", "material.mu_s={bohr_magnetons=[2.22,1.11]}"});
@@ -242,7 +242,7 @@ TEST(SiTorques, VelocitiesAreInMetresPerSecond) {
   auto const scene =
       permalloy_with({"torque={zhang_li={velocity=[100,'50*sin(1e9*t)',0],nonadiabaticity=0.04}}"});
   auto const& of = scene.field.torque.zhang_li.value();
-  // The unit of velocity is one cell per 1 / (gamma mu0 Ms), for either form of the damping.
+  // The unit of velocity is one cell per 1 / (gamma * mu0 * Ms), for either form of the damping.
   double const unit = 4e-9 * gamma * mu0 * 8e5;
   expect_near(std::get<double>(of.velocity[0]), 100 / unit);
   double const t = 1e-9 / scene.units.time;
@@ -253,7 +253,7 @@ TEST(SiTorques, VelocitiesAreInMetresPerSecond) {
   auto const current =
       permalloy_with({"torque={zhang_li={current_density=[1e12,'-1e12*t',0],polarization=0.4}}"});
   double const seconds = 2;
-  // By hand: u = -g mu_B P j / (2 e Ms).
+  // By hand: u = -g * mu_B * P * j / (2 * e * Ms), where P is the polarization.
   EXPECT_NEAR(Expression(std::get<std::string>(current.torque_in_si.zhang_li->velocity[1]),
                          {"t"})(&seconds),
               57.9510, 2e-4);

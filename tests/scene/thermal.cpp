@@ -61,8 +61,8 @@ temperature = 300
 )toml";
 }
 
-// The temperature is kB T divided by the energy of a site: mu0 Ms^2 V for a cell; for atoms J, K or
-// D, or mu_s * 1 T if none of these is typed.
+// The temperature is kB T divided by the energy of a site: mu0 * Ms^2 * V for a cell of volume V;
+// for atoms J, K or D, or mu_s * 1 T if none of these is typed.
 TEST(ThermalScene, KelvinAreConvertedByTheEnergyOfASite) {
   auto const cell =
       scene_of(in_si("Ms = 8e5\nA = 1.3e-11"), {"lattice.spacing=[4e-9, 5e-9, 3e-9]"});

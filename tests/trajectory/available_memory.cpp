@@ -61,7 +61,7 @@ TEST_F(AvailableMemory, OfAJob) {
   write("sys/fs/cgroup/system.slice/job_7/memory.stat",
         "anon 10000\nfile 60000\ninactive_file 40000\nactive_file 15000\n");
   EXPECT_EQ(bytes(), 985000);
-  // The tightest group decides, or the machine if it has less.
+  // The group with the least available memory decides, or the machine if it has less.
   group_2("system.slice/", "500000", "450000");
   EXPECT_EQ(bytes(), 50000);
   group_2("system.slice/", "20000000", "0");

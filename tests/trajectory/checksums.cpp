@@ -67,7 +67,7 @@ TEST_F(TrajectoryTest, ChangedSceneIsNoticed) {
   EXPECT_TRUE(contains(error_line(path, [&] { read_info(path); }), "its attributes are damaged"));
 }
 
-// No checksum includes the units, so an invalid word is refused.
+// No checksum covers the units, so a change is noticed only if it makes the word invalid.
 TEST_F(TrajectoryTest, ChangedUnitsAreNoticed) {
   auto const path = folder_ / "a.h5";
   auto header = small_header();

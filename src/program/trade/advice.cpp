@@ -19,8 +19,8 @@ namespace {
 // The time limit of a search: this fraction of the duration of the run, but at least this many
 // seconds.
 constexpr double most_share = 0.1, least_limit = 2;
-// Approximate fractions of that limit: for a coarse run, for the fine solution, and those at which
-// the first trials and all trials end.
+// Approximate fractions of that limit: the time for a coarse run, the time for the fine solution,
+// and the times at which the first trials and all trials end.
 constexpr double coarse_share = 1.0 / 40, fine_share = 0.4, first_share = 0.65, try_share = 0.9;
 
 constexpr double accepted = 0.95;  // limit of (error + uncertainty) / requested error
@@ -32,8 +32,8 @@ constexpr double doubt = 6;   // ratio of a time to the best one; a larger ratio
 constexpr double contender = 1.7;  // candidates within this ratio of the best time are timed again
 constexpr int rounds = 3;          // number of rounds of repeated timing
 constexpr int tries = 12;          // largest number of trials of a candidate
-constexpr int all_finer = 30;      // how many times refused coarsest steps are made finer
-constexpr int refinements = 4;     // how many times final steps that miss the error are shortened
+constexpr int all_finer = 30;      // largest number of times that refused steps are made finer
+constexpr int refinements = 4;     // most trials of advised steps; failing ones are shortened
 constexpr int horizons = 20;       // number of horizons to try, each half of the previous one
 
 constexpr Repeats quick{1, 2e-3};

@@ -33,8 +33,8 @@ double Candidate::least_tolerance() const {
 
 namespace {
 
-// Returns a rate: the gyromagnetic ratio / moment * the sum of a site's exchange couplings. Returns
-// 0 if this rate is not the same at all sites, or if it depends on t.
+// Returns a rate: (gyromagnetic ratio / moment) * (sum of a site's exchange couplings). Returns 0
+// if this rate is not the same at all sites, or if it depends on t.
 double rate_of_couplings(io::Scene const& scene) {
   auto const& lattice = scene.lattice;
   auto const rates = io::noise_of_cell_sites(scene);

@@ -48,7 +48,7 @@ double least(Ladder const& ladder, double error, bool of_evaluations, Ladder* ar
 Steps coarsest_steps(Pilot const& pilot, Candidate const& candidate, double horizon,
                      std::int64_t own_steps) {
   if (candidate.method->adaptive) return {0, 0.1};
-  // Fewer steps than an explicit adaptive method takes at a coarse tolerance, but enough to be
+  // Takes fewer steps than an explicit adaptive method at a coarse tolerance, but enough to be
   // stable.
   auto const parts = static_cast<double>(4 * std::max<std::int64_t>(1, candidate.substeps));
   double const few = candidate.method->stiff ? 0 : static_cast<double>(own_steps) / parts;

@@ -64,7 +64,7 @@ Outcome run_on(io::Scene const& scene, Plan const& plan, Stretch const& stretch,
   Simulation<Real, Space> simulation(scene, plan.lattice, plan.times, stretch.start);
   Outcome outcome;
   std::optional<Guard> guard;
-  constexpr double margin = 8;  // stricter than in a run, whose steps may differ
+  constexpr double margin = 8;  // how much stricter than in a run, whose steps may differ
   if (guarded) guard.emplace(scene, std::numeric_limits<Real>::epsilon() / margin);
   KeepStates<Real, Space> keep(stretch.looks.steps, simulation.generator, guard, outcome);
   auto const method = open_method(scene, plan, &simulation);

@@ -7,7 +7,7 @@
 namespace cayspin::program::trade {
 namespace {
 
-constexpr double near = 4;        // largest error / requested error at which an excess order counts
+constexpr double near = 4;        // above this error / requested error, no order > order_ counts
 constexpr double most_finer = 5;  // largest ratio of a cost to that of the finest trial
 constexpr double close = 0.94;    // ratio of two costs above which they count as equal
 
@@ -65,8 +65,9 @@ double Prospect::seen_order() const {
 }
 
 // Returns the resolution that should have this error, interpolated by a power law. Where steps
-// become stable, errors drop too abruptly for that. Then bisects the interval, until its ends cost
-// about the same.
+// become stable, errors drop too abruptly for a power law. Then returns the geometric mean of the
+// interval's ends or, if that costs about as much as the passing trial, the resolution of that
+// trial.
 double Prospect::between(Try const& failing, Try const& passing, double error) const {
   double const from = resolution(failing.steps), to = resolution(passing.steps);
   double const slope = std::log(failing.error / passing.error) / std::log(to / from);

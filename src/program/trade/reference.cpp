@@ -15,7 +15,7 @@ namespace {
 constexpr double enough = 1e-10;
 constexpr double tightest = 1e-13;
 constexpr int most_halvings = 20;
-constexpr int most_fewer = 4;   // halvings at once
+constexpr int most_fewer = 4;   // by which the number of halvings falls from one run to the next
 constexpr int most_short = 10;  // a run of at most this many steps is never too long
 
 // Returns a method that computes the reference.

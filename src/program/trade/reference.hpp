@@ -23,7 +23,7 @@ std::vector<std::int64_t> times_of_looks(TimeFeatures const& features, double ho
 /// solution is continued to where they end.
 class FineSolution {
  public:
-  static constexpr std::int64_t parts = 1024;  // of the horizon
+  static constexpr std::int64_t parts = 1024;  // parts of the horizon, as in times_of_looks()
 
   FineSolution(Pilot const& pilot, double horizon, Candidate const& by, double tolerance);
 
@@ -31,7 +31,8 @@ class FineSolution {
   double seconds() const { return solution_.seconds(); }
   std::optional<std::string> const& failure() const { return solution_.failure; }
 
-  /// Returns the largest distance of any spin from another solution, at any time.
+  /// Returns the largest distance between corresponding spins of two solutions, at any of the
+  /// times_of_looks().
   double distance_to(FineSolution const& other) const {
     return distance(solution_, other.solution_);
   }

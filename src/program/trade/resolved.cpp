@@ -21,7 +21,8 @@ std::int64_t within(io::Integrator const& integrator, std::int64_t every) {
   return std::clamp<std::int64_t>(integrator.steps, 1, every);
 }
 
-// Returns how many of the scene's steps lie between outputs that the advised method must keep.
+// Returns the longest interval, in steps of the scene, that divides the run and the periods of all
+// outputs that the advised method must keep.
 std::int64_t steps_between_looks(io::Scene const& scene, bool adaptive) {
   auto const& integrator = scene.integrator;
   bool const looks_at_each = !integrator.method->has_equal_steps() || integrator.until_torque;
