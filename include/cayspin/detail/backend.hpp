@@ -53,7 +53,7 @@
 #define CAYSPIN_DETAIL_FMA
 #endif
 
-// Defined if the maximum of two packs is the second one in each lane where either is NaN.
+// Defined if Kokkos::max(a, b) of two packs returns b in each lane where either is NaN.
 #if defined(__AVX2__)
 #define CAYSPIN_DETAIL_MAXIMUM_IS_SECOND
 #endif

@@ -30,8 +30,8 @@ struct ComponentPointers {
       : component{array.data, array.data + array.stride, array.data + 2 * array.stride} {}
 };
 
-/// The RowLayout of device kernels. Index is an integer type that can count the numbers of one
-/// component.
+/// The RowLayout of device kernels. Index: an integer type that is large enough for offsets within
+/// one component.
 template <class Index>
 struct DeviceLayout {
   std::int32_t last[3];  // last index along each axis, in a replica

@@ -15,8 +15,8 @@
 // multiprocessor, and x and y are found once for all sites of a thread.
 namespace cayspin::inline v0_2::detail {
 
-/// Division of numbers below 2^31 by a positive divisor that is known at launch, by a
-/// multiplication and a shift.
+/// Divides numbers below 2^31 by a positive divisor that is known at launch, with a multiplication
+/// and a shift.
 class QuickDivision {
  public:
   explicit QuickDivision(std::uint32_t divisor)

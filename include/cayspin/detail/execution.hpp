@@ -19,8 +19,9 @@ template <class Exec>
 inline constexpr bool is_host_execution =
     std::is_same_v<typename Exec::memory_space, Kokkos::HostSpace>;
 
-/// Waits for the work queued on all instances if Exec is a device. A function that gets no instance
-/// calls it before it reads or writes fields, on which an instance of the caller may still work.
+/// Waits for the work queued on all instances if Exec is a device. A function whose caller passes
+/// no instance must call this before it reads or writes fields, because kernels that the caller
+/// launched may still be working on them.
 template <class Exec>
 void fence_all_instances(char const* label) {
   if constexpr (!is_host_execution<Exec>) Kokkos::fence(label);
@@ -50,7 +51,8 @@ bool runs_on_calling_thread(std::int64_t sites) {
   return is_synchronous<Exec> && sites <= calling_thread_sites;
 }
 
-/// The space by which Kokkos' profiling tools see kernels that run on the calling thread.
+/// The execution space under which Kokkos' profiling tools see kernels that run on the calling
+/// thread.
 #if defined(KOKKOS_ENABLE_SERIAL)
 using CallingThread = Kokkos::Serial;
 #else

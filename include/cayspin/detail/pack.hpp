@@ -121,7 +121,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value select(typename ValueTraits<Value>::mask const
 }
 
 /// Returns the square root. For packs of 512 bits it does not use Kokkos' root, because g++ 12
-/// reports an uninitialised variable in the intrinsic of that root.
+/// reports an uninitialised variable in the intrinsic that Kokkos uses.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value square_root(Value const& a) {
 #if defined(CAYSPIN_DETAIL_AVX512)

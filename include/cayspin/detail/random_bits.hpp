@@ -42,9 +42,10 @@ class RandomBits {
   }
 
  private:
-  // Place p of 64 uses half p / 32 of word p / 16 % 2 * 2 + p % 2 of counter p % 16 / 2. With two
-  // words packed into each 64-bit number, the numbers in memory are then in the order of the
-  // places.
+  // Place p = 0 .. 63 in a group of 64 uses 16 bits of one of the four random words that the
+  // counter p % 16 / 2 gives: of word p / 16 % 2 * 2 + p % 2, the lower half if p < 32, otherwise
+  // the upper half. With two words packed into each 64-bit number, the numbers in memory are then
+  // in the order of the places.
   static constexpr int lanes = host_lanes<double>, counters = 8;
   static constexpr std::uint64_t places = 64, drawn_at_once = 2 * places;
 

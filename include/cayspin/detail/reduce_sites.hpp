@@ -22,8 +22,8 @@
 // lattice into parts. Devices sum with twice the digits of a double, in an order of their own.
 namespace cayspin::inline v0_2::detail {
 
-// The first `sums` of the `Count` values of a site are summed. The others are reduced to their
-// maxima over the sites.
+// The types below say how the Count values of each site are reduced: the first sums<Count> of them
+// are summed over the sites, and for the others the maximum over the sites is found.
 struct Sum {
   template <int Count>
   static constexpr int sums = Count;

@@ -54,7 +54,7 @@ struct SweepPlan {
   // stage works in one tick.
   std::int32_t block = 1;
   std::int32_t ring_rows = 0, seam_planes = 0;
-  // Strides of a buffer: from component to component, from row to row.
+  // Strides in a buffer: `pitch` from component to component, `row` from row to row.
   std::ptrdiff_t pitch = 0, row = 0;
   std::ptrdiff_t strip_size = 0, seams_size = 0;  // numbers in a strip, and in a part's seams
   SweepBuffer buffer[3 * most_stages];

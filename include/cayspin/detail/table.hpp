@@ -14,8 +14,8 @@ Kokkos::View<Element*, MemorySpace> table_of(std::string const& label,
                                              std::vector<Element> const& elements) {
   Kokkos::View<Element*, MemorySpace> table(Kokkos::view_alloc(Kokkos::WithoutInitializing, label),
                                             elements.size());
-  // Without an execution space instance, deep_copy would wait for all instances. Called from within
-  // a kernel, it would then wait for ever.
+  // Without an execution space instance, deep_copy would wait for all instances. If this function
+  // is called from within a kernel, that wait would never end.
   typename MemorySpace::execution_space const exec;
   Kokkos::View<Element const*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> const host(
       elements.data(), elements.size());

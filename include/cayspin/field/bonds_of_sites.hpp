@@ -41,7 +41,7 @@ struct Shell {
   std::int32_t first, last;
   double exchange;
 };
-/// T of a bond row by row, and its biquadratic constant.
+/// The tensor T of a bond (see PairCouplings), row by row, and then the bond's constant B.
 struct BondTensor {
   double of[10];
 };
@@ -104,7 +104,7 @@ class BondLists {
   /// such offsets if its bonds reach farther along x than the length of a pack of floats.
   std::vector<OffsetInMemory> rounds;
   bool has_biquadratic = false;
-  /// Upper bound of |H| at each site of a cell, for spins of length 1.
+  /// Upper bound on |H| at each site of a cell, for spins of length 1.
   std::vector<double> field_bounds;
 
   /// Throws std::invalid_argument for the couplings for which PairCouplings does.
@@ -149,7 +149,7 @@ class BondLists {
       return t[0] == t[4] && t[4] == t[8] && t[1] == 0 && t[2] == 0 && t[3] == 0 && t[5] == 0 &&
              t[6] == 0 && t[7] == 0 && t[9] == 0;
     }
-    /// Returns an upper bound of the bond's |H| for unit spins: |J| for exchange; otherwise the
+    /// Returns an upper bound on the bond's |H| for unit spins: |J| for exchange; otherwise the
     /// Frobenius norm of T plus 2 * |B|, with the biquadratic constant B.
     double bound() const {
       if (is_exchange()) return std::abs(tensor.of[0]);

@@ -17,8 +17,8 @@
 
 namespace cayspin::inline v0_2 {
 
-/// One number for each site of a crystal's cell, for kernels. A prepared term reads it with
-/// at(stencil.site()).
+/// One number for each site of a crystal's cell, for kernels. A prepared term reads the number of
+/// its site with at(stencil.site()).
 struct NumbersOfCell {
   double const* numbers;
   std::int32_t cell_sites;

@@ -41,7 +41,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value coefficient(SiteArray<Real, 1> const& numbers,
 }
 
 /// Kernels address a coefficient like the spins, by rows whose pitch depends on the type of the
-/// numbers. So both must have the same type.
+/// numbers. So the coefficients and the spins must have the same type.
 template <class Spins, class Real, int Components, class MemorySpace>
 constexpr void require_type_of(SiteField<Real, Components, MemorySpace> const&) {
   static_assert(std::is_same_v<typename Spins::value_type, Real> &&
@@ -59,8 +59,8 @@ void require_lattice_of(Spins const& spins, SiteField<Real, Components, MemorySp
   require_lattice(who, field.lattice(), spins.lattice());
 }
 
-/// Functor that counts four kinds of sites: those whose number is not finite, negative, positive,
-/// and 1.
+/// Functor that counts four kinds of sites, in this order: those whose number is infinite or NaN,
+/// those with a negative number, those with a positive one, and those whose number is 1.
 template <class Real>
 struct SignsOfSites {
   SiteArray<Real, 1> numbers;

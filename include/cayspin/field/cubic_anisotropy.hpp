@@ -42,7 +42,8 @@ class CubicAnisotropy {
     return as_value<Value>(-2 * constant_) *
            sum<Value>({m.x * (b + c), m.y * (c + a), m.z * (a + b)});
   }
-  /// Uses |m|^2 - a^2 for b^2 + c^2, and so on, and omits the multiple of m.
+  /// Adds H up to a multiple of m: 2 * Kc * (a^3 * e1 + b^3 * e2 + c^3 * e3), which follows from
+  /// b^2 + c^2 = |m|^2 - a^2 and so on.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_turning_field(
       Stencil const& stencil, VectorOf<Stencil> const& h) const {
@@ -61,7 +62,7 @@ class CubicAnisotropy {
 
   KOKKOS_FORCEINLINE_FUNCTION double constant() const { return constant_; }
   /// Returns the components a, b and c of `v`. If all axes are coordinate axes, returns x, y and z,
-  /// since E does not depend on the order.
+  /// since E does not depend on the order or the signs of the components.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> parts(Vec3<Value> const& v) const {
     if (along_coordinates_) [[likely]]

@@ -13,8 +13,8 @@
 
 namespace cayspin::inline v0_2 {
 
-/// The sum of field terms, composed by type, so that terms not listed cost nothing. A term is a
-/// plain struct with two const, device-callable templates:
+/// The sum of field terms, which are listed as template arguments; terms that are not listed cost
+/// nothing. A term is a plain struct with two const, device-callable templates:
 /// - `Vec3<Value> field(stencil)`, H at the stencil's centre,
 /// - `Value energy_density(stencil)`, the share of that site in E, with H = -dE/dm,
 ///

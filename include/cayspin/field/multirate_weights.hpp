@@ -24,9 +24,9 @@ inline MultirateWeights interpolating_weights(double x, std::span<double const> 
   return weights;
 }
 
-/// Returns the value at x of a polynomial of degree 2 with this mean over the step. `slope`: in the
-/// middle of the step. `curvature`: half the second derivative. The mean determines the order of a
-/// method; slope and curvature affect only its stability.
+/// Returns the value at x of a polynomial of degree 2 with this mean over the step. `slope`: the
+/// derivative in the middle of the step. `curvature`: half the second derivative. The mean
+/// determines the order of a method; slope and curvature affect only its stability.
 inline double with_mean(double mean, double slope, double curvature, double x) {
   return mean + slope * (x - 0.5) + curvature * (x * x - x + 1.0 / 6);
 }

@@ -52,7 +52,7 @@ class PairCouplings {
       return prepare(exec, spins, t);
   }
 
-  /// Returns an upper bound of |H| at each site of a cell, for spins of length 1.
+  /// Returns an upper bound on |H| at each site of a cell, for spins of length 1.
   std::vector<double> const& field_bounds() const { return field_bounds_; }
 
   /// Returns true if no bond is biquadratic. H is then linear in the spins.

@@ -173,10 +173,10 @@ class SiteDependentExchange : public detail::PreparedOnce {
     return prepared;
   }
 
-  /// Multiplies the constants of the bonds along an axis: `factors` has one number for each site
-  /// except ghosts, with x varying fastest, and it multiplies the constant of the bond from that
-  /// site to the next one. The copies of this term change, too. Throws std::invalid_argument for
-  /// another number of factors. Does nothing along an axis of one site.
+  /// Multiplies the constants of the bonds along an axis. `factors` has one number for each site
+  /// except ghosts, with x varying fastest: the factor for the bond from that site to the next one.
+  /// The copies of this term change, too. Throws std::invalid_argument for another number of
+  /// factors. Does nothing along an axis of one site.
   void scale_bonds(int axis, std::vector<double> const& factors) {
     if (!bonds_[axis]) return;
     auto const& bonds = *bonds_[axis];

@@ -29,7 +29,7 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
       : field_(std::move(field)), damping_(std::move(damping)), precession_(precession) {
     check(damping_);
   }
-  /// Does not compile with a number for `precession`, which is a bool.
+  /// Deleted, so that a call with a number in place of the bool `precession` does not compile.
   LandauLifshitz(Field, std::type_identity_t<Damping>, double) = delete;
 
   KOKKOS_FORCEINLINE_FUNCTION Field const& field() const { return field_; }

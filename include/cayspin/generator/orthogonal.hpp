@@ -13,7 +13,7 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// Returns A - (m.A) m.
+/// Returns A - (m.A) * m.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> orthogonal_part(Vec3<Value> const& a,
                                                         Vec3<Value> const& m) {
@@ -22,7 +22,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> orthogonal_part(Vec3<Value> const& a,
 
 }  // namespace detail
 
-/// A generator from which the component along the spin is removed: A_o = A - (m.A) m.
+/// A generator from which the component along the spin is removed: A_o = A - (m.A) * m.
 template <class Generator>
 class Orthogonal : public Forwarding<Orthogonal<Generator>, Generator>,
                    public detail::ForwardingEnergy<Orthogonal<Generator>, Generator> {

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-// An isotropy policy turns the generator's A at a spin m into xi = A + sigma m. The exact flow is
+// An isotropy policy turns the generator's A at a spin m into xi = A + sigma * m. The exact flow is
 // independent of sigma; methods of finite order are not.
 namespace cayspin::inline v0_2::isotropy {
 
@@ -29,10 +29,10 @@ struct Constant {
   }
 };
 
-/// sigma from a forward difference of A_o = A - (m.A) m: xi = A_o + sigma m with w = A_o and sigma
-/// = -<w', w x m> / |w|^2. The derivative w' comes from a second evaluation, at cay(dt w) m and t +
-/// dt. This sigma raises the order of LieEuler's energy error by one. Lewis and Nigam 2002, Sec.
-/// 4.1, with the sign and the norm corrected. If A_o is zero, so is sigma.
+/// sigma from a forward difference of A_o = A - (m.A) * m: xi = A_o + sigma * m with w = A_o and
+/// sigma = -<w', w x m> / |w|^2. The derivative w' comes from a second evaluation, at cay(dt * w) m
+/// and t + dt. This sigma raises the order of LieEuler's energy error by one. Lewis and Nigam 2002,
+/// Sec. 4.1, with the sign and the norm corrected. If A_o is zero, so is sigma.
 struct FiniteDifference {
   double cap = std::numeric_limits<double>::infinity();  ///< bound on |dt * sigma|
 };

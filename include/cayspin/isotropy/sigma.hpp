@@ -22,8 +22,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value clamp(Value const& a, Value const& cap) {
   return select<Value>(below < Value(-cap), Value(-cap), below);
 }
 
-/// Returns dt * sigma = -<dt w', w x m> / |w|^2, limited to [-cap, cap], where dt_times_rate = dt
-/// w'.
+/// Returns dt * sigma = -<dt * w', w x m> / |w|^2, limited to [-cap, cap]; dt * w' is
+/// `dt_times_rate`.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value turn_from_difference(Vec3<Value> const& dt_times_rate,
                                                        Vec3<Value> const& w, Vec3<Value> const& m,

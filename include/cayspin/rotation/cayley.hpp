@@ -7,7 +7,7 @@
 
 namespace cayspin::inline v0_2 {
 
-/// The Cayley map of so(3). Coordinates f stand for the rotation about f by the angle 2
+/// The Cayley map of so(3). Coordinates f stand for the rotation about f by the angle 2 *
 /// atan(|f|/2). The differential is right-trivialised. Lewis and Nigam 2002, Sec. 2.
 struct Cayley {
   /// Returns cay(f) m, to a few ulp, for |f| up to about 1e150 (double) or 1e18 (float).
@@ -35,7 +35,7 @@ struct Cayley {
     return Value(Value(1) / (Value(1) + dot(h, h))) * (y + cross(h, y));
   }
 
-  /// Returns dcay_f^-1 y = y - f x y / 2 + f <f, y> / 4.
+  /// Returns dcay_f^-1 y = y - f x y / 2 + <f, y> * f / 4.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> inverse_differential(Vec3<Value> const& f,
                                                                       Vec3<Value> const& y) {

@@ -23,13 +23,14 @@ struct Exponential {
   KOKKOS_FORCEINLINE_FUNCTION static Displacement<Value> displacement(Vec3<Value> const& f,
                                                                       Vec3<Value> const& m) {
     auto const half = detail::half_angle(f);
-    // The unit quaternion (cosine, v) turns m into m + 2 (cosine v x m + v x (v x m)).
+    // The unit quaternion (cosine, v) turns m into m + 2 * (cosine * v x m + v x (v x m)).
     Vec3<Value> const v = half.sine * half.direction;
     Vec3<Value> const c = cross(v, m);
     return {Value(2), multiply_add(half.cosine, c, cross(v, c))};
   }
 
-  /// Returns dexp_f^-1 y = y - f x y / 2 + (1 - (n/2) cot(n/2)) / n^2 f x (f x y), n = |f| < 2 pi.
+  /// Returns dexp_f^-1 y = y - f x y / 2 + k * f x (f x y), where k = (1 - (n/2) * cot(n/2)) / n^2
+  /// and n = |f| < 2 * pi.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> inverse_differential(Vec3<Value> const& f,
                                                                       Vec3<Value> const& y) {

@@ -8,8 +8,8 @@
 namespace cayspin::inline v0_2::detail {
 
 /// Returns the Taylor polynomial of sin(a)/a (Odd = 1) or cos(a) (Odd = 0) in x = a^2, which is 1 +
-/// x/c1 (1 + x/c2 (1 + ...)) with ck = -(2k + Odd)(2k - 1 + Odd). For |a| <= 1.62 the first omitted
-/// term is below a quarter of the epsilon of the precision.
+/// x/c1 * (1 + x/c2 * (1 + ...)) with ck = -(2 * k + Odd) * (2 * k - 1 + Odd). For |a| <= 1.62 the
+/// first omitted term is below a quarter of the epsilon of the precision.
 template <int Odd, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value trigonometric_series(Value const& x) {
   constexpr int terms = sizeof(scalar_t<Value>) == sizeof(double) ? 10 : 6;
@@ -23,7 +23,8 @@ KOKKOS_FORCEINLINE_FUNCTION Value trigonometric_series(Value const& x) {
 }
 
 /// The rotation by f as a unit quaternion: cosine is cos(|f|/2), and sine * direction is the vector
-/// sin(|f|/2) f/|f|. Both may have the opposite sign, which gives the same rotation.
+/// sin(|f|/2) * f/|f|. Cosine and vector may also both have the opposite sign, which gives the same
+/// rotation.
 template <class Value>
 struct HalfAngle {
   Value sine, cosine;
@@ -95,19 +96,19 @@ KOKKOS_FORCEINLINE_FUNCTION HalfAngle<Value> half_angle(Vec3<Value> const& f) {
   auto const [scaled, scaled_length, length] = scaled_norm(f);
   auto const [r, sine_over_r, cosine] = half_turn(length);
   // If |f|^2 is close to or below the smallest normal number, |f| is inaccurate; then f/2 replaces
-  // sin(|f|/2) f/|f|.
+  // sin(|f|/2) * f/|f|.
   auto const tiny = scaled_length < Value(is_double ? Scalar(0x1p-500) : Scalar(0x1p-60f));
   Value const safe = select<Value>(tiny, Value(Scalar(1)), scaled_length);
   return {select<Value>(tiny, Value(Scalar(0.5)), Value(r * sine_over_r / safe)), cosine, scaled};
 }
 
-/// Returns (1 - (n/2) cot(n/2)) / n^2, n = |f|; 1/12 at 0.
+/// Returns (1 - (n/2) * cot(n/2)) / n^2 for n = |f|; 1/12 if f is 0.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value inverse_tangent_coefficient(Vec3<Value> const& f) {
   using Scalar = scalar_t<Value>;
   Value const square = dot(f, f);
   // For n < 1/2 the closed form would suffer from cancellation. There the series with the terms
-  // |B_2k| n^(2k-2) / (2k)! is used, where B_2k are Bernoulli numbers; its first omitted term is
+  // |B_2k| * n^(2k-2) / (2k)! is used, where B_2k are Bernoulli numbers; its first omitted term is
   // below 1e-18.
   constexpr double series[] = {1. / 12,           1. / 720,
                                1. / 30240,        1. / 1209600,

@@ -15,7 +15,7 @@
 namespace cayspin::inline v0_2::detail {
 
 /// Functor that turns m into exp(v) m = m + factor * tangent x (m + tangent x m), with tangent =
-/// tan(|v| / 2) v / |v| and factor = 2 cos^2(|v| / 2).
+/// tan(|v| / 2) * v / |v| and factor = 2 * cos^2(|v| / 2).
 template <class Value>
 struct TurnByTangent {
   Vec3<Value> tangent;
@@ -37,7 +37,8 @@ struct TurnByTangent {
   }
 };
 
-/// Selects one of the 32 turns by five bits. `Numbers` has one word, of type Bits, for each lane.
+/// Selects one of the 32 turns of RandomTurn by five bits. `Numbers` has one word, of type Bits,
+/// for each lane.
 template <class Real>
 struct ChoiceOfTurn {
   using Bits = std::conditional_t<sizeof(Real) == 8, std::uint64_t, std::uint32_t>;

@@ -29,8 +29,8 @@ constexpr bool estimates_with(int source) {
   return false;
 }
 
-/// Returns a weight of the second rotation; 0 if the tableau has none. Row Tableau::stages has the
-/// weights for the end of the step.
+/// Returns the weight of increment `column` in the second rotation that leads to stage `row`, or to
+/// the end of the step if `row` is Tableau::stages; 0 if the tableau has no second rotations.
 template <class Tableau>
 constexpr double second_weight(int row, int column) {
   if constexpr (requires { Tableau::second_a; })

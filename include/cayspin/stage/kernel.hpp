@@ -65,7 +65,7 @@ struct ChartWeights {
   }
 };
 
-/// True if an update's increments depend only on A x m.
+/// True if an update's increments depend on A only through A x m.
 template <class Update>
 inline constexpr bool needs_turning_alone = requires { requires Update::needs_turning_alone; };
 
@@ -150,8 +150,8 @@ struct RungeKuttaStage {
       return (m);  // by reference: g++ would copy a value through memory
   }
 
-  // Returns A + sigma m, or A if the isotropy acts only at the end of the step. If the update needs
-  // only A x m, returns A plus any multiple of m.
+  // Returns A + sigma * m, or A if the isotropy acts only at the end of the step. If the update
+  // needs only A x m, returns A plus some multiple of m.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION auto stage_generator(Stencil const& stencil) const {
     using Vector = typename Stencil::vector_type;

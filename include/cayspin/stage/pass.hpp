@@ -105,7 +105,7 @@ CAYSPIN_DETAIL_NOINLINE void run_stage(Kernel const& kernel, PlanesOf<Kernel> co
   }
 }
 
-/// Host loop.
+/// Host loop over the sites, for one stage. Each task works on one RowBlock.
 template <class Kernel>
 struct StageRowLoop {
   using Real = typename Kernel::value_type;

@@ -11,7 +11,7 @@
 
 // The geometry of a Runge-Kutta method: how the generator A of a stage gives an increment, and how
 // coordinates f, which are weighted sums of increments, move a spin from m0, the spin at the start
-// of the step. increment(f, dt A, m, m0) is the increment of a stage at the spin m, which is m0
+// of the step. increment(f, dt * A, m, m0) is the increment of a stage at the spin m, which is m0
 // moved by f. `move` is for stages and `finish` is for the end of the step; displacement(f, m0) is
 // the change of the spin, finish(f, m0) - m0. In a chain of stages, each stage uses only the
 // increment of the stage before it. recovers_increments(stages) is true if a chain of this length
@@ -47,8 +47,8 @@ struct Lie {
   }
 };
 
-/// Like Lie, but without the inverse differential: the increments are dt A. Methods of order 1 and
-/// 2 keep their order. Lewis and Nigam 2002, Sec. 4.3.
+/// Like Lie, but without the inverse differential: the increments are dt * A. Methods of order 1
+/// and 2 keep their order. Lewis and Nigam 2002, Sec. 4.3.
 template <class Rotation>
 struct LieUncorrected : Lie<Rotation> {
   static constexpr bool increment_needs_argument = false;
@@ -65,7 +65,7 @@ struct LieUncorrected : Lie<Rotation> {
 struct Classical {
   static constexpr bool increment_needs_argument = false;
   static constexpr bool needs_turning_alone =
-      true;  // only the part of A normal to m matters, because increments are dt A x m
+      true;  // only the part of A normal to m matters, because increments are dt * A x m
 
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> increment(Vec3<Value> const&,
@@ -146,8 +146,8 @@ struct Projected : Classical {
 };
 
 /// Classical Runge-Kutta in the stereographic chart at m0: f is normal to m0 and stands for the
-/// rotation cay(2 m0 x f). The coordinates of every stage stay normal to m0. Not in Lewis and Nigam
-/// 2002. Breaks down only if the spin of a stage reaches -m0.
+/// rotation cay(2 * m0 x f). The coordinates of every stage stay normal to m0. Not in Lewis and
+/// Nigam 2002. Breaks down only if the spin of a stage reaches -m0.
 struct Stereographic {
   static constexpr bool increment_needs_argument = false;
   static constexpr bool needs_turning_alone = true;

@@ -14,15 +14,15 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Work memory of an adaptive step, and the state between steps. Passes also need the field
-/// `level`, and a sweep needs buffers.
+/// Work memory of an adaptive step, and the state that it leaves for the next step. The field
+/// `level` is allocated only for Path::pass, and the buffers only for Path::sweep.
 template <class Spins, class Tableau>
 struct AdaptiveMemory {
   using Real = typename Spins::value_type;
   static constexpr int stages = Tableau::stages;
   static constexpr int fields_of_passes = stages + 4, fields_of_sweep = stages + 3;
 
-  Spins begin, end, level, first, last;  // first, last: A at begin and end
+  Spins begin, end, level, first, last;  // first, last: generator A at the spins begin and end
   std::array<Spins, std::size_t{stages - 1}> increments;
   ScalarField<Real, typename Spins::memory_space> square;  // squared error of each spin
 
@@ -71,14 +71,15 @@ struct AdaptiveMemory {
       visit("increment_" + std::to_string(i + 1), increments[i]);
   }
 
-  /// Returns the spins at which a stage of a pass evaluates the generator: `end` for the last
-  /// stage.
+  /// Returns the field with the spins at which stage `stage` evaluates the generator if Path::pass
+  /// is used: `begin` for the first stage, `end` for the last one, and `end` and `level` in turn
+  /// for the others.
   Spins const& level_of(int stage) const {
     if (stage == 0) return begin;
     return (stages - 1 - stage) % 2 == 0 ? end : level;
   }
 
-  /// Returns the fields of one stage, for a pass.
+  /// Returns the fields that the stage described by Flow reads and writes if Path::pass is used.
   template <class Flow>
   StageArrays<WholeFields<Real>, stages> arrays() const {
     StageArrays<WholeFields<Real>, stages> arrays;

@@ -32,15 +32,15 @@ using AdaptiveStages = StagedStepper<Spins, tableau::FirstSameAsLast<Embedded>, 
 }  // namespace detail
 
 /// An embedded Runge-Kutta method that chooses its own steps, called internal steps. The error of
-/// an internal step is the largest angle between a spin at its end and the embedded solution for
-/// this spin. It is kept below a fraction of the tolerance, because the tolerance is meant for the
-/// error of a whole run.
+/// an internal step is an angle: the largest, over all spins, between the spin at the end of the
+/// step and the embedded solution for that spin. This error is kept below a fraction of the
+/// tolerance, because the tolerance is meant for the error of a whole run.
 ///
 /// `step(.., t, dt)` takes internal steps until they reach t + dt, and computes the spins at that
-/// time by the tableau's polynomial, which interpolates the coordinates in which the update moves
-/// spins. The internal steps do not depend on dt, except that dt is the default first step if no
-/// spin turns at the start. The stepper remembers its state: `spins` and t must be those at the end
-/// of the previous call of `step`. Otherwise call `reset` first.
+/// time by the tableau's dense output, a polynomial in time for the coordinates by which the update
+/// moves spins. The internal steps do not depend on dt, except that dt is the default first step if
+/// no spin turns at the start. The stepper remembers its state: `spins` and t must be those at the
+/// end of the previous call of `step`. Otherwise call `reset` first.
 template <class Spins, class Embedded, class Update, class Isotropy = isotropy::Zero>
 class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update, Isotropy>,
                            public detail::OwnSteps {
@@ -79,8 +79,9 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     step_towards(exec, generator, spins, t, dt, t + dt);
   }
 
-  /// Like `step`, but changes `spins` only if the internal steps reach `wanted`, a time at or after
-  /// t + dt: then `spins` are those at this time. Throws like `step`.
+  /// Like `step`, but changes `spins` only if the internal steps, which continue until they reach t
+  /// + dt, also reach `wanted`, a time at or after t + dt. `spins` are then those at `wanted`.
+  /// Throws like `step`.
   template <class Exec, class Generator>
   void step_towards(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
                     double wanted) {
@@ -156,8 +157,8 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     return 2 * std::asin(std::min(1.0, 0.5 * std::sqrt(largest_square(exec))));
   }
 
-  /// Returns the kernel of a stage, with a prepared generator. The kernel of the first stage loads
-  /// the values of the generator, which are known.
+  /// Returns the kernel of a stage that evaluates the prepared generator. The kernel of the first
+  /// stage, from first_stage(), loads the generator's values instead: they are known already.
   template <int Stage, class Prepared>
   auto stage(Prepared prepared, double dt) const {
     return detail::RungeKuttaStage<Tableau, Update, Isotropy, Stage, Prepared, Real>{
@@ -174,7 +175,8 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     return detail::EndStage<Tableau, Update, Isotropy, Prepared, Real>{
         std::move(prepared), isotropy_, outputs, static_cast<Real>(dt)};
   }
-  /// Calls run(kernel..) with the kernels of all stages, for generators that need only the time.
+  /// Calls run(kernel..) with the kernels of all stages. All of them are prepared before the first
+  /// stage runs, so the preparation must need only the time, not the spins.
   template <class Exec, class Generator, class Run>
   void with_kernels(Exec const& exec, Generator const& generator, double t, double dt,
                     detail::EndOutputs<Tableau, Real> const& outputs, Run const& run) const {
@@ -259,9 +261,9 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
   std::int64_t evaluations_done_ = 0;
 };
 
-/// Adaptive Runge-Kutta-Munthe-Kaas: the embedded tableau in the Lie algebra. A at the end of a
-/// step gives the first increment of the next step, because the inverse differential at 0 is the
-/// identity.
+/// Adaptive Runge-Kutta-Munthe-Kaas: the embedded tableau is applied to coordinates in the Lie
+/// algebra. The first increment of a step is dt times the generator at the end of the previous
+/// step, because the inverse differential at 0 is the identity.
 template <class Spins, class Embedded = tableau::Tsitouras5, class Isotropy = isotropy::Zero,
           class Rotation = Cayley>
 class AdaptiveRkmk : public AdaptiveRungeKutta<Spins, Embedded, update::Lie<Rotation>, Isotropy> {
@@ -271,7 +273,8 @@ class AdaptiveRkmk : public AdaptiveRungeKutta<Spins, Embedded, update::Lie<Rota
       : AdaptiveRkmk::AdaptiveRungeKutta("AdaptiveRkmk", like, options, isotropy) {}
 };
 
-/// Adaptive Runge-Kutta in the stereographic chart at the spins at the start of each step.
+/// Adaptive Runge-Kutta in stereographic coordinates. The chart of each spin is centred at its
+/// direction at the start of the internal step (update::Stereographic).
 template <class Spins, class Embedded = tableau::Tsitouras5>
 class AdaptiveStereographic : public AdaptiveRungeKutta<Spins, Embedded, update::Stereographic> {
  public:
@@ -279,8 +282,8 @@ class AdaptiveStereographic : public AdaptiveRungeKutta<Spins, Embedded, update:
       : AdaptiveStereographic::AdaptiveRungeKutta("AdaptiveStereographic", like, options) {}
 };
 
-/// Adaptive baseline: a step in Cartesian components, at the end of which each spin is divided by
-/// its length.
+/// Baseline for comparison: adaptive Runge-Kutta in Cartesian components. At the end of each
+/// internal step, each spin is divided by its length.
 template <class Spins, class Embedded = tableau::DormandPrince5>
 class AdaptiveProjected : public AdaptiveRungeKutta<Spins, Embedded, update::Projected> {
  public:

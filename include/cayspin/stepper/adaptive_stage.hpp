@@ -9,11 +9,11 @@
 
 #include <cstddef>
 
-// Kernels of an adaptive Runge-Kutta step in addition to RungeKuttaStage. Tableau is a
-// FirstSameAsLast.
+// Kernels that an adaptive Runge-Kutta step runs in addition to RungeKuttaStage. `Tableau` is a
+// FirstSameAsLast throughout.
 namespace cayspin::inline v0_2::detail {
 
-/// Functor that computes the generator at the start of a run, and |A x m|^2, the squared rate of
+/// Functor that computes the generator A at the start of a run, and |A x m|^2, the squared rate of
 /// the spin.
 template <class Isotropy, class Generator, class Real>
 struct FirstGeneratorStage {
@@ -107,8 +107,9 @@ struct EndStage {
     f[stages - 1] = Update::increment(total, Vec3<Value>(Value(dt) * xi), m, m0);
     Vec3<Value> const error = weighted_sum<ErrorWeights<Tableau>, stages>(f);
     Vec3<Value> const difference = m - Update::finish(Vec3<Value>(total - error), m0);
-    // If coordinates are large, they may differ although the rotations hardly do. Then the larger
-    // of two errors counts: that of the spin and that of the coordinates.
+    // Large coordinates may differ much although the spins to which they lead hardly differ. If
+    // |total| > 2, the larger of two errors therefore counts: that of the spin and that of the
+    // coordinates.
     Vec3<Value> const unbounded = cross(error, m0);
     Value const apart = dot(difference, difference), of_error = dot(unbounded, unbounded);
     site.store(xi, to.last);
@@ -132,7 +133,7 @@ struct DenseOutput {
   Real dt;
   Real weights[std::size_t{stages}] = {};
 
-  /// Sets the time to that at the fraction s of the step.
+  /// Sets the time of the output: s is 0 at the start of the step and 1 at its end.
   void set_fraction(double s) {
     for (int j = 0; j < stages; ++j) {
       double weight = 0;

@@ -17,10 +17,10 @@ namespace cayspin::inline v0_2 {
 /// step is an angle, the largest over all spins: dt^3 / 12 times the third derivative of a spin,
 /// which is the error for a spin that precesses. The third derivative is estimated by a divided
 /// difference of the changes of the spins over three steps. This divided difference is multiplied
-/// by (1 + b K)^-1 (see StiffGauss), so that leftover short spin waves do not count. If the
-/// generator is not stationary, the rate at the end of the step replaces the earliest of the three
-/// changes. Corrections use K + c in place of K, where c is the mean of A.m over the sites, but at
-/// least 0, and 0 without precession.
+/// by (1 + b * K)^-1 (see StiffGauss), which suppresses what is left of spin waves that are too
+/// short for dt. If the generator is not stationary, the rate at the end of the step replaces the
+/// earliest of the three changes. Corrections use K + c in place of K, where c is the mean of A.m
+/// over the sites, but at least 0, and 0 without precession.
 ///
 /// `step(.., t, dt)` takes internal steps until they reach t + dt, and computes the spins at t +
 /// dt; within an internal step A is interpolated linearly. The internal steps do not depend on dt,
@@ -76,8 +76,9 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
     step_towards(exec, generator, spins, t, dt, t + dt);
   }
 
-  /// Like `step`, but changes `spins` only if the internal steps reach `wanted`, a time at or after
-  /// t + dt: then `spins` are those at this time. Throws like `step`.
+  /// Like `step`, but changes `spins` only if the internal steps, which continue until they reach t
+  /// + dt, also reach `wanted`, a time at or after t + dt. `spins` are then those at `wanted`.
+  /// Throws like `step`.
   template <class Exec, class Generator>
   void step_towards(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
                     double wanted) {
@@ -92,11 +93,11 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
  private:
   static constexpr auto name = "AdaptiveStiffGauss2";
   static constexpr double share_of_corrections =
-      0.05;                                   // error left by corrections / step tolerance
-  static constexpr double most_growth = 2;    // above it, extrapolation from earlier steps fails
+      0.05;                                 // (error that corrections may leave) / (step tolerance)
+  static constexpr double most_growth = 2;  // largest (next dt) / dt at which extrapolation works
   static constexpr double fast_enough = 0.4;  // desired convergence factor of corrections
-  // If the error / tolerance of a step is below this, the first estimate in the next step is A at
-  // the stage of the last step, without extrapolation.
+  // If (error of a step) / (step tolerance) is below this, the first estimate in the next step is A
+  // at the stage of the last step, without extrapolation.
   static constexpr double hardly_changes = 0.1;
 
   template <class Exec, class Generator>

@@ -75,8 +75,8 @@ struct ExactFlow {
   }
 
  private:
-  /// Returns the sum over k = 0 .. Terms - 1 of first * x^k / ((Odd + 1) * .. * (Odd + 2 k)). Even
-  /// and odd k are summed separately, which halves the chain of dependent operations.
+  /// Returns the sum over k = 0 .. Terms - 1 of first * x^k / ((Odd + 1) * .. * (Odd + 2 * k)).
+  /// Even and odd k are summed separately, which halves the chain of dependent operations.
   template <int Odd, int Terms>
   KOKKOS_FORCEINLINE_FUNCTION static Value series(Value const& x, double first) {
     double coefficient[std::size_t{Terms}] = {first};
@@ -94,8 +94,8 @@ struct ExactFlow {
   }
 
   /// Returns q after the time dt for |f| < 3/2 and damping * |f| < 1/2, where f = dt * h and turn2
-  /// = |f|^2. All functions are power series in |f|^2, so that no root is needed. The damping moves
-  /// q towards f as relativistic aberration moves the direction of light.
+  /// = |f|^2. All functions are power series in |f|^2, so that no root is needed. Damping turns q
+  /// towards f by the formula of relativistic aberration.
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> small(Vec3<Value> const& f, Value const& turn2,
                                                 Vec3<Value> const& q) const {
     constexpr bool is_double = sizeof(Scalar) == sizeof(double);
@@ -170,7 +170,8 @@ struct ExactFlow {
 
   /// Returns q after one Newton step towards length 1. For a spin nearly opposite to the field, an
   /// error in the length would grow as fast as the angle between the spin and the direction
-  /// opposite to the field. Spins that `rests` marks (no field or no damping) keep their bits.
+  /// opposite to the field. Spins that `rests` marks (no field or no damping) are returned bitwise
+  /// unchanged.
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> kept_on_sphere(Vec3<Value> const& q,
                                                                 Mask const& rests) {
     Value const factor = multiply_add(Value(Scalar(-0.5)), dot(q, q), Value(Scalar(1.5)));

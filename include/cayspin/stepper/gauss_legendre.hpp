@@ -12,7 +12,7 @@ namespace cayspin::inline v0_2::detail {
 
 /// Gauss's collocation method with the tableau a_ij, b_j for dm/dt = w(t) x m on one site. Given
 /// f_i = dt * w(t + nodes[i] * dt), it solves
-///   Y_i = m + sum_j a_ij f_j x Y_j, m1 = m + sum_j b_j f_j x Y_j.
+///   Y_i = m + sum_j a_ij * f_j x Y_j, m1 = m + sum_j b_j * f_j x Y_j.
 /// These linear equations are solved directly, without iteration, so that |m| is preserved for any
 /// f. (Hairer, Lubich, Wanner 2006, Sec. II.1.3 and IV.2.1)
 template <int Stages>
@@ -50,10 +50,11 @@ struct GaussLegendre<2> {
                                                        Vec3<Value> const& m,
                                                        Vec3<Value> (&stage)[2]) {
     // With u = f_1 / 4, v = f_2 / 4, p_1 = u x Y_1, p_2 = v x Y_2:
-    // Y_1 = m + p_1 + (1 - 2/sqrt3) p_2, Y_2 = m + (1 + 2/sqrt3) p_1 + p_2.
-    // (1 - u x)^-1 = s R with s = 1 / (1 + |u|^2), R = 1 + u x + u u^T. Eliminating Y_1
-    // leaves a linear system for Y_2, whose matrix has the rows a, b, c:
-    //   Y_2 - p_2 + (s R - 1) p_2 / 3 = m + (1 + 2/sqrt3) (s R - 1) m.
+    // Y_1 = m + p_1 + (1 - 2/sqrt3) * p_2, Y_2 = m + (1 + 2/sqrt3) * p_1 + p_2.
+    // With the matrix [u] of the cross product, [u] w = u x w, the inverse of 1 - [u] is s * R,
+    // where s = 1 / (1 + |u|^2) and R = 1 + [u] + u u^T. Eliminating Y_1 leaves a linear system for
+    // Y_2, whose matrix has the rows a, b, c:
+    //   Y_2 - p_2 + (s * R - 1) p_2 / 3 = m + (1 + 2/sqrt3) * (s * R - 1) m.
     auto const plus = as_value<Value>(1 + 2 / sqrt3), minus = as_value<Value>(1 - 2 / sqrt3);
     Vec3<Value> const u = Value(0.25) * f[0], v = Value(0.25) * f[1];
     Value const s = Value(1) / (Value(1) + dot(u, u));
@@ -79,15 +80,15 @@ struct GaussLegendre<2> {
   }
 
  private:
-  /// Returns (s R - 1) w.
+  /// Returns (s * R - 1) w.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> turned_by(Value const& s, Vec3<Value> const& u,
                                                            Vec3<Value> const& w) {
     Vec3<Value> const c = cross(u, w);
     return s * (c + cross(u, c));
   }
-  /// Returns a row of the matrix: unit - 4/3 (unit x v) + s/3 (r x v), for a unit vector `unit` and
-  /// the row r of R. `third` is s/3, and `beside` is unit x v.
+  /// Returns a row of the matrix: unit - 4/3 * (unit x v) + s/3 * (r x v), for a unit vector `unit`
+  /// and the row r of R. `third` is s/3, and `beside` is unit x v.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> row(Value const& third, Vec3<Value> const& v,
                                                      Vec3<Value> const& r, Vec3<Value> const& unit,

@@ -39,8 +39,9 @@ struct ImplicitOptions {
 
 namespace detail {
 
-/// One iteration of an implicit step: computes m1 = R(dt xi) m0 or, if `to_middle`, (m0 + m1) / 2,
-/// with A evaluated at `level`, the current estimate.
+/// One iteration of an implicit step: computes m1 = R(dt * xi) m0, where R is Rotation, and xi is A
+/// with its isotropy at the spins `level`, the current estimate. Stores m1 or, if `to_middle` is
+/// true, (m0 + m1) / 2.
 template <class Isotropy, class Rotation, class Generator, class Real>
 struct ImplicitStage {
   Generator generator;
@@ -75,7 +76,7 @@ struct ImplicitSigma {
   static std::size_t bytes() { return 0; }
 };
 
-/// Base class of implicit methods: m1 = R(dt xi(p)) m0, where R is Rotation, xi is A with its
+/// Base class of implicit methods: m1 = R(dt * xi(p)) m0, where R is Rotation, xi is A with its
 /// isotropy, and p is m1 or, if AtMiddle, (m0 + m1) / 2.
 template <class Spins, class Isotropy, class Rotation, bool AtMiddle>
 class Implicit : public StepperBase<Spins> {
@@ -193,7 +194,7 @@ class Implicit : public StepperBase<Spins> {
 
 }  // namespace detail
 
-/// Implicit Euler, order 1: m1 = cay(dt xi(m1)) m0, xi = A + sigma m, solved by fixed-point
+/// Implicit Euler, order 1: m1 = cay(dt * xi(m1)) m0, xi = A + sigma * m, solved by fixed-point
 /// iteration or, if that fails, by Newton's method. Lewis and Nigam 2002, Sec. 4.2.
 template <class Spins, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class ImplicitLieEuler : public detail::Implicit<Spins, Isotropy, Rotation, false> {
@@ -204,9 +205,9 @@ class ImplicitLieEuler : public detail::Implicit<Spins, Isotropy, Rotation, fals
       : ImplicitLieEuler::Implicit("ImplicitLieEuler", like, isotropy, options) {}
 };
 
-/// Implicit midpoint in Cayley form, order 2: m1 = cay(dt A((m0 + m1) / 2)) m0. Conserves |m| and,
-/// without damping, energies that are quadratic in the spins. A sigma would have no effect. Not in
-/// Lewis and Nigam 2002.
+/// Implicit midpoint in Cayley form, order 2: m1 = cay(dt * A((m0 + m1) / 2)) m0. Conserves |m|
+/// and, without damping, energies that are quadratic in the spins. A sigma would have no effect.
+/// Not in Lewis and Nigam 2002.
 template <class Spins>
 class ImplicitMidpoint : public detail::Implicit<Spins, isotropy::Zero, Cayley, true> {
  public:

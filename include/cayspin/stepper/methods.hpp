@@ -14,7 +14,7 @@
 // isotropy.
 namespace cayspin::inline v0_2 {
 
-/// Geometric Euler, order 1: m <- cay(dt xi) m, xi = A(m) + sigma m.
+/// Geometric Euler, order 1: m <- cay(dt * xi) m, xi = A(m) + sigma * m.
 /// Lewis and Nigam 2002, Sec. 4.2. <cayspin/stepper/corrected_euler.hpp> adds the isotropies
 /// FiniteDifference and FiniteDifferenceBackward, and <cayspin_paper/analytic_sigma.hpp> adds
 /// Analytic and Connection.
@@ -25,8 +25,8 @@ class LieEuler : public RungeKutta<Spins, tableau::Euler, update::Lie<Rotation>,
       : LieEuler::RungeKutta("LieEuler", like, isotropy) {}
 };
 
-/// Geometric Heun, order 2: F = dt (xi(m) + xi(cay(dt xi(m)) m)) / 2, m <- cay(F) m,
-/// xi = A + sigma m. Lewis and Nigam 2002, Sec. 4.3.
+/// Geometric Heun, order 2: F = dt * (xi(m) + xi(cay(dt * xi(m)) m)) / 2, m <- cay(F) m,
+/// xi = A + sigma * m. Lewis and Nigam 2002, Sec. 4.3.
 template <class Spins, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class LieHeun
     : public RungeKutta<Spins, tableau::Heun, update::LieUncorrected<Rotation>, Isotropy> {
@@ -36,9 +36,9 @@ class LieHeun
 };
 
 /// Runge-Kutta-Munthe-Kaas of order 4:
-/// F1 = dt xi(m), F2 = D(F1/2), F3 = D(F2/2), F4 = D(F3), D(f) = dcay_f^-1 (dt xi(cay(f) m)),
-/// m <- cay((F1 + 2 F2 + 2 F3 + F4)/6) m, xi = A + sigma m. Lewis and Nigam 2002, Sec. 4.4, with
-/// corrections to its stages 3 and 4.
+/// F1 = dt * xi(m), F2 = D(F1/2), F3 = D(F2/2), F4 = D(F3), D(f) = dcay_f^-1 (dt * xi(cay(f) m)),
+/// m <- cay((F1 + 2 * F2 + 2 * F3 + F4) / 6) m, xi = A + sigma * m. Lewis and Nigam 2002, Sec. 4.4,
+/// with corrections to its stages 3 and 4.
 template <class Spins, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class Rkmk4 : public RungeKutta<Spins, tableau::Classical4, update::Lie<Rotation>, Isotropy> {
  public:
@@ -47,9 +47,9 @@ class Rkmk4 : public RungeKutta<Spins, tableau::Classical4, update::Lie<Rotation
 };
 
 /// Runge-Kutta-Munthe-Kaas with any explicit tableau; the order is that of the tableau. To add a
-/// method, write a struct like those in cayspin::tableau. F_i = D(sum_j a_ij F_j), D(f) =
-/// dcay_f^-1 (dt xi(cay(f) m)), m <- cay(sum_i b_i F_i) m, xi = A + sigma m. Lewis and Nigam 2002,
-/// Sec. 2.
+/// method, write a struct like those in cayspin::tableau. F_i = D(sum_j a_ij * F_j), D(f) =
+/// dcay_f^-1 (dt * xi(cay(f) m)), m <- cay(sum_i b_i * F_i) m, xi = A + sigma * m. Lewis and Nigam
+/// 2002, Sec. 2.
 template <class Spins, class Tableau, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class Rkmk : public RungeKutta<Spins, Tableau, update::Lie<Rotation>, Isotropy> {
  public:
@@ -57,9 +57,9 @@ class Rkmk : public RungeKutta<Spins, Tableau, update::Lie<Rotation>, Isotropy> 
       : Rkmk::RungeKutta("Rkmk", like, isotropy) {}
 };
 
-/// Runge-Kutta with any explicit tableau in the stereographic chart at the spin at the start of
-/// each step. All coordinates are orthogonal to that spin (update::Stereographic). The order is
-/// that of the tableau. It accepts no sigma.
+/// Runge-Kutta with any explicit tableau in stereographic coordinates. The chart of each spin is
+/// centred at its direction at the start of the step, to which all coordinates are orthogonal
+/// (update::Stereographic). The order is that of the tableau. The method accepts no sigma.
 template <class Spins, class Tableau = tableau::Classical4>
 class StereographicRungeKutta
     : public RungeKutta<Spins, Tableau, update::Stereographic, isotropy::Zero> {
@@ -150,8 +150,9 @@ class ProjectedRk4 : public ProjectedRungeKutta<Spins, tableau::Classical4> {
 /// that round-off does not grow with the number of steps. In float, an error of about 1e-6 remains,
 /// because fields are evaluated at rounded spins; a step takes up to a third more time
 /// (docs/reference/methods.md). The method needs one more field of work memory, and always stores
-/// increments. Do not compile it with -ffast-math. It remembers the previous step: `spins` must be
-/// those at the end of that step. Otherwise call `reset` first.
+/// the increments of its stages, which some methods otherwise recompute from spins. Do not compile
+/// it with -ffast-math. It remembers the previous step: `spins` must be those at the end of that
+/// step. Otherwise call `reset` first.
 template <class Stepper>
   requires requires {
     typename Stepper::tableau_type;

@@ -39,14 +39,15 @@ struct MultirateOptions {
 /// Orders 2 and 3 interpolate by the polynomials through the last Order - 1 values (first pass) and
 /// Order values (second pass). Order 4 uses polynomials chosen for stability
 /// (multirate_weights.hpp), from 4 and 5 values. In its first steps and after unequal steps it
-/// interpolates at most 3 and 4 values instead. If only the expensive field makes a mode precess,
-/// on a circle and with the frequency w, then its amplitude changes by a small fraction of itself
-/// per step. At order 2 it grows by about (w * dt)^4 / 4. It falls by about 3/8 * (w * dt)^4 at
-/// order 3, and by about (w * dt)^6 at order 4.
+/// interpolates at most 3 and 4 values instead. Consider a mode that precesses on a circle, with
+/// the angular frequency w, because of the expensive field only. In each step its amplitude changes
+/// by a small fraction of its value. With x = w * dt, it grows by about x^4 / 4 at order 2, falls
+/// by about 3/8 * x^4 at order 3, and falls by about x^6 at order 4.
 ///
-/// Let D be the largest eigenvalue of the expensive field. At order 4, no linear mode grew up to dt
-/// * D = 0.05, 0.24, 0.35, 0.5 at damping 0.002, 0.008, 0.02, 0.1. At order 3 these limits are
-/// 0.02, 0.08, 0.14, 0.4. Without damping, short waves gain energy slowly.
+/// Let D be the largest eigenvalue of the linear map from the spins to the expensive field. At
+/// order 4, no linear mode grew up to dt * D = 0.05, 0.24, 0.35, 0.5 at damping 0.002, 0.008, 0.02,
+/// 0.1. At order 3 these limits are 0.02, 0.08, 0.14, 0.4. Without damping, short waves gain energy
+/// slowly.
 ///
 /// The first step evaluates the expensive field in each stage of its substeps. Steps may change
 /// their length, but a step that is more than twice as long as the last one, or has the opposite
@@ -72,8 +73,8 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   static constexpr int work_fields = static_cast<int>(past_fields) + 2 + Stepper::work_fields;
   static constexpr int ghosts = detail::ghosts_of<Stepper>;
 
-  /// `slow`: the SlowField in the field of the generator. Throws std::invalid_argument when the
-  /// number of substeps is below 1, or `slow` was made for another lattice.
+  /// `slow`: the SlowField that the generator's field contains. Throws std::invalid_argument when
+  /// the number of substeps is below 1, or `slow` was made for another lattice.
   Multirate(Spins const& like, Stepper stepper, SlowTerm slow, MultirateOptions const& options = {})
       : Base("Multirate", like.lattice(), ghosts),
         stepper_(std::move(stepper)),

@@ -18,14 +18,13 @@ namespace cayspin::inline v0_2 {
 /// are fixed. Each spin moves by the exact flow of one spin in a fixed field, with precession and
 /// damping together. Works in place, without work memory.
 ///
-/// On-site terms (anisotropy, a local demagnetising field) are evaluated at the mean of the spins
-/// before and after the move, which is found by iteration. Field terms are therefore also evaluated
-/// at spins shorter than one, and at the zero vector. Without damping, a step of -dt undoes a step
-/// of dt.
+/// On-site terms (anisotropy, a local demagnetising field) are evaluated at the mean of the spin
+/// before and after its move, which is found by iteration. Field terms must therefore accept spins
+/// shorter than 1, including the zero vector. Without damping, a step of -dt undoes a step of dt.
 ///
 /// If the energy is at most quadratic in the spins and does not depend on t, both orders conserve
 /// it to round-off without damping. With damping, order 2 never raises it; order 4 may, because one
-/// of the five steps of order 2 in it goes backwards. This holds for any dt at which the iteration
+/// of its five steps of order 2 goes backwards. This holds for any dt at which the iteration
 /// converges: |dt| * (1 + damping) * (strength of the on-site terms) must be below about 1/2.
 template <class Spins, int Order>
 class RedBlack : public detail::StepperBase<Spins> {

@@ -17,10 +17,11 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// One pass over a colour, in which each spin makes one flow, or two where one step of order 2 ends
-/// and the next one starts. `length` of a flow is its duration, and `middle` is the time from the
-/// start of the step to the midpoint of the flow. Both are in units of dt. `of_one_step`: the flows
-/// belong to one call of `step`, not to consecutive steps of a batch.
+/// One pass over the spins of a colour. Each spin moves by one flow (its exact motion in a fixed
+/// field), or by two where one step of order 2 ends and the next one starts. `length` of a flow is
+/// its duration, and `middle` is the time from the start of the step to the midpoint of the flow.
+/// Both are in units of dt. `of_one_step`: the flows belong to one call of `step`, not to
+/// consecutive steps of a batch.
 struct ColourPass {
   std::int32_t colour = 0, flows = 1;
   bool of_one_step = true;
@@ -28,11 +29,11 @@ struct ColourPass {
 };
 
 /// Returns the passes of a step. Order 2: colour 0 over dt/2, colour 1 over dt, colour 0 over dt/2.
-/// Order 4: five such steps, over a, a, 1 - 4 a, a, a of dt with a = 1/(4 - 4^(1/3)) (Suzuki 1990).
-/// Adjacent flows of colour 0 share a pass. RedBlackStage joins them into one flow, unless the
-/// field depends on the spin itself or on t. If it depends on the spin itself, a flow is only
-/// accurate to order 2, and joined flows would spoil the cancellation of errors between the five
-/// steps.
+/// Order 4: five such steps, with a * dt, a * dt, (1 - 4 * a) * dt, a * dt and a * dt in place of
+/// dt, where a = 1 / (4 - 4^(1/3)) (Suzuki 1990). Adjacent flows of colour 0 share a pass.
+/// RedBlackStage joins them into one flow, unless the field depends on the spin itself or on t. If
+/// it depends on the spin itself, a flow is only accurate to order 2, and joined flows would spoil
+/// the cancellation of errors between the five steps.
 template <int Order>
 constexpr auto colour_passes() {
   constexpr std::size_t steps = Order == 2 ? 1 : 5;
@@ -100,7 +101,7 @@ struct RedBlackStage {
 
   static constexpr bool takes_pairs = true;
 
-  /// Moves one pack of spins, or two alternately.
+  /// Moves one pack of spins, or two packs whose operations alternate.
   template <class Site, class... Second>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Second const&... second) const {
     Moving<Site> of_site(*this, site);

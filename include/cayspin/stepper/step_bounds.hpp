@@ -11,9 +11,9 @@
 namespace cayspin::inline v0_2 {
 
 /// A time interval in which steps are at most max_dt long. A longer step that would pass `begin` is
-/// shortened, so that a step ends there. max_dt = 0 stands for a jump of the field between `begin`
-/// and `end`, which are a few ulp of t apart: steps end at `begin`, and a new run starts at `end`
-/// with the same spins.
+/// shortened: to max_dt if `begin` is at most max_dt away, otherwise so that steps end exactly at
+/// `begin`. max_dt = 0 stands for a jump of the field between `begin` and `end`, which are a few
+/// ulp of t apart: steps end at `begin`, and a new run starts at `end` with the same spins.
 struct StepBound {
   double begin = 0, end = 0, max_dt = 0;
 };

@@ -23,16 +23,16 @@
 namespace cayspin::inline v0_2 {
 
 /// Gauss's collocation method for stiff exchange. Order 2 is implicit midpoint in Cayley
-/// coordinates: m1 = cay(f) m0, f = dt A((m0 + m1) / 2). Order 4 has two coupled stages.
+/// coordinates: m1 = cay(f) m0, f = dt * A((m0 + m1) / 2). Order 4 has two coupled stages.
 ///
 /// The estimate of A at the stages is first extrapolated from earlier steps, then corrected. Each
-/// correction adds (1 + b K)^-1 times the residual, which is A at the spins of the stages minus the
-/// estimate. Here K = -J Lap is the exchange as measured in the first step, with the lattice
-/// Laplacian Lap. b is an eigenvalue of the tableau times dt * (damping - i), or times dt * damping
-/// if there is no precession; i stands for m x. These are the corrections of Newton's method if
-/// exchange couples sites along one axis only and the spins are nearly parallel. One or two
-/// corrections per step are typical. If the corrections of a step do not converge, the step is
-/// halved.
+/// correction adds (1 + b * K)^-1 times the residual, which is A at the spins of the stages minus
+/// the estimate. Here K = -J * Lap is the exchange operator, with the lattice Laplacian Lap and the
+/// coupling J (one for each axis), which is measured in the first step. b is an eigenvalue of the
+/// tableau times dt * (damping - i), or times dt * damping if there is no precession; i stands for
+/// the operation m x. These are the corrections of Newton's method if exchange couples sites along
+/// one axis only and the spins are nearly parallel. One or two corrections per step are typical. If
+/// the corrections of a step do not converge, the step is halved.
 ///
 /// Conserves |m|. If H is affine and the generator has no damping, also conserves the energy to
 /// round-off, and the total spin if isotropic exchange is the only term. Works with any generator,
@@ -91,10 +91,10 @@ class StiffGauss : public detail::StepperBase<Spins> {
   }
 
   /// Advances `spins` from t to t + dt under `generator`. A step swaps the memory of `spins` with
-  /// that of the stepper, so call spins.array() again after it. Waits. If a term of the field
-  /// throws, `spins` is unchanged. Throws NotConverged, with `spins` unchanged, when the equations
-  /// are not solved even for halved steps, and std::invalid_argument when `spins` is not on the
-  /// lattice given at construction or the lattice has replicas.
+  /// that of the stepper, so call spins.array() again after it. Waits for each correction. If a
+  /// term of the field throws, `spins` is unchanged. Throws NotConverged, with `spins` unchanged,
+  /// when the equations are not solved even for halved steps, and std::invalid_argument when
+  /// `spins` is not on the lattice given at construction or the lattice has replicas.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
@@ -231,7 +231,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
       if (generator.conserves_energy()) return 4 * epsilon;
     if (history != nullptr && history->is_complete()) return history->tolerance(first);
     // `first` is proportional to the power `of_rotation` of the angle by which spins turn in the
-    // step. Without history it is this angle itself.
+    // step. Without history, `first` is this angle itself.
     double const of_rotation = 1 + (history != nullptr ? history->known() : 0);
     return std::max(std::min(1e-3 * first, 0.01 * std::pow(first, (Order + 1) / of_rotation)),
                     16 * epsilon);

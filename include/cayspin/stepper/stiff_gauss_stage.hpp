@@ -86,7 +86,7 @@ struct CorrectStage {
   SiteArray<Real, 6> solution[std::size_t{Stages}];
   SiteArray<Real, 3> spins, x[std::size_t{Stages}], stage[std::size_t{Stages}], end;
   Real dt, real, imaginary;  // `real` and `imaginary`: parts of the factor
-  bool only_rotated_part;    // true if v' is zero in all solutions
+  bool only_rotated_part;    // true if the part v' of each solution (v', v'') is zero
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
@@ -149,9 +149,9 @@ struct SumAlongSpins {
   }
 };
 
-/// Functor that sums weighted changes of the spins over steps, and stores the cross product of the
-/// spins at a stage with this sum. The result is a right side for the solver that StiffGauss uses
-/// for corrections.
+/// Functor that sums the changes of the spins over the last three steps, with weights, and stores
+/// the cross product of the spins at a stage with this sum. The result is a right side for the
+/// solver that StiffGauss uses for corrections.
 template <class Real>
 struct SecondDifference {
   SiteArray<Real, 3> spins[4];  // at the end of the last step, and at the starts of the last three

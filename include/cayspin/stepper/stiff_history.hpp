@@ -16,10 +16,11 @@ namespace cayspin::inline v0_2 {
 
 /// Options of StiffGauss.
 struct StiffOptions {
-  /// Bound on the largest remaining error of any site's rotation vector. 0 (the default) means:
-  /// round-off, if the generator conserves the energy. Otherwise 1/200 of the usual first
-  /// correction (for order 4 down to 1/1000, if that correction is small) and, in the first steps,
-  /// at most 1/1000 of the first correction.
+  /// Bound on the largest remaining error of any site's rotation vector. 0 (the default): chosen in
+  /// each step. If the generator conserves the energy, the bound is then round-off. Otherwise it is
+  /// a fraction of the step's first correction: 1/200 (for order 4 down to 1/1000, if that
+  /// correction is small), or at most 1/1000 in the first steps of a run. A first correction counts
+  /// as at most 1.2 times that of the previous step.
   double tolerance = 0;
   int iterations = 30;  ///< most corrections before the step is halved
   int halvings = 12;    ///< most successive halvings before NotConverged is thrown

@@ -122,8 +122,8 @@ struct Damped54 {
 };
 
 /// Commutator-free, order 4 (Celledoni, Marthinsen and Owren 2003). The coordinates of each
-/// rotation are a weighted sum of the increments dt A of the stages. A rotation with the weights a
-/// leads from the start of the step to each stage; for the last stage, a rotation with second_a
+/// rotation are a weighted sum of the increments dt * A of the stages. A rotation with the weights
+/// a leads from the start of the step to each stage; for the last stage, a rotation with second_a
 /// follows. Two rotations lead to the end of the step: first with b, then with second_b.
 struct CommutatorFree4 {
   static constexpr int stages = 4, order = 4;

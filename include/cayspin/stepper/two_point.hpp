@@ -14,14 +14,14 @@
 #include <limits>
 
 // Methods whose steps use two values of the generator A, one of which is stored in a field:
-// LieEuler with sigma from finite differences of A_o = A - (m.A) m, and the two-step method of
+// LieEuler with sigma from finite differences of A_o = A - (m.A) * m, and the two-step method of
 // Adams and Bashforth.
 namespace cayspin::inline v0_2 {
 
 namespace detail {
 
 /// Input of a rule (one of the functors below) at a site: the spin m at which A is evaluated, the
-/// spin m0 at the start of the step, a = A + sigma m with the sigma of the isotropy policy, the
+/// spin m0 at the start of the step, a = A + sigma * m with the sigma of the isotropy policy, the
 /// stored vector `kept`, and dt. The rule returns the coordinates F of the rotation that moves m0.
 /// If Rule::writes is true, it sets `kept` to the vector to store.
 template <class Value>
@@ -30,7 +30,7 @@ struct TwoPoints {
   Value dt;
 };
 
-/// F = dt A_o; stores A_o.
+/// F = dt * A_o; stores A_o.
 struct PredictOrthogonal {
   static constexpr bool reads = false, writes = true;
   template <class Value>
@@ -40,8 +40,8 @@ struct PredictOrthogonal {
   }
 };
 
-/// F = dt (w + sigma m0), where w is the stored A_o, and sigma comes from the difference between w
-/// and A_o at m.
+/// F = dt * (w + sigma * m0), where w is the stored A_o, and sigma comes from the difference
+/// between w and A_o at m.
 struct ForwardDifference {
   static constexpr bool reads = true, writes = false;
   double cap;
@@ -54,8 +54,8 @@ struct ForwardDifference {
   }
 };
 
-/// F = dt (w + sigma m); stores w. Here w is A_o at m, sigma comes from the difference between w
-/// and the stored A_o, multiplied by ratio = dt / (previous dt).
+/// F = dt * (w + sigma * m0); stores w. Here w is A_o at m, and sigma comes from the difference
+/// between w and the stored A_o. This difference is multiplied by ratio = dt / (previous dt).
 struct BackwardDifference {
   static constexpr bool reads = true, writes = true;
   double cap, ratio;
@@ -70,7 +70,7 @@ struct BackwardDifference {
   }
 };
 
-/// F = dt A; stores A.
+/// F = dt * A; stores A.
 struct PredictFull {
   static constexpr bool reads = false, writes = true;
   template <class Value>
@@ -80,7 +80,7 @@ struct PredictFull {
   }
 };
 
-/// F = dt (A + kept) / 2
+/// F = dt * (A + kept) / 2.
 struct Average {
   static constexpr bool reads = true, writes = false;
   template <class Value>
@@ -89,7 +89,7 @@ struct Average {
   }
 };
 
-/// F = dt (A + ratio (A - kept) / 2); stores A.
+/// F = dt * (A + ratio * (A - kept) / 2), with ratio = dt / (previous dt); stores A.
 struct Extrapolate {
   static constexpr bool reads = true, writes = true;
   double ratio;
@@ -150,7 +150,7 @@ struct TwoPointStage {
 
 }  // namespace detail
 
-/// A stepper that stores the generator A, or A_o = A - (m.A) m, between the two evaluations of a
+/// A stepper that stores the generator A, or A_o = A - (m.A) * m, between the two evaluations of a
 /// step, or from one step to the next. Method, for example detail::ForwardDifferenceMethod, defines
 /// how a step uses the stored and the new value. Work memory: two fields.
 template <class Spins, class Method, class Isotropy, class Rotation>
@@ -270,8 +270,9 @@ class TwoPoint : public detail::StepperBase<Spins> {
 };
 
 /// The two-step method of Adams and Bashforth, order 2 with one evaluation per step:
-/// m <- cay(dt (3 xi_n - xi_(n-1)) / 2) m, xi = A + sigma m. If dt changes, the argument of cay is
-/// dt (xi_n + (dt / previous dt) (xi_n - xi_(n-1)) / 2). The first step is a LieHeun step.
+/// m <- cay(dt * (3 * xi_n - xi_(n-1)) / 2) m, xi = A + sigma * m. If dt changes, the argument of
+/// cay is dt * (xi_n + (dt / previous dt) * (xi_n - xi_(n-1)) / 2). The first step is a LieHeun
+/// step.
 template <class Spins, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class LieAdamsBashforth2
     : public TwoPoint<Spins, detail::AdamsBashforthMethod, Isotropy, Rotation> {

@@ -67,7 +67,7 @@ template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value sigma_along_flow(isotropy::Analytic, Vec3<Value> const& rate,
                                                    Vec3<Value> const& x, Vec3<Value> const&,
                                                    Value const& along) {
-  // At equilibrium sigma is zero, because F = 0 leaves m bitwise unchanged.
+  // At equilibrium sigma is zero, so that F is zero and m stays bitwise unchanged.
   return guarded_quotient(multiply_subtract(along, dot(x, x), dot(rate, x)), dot(x, x));
 }
 

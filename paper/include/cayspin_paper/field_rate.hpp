@@ -15,12 +15,12 @@
 #include <concepts>
 #include <stdexcept>
 
-// Derivatives of the effective field, for Series4 and isotropy::Analytic. Those of the library's
-// terms are defined below. A user's term needs one of
+// Derivatives of the effective field, for Series4, isotropy::Analytic and isotropy::Connection.
+// Those of the library's terms are defined below. A user's term needs one of
 //   static constexpr int degree           see FieldTerm in cayspin/concepts.hpp
 //   Vec3<Value> linear_field(stencil)     the linear part of an H that is affine in the spins;
 //                                         requires is_affine()
-//   Vec3<Value> field_rate(m, rates)      only for Analytic: dH/dt at m, along the rates of the
+//   Vec3<Value> field_rate(m, rates)      not for Series4: dH/dt at m, along the rates of the
 //                                         stencil's array
 // and, if prepare is not enough,
 //   auto prepare_rate(exec, rates, t, dt)     returns the term for kernels that evaluate dH/dt at

@@ -46,8 +46,8 @@ struct Series4PaperCorrection {
   }
 };
 
-/// The truncated series of F, from a_k = d^k A / dt^k on the exact flow. It holds for any part of A
-/// along m. Lewis and Nigam 2002, Sec. 5.3.
+/// The truncated series of F, the coordinates of a step's rotation, from a_k = d^k A / dt^k on the
+/// exact flow. It holds for any part of A along m. Lewis and Nigam 2002, Sec. 5.3.
 struct DirectSeries {
   using Correction = Series4Correction;
   template <class Value>
@@ -193,7 +193,7 @@ class Series4 : public detail::StepperBase<Spins> {
   static constexpr int evaluations = 4;
   static constexpr int ghosts = 4;
   static constexpr int work_fields =
-      7;  // 1 for rigid bodies: the others are allocated on first use
+      7;  // rigid bodies need 1; the other 6 are allocated when first needed
 
   explicit Series4(Spins const& like, Isotropy = {})
       : Series4::StepperBase("Series4", like.lattice(), ghosts),
