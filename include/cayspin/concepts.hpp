@@ -75,10 +75,10 @@ int evaluations_of_next_step(Stepper const& stepper) {
 /// | `Vec3<Value> neighbor_field(stencil)` | part of H that the neighbours determine | see below |
 ///
 /// Choose between values with select(condition, yes, no). `if` does not work, because on the host a
-/// value is a pack of several sites. RedBlack calls neighbor_field instead of field. Its result
-/// must not depend on the spin m of the site itself, and may differ from H only by a multiple of m.
-/// If a non-local term has no neighbor_field, RedBlack evaluates the whole field for each iterate
-/// of a spin.
+/// value is a pack of several sites. RedBlack calls neighbor_field instead of field. The result of
+/// neighbor_field must not depend on the spin m of the site itself, and may differ from H only by a
+/// multiple of m. If a non-local term has no neighbor_field, RedBlack evaluates the whole field for
+/// each iterate of a spin.
 ///
 /// These members are called on the host before a kernel:
 ///
@@ -86,8 +86,8 @@ int evaluations_of_next_step(Stepper const& stepper) {
 /// |---|---|---|
 /// | `check_spins(spins)` | throws for unsuitable spins or invalid values | accepts all spins |
 /// | `auto prepare(exec, spins, t)` | the term for kernels at time t | the term itself |
-/// | `static bool depends_on_time` | prepare's result depends only on t and stays valid | false |
-/// | `bool is_stationary(exec, spins)` | prepare ignores t and spins | if it has no prepare |
+/// | `static bool depends_on_time` | prepare depends only on t; its results stay valid | false |
+/// | `bool is_stationary(exec, spins)` | prepare ignores t and spins | true without prepare |
 /// | `bool needs_only_time(exec, spins)` | prepare ignores spins | see the two above |
 /// | `bool is_affine()` | H is affine in the spins | true if it has a degree |
 /// | `static bool is_conservative` | false if H is not -dE/dm, as for a torque | true |
@@ -109,7 +109,7 @@ concept FieldTerm = requires {
 /// | `Vec3<Value> operator()(stencil)` | A at the stencil's centre | required |
 /// | `Vec3<Value> turning_part(stencil)` | A, up to a multiple of m | A |
 /// | `Value energy_density(stencil)` | the site's share of E | no energy |
-/// | `bool conserves_energy()` | host: E is conserved, and A = -dE/dm + c * m | no EnergyControl |
+/// | `bool conserves_energy()` | host: E is conserved, A + dE/dm is along m | no EnergyControl |
 /// | `bool is_orthogonal()` | A has no component along m | false |
 template <class Type, class Spins = SpinField<double, Kokkos::HostSpace>>
 concept Generator =
@@ -153,9 +153,10 @@ concept Stepper =
 /// | `int64 accepted_steps()` | internal steps accepted so far | required |
 /// | `int64 rejected_steps()` | internal steps rejected so far | required |
 /// | `reset()` | the next step starts from the t and spins passed to it | required |
-/// | `step_towards(exec, generator, spins, t, dt, wanted)` | see below | step |
-/// | `bool has_reached(t, dt)` | internal steps have reached t, up to round-off | step is called |
+/// | `step_towards(exec, generator, spins, t, dt, wanted)` | see below | see below |
+/// | `bool has_reached(t, dt)` | internal steps have reached t, up to round-off | see below |
 ///
+/// integrate() calls step_towards instead of step if the stepper has both of the last two members.
 /// step_towards writes the spins only when the internal steps have reached the time `wanted`, which
 /// may be later than t + dt.
 template <class Type>
@@ -181,8 +182,8 @@ concept Observer = requires(Type& observer, detail::ExecutionOf<Spins> const& ex
                std::is_same_v<decltype(observer(exec, step, spins)), Next>;
 };
 
-/// Returns the number of generator evaluations per step; empty unless the stepper declares a
-/// positive one.
+/// Returns Stepper::evaluations, the number of generator evaluations per step; empty if the stepper
+/// does not declare it, or if it is not positive.
 template <class Stepper>
 constexpr std::optional<int> evaluations_per_step() {
   if constexpr (detail::has_evaluations<Stepper>) {

@@ -23,9 +23,9 @@ struct Ghosts {
   friend bool operator==(Ghosts const&, Ghosts const&) = default;
 };
 
-/// A rectangular lattice of sites in one, two or three dimensions; in their numbering, x varies
-/// fastest. Along an axis of extent 1, even a periodic one, sites have no neighbours; along a
-/// periodic axis of extent 2, the other site is both neighbours of a site.
+/// A rectangular lattice of sites in one, two or three dimensions. Sites are numbered with the x
+/// index varying fastest. Along an axis of extent 1, even a periodic one, sites have no neighbours;
+/// along a periodic axis of extent 2, the other site is both neighbours of a site.
 struct Lattice {
   std::array<std::int64_t, 3> shape{1, 1, 1};
   std::array<double, 3> spacing{1, 1, 1};

@@ -36,7 +36,8 @@ struct KeepMobile {
   }
 };
 
-/// Makes a smooth pattern of vectors without symmetry, the longest of length 1.
+/// Writes a smooth pattern of vectors without symmetry to `disturbance`; the longest vector has
+/// length 1. Overwrites `work`.
 template <class Exec, class Spins>
 void make_disturbance(Exec const& exec, Preconditioner<Spins>& preconditioner, Spins const& work,
                       Spins const& disturbance) {
@@ -152,8 +153,9 @@ class PathFinder {
   /// strongest field: at the highest image if `of_highest`, otherwise at all images. Returns early
   /// after `most_steps` steps. Also returns early if the gradient stops falling; but unless
   /// `of_highest`, it first switches from L-BFGS to sweeps (PathString::sweep) and shortens their
-  /// steps whenever the gradient stops falling again. is_settled_ tells whether all images reached
-  /// the bound. Returns the reason if the whole search must end, otherwise nothing.
+  /// steps whenever the gradient stops falling again. Sets is_settled_ to true if all images
+  /// reached the bound and `of_highest` is false. Returns the reason if the whole search must end,
+  /// otherwise nothing.
   std::optional<PathEnd> relax(double bound, bool of_highest,
                                int most_steps = std::numeric_limits<int>::max()) {
     double share = 1, least = std::numeric_limits<double>::infinity();
@@ -217,8 +219,8 @@ class PathFinder {
     return false;
   }
 
-  /// Adds a fixed image at a minimum of the energy along the path, where the path may turn a
-  /// corner. Returns true if an image was added.
+  /// Relaxes the state at the lowest minimum of the energy along the path, and adds the result as a
+  /// fixed image, because the path may turn a corner there. Returns true if an image was added.
   bool add_minimum(double smallest) {
     auto const valley = next_peak(-1, smallest);
     if (!valley) return false;

@@ -25,8 +25,9 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-/// Functor that replaces the precession a and the damping b of a Turning by the p and q of
-/// InverseTurning. Also computes |q| and sqrt(a^2 + b^2).
+/// Functor that replaces the precession a and the damping b of a Turning by the coefficients of
+/// InverseTurning, p = a / (a^2 + b^2) and q = b / (a^2 + b^2), or by 0 where a and b are 0. Also
+/// computes |q| and sqrt(a^2 + b^2).
 template <class Real>
 struct InvertTurning {
   SiteArray<Real, 1> precession, damping;
@@ -136,8 +137,8 @@ class ModesAt {
 };
 
 /// Multiplies a mode, real + i * imaginary, by a complex number such that its longest vector has
-/// length 1 and the largest component of that vector is real and positive. Of vectors or components
-/// that differ only by round-off, the first one is taken as the largest.
+/// length 1 and the largest component of that vector is real and positive. If several vectors or
+/// components are equally large up to round-off, the first of them is taken.
 template <class Exec, class Spins>
 void normalize_mode(Exec const& exec, Spins const& real, Spins const& imaginary) {
   auto const x = copy_to_host(real), y = copy_to_host(imaginary);

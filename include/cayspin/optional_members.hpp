@@ -103,7 +103,8 @@ template <class Term, class Exec, class Spins>
 bool needs_only_time(Term const& term, Exec const& exec, Spins const& spins) {
   if constexpr (requires { term.needs_only_time(exec, spins); })
     return term.needs_only_time(exec, spins);
-  // A term with both members is made of others, of which only some may be independent of the spins.
+  // A term with both is_stationary and depends_on_time is made of other terms. Its depends_on_time
+  // is true if that of one of them is: the others may still need the spins.
   else if constexpr (requires { term.is_stationary(exec, spins); })
     return term.is_stationary(exec, spins);
   else

@@ -23,7 +23,7 @@ struct BondOfLength {
 };
 
 /// Returns every bond once, shortest first, between sites at most `reach` cells apart along each
-/// cell vector for which `repeats` is true.
+/// cell vector for which `repeats` is true, and in the same cell along the others.
 inline std::vector<BondOfLength> bonds_within(Crystal const& crystal, int reach,
                                               std::array<bool, 3> const& repeats) {
   std::vector<BondOfLength> bonds;

@@ -206,7 +206,7 @@ template <std::floating_point Real, class MemorySpace = Kokkos::DefaultExecution
 using ScalarField = SiteField<Real, 1, MemorySpace>;
 
 /// A unit vector per site, initially +z. Geometric steppers preserve the lengths of the spins that
-/// they are given: check spins that you copy in with require_unit_spins (observer/normalize.hpp).
+/// they are given: use require_unit_spins (observer/normalize.hpp) to check spins that you copy in.
 template <std::floating_point Real, class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class SpinField : public SiteField<Real, 3, MemorySpace> {
  public:

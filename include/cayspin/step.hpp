@@ -13,8 +13,8 @@ struct Step {
   bool stops = false;  // an earlier observer ends the run here
 };
 
-/// Return value by which an observer says whether an integration goes on. To return nothing means
-/// `proceed`.
+/// Return value by which an observer says whether an integration goes on. An observer that returns
+/// nothing never stops it.
 enum class Next { proceed, stop };
 
 }  // namespace cayspin::inline v0_2

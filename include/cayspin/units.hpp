@@ -99,9 +99,9 @@ class ReducedUnits {
   double length_unit() const { return length_; }  ///< m
   double field_unit() const { return field_; }    ///< T, of B = mu0 H
   double energy_unit() const { return energy_; }  ///< J
-  /// m/s, for ZhangLi: length_unit() divided by what time_unit() would be without the factor of
-  /// Gilbert's form, 1 + alpha^2. The unit of time already applies that factor to the torque, as to
-  /// all terms of the equation.
+  /// Unit of the velocity of ZhangLi, in m/s: length_unit() * Damping::time_factor() / time_unit().
+  /// The unit of time contains the time factor, and so applies it to all terms of the equation,
+  /// ZhangLi included. The velocity must not contain the factor a second time.
   double velocity_unit() const { return velocity_; }
   double damping() const { return damping_; }  ///< of LandauLifshitz
 

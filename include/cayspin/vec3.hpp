@@ -136,10 +136,11 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> select(typename ValueTraits<Value>::mask
 
 }  // namespace detail
 
-/// select<Value>(condition, yes, no) is `yes` at the sites where the condition holds, `no`
-/// elsewhere; for numbers or vectors. Use it in kernels instead of `if`, since a pack of sites may
-/// need both. Write conditions only with < and ==: select<Value>(Value(0) < m.z, a, b). Kokkos 4.7
-/// compares 512-bit packs of doubles the wrong way round with > and >=.
+/// select<Value>(condition, yes, no) is `yes` at the sites where the condition holds, and `no`
+/// elsewhere; both are numbers, or both are vectors. Use it in kernels instead of `if`, since a
+/// pack of sites may need both. Write conditions only with < and ==, for example
+/// select<Value>(Value(0) < m.z, a, b). Kokkos 4.7 compares 512-bit packs of doubles the wrong way
+/// round with > and >=.
 using detail::select;
 
 }  // namespace cayspin::inline v0_2

@@ -53,7 +53,7 @@ class Convolution {
                        planes() * padded_plane_ + kernel_.work_numbers()) {}
 
   /// Returns the bytes of the spectrum and the interactions. The work memory of the threads is not
-  /// included: each has three planes for each site of a cell, and some rows.
+  /// included: each thread has three planes for each site of a cell, and some rows.
   static std::int64_t work_bytes(Lattice const& lattice, Interactions const& interactions) {
     Parts const parts(lattice);
     std::int64_t const ny = interactions.cells()[1];
@@ -104,9 +104,9 @@ class Convolution {
 
  private:
   /// Neighbouring rows of a plane, which are transformed together. `y`, `z`: indices of the first
-  /// row within the part, without ghosts. `slot`: its place among the rows of one transform. Each
-  /// row has the same place as on the whole lattice, because FFTW does not promise bitwise equal
-  /// results in different places.
+  /// row within the part, without ghosts. `slot`: position of the first row among the rows of one
+  /// transform. Each row is at the position that it would have on the whole lattice, because FFTW
+  /// does not promise bitwise equal results at different positions.
   struct BlockOfRows {
     std::int64_t y, z;
     int slot, count;
@@ -207,7 +207,7 @@ class Convolution {
   std::array<int, 3> n_, period_;  // in cells
   std::int64_t sites_;             // per cell
   int waves_, rows_at_once_;
-  std::ptrdiff_t row_;  // a plane can have more numbers than an int holds
+  std::ptrdiff_t row_;  // not int, because its product with a number of rows may exceed one
   std::size_t padded_plane_;
   RowTransforms<Real> row_transforms_;
   ComplexTransforms<Real> along_y_, along_z_;

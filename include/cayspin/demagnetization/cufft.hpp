@@ -100,8 +100,8 @@ class CufftComplexTransforms {
   CufftPlan plan_;
 };
 
-/// Transforms of `count` rows of real numbers, row after row, to and from wave numbers 0 .. length
-/// / 2. The values of all rows at one wave number are adjacent. Unscaled.
+/// Unscaled transforms between `count` rows of real numbers and their wave numbers 0 .. length / 2.
+/// The numbers of a row are adjacent in memory. So are the values of all rows at one wave number.
 template <class Real>
 class CufftRowTransforms {
   using Functions = Cufft<Real>;

@@ -21,9 +21,9 @@ namespace cayspin::inline v0_2 {
 /// for a DipolarField with strength 1 and demagnetising factors from 0 to 1, on an open or periodic
 /// lattice of any size. Stable steps depend on these eigenvalues; |H| at a site can be larger.
 /// `moments`: one for each site of a cell; it multiplies the spin of that site. `periodic_images`:
-/// those of the field, needed only along axes with a single cell. The two parts of Ewald's sum are
-/// bounded separately, for several ways to split the sum, and the smallest result is returned. For
-/// large sc, bcc and fcc lattices it is about twice the largest eigenvalue.
+/// as in the field's DipolarOptions; it matters only along axes with a single cell. The two parts
+/// of Ewald's sum are bounded separately, for several ways to split the sum, and the smallest
+/// result is returned. For large sc, bcc and fcc lattices it is about twice the largest eigenvalue.
 inline double dipolar_bound(Lattice const& lattice, Crystal crystal,
                             std::vector<double> const& moments,
                             std::array<int, 3> const& periodic_images = {}) {
@@ -55,7 +55,7 @@ inline double dipolar_bound(Lattice const& lattice, Crystal crystal,
   double const per_site = points.measure() / static_cast<double>(places.size());
   for (double const division : {1.0, 1.3, 1.6, 2.0, 2.4}) {
     double const alpha = division / std::cbrt(per_site);
-    double waves = 0;  // largest for the uniform mode
+    double waves = 0;  // bound on the sum over wave numbers, for any mode
     points.reciprocal().for_each_within({}, 2 * ewald_reach * alpha, [&](Point const& g, auto&&) {
       waves += std::exp(-scalar_product(g, g) / (4 * alpha * alpha));
     });

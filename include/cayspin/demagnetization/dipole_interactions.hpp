@@ -37,7 +37,7 @@ struct DipolarOptions {
 namespace detail {
 
 /// Tensors between the sites of a crystal's cells. For a part of a lattice, they are the tensors of
-/// the whole lattice. `period` has the extents of the cyclic convolution in cells: those of the
+/// the whole lattice. period() returns the extents of the cyclic convolution in cells: those of the
 /// lattice along vectors with images, and enough for all distances along the others.
 class InteractionsOfDipoles {
  public:

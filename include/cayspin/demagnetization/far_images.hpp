@@ -139,8 +139,8 @@ class FarImages {
     if (i != j) e[j][i] += value;
   }
 
-  /// Adds the derivatives -d_i d_j of the integral of 1/r over both ends of the line, beyond the
-  /// images that are summed one by one.
+  /// Adds the tensor of the two half-lines that replace the images farther away than those that are
+  /// summed one by one: `weight` times the derivatives -d_i d_j of the integral of 1/r.
   void add_line(Entries& e, double weight, Lengths const& at) const {
     std::size_t const p = line_, q = (p + 1) % 3, n = (p + 2) % 3;
     double const y = at[q], z = at[n];
@@ -158,7 +158,8 @@ class FarImages {
     }
   }
 
-  /// Adds the tensor of the two half-sheets that replace the lines farther away.
+  /// Adds the tensor of the two half-sheets that replace the lines farther away than those that are
+  /// summed one by one.
   void add_sheet(Entries& e, double weight, double y, double z) const {
     std::size_t const q = *sheet_, n = normal();
     for (int const side : {-1, 1}) {

@@ -27,7 +27,7 @@ class FarImagesTable {
     int distances = 1;
     double step = 1;
     bool is_smooth = false;
-    std::vector<double> images = {0};  ///< shifts by images that are summed explicitly
+    std::vector<double> images = {0};  ///< shifts to images that are summed one by one
   };
 
   FarImagesTable(FarImages const& far, std::array<Axis, 3> const& axes) {

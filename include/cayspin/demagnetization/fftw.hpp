@@ -119,8 +119,8 @@ class ComplexTransforms {
   FftwPlan<Real> forward_, backward_;
 };
 
-/// Transforms of `count` rows of real numbers, row after row, to and from wave numbers 0 .. length
-/// / 2. The values of all rows at one wave number are adjacent. Unscaled.
+/// Unscaled transforms between `count` rows of real numbers and their wave numbers 0 .. length / 2.
+/// The numbers of a row are adjacent in memory. So are the values of all rows at one wave number.
 template <class Real>
 class RowTransforms {
  public:

@@ -14,7 +14,7 @@ namespace cayspin::inline v0_2::detail {
 
 /// Distances in memory from row to row and from plane to plane.
 struct PlaneStrides {
-  std::ptrdiff_t row;  // a plane can have more numbers than an int holds
+  std::ptrdiff_t row;  // not int, because its product with a number of rows may exceed one
   std::size_t plane;
 };
 
@@ -59,8 +59,9 @@ class KernelOfCells {
  private:
   std::size_t octant_plane() const { return std::size_t(octant_[1]) * std::size_t(octant_[2]); }
 
-  /// `Sign` is -1 where the stored wave number is the mirror image along y, and `sign_of_z` along
-  /// z.
+  /// Multiplies the values begin .. end - 1 of a row. `Sign`: -1 if the interactions are stored
+  /// only at the mirror images of these wave numbers along y, otherwise 1. `sign_of_z`: likewise
+  /// along z.
   template <int Sign>
   void multiply_row(Real const* kernel, Real sign_of_z, Complex* row, std::size_t plane, int begin,
                     int end) const {

@@ -136,7 +136,7 @@ class KernelOfPairs {
   };
 
   /// Computes, transforms and stores the interactions of a pair of sites. Threads divide the lines
-  /// along x among themselves, and after their transform the wave numbers along x.
+  /// along x among themselves and, after the transform along x, the wave numbers.
   void transform(Interactions const& interactions, Parts const& parts, std::size_t a,
                  std::size_t b) {
     auto const [nx, ny, nz] = period_;

@@ -54,7 +54,7 @@ inline NewellFunctions newell_functions(long double x, long double y, long doubl
   using Number = long double;
   Number const x2 = x * x, y2 = y * y, z2 = z * z, xyz = x * y * z;
   Number const r = std::sqrt(x2 + y2 + z2);
-  // These functions return 0 where the denominator is 0: the factors of the terms are 0 there.
+  // These two return 0 where a denominator is 0. The factors that multiply them are 0 there, too.
   auto const asinh_of = [](Number a, Number b2) {
     return b2 > 0 ? std::asinh(a / std::sqrt(b2)) : 0;
   };
@@ -99,12 +99,12 @@ constexpr std::array<double, Size> factorials() {
   return result;
 }
 
-/// Returns coefficients of the Taylor series of second differences. The product of the second
-/// differences along x, y and z, each divided by the square of its edge, is d_x^2 d_y^2 d_z^2 times
-/// a series, the sum over i, j and k of 8 h_x^2i h_y^2j h_z^2k / ((2i+2)! (2j+2)! (2k+2)!) d_x^2i
-/// d_y^2j d_z^2k. h_x is the edge along x, and d_x the derivative. The series acts on derivatives
-/// of 1/r, for which d_z^2 = -(d_x^2 + d_y^2). Element [m][i] of the result is the coefficient of
-/// d_x^2i d_y^2j with j = m - i in the series.
+/// Returns coefficients of the Taylor series of second differences. The second difference along x,
+/// divided by h_x^2, is d_x^2 times the sum over i of 2 * h_x^(2 * i) / (2 * i + 2)! * d_x^(2 * i),
+/// with the edge h_x and the derivative d_x. This sum is multiplied by the sums along y and z. The
+/// product of the three acts on derivatives of 1/r, for which d_z^2 = -(d_x^2 + d_y^2). Element
+/// [m][i] of the result is the coefficient of d_x^(2 * i) * d_y^(2 * j) in the product, with
+/// j = m - i.
 template <std::size_t HalfOrder>
 std::array<std::array<double, HalfOrder + 1>, HalfOrder + 1> difference_series(Lengths const& h) {
   constexpr auto factorial = factorials<2 * HalfOrder + 3>();

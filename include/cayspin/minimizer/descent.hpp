@@ -193,7 +193,7 @@ class Descent {
   /// Returns true if round-off of the fields could cause the whole torque.
   bool may_be_round_off(double torque) const { return torque < 16 * epsilon * strongest_field_; }
 
-  /// Takes an L-BFGS step; returns false when no step goes down.
+  /// Takes an L-BFGS step; returns false if no step lowers the energy.
   template <class Exec, class Field>
   bool iterate(Exec const& exec, Field const& field, Spins& spins, MinimizeOptions const& options) {
     for (bool const with_pairs : {true, false}) {
@@ -210,9 +210,9 @@ class Descent {
     return false;
   }
 
-  /// Takes a step along search.direction, shortened until it goes down; returns false after 25
-  /// trials. It compares energies, or, where round-off hides their difference, the slopes at both
-  /// ends (Hager and Zhang 2005, eq. 4.1).
+  /// Takes a step along search.direction, shortened until the energy falls; returns false after 25
+  /// trials. Compares the energies at both ends of the step or, where round-off hides their
+  /// difference, the slopes (Hager and Zhang 2005, eq. 4.1).
   template <class Exec, class Field>
   bool search_line(Exec const& exec, Field const& field, Spins& spins, double slope, double step,
                    MinimizeOptions const& options) {

@@ -18,7 +18,7 @@
 // spins, which include the zero vectors of vacant sites. So immobile spins never change.
 namespace cayspin::inline v0_2::detail {
 
-/// Functor that computes the tangent part of v on mobile sites, and sets 0 on the others.
+/// Functor that writes the tangent part of `vectors` on mobile sites, and 0 on the others.
 template <class Real>
 struct KeepTangent {
   SiteArray<Real, 3> spins, vectors;
@@ -34,9 +34,9 @@ struct KeepTangent {
   }
 };
 
-/// Functor that computes the Hessian times v. `at_rest`: the field at the spins. `shifted`: the
-/// spins plus a multiple of v. `before`: the field at spins from which `shifted` differs by v /
-/// inverse_shift. Sums v.product and v.v.
+/// Functor that computes `product`, the Hessian times v = `vectors`. `at_rest`: the field at the
+/// spins. `shifted`: the spins plus a multiple of v. `before`: the field at spins from which
+/// `shifted` differs by v / inverse_shift. Sums v.product and v.v.
 template <class Field, class Real>
 struct HessianProduct {
   Field field;

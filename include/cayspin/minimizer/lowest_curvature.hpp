@@ -115,7 +115,7 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
   found.value = hessian.multiply(x, hx).along;
   for (int step = 0;; ++step) {
     if (found.value < -tolerance) {
-      // Recomputed from the field to discard accumulated round-off.
+      // Recomputes the quotient from the field, without the round-off of the steps before.
       auto const [along, square] = hessian.multiply(x, hx);
       found.value = along / square;
       found.is_negative = found.value < -tolerance;
@@ -130,8 +130,8 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
     hessian.keep_tangent(w);
     combine(exec, -inner_product(exec, w, x), x, 1, w, w);
     double const decrease = inner_product(exec, hw, w);
-    // An eigenvalue is within `rest` of the quotient. Near an instability other eigenvalues may be
-    // close to it, so a small quotient does not count.
+    // An eigenvalue is within `rest` of the quotient, but it need not be the lowest one. Near an
+    // instability a lower one may be negative, so a small quotient does not count as positive.
     bool const is_positive = found.value > 1e-2 * scale && rest < 0.3 * found.value;
     bool const is_clear = is_exact
                               ? rest < error
@@ -141,7 +141,7 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
     if (!(decrease > 0) || is_clear) break;
     bool const has_p = step > 0;
     if (!make_normal(w, has_p)) break;
-    double of_pairs[3][3] = {{found.value}};  // products u.Hv of x, w and the previous step p
+    double of_pairs[3][3] = {{found.value}};  // u.Hv for u, v among x, w and the last step p
     auto const set = [&](int i, int j, double value) { of_pairs[i][j] = of_pairs[j][i] = value; };
     set(1, 1, hessian.multiply(w, hw).along);
     set(0, 1, inner_product(exec, x, hw));
@@ -156,7 +156,7 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
     auto const [of_x, of_w, of_p] = lowest.vector;
     double const sideways = std::hypot(of_w, of_p);
     if (!std::isfinite(lowest.value) || !(sideways > 0)) break;
-    // Sets x to of_x * x + (of_w * w + of_p * p), and makes p normal to this.
+    // Sets x to of_x * x + of_w * w + of_p * p, and makes p normal to the new x.
     for (auto const& [x_or_hx, w_or_hw, p_or_hp] : {std::tie(x, w, p), std::tie(hx, hw, hp)}) {
       if (has_p)
         combine(exec, of_w, w_or_hw, of_p, p_or_hp, w_or_hw);

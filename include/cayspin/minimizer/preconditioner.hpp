@@ -36,10 +36,10 @@ class Preconditioner {
 
   /// Sets c, within limits, to the part of the curvature along the last step s that exchange does
   /// not explain. `product`: s.y, with the change y of the gradient. `exchange_energy`: s.K s.
-  /// `step_square`: s.s. Far from equilibrium a small c gives long steps. With these, waves as long
-  /// as the lattice vanish before walls and vortices form from them, which would then move by only
-  /// a cell per iteration. Near equilibrium a small c slows the convergence of the stiffest long
-  /// waves, so there c is at least its first value.
+  /// `step_square`: s.s. `torque`: largest |m x H|. Far from equilibrium a small c gives long
+  /// steps, in which waves as long as the lattice vanish before they form walls and vortices.
+  /// (Those would move by only a cell per iteration.) Near equilibrium a small c slows the
+  /// convergence of the stiffest long waves, so there c is at least its first value.
   void follow_curvature(double product, double exchange_energy, double step_square, double torque) {
     double const rest = (product - exchange_energy) / step_square;
     if (!std::isfinite(rest)) return;

@@ -61,7 +61,7 @@ struct RandomSigns {
   }
 
  private:
-  // The finaliser of MurmurHash3.
+  // The finaliser of MurmurHash3, after a multiplication.
   KOKKOS_FORCEINLINE_FUNCTION static std::uint64_t mixed(std::uint64_t n) {
     n = (n + 1) * 0x9E3779B97F4A7C15U;
     n = (n ^ (n >> 33U)) * 0xFF51AFD7ED558CCDU;
@@ -86,8 +86,8 @@ struct WithoutVacancies {
 };
 
 /// Functor that computes sums over the occupied sites of a pattern, whose vacant sites hold the
-/// zero vector. Sets is_mobile to 1 on sites with H nonzero, and finds whether any occupied site
-/// has seen no field yet.
+/// zero vector. Sets is_mobile to 1 on occupied sites where H is not 0, and finds whether any
+/// occupied site has seen no field yet.
 template <class Field, class Real>
 struct FieldAlongSpins {
   enum { along, along_square, square, sites, opposed_neighbors, rests, values };
@@ -159,9 +159,9 @@ inline double rest_of_parallel(double square, double along_square, double along,
 }
 
 /// Evaluates the field for parallel spins and for spins that alternate along each axis in turn, on
-/// occupied sites: where `spins` is not the zero vector. Overwrites `pattern`. If some spins see no
-/// field so far, also evaluates it for random spins. Sets `is_mobile`, which must be 0 before, to 1
-/// where a spin sees a field. Waits.
+/// occupied sites: where `spins` is not the zero vector. Overwrites `pattern`. If some spins have
+/// seen no field so far, also evaluates the field for random spins. Sets `is_mobile`, which must be
+/// 0 before, to 1 where a spin sees a field. Waits.
 template <class Exec, class Field, class Spins>
 FieldStrengths probe(
     Exec const& exec, Field const& field, double time, Spins const& spins, Spins const& pattern,

@@ -91,7 +91,8 @@ struct SearchArrays {
 };
 
 /// Writes `spins`, turned by `step` times `search.direction`, to `search.trial`, and evaluates the
-/// field there; waits.
+/// field there. Writes the gradient to `search.new_gradient`, and the pair for L-BFGS to `moved`
+/// and `changed`. Waits.
 template <class Exec, class Field, class Spins>
 PointOnPath look_along(Exec const& exec, Field const& field, double time, Spins const& spins,
                        double step, SearchArrays<Spins> const& search, Spins const& moved,

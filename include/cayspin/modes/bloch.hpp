@@ -101,7 +101,7 @@ inline std::array<Point, 2> tangent_axes(Point const& m) {
 
 /// The linearised dynamics of a lattice of equal cells: the Hessian blocks between the first cell
 /// and every cell, and the matrix `turning` of the operator G (vectors.hpp) in one cell. A
-/// displacement v has the rate dv/dt = turning * (Hessian v).
+/// displacement v changes at the rate dv/dt = turning * Hessian * v.
 class BlochProblem {
  public:
   struct Block {
@@ -115,9 +115,10 @@ class BlochProblem {
 
   /// Returns the complex rates of waves with this wave vector (in cycles per cell): a wave grows as
   /// e^(rate * t). Only the half with the higher frequencies is returned, the lowest of these
-  /// first. If rates are real, their frequencies are 0, and those that decay least are in that
-  /// half, the least first. Throws std::invalid_argument for a wave vector that is not finite, or
-  /// that does not fit the lattice along an axis where the interaction reaches around.
+  /// first. Rates that are real up to round-off count as frequency 0: of these, the ones that decay
+  /// least are in that half, in order of increasing decay. Throws std::invalid_argument for a wave
+  /// vector that is not finite, or that does not fit the lattice along an axis where the
+  /// interaction reaches around.
   std::vector<std::complex<double>> rates(std::array<double, 3> const& wave) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double const around = wave[axis] * static_cast<double>(cells[axis]);
@@ -136,8 +137,8 @@ class BlochProblem {
         turns += wave[axis] * static_cast<double>(distance[axis]);
       sum += std::polar(1.0, -2 * std::numbers::pi * turns) * hessian;
     }
-    // Without round-off the sum is Hermitian. Only then are rates without damping imaginary, and
-    // those without precession real, so that round-off of the Hessian does not mix the two.
+    // Makes the sum Hermitian, as it would be without round-off of the Hessian. Only then are rates
+    // without damping imaginary, and rates without precession real.
     sum = (0.5 * (sum + sum.adjoint())).eval();
     Eigen::ComplexEigenSolver<Eigen::MatrixXcd> const found(turning * sum, false);
     // For a wave e^(i * (k.r - w * t)), the imaginary part of the rate is -w.
@@ -261,7 +262,7 @@ BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Sp
 
   std::vector<PartOfCell> parts(static_cast<std::size_t>(cells.parts));
   Eigen::Index rows = 0;
-  double spread = 0;  // of the spins of different cells
+  double spread = 0;  // largest difference between the spins of different cells
   double const alike = 100 * std::sqrt(std::numeric_limits<Real>::epsilon());
   for (std::int64_t site = 0; site < cells.sites(); ++site) {
     auto const place = cells(site);

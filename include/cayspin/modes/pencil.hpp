@@ -53,7 +53,7 @@ inline std::vector<RitzMode> undamped_modes(Pencil const& pencil) {
   Eigen::VectorXd const pivots = factors.matrixLLT().diagonal();
   if (!(pivots.minCoeff() > 1e-5 * pivots.maxCoeff())) return {};
   Eigen::MatrixXd inner = factors.matrixL().solve(pencil.turning);
-  inner = factors.matrixL().solve(inner.transpose().eval());  // transposed, and skew
+  inner = factors.matrixL().solve(inner.transpose().eval());  // transpose of L^-1 S L^-T; skew
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> const found(-1i * inner);
   std::vector<RitzMode> modes;
   double const least = 1e-14 * found.eigenvalues().cwiseAbs().maxCoeff();

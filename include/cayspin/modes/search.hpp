@@ -157,7 +157,7 @@ class ModeSearch {
   }
 
   /// Appends preconditioned residuals of the first unconverged modes to the vectors; returns how
-  /// many.
+  /// many vectors were appended.
   std::size_t add_residuals() {
     std::size_t added = 0;
     std::size_t const from = first_;

@@ -169,7 +169,7 @@ struct NumbersOfSites {
   RandomBitsOfReplica<OnHost> random;
   // The part's place in the whole lattice, and the extents of the whole lattice.
   std::int64_t first_y, first_z, ny, nz;
-  std::uint64_t places;         // places of RandomBits in a row
+  std::uint64_t places;         // sites in a row, rounded up to whole registers of RandomBits
   std::int32_t replica_planes;  // 0: there is one replica
 
   template <class Bits, class Site>

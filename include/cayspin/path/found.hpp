@@ -75,8 +75,8 @@ struct MinimumEnergyPath {
 /// Progress of a search.
 struct PathProgress {
   std::int64_t evaluations = 0;
-  double energy = 0;    ///< of the highest image, or of the state that moves to a saddle or minimum
-  double gradient = 0;  ///< largest |g| of a spin: across the path, or of that state
+  double energy = 0;    ///< of the highest image, or of a state on its way to a saddle or minimum
+  double gradient = 0;  ///< largest |g| of a spin; for a path, of the part of g across it
 };
 
 /// Options of minimum_energy_path.

@@ -122,8 +122,8 @@ class Recursion {
   static constexpr std::size_t pairs = path_pairs;
   using Numbers = std::array<double, pairs>;
 
-  /// Computes alpha. `product(i, j)`: s_i.y_j for i <= j < count; `along[i]`: s_i.g. Pairs without
-  /// use[i] are left out.
+  /// Computes alpha. `product(i, j)`: s_i.y_j for i <= j < count; `along[i]`: s_i.g. Pairs for
+  /// which use[i] is false are left out.
   template <class Product>
   void begin(std::size_t count, std::array<bool, pairs> const& use, Numbers const& along,
              Product const& product) {

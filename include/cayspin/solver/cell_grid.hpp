@@ -97,7 +97,8 @@ struct RowOfCells {
     } else {
       for (; place.x < nx; place.x += host_lanes<Real>)
         local.template operator()<Pack<Real>>(place);
-      // Packs do not reach around to the other end of a row, so its end cells are computed again.
+      // Packs do not reach around to the other end of a periodic row, so the cells at both ends are
+      // computed again, one by one.
       if constexpr (requires { local.goes_around; })
         if (local.goes_around)
           for (std::int32_t const x : {0, nx - 1}) {

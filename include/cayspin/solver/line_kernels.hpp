@@ -11,13 +11,14 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Coefficients of lines that are solved from both ends, with equal factors for both halves. In
-/// each half, i counts from its end of the line: y_i = inverse_i * r_i + ratio_i * y_(i-1) towards
-/// the middle, z_i = y_i + ratio_i * z_(i+1) back. The first z beyond the half is
-/// same * y + other * y' + middle * r, where y and y' are the last ones of this half and of the
-/// other half, and r is that of the site in the middle of a line with an odd number of sites
-/// (otherwise 0). On a periodic line, closing_i * (z_0 + sign * z_0') is finally added, where z_0'
-/// is at the other end.
+/// Coefficients for solving lines from both ends; both halves of a line have equal factors. In each
+/// half, i counts the sites from the end of the line. The first pass goes towards the middle:
+/// y_i = inverse_i * r_i + ratio_i * y_(i-1). The second pass goes back:
+/// z_i = y_i + ratio_i * z_(i+1).
+/// For the innermost i, z_(i+1) is same * y + other * y' + middle * r, where y and y' are the
+/// innermost values of this half and of the other half, and r belongs to the middle site of a line
+/// with an odd number of sites (otherwise r = 0). On a periodic line,
+/// closing_i * (z_0 + sign * z_0') is finally added to z_i, where z_0' is at the other end.
 template <class Scalar>
 struct LineFactors {
   Scalar const *inverse = nullptr, *ratio = nullptr, *closing = nullptr;
@@ -180,7 +181,7 @@ struct SolveLines {
   }
 };
 
-/// Body of the host tasks.
+/// Functor that runs a task of SolveLines on a host, with packs.
 template <class Lines>
 struct SolveLinesOnHost {
   Lines lines;

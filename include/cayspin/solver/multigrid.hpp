@@ -53,8 +53,8 @@ class Multigrid {
   /// stay so.
   Right const& right() const { return levels_.front().right; }
 
-  /// `same_directions`: coarse grids keep the directions (of ShiftedSpinWaves) from the previous
-  /// call. Does not wait.
+  /// Writes the solution to `out`. `same_directions`: coarse grids keep the directions (of
+  /// ShiftedSpinWaves) from the previous call. Does not wait.
   template <class Exec, class OutReal>
   void solve(Exec const& exec, Coefficient b, CellArray<OutReal, 3> const& out,
              bool same_directions = false) const {

@@ -45,9 +45,9 @@ struct ShiftedExchange {
 };
 
 /// The operator 1 + b * K on vectors normal to m, with a complex b, in which i stands for the
-/// operator m x: spin waves about directions m. These are stored in components 3 to 5 of the
-/// right-hand side. On coarse grids m is a mean, and shorter than 1 where directions differ. The
-/// shorter m is, the closer the operator is to 1 + |b| * K.
+/// operator m x: spin waves about directions m. The directions are stored in components 3 to 5 of
+/// the right-hand side. On coarse grids m is a mean, and shorter than 1 where directions differ.
+/// The shorter m is, the closer the operator is to 1 + |b| * K.
 template <class Real>
 struct ShiftedSpinWaves {
   using Coefficient = std::complex<double>;
