@@ -74,7 +74,7 @@ def by_spirit(solver, bound, most=20000):
             configuration.plus_z(p, idx_image=IMAGES - 1)
             transition.homogeneous(p, 0, IMAGES - 1)
             chain.update_data(p)
-            rough = 0.3  # meV: below this largest force, the highest image starts to climb
+            rough = 0.3  # meV: once the largest force is below this, the highest image climbs
             inner = range(1, IMAGES - 1)
             force = lambda: simulation.get_max_torque_norm(p)
             count = iterate(p, simulation.METHOD_GNEB, lambda: 0 < force() < rough)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Compares CVODE of SUNDIALS with cayspin's methods on one thread, with the same kernel for the
-// right side: prints the milliseconds and evaluations that each takes to reach given errors.
+// right-hand side: prints the milliseconds and evaluations that each takes to reach given errors.
 // `bench_cvode [SCENE..]`; without names it runs all scenes: slab_fine, slab_fine_damped, film,
 // heisenberg, film_256. The error is the largest distance of any spin, at four times, from a run of
 // tsit5 with a tolerance of 1e-12, after the spins have been divided by their lengths. Times are

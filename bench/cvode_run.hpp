@@ -70,8 +70,8 @@ class SpinWavePreconditioner {
       site.store(r - dot(m, r) * m, output);
     }
   };
-  /// Functor that stores the part of v' + m x v'' normal to the spin m plus the part of the right
-  /// side along m. v' and v'' are the real and the imaginary part of the solution.
+  /// Functor that stores the part of v' + m x v'' normal to the spin m plus the part of the
+  /// right-hand side along m. v' and v'' are the real and the imaginary part of the solution.
   struct Turn {
     cayspin::SiteArray<double, 6> solution;
     SiteArray right, spins;

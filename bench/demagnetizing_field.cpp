@@ -21,8 +21,8 @@ namespace {
 constexpr std::array<std::int64_t, 3> shapes[] = {
     {256, 256, 1}, {512, 512, 1}, {64, 64, 64}, {128, 128, 128}};
 
-/// A forward and a backward transform of a lattice padded to twice its extent along each axis of
-/// more than one cell. The data are zeros, which stay zero.
+/// A forward and a backward transform of one component on a lattice padded to twice its extent
+/// along each axis of more than one cell. All values are zero, before and after.
 template <class Real>
 class PaddedTransforms {
 #if defined(KOKKOS_ENABLE_CUDA)

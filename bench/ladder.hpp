@@ -71,7 +71,7 @@ class Clock {
 struct Run {
   States states;
   double seconds = 0;            // spent in steps
-  std::int64_t evaluations = 0;  // evaluations of the right side
+  std::int64_t evaluations = 0;  // evaluations of the right-hand side
   std::int64_t multirate = 0;    // evaluations of an expensive field
   std::int64_t steps = 0;
 };

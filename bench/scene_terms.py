@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Cost of terms in scenes: ns per spin and step of a plain scene, which has only exchange, one
-anisotropy axis and an applied field, and how many times longer scenes with one change take. Scenes
-of the same shape and method run in turn; the shortest time of each counts."""
+anisotropy axis and an applied field, and how many times as long a step of a scene with one change
+takes. Scenes of the same shape and method run in turn; the shortest time of each counts."""
 
 import argparse
 import pathlib

@@ -63,13 +63,14 @@ class SpinVectors {
       unpack(from, to.array());
   }
 
-  /// Returns the array from which kernels read the vector `v`, after a copy if not in place.
+  /// Returns the array from which kernels read the vector `v`. If vectors are not used in place,
+  /// copies `v` into that array first.
   SiteArray input(N_Vector v) const {
     if (in_place_) return of_vector(v);
     unpack(v, spins_.array());
     return spins_.array();
   }
-  /// Returns the array to which kernels write the vector `v`; call finish(v) after they have.
+  /// Returns the array to which kernels write the vector `v`. Call finish(v) after the kernels.
   OutputArray output(N_Vector v) const {
     return {in_place_ ? of_vector(v) : rates_.array(), false};
   }
@@ -133,8 +134,8 @@ struct RateOfSites {
   }
 };
 
-/// Evaluates the right side of m' = A x m by the generator's own kernel. If the field is non-local,
-/// the spins are first copied to the field whole_, from which the generator is prepared.
+/// Evaluates the right-hand side of m' = A x m by the generator's own kernel. If the field is
+/// non-local, the spins are first copied to the field whole_, from which the generator is prepared.
 template <class Generator>
 class RightSide {
  public:

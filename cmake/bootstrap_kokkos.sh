@@ -89,7 +89,7 @@ PYTHON
 }
 
 # unpack_checked FILE SHA256 FOLDER DEPTH: checks an archive, unpacks what its FOLDER contains, and
-# deletes the archive. DEPTH is the number of names in FOLDER.
+# deletes the archive. DEPTH is the number of components of the path FOLDER.
 unpack_checked() {
   printf '%s  %s\n' "$2" "$1" | sha256sum --check --quiet ||
     fail "$1 is not the file it should be; delete it and try again"

@@ -141,7 +141,7 @@ def figure_of(file, arguments):
 
 
 def of_replica(file, replica):
-    """A replica of the file of an ensemble; another file as it is."""
+    """Returns a replica of the file of an ensemble, and any other file unchanged."""
     if replica_of_file.is_ensemble(file):
         return replica_of_file.Replica(file, 0 if replica is None else replica)
     if replica is not None:

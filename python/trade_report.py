@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Measures the scenes of docs/reports/trade.md on this machine, one after the other. Writes the
 tables of times and ratios of that page and of its appendix, and the pictures. Takes a quarter of an
-hour, and for each further repetition, which has no large scene, five minutes."""
+hour, plus five minutes for each further repetition, which leaves out the large scenes."""
 
 import json
 import math

@@ -16,7 +16,7 @@ module cayspin
     type(c_ptr) :: data
     integer(c_int) :: precision
     integer(c_int64_t) :: shape(4)    ! nz, ny, nx, 3
-    integer(c_int64_t) :: strides(4)  ! in numbers
+    integer(c_int64_t) :: strides(4)  ! counted in numbers, not in bytes
   end type
 
   type, bind(c) :: cayspin_minimum

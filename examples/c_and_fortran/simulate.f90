@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-! A scene of a chain from Fortran: some steps, a look at the spins where they are, the rest of the
-! run, and spins of the caller's own.
+! Runs the scene of a chain from Fortran: takes some steps, reads the spins in place, completes the
+! run, and sets the spins to an array of the caller.
 program simulate
   use cayspin
   use, intrinsic :: iso_fortran_env, only: error_unit
@@ -35,7 +35,8 @@ program simulate
   if (abs(total/real(nx, c_double) - m(1)) > 1e-14_c_double) stop 1
   call check(cayspin_run(simulation, trim(output)//c_null_char, 0_c_int))
 
-  ! Spins of the caller's own: x fastest after the components, of any length.
+  ! The caller's array: the components of a spin are adjacent, then x varies fastest. Spins may have
+  ! any length.
   allocate (mine(3, nx))
   mine(1, :) = 2
   mine(2:, :) = 0
@@ -44,7 +45,7 @@ program simulate
   call check(cayspin_set_spins(simulation, spins))
   call check(cayspin_magnetization(simulation, m))
   if (any(abs(m - [1.0_c_double, 0.0_c_double, 0.0_c_double]) > 0)) stop 1
-  deallocate (mine)  ! a main program keeps it otherwise
+  deallocate (mine)  ! otherwise it would stay allocated until the program ends
   call check(cayspin_close(simulation))
 
 contains

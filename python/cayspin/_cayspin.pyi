@@ -15,8 +15,8 @@ class CayspinError(Exception):
     """An error of the package. Its message is one line: what is wrong, and what is accepted."""
 
 class SceneError(CayspinError):
-    """Raised for a scene that is refused. The message has its file and line, the key, what is wrong
-    and what is accepted."""
+    """Raised for a scene that is refused. The message has the key, what is wrong and what is
+    accepted; for a scene file, also the file and the line."""
 
 class NumbersFailed(CayspinError):
     """Raised for a run whose spins are not finite, have left the sphere or have gained energy

@@ -28,8 +28,9 @@ def shown(thing: Any) -> str:
 
 
 def without_line(message: str) -> str:
-    """Returns a warning without the place at its start, which means nothing to the caller: the line
-    in a text that was made from tables, or --set."""
+    """Returns a warning without "Scene:LINE: " or "--set " at its start. Neither means anything to
+    a caller in Python: LINE counts in a text that was made from tables, and --set is an option of
+    the command line."""
     return re.sub(r"^(replica \d+: )?(Scene:\d+: |--set )", r"\1", message)
 
 
@@ -85,7 +86,7 @@ def is_unicode(text: str) -> bool:
 
 
 def word(text: Any, name: str) -> str:
-    """A string."""
+    """Returns a string, which UTF-8 must be able to encode."""
     value = _one(text)
     if not isinstance(value, str) or not is_unicode(value):
         raise CayspinError(f"{name}: {shown(text)}; accepted: a string")
@@ -93,7 +94,8 @@ def word(text: Any, name: str) -> str:
 
 
 def entries(things: Any, name: str, accepted: str) -> list:
-    """The entries of a list, a tuple or another iterable. Text, dicts and sets are refused."""
+    """Returns the entries of a list, a tuple or another iterable. Text, dicts and sets are
+    refused."""
     if not isinstance(things, (str, bytes, bytearray, dict, set, frozenset)):
         try:
             return list(things)
@@ -103,7 +105,7 @@ def entries(things: Any, name: str, accepted: str) -> list:
 
 
 def options(given: Iterable[str], accepted: Iterable[str], name: str) -> None:
-    """Raises CayspinError if the name of an option is not in `accepted`."""
+    """Raises CayspinError if one of the names in `given` is not in `accepted`."""
     for option in given:
         if option not in accepted:
             raise CayspinError(f"{name}: no option {option}; accepted: {', '.join(accepted)}")

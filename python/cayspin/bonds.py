@@ -58,8 +58,8 @@ class File:
 
 
 def _energy(value, unit, name):
-    """Returns an energy, or a vector of energies, as a scene has it: {name: value}, where `name` is
-    the unit, or value / unit if `unit` is given."""
+    """Returns an energy, or a vector of energies, in the form of a scene: with `unit` the number
+    value / unit, otherwise {name: value}, where `name` names the unit of `value`, such as meV."""
     value = np.asarray(value, float)
     return {name: value.tolist()} if unit is None else (value / unit).tolist()
 

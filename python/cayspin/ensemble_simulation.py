@@ -24,9 +24,10 @@ class EnsembleSimulation:
         sim.spins  # (replica, nz, ny, nx, 3)
 
     `precision` is "double" or "single", `space` an execution space that was compiled in (default:
-    that of Kokkos), `threads` the number of threads of the space, which the first simulation of a
-    process decides. `restart` names the file of an ensemble, from whose last frame the simulation
-    continues. The file is refused if the method remembers more than the spins.
+    that of Kokkos), `threads` the number of threads of the space; the first simulation of a process
+    sets it for all later ones. `restart` names the file of an ensemble, from whose last frame the
+    simulation continues. The file is refused if the method needs more than the spins to continue
+    exactly.
 
     Ctrl-C stops the simulation between two steps with KeyboardInterrupt; some replicas may then be
     further than others. Lengths, times, fields and energies are in the units of the scene: reduced
@@ -57,8 +58,8 @@ class EnsembleSimulation:
         self._dt_is_checked = False
 
     def step(self, n: int = 1) -> None:
-        """Takes `n` steps of dt in every replica. Replicas that run() has ended early go on until
-        they are at the step of the others. The first step warns if dt is too large for one of the
+        """Takes `n` steps of dt in every replica. Replicas that run() has ended early go on, too,
+        and catch up with the others. The first step warns if dt is too large for one of the
         replicas. After Ctrl-C some replicas may be further than `steps`; they wait for the others.
 
         Raises NumbersFailed when spins of a replica are not finite, leave the sphere or gain energy
@@ -68,8 +69,8 @@ class EnsembleSimulation:
         self._advance(arguments.whole(n, "step"), False)
 
     def run(self, until: float | None = None) -> None:
-        """Steps to time `until`, in s in SI, or to the scene's end. A replica ends early when it
-        meets the scene's until_torque.
+        """Steps to time `until`, in s in SI, or to the scene's end. A replica ends early when its
+        torque falls below the scene's until_torque.
 
         Raises NumbersFailed and SceneError as step() does. Raises CayspinError for a time that has
         passed or is not a whole number of steps, and for a scene without end.
@@ -148,7 +149,8 @@ class EnsembleSimulation:
 
     @property
     def steps(self) -> int:
-        """Steps of dt taken since the time 0."""
+        """Steps of dt since the time 0 that all replicas have taken. Those that ended early do not
+        count, unless all have: then this is the largest number of steps."""
         return self._run.steps
 
     @property
@@ -158,7 +160,8 @@ class EnsembleSimulation:
 
     @property
     def step_seconds(self) -> float:
-        """Seconds of stepping so far, summed over the replicas."""
+        """Seconds of stepping so far. For replicas that run at the same time on several threads,
+        the sum of their times."""
         return self._run.step_seconds
 
     @property

@@ -35,8 +35,9 @@ class Modes:
     frequency: np.ndarray  #: (mode,), angular in reduced units; in Hz in SI
     decay: np.ndarray  #: (mode,), in 1/s in SI; negative where the motion grows
     residual: np.ndarray  #: (mode,), relative errors of the shapes
-    shape: np.ndarray  #: complex dm, (mode, nz, ny, nx, 3) or (mode, site, ..); max |dm| is 1
+    #: complex, (mode, nz, ny, nx, 3) or (mode, site, ..); the longest vector of a mode has length 1
+    shape: np.ndarray
     converged: bool  #: whether all residuals are below `tolerance`
     evaluations: int  #: of the field of all sites
-    time_unit: float = 1.0  #: unit of reduced times in SI, in s
-    energy_unit: float | None = None  #: unit of reduced energies in SI, in J; otherwise None
+    time_unit: float = 1.0  #: in SI the unit of reduced times, in s; 1 in reduced units
+    energy_unit: float | None = None  #: in SI the unit of reduced energies, in J; else None

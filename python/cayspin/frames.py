@@ -48,8 +48,8 @@ def texture_of(file: Any, path: Any, frame: int, before: int | None = None,
 
 
 class Frames:
-    """Some of the frames of a dataset, each read when it is indexed. If frames hold several
-    replicas, those of one replica."""
+    """Some of the frames of a dataset, each read when it is indexed. With `replica`, the dataset is
+    that of an ensemble, and only this replica is read."""
 
     def __init__(self, dataset: Any, frames: range, replica: int | None = None):
         self.dataset, self.frames, self.replica = dataset, frames, replica
@@ -109,7 +109,8 @@ def along_axes(path: Any, text: str, key: str, default: Any, argument: str) -> l
 
 
 def crystal(path: Any, text: str, argument: str) -> Scene:
-    """Returns a Scene that has only the cells of the scene `text`."""
+    """Returns a Scene with the cells of the scene `text`: their number, spacing, vectors and sites.
+    Everything else in it is a placeholder."""
     read = tables(path, text, "lattice.cell", f"the argument {argument}")
     lattice = read.get("lattice")
     if not isinstance(lattice, dict) or not isinstance(lattice.get("shape"), list):

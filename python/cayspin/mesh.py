@@ -34,7 +34,7 @@ def _triangles(mesh):
 
 
 def _up_to_three(values, name, accepted):
-    """One to three values, for x, y and z."""
+    """Returns the one to three values given for x, y and z as a list."""
     values = arguments.entries(values, f"occupied_of_mesh: {name}", accepted)
     if not 1 <= len(values) <= 3:
         raise _cayspin.CayspinError(f"occupied_of_mesh: {name} of {len(values)} numbers; "
@@ -86,7 +86,7 @@ def occupied_of_mesh(mesh: Any, shape: tuple[int, ...], spacing: float | tuple[f
     if arguments.flag(center, "occupied_of_mesh: center"):
         low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
         corners = corners - (low + high) / 2 + cells * edges / 2
-    corners = corners / edges - 0.5  # in cells, from the middle of the first one
+    corners = corners / edges - 0.5  # in units of cells, from the middle of the first cell
     # Shifts the mesh slightly, so that no line along z through the middle of a cell meets an edge
     # or lies in a face.
     corners = corners + [1.234567e-7, 2.718281e-7, 3.141592e-7]

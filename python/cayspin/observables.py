@@ -16,12 +16,13 @@ from cayspin.texture.charge import half_solid_angles
 def topological_charge(spins: Any, boundary: Sequence[str] = ("open", "open")) -> np.ndarray:
     """The topological charge Q of each plane (x, y) of `spins` (..., ny, nx, 3), as an array (...).
 
-    Q = sum m.(d_x m x d_y m) / (4 pi): the solid angles of the triangles of neighbouring spins, two
-    for each plaquette, over 4 pi (Berg and Luescher 1981). A skyrmion whose core points down, among
-    spins up, has Q = -1. Lengths do not matter. `boundary`: "open" or "periodic" along x and y; the
-    charge of a plane that is periodic along both is a whole number, to round-off.
+    Q = sum m.(d_x m x d_y m) / (4 pi), computed as the sum of the solid angles of triangles of
+    neighbouring spins, two triangles for each plaquette, divided by 4 pi (Berg and Luescher 1981).
+    A skyrmion whose core points down, among spins up, has Q = -1. The lengths of the spins do not
+    matter. `boundary`: "open" or "periodic" along x and y; the charge of a plane that is periodic
+    along both is a whole number, to round-off.
 
-    Raises CayspinError for an array of another shape, and for other words.
+    Raises CayspinError for an array of another shape, and for an invalid `boundary`.
     """
     spins = arguments.numbers(spins, "topological_charge").astype(np.float64, copy=False)
     if spins.ndim < 3 or spins.shape[-1] != 3:
@@ -40,15 +41,15 @@ class Dispersion:
     """S(k, w) along a path of wave vectors, from dispersion()."""
 
     wave_vectors: np.ndarray  #: (k, 3), in fractions of the reciprocal vectors
-    distance: np.ndarray  #: (k,), length of the path up to k, in radians over the unit of `cell`
-    frequency: np.ndarray  #: (w,), angular, in radians over the unit of `dt`, rising
+    distance: np.ndarray  #: (k,), length of the path up to k, in radians / unit of `cell`
+    frequency: np.ndarray  #: (w,), angular, in radians / unit of `dt`, rising
     intensity: np.ndarray  #: (k, w), dimensionless
     corners: np.ndarray  #: (corner,), distances of the corners of the path
     labels: list[str]  #: names of the corners
 
     @property
     def resolution(self) -> float:
-        """The spacing of angular frequencies. A sharp line is four of these wide."""
+        """The spacing of angular frequencies. A sharp line is four spacings wide."""
         return float(self.frequency[1] - self.frequency[0])
 
     def peak(self) -> np.ndarray:
@@ -152,7 +153,8 @@ def window_in_space(shape: Any, periodic: Sequence[bool]) -> np.ndarray:
 
 def checked_lattice(name: str, sites: int, cell: Any, positions: Any,
                     periodic: Any) -> tuple[np.ndarray, np.ndarray, tuple[bool, ...]]:
-    """Checks and returns the cell, the positions of its sites and the periodic axes."""
+    """Checks and returns the cell, the positions of its sites and, for each axis, whether it is
+    periodic. `sites`: their number in a cell."""
     cell = np.eye(3) if cell is None else arguments.numbers(cell, f"{name}: cell")
     if cell.shape != (3, 3) or not abs(np.linalg.det(cell)) > 0:
         raise CayspinError(f"{name}: cell: no volume; accepted: three vectors that "
@@ -190,16 +192,17 @@ def dispersion(spins: Any, dt: float, path: Any, *, labels: Sequence[str] | None
     `periodic`: whether each axis is periodic; along one that is not, a Hann window is applied to
     the spins.
 
-    `component` "transverse": S = |sum of (m_1 - i m_2) exp(-i (k.r - w t))|^2, with m_1 and m_2
-    normal to the mean direction of all spins, or to `about`, and right-handed with it. Right-handed
-    motion about that direction, such as precession about a field, has w > 0, and its wave
-    exp(i (k.r - w t)) runs along k. Left-handed motion appears at (-k, -w). Components "x", "y"
-    and "z" are real, so either motion appears at both (k, w) and (-k, -w).
+    `component` "transverse": S is proportional to |A|^2, where A is the sum over sites and frames
+    of (m_1 - i m_2) exp(-i (k.r - w t)), with m_1 and m_2 normal to the mean direction of all
+    spins, or to `about`, and right-handed with it. Right-handed motion about that direction, such
+    as precession about a field, has w > 0, and its wave exp(i (k.r - w t)) runs along k.
+    Left-handed motion appears at (-k, -w). Components "x", "y" and "z" are real, so either motion
+    appears at both (k, w) and (-k, -w).
 
-    The time window is Hann's. The sum of S over w is |sum of (..) exp(-i k.r)|^2 divided by the
-    number of sites, averaged over the frames with the squared window as weight. Frequencies are
-    angular, 2 pi / (frames * dt) apart, up to pi / dt. Faster motion is aliased: its frequency
-    appears shifted by a multiple of 2 pi / dt.
+    The time window is Hann's. The sum of S over w is |B|^2 / (number of sites), averaged over the
+    frames with the squared window as weight, where B is the sum over sites of
+    (m_1 - i m_2) exp(-i k.r). Frequencies are angular, 2 pi / (frames * dt) apart, up to pi / dt.
+    Faster motion is aliased: its frequency appears shifted by a multiple of 2 pi / dt.
 
     Raises CayspinError for arrays and words that do not fit, fewer than four frames, and a path
     without wave vectors of the lattice.
@@ -254,8 +257,10 @@ class Average(NamedTuple):
     the values are (time, ...)."""
 
     mean: Any  #: in the unit of the values
-    error: Any  #: its standard error; NaN where the values are too few to tell
-    block: Any  #: length of blocks that hardly depend on each other; 0 where the error is NaN
+    error: Any  #: standard error of the mean; NaN where the values are too few to tell
+    #: number of values in a block, so large that blocks are nearly uncorrelated; 0 where the error
+    #: is NaN
+    block: Any
 
 
 def _block_error(values):
@@ -279,11 +284,12 @@ def average(values: Any, skip: int = 0) -> Average:
     standard error of this mean.
 
     Successive values are correlated, so the error is that of means of blocks
-    (Flyvbjerg and Petersen 1989). The length of blocks is doubled from 1 until it is B with
-    B^3 > 2 n (error_B / error_1)^4 (Lee et al. 2011). At this length, the error due to the
-    correlation of blocks and that due to their small number are balanced. B is about
-    (2 n (2 tau)^2)^(1/3) for a correlation time of tau values. The values have to be in
-    equilibrium, at equal steps in time. If they span too few correlation times, the error is NaN.
+    (Flyvbjerg and Petersen 1989). For n values, the length of blocks is doubled from 1 until it is
+    B with B^3 > 2 n (error_B / error_1)^4, where error_B is the error from blocks of length B
+    (Lee et al. 2011). At this length, the error due to the correlation of blocks and that due to
+    their small number are balanced. B is about (2 n (2 tau)^2)^(1/3) for a correlation time of tau
+    values. The values have to be in equilibrium, at equal steps in time. If they span too few
+    correlation times, the error is NaN.
 
     Raises CayspinError when no values are left, or they are not real numbers.
     """

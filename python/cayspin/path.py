@@ -21,15 +21,18 @@ class MinimumEnergyPath:
 
     spins: np.ndarray  #: (image, nz, ny, nx, 3), for a crystal (image, site, nz, ny, nx, 3)
     energy: np.ndarray  #: (image,), summed over sites
-    distance: np.ndarray  #: (image,), radians along the great circles of all spins
+    #: (image,), length of the path from the first image, in radians: between neighbouring images
+    #: the root of the sum of the squared angles of all spins
+    distance: np.ndarray
     saddle: np.ndarray | None  #: spins of the highest saddle, (nz, ny, nx, 3) or with sites first
     saddle_energy: float | None  #: energy of the highest saddle, in the unit of `energy`
-    barrier_forward: float | None  #: saddle_energy minus the energy of the first image
-    barrier_backward: float | None  #: saddle_energy minus the energy of the last image
+    barrier_forward: float | None  #: saddle_energy - energy[0], in the unit of `energy`
+    barrier_backward: float | None  #: saddle_energy - energy[-1], in the unit of `energy`
     #: lowest curvature of the highest saddle, about 0 or less, in energy / rad^2
     saddle_curvature: float | None
-    saddles: np.ndarray  #: (saddle,), highest first: energy, curvature, next_curvature, image
-    end: str  #: "converged", or why not
+    #: (saddle,), highest first, with the fields energy, curvature, next_curvature and image
+    saddles: np.ndarray
+    end: str  #: "converged", or why the search ended before
     converged: bool  #: whether the path and all of its saddles have converged
     evaluations: int  #: of the field of all sites
     prefactor_forward: float | None  #: with `rates`; in SI in 1/s with T in K
@@ -43,8 +46,8 @@ _SADDLE = [("energy", float), ("curvature", float), ("next_curvature", float), (
 
 
 def _end(state, name, shape, cell_sites):
-    """Returns an end of the path: the name of a file, or an array in the library's order of
-    sites."""
+    """Returns an end of the path: the name of a file, or an array in the library's order of sites
+    (sites.py)."""
     if isinstance(state, (str, bytes, os.PathLike)):
         return arguments.file_name(state, f"path: {name}")
     spins = arguments.numbers(state, f"path: {name}")

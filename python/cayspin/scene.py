@@ -33,8 +33,8 @@ def _without_arrays(thing, key, arrays):
 
 
 def _split(tables):
-    """Splits tables, and returns what text can hold, the initial spins, the functions of the field,
-    and the arrays of values per site."""
+    """Splits the tables of a scene. Returns the tables that TOML text can hold, the initial spins
+    (or None), the functions of [field] by key, and the arrays of values per site by key."""
     tables = {name: table for name, table in tables.items() if table is not None}
     spins, own = None, {}
     initial = tables.get("initial")
@@ -66,7 +66,7 @@ def _text_without_applied(scene, path):
 
 
 def _as_planes(spins):
-    """Returns an array of initial spins in the library's order of sites."""
+    """Returns an array of initial spins, or None, in the library's order of sites (sites.py)."""
     if spins is None or spins.ndim == 4:
         return spins
     return spins[0] if len(spins) == 1 else sites.by_plane(spins, len(spins))

@@ -24,8 +24,8 @@ class Simulation:
     """A simulation of a `scene`: its spins, which step forward in time.
 
     `precision` is "double" or "single", `space` an execution space that was compiled in (default:
-    that of Kokkos), `threads` the number of threads of the space, which the first simulation of a
-    process decides.
+    that of Kokkos), `threads` the number of threads of the space; the first simulation of a process
+    sets it for all later ones.
 
     `restart` names a file of save(), or the trajectory of a run. The simulation continues from
     there, bit-identical to an uninterrupted run. The lattice in the file has to be the scene's; a
@@ -345,7 +345,7 @@ class Simulation:
         return np.array(self._run.sample()[2])
 
     def sublattice_magnetization(self) -> np.ndarray:
-        """The mean spin of each site of the cell, (site, 3), over cells where it has a spin."""
+        """The mean spin of each site of a cell, (site, 3), over cells with a spin at this site."""
         spins = self.spins
         spins = spins.reshape(-1, *spins.shape[-4:])
         count = spins.any(-1).sum((1, 2, 3))

@@ -23,8 +23,8 @@ class StructureFactor:
     linear_structure_factor(). The dicts have an entry for each of the components."""
 
     wave_vectors: np.ndarray  #: (kz, ky, kx, 3), in fractions of the reciprocal vectors, rising
-    frequency: np.ndarray  #: (w,), angular, in radians over the unit of time, rising
-    intensity: dict[str, np.ndarray]  #: S, (kz, ky, kx, w), in the unit of time over radians
+    frequency: np.ndarray  #: (w,), angular, in radians / unit of time, rising
+    intensity: dict[str, np.ndarray]  #: S, (kz, ky, kx, w), in units of time / radian
     integrated: dict[str, np.ndarray]  #: the integral of S over all w, (kz, ky, kx), dimensionless
 
 
@@ -255,9 +255,10 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
     be compared with a run. `temperature` is that of thermal.temperature, in K in SI.
     `frequency`: the frequencies of S, (w,), angular and rising, as those of structure_factor().
 
-    The mean energy of each mode is k_B T. A deviation Re(c v exp(i w_n t)) has the energy
-    |c|^2 w_n Q / 4, with Q = sum of (mu / g) i m.(v* x v). With
-    v(k) = sum of v exp(-i k.r) / sqrt(N), the mode contributes
+    The mean energy of each mode is k_B T. A deviation Re(c v exp(i w_n t)), where v is the shape of
+    mode n and w_n its frequency, has the energy |c|^2 w_n Q / 4, with
+    Q = sum of (mu / g) i m.(v* x v). With v(k) = sum of v exp(-i k.r) / sqrt(N), for N sites with a
+    spin, the mode contributes
 
         S_ab(k, w) = k_B T / (w_n Q) (u_a(k) u_b(k)* L(w - w_n) + v_a(k) v_b(k)* L(w + w_n))
 

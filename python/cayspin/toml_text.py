@@ -24,7 +24,7 @@ def value(thing, key):
     """Returns a value as TOML text on one line. `key`: its name in the message of a SceneError."""
     if isinstance(thing, (np.generic, np.ndarray)):
         thing = thing.tolist()
-    if isinstance(thing, np.floating):  # with more digits than Python's
+    if isinstance(thing, np.floating):  # a longdouble, which tolist() does not convert
         thing = float(thing)
     if isinstance(thing, bool):
         return "true" if thing else "false"
@@ -59,7 +59,7 @@ def document(tables):
 
 def overrides(tables):
     """Returns tables and dotted keys as a list of key.path=VALUE. The keys of a table are changed
-    one by one, but [initial] is replaced as a whole, and so is a table whose dotted key has a
+    one by one, but [initial] is replaced as a whole, and so is the value of a dotted key that has a
     dict."""
     assignments = []
     for name, entry in tables.items():

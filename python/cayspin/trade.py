@@ -120,7 +120,7 @@ class Trade(list):
 
     - `method`, and `baseline`: whether the method is a baseline
     - `dt`, in the scene's unit, or `tolerance`, in radians
-    - `error`: the largest distance of any spin, dimensionless
+    - `error`: the largest distance of any spin from a reference solution, dimensionless
     - `seconds` of stepping, and `evaluations` of the field of all sites
     - `front`: whether no other run is faster and at least as accurate
     """
@@ -161,11 +161,11 @@ class Advice:
     method: str  #: its name, as in "rkmk4 tangent, single"
     error: float  #: predicted largest distance of any spin, dimensionless
     seconds: float  #: predicted seconds of the whole run
-    memory: int  #: bytes
+    memory: int  #: predicted for the run, in bytes
     precision: str  #: "double" or "single"
     dt: float  #: the step, in the scene's unit
     steps: int  #: of the whole run
-    tolerance: float | None  #: of adaptive methods, in radians
+    tolerance: float | None  #: in radians; None for methods with constant steps
     warning: str | None  #: the warning of `cayspin run` if dt is too large, otherwise None
     horizon: float  #: the time up to which the error is predicted, in the scene's unit
     units: str  #: of dt and horizon, the scene's: "reduced" or "SI"

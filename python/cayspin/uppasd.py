@@ -14,7 +14,7 @@ from cayspin._cayspin import CayspinError
 from cayspin.bonds import File, as_float, couplings, reversed_bond, unit_of
 
 NEAR = 0.05  # largest distance from the end of a vector to its atom, in units of alat
-MOST_CELLS = 1e6  # largest number of cells in a vector or a position
+MOST_CELLS = 1e6  # largest component of a vector or a position, in cells
 
 _TURN_X = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
 _TURN_Z = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]])
@@ -25,8 +25,9 @@ _GENERATORS: dict[int, list] = {0: [], 1: [_TURN_X, _TURN_Z, -np.eye(3)], 2: [_T
 
 
 def _columns(file, line, words, accepted, spare=0):
-    """The leading words, as many as `accepted` names, with up to `spare` numbers after them. More
-    numbers mean another kind of file."""
+    """Returns the first words of a line, one for each name in `accepted`. These words must be
+    numbers. Up to `spare` further numbers may follow; if there are more, the file is of another
+    kind and is refused."""
     names = accepted.split()
     numbers = 0
     while numbers < len(words) and as_float(words[numbers]) is not None:
@@ -88,7 +89,7 @@ class _Cell:
         return [atoms[site] for site in sorted(atoms)]
 
     def site(self, file, line, word):
-        """The index of a site that a file counts from 1."""
+        """Returns the index, from 0, of a site that the file counts from 1."""
         site = file.whole(line, word, "site")
         if not 1 <= site <= len(self.types):
             file.refuse(line, f"site {site} of a cell of {len(self.types)}",
@@ -155,7 +156,7 @@ def _both_ends(file, cell, names, posfiletype, maptype, sym):
 
 def _once(file, both, sign):
     """Returns the bonds of _both_ends(), each only once, with the mean of the values at its two
-    ends."""
+    ends. `sign`: ratio of these values, 1 for J and -1 for D."""
     once: dict = {}
     largest = max((np.abs(values).max() for _, values in both.values()), default=0)
     for key, (line, values) in both.items():
@@ -206,7 +207,7 @@ def read_uppasd(jfile: str | os.PathLike, *, posfile: str | os.PathLike | None =
     `jfile` has lines of site, site, x, y, z and J in mRy, `dmfile` of D_x, D_y, D_z in place of J.
     `posfile` has the atoms of the cell (default: one at 0) and `momfile` their moments in Bohr
     magnetons. `cell` has the three vectors of the cell (default: unit vectors). Lengths are in
-    units of alat. The others are keys of inpsd.dat:
+    units of alat. The next three arguments are keys of inpsd.dat:
 
     - `posfiletype`: "C" for Cartesian numbers, "D" for multiples of the cell's vectors
     - `maptype`: 1 for vectors between atoms, 2 for the cells between them

@@ -50,9 +50,10 @@ class Results:
         return 1e9 * self.median(kind, "GB/s", file)
 
     def limit(self, case):
-        """Returns a lower limit of the time of a step, in ns per spin, and what sets it. That is
-        either "memory", moving the numbers to and from memory, or "arithmetic", measured with all
-        fields in the L2 cache and divided by the number of threads."""
+        """Returns (limit, what sets it): the larger of two lower limits of the time of a step, in
+        ns per spin. "memory" is the time to move the values to and from memory; "arithmetic" is the
+        time measured with all fields in the L2 cache, divided by the number of threads. Returns
+        None if one of them was not measured."""
         precision, method, _ = case.split("/")
         file = next(iter(self.files(case)), None)
         words = self.median(case, "words", file)

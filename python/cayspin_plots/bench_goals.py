@@ -9,15 +9,15 @@ IN_CACHE = (32, 64)
 
 
 def yardstick(method):
-    """The hand-written loop with the same number of stages; there is none for Euler."""
+    """Returns the name of the hand-written loop with the same number of stages; None for Euler."""
     if "Euler" in method:
         return None
     return "hand-written Heun" if "Heun" in method else "hand-written RK4"
 
 
 class Goal:
-    """One line: a measured value beside its goal and floor. Larger is better; with `at_most`,
-    smaller."""
+    """One line: a measured value beside its goal and floor. Larger values are better or, with
+    `at_most`, smaller ones."""
 
     def __init__(self, text, value, goal, floor=None, at_most=False):
         self.text, self.value, self.goal, self.at_most = text, value, goal, at_most

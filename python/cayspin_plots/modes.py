@@ -31,7 +31,8 @@ def _title(file, mode):
 
 
 def _component(shape):
-    """Returns the component with the largest amplitude in vectors (ny, nx, 3), and its name."""
+    """Returns the component of vectors (ny, nx, 3) with the largest amplitude, scaled to a maximum
+    of 1, and its name."""
     largest = int((np.abs(shape)**2).sum(axis=(0, 1)).argmax())
     component = shape[..., largest]
     return component / max(np.abs(component).max(), 1e-300), "xyz"[largest]

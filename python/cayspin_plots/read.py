@@ -41,7 +41,7 @@ class Trajectory:
         return int(np.prod(self.spins.shape[1:4]))
 
     def site(self, number):
-        """The path (frame, 3) of one spin, counted with x fastest."""
+        """Returns the path (frame, 3) of one spin. `number` counts the sites from 0, x fastest."""
         if not 0 <= number < self.sites():
             raise SystemExit(f"{self.path}: there is no site {number}; there are {self.sites()}")
         return self.spins.reshape(len(self.spins), -1, 3)[:, number]

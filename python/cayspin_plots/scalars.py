@@ -5,7 +5,7 @@ import numpy as np
 
 from .style import BLUE, COMPONENTS
 
-# Replaces a defect of exactly 0, for a logarithmic axis.
+# Smaller defects are drawn with this value, because a logarithmic axis cannot show 0.
 SMALLEST = 1e-17
 
 

@@ -62,8 +62,8 @@ def _title(text, where):
 
 
 def _numbers(sweep, key):
-    """The positions of the values on an axis of numbers; None unless there are several finite
-    numbers."""
+    """Returns the values of a key as positions on an axis; None unless there are at least two and
+    all of them are finite numbers."""
     numbers = sweep.numbers[key]
     return numbers if numbers and len(numbers) > 1 and np.all(np.isfinite(numbers)) else None
 
@@ -111,7 +111,7 @@ def _draw_maps(axes, sweep, keys, energy, m, where):
               ("energy at the end", energy, "viridis", (None, None)))
     for axis, (text, values, colors, (least, most)) in zip(axes, panels):
         values = values[np.ix_(x_order, y_order)].T
-        axis.set_facecolor("#d9dcdf")  # where a run has no end
+        axis.set_facecolor("#d9dcdf")  # where a run has no result
         image = axis.pcolormesh(_edges(x), _edges(y), np.ma.masked_invalid(values), cmap=colors,
                                 vmin=least, vmax=most, rasterized=True)
         axis.grid(False)

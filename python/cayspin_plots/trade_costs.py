@@ -33,7 +33,8 @@ def is_double(method):
 
 
 def cost(method, key, error):
-    """Returns the cost of one of the ERRORS; infinite if the method does not reach it."""
+    """Returns the cost at which a method reaches one of the ERRORS: its `key`, "seconds" or
+    "evaluations". Infinite if the method does not reach the error."""
     amount = {one["error"]: one[key] for one in method["costs"]}[error]
     return math.inf if amount is None else amount
 

@@ -6,8 +6,8 @@ import numpy as np
 from cayspin_plots import style
 from cayspin_plots.trade_costs import BASELINES, ERRORS, cheapest, cost, scene_name
 
-LINES = 7  # at most
-OF_BASELINES = 2  # among them
+LINES = 7  # largest number of curves
+OF_BASELINES = 2  # of these curves, at most
 # Okabe and Ito's colours, safe for colour-blind readers; and markers, for print without colour.
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 MARKS = "osD^vPX"
@@ -15,8 +15,9 @@ AXES = {"seconds": "seconds of stepping", "evaluations": "evaluations of the fie
 
 
 def chosen(trade):
-    """The methods to draw with their names, and the best baselines. Methods that are cheapest for
-    one of the errors come first, then those that are nearly as cheap."""
+    """Returns two lists of methods to draw: the best ones, and the best baselines. In the first
+    list, methods that are cheapest for one of the errors come before those that are nearly as
+    cheap."""
     methods = trade["methods"]
     best = {error: cheapest(methods, error)[0] for error in ERRORS}
 

@@ -95,7 +95,7 @@ NumbersOut spins(EnsembleRun& run) {
 }
 
 // Returns lists of the energies, the norm defects and the magnetizations of the replicas. The last
-// has three numbers for each replica, one after another.
+// list has three numbers for each replica, one after another.
 nb::tuple sample(EnsembleRun& run) {
   std::vector<io::Scalars> scalars;
   {

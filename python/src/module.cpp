@@ -152,7 +152,7 @@ nb::dict path(SceneRun const& run, StateIn const& start, StateIn const& end, std
   return as_dict(std::move(*found), run.scene().lattice.shape);
 }
 
-// Returns the scene. Refuses a list of fields, which would need several runs.
+// Returns the scene. Refuses a list of applied fields, which needs a search for each of them.
 io::Scene with_one_field(io::Scene scene) {
   if (!scene.field.applied_in_turn.empty())
     throw io::scene_error(scene, "field.applied",

@@ -9,8 +9,7 @@ namespace cayspin::python {
 
 /// Returns true if a signal such as Ctrl-C has set a Python exception, which the caller must raise.
 bool interrupted();
-/// Throws the Python exception that interrupted() has found, if there is one, even if the work has
-/// ended for another reason.
+/// Throws the Python exception that an earlier call of interrupted() has left, if there is one.
 void rethrow_interruption();
 
 /// Throws UsageError unless the name is "double" or "single".

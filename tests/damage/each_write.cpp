@@ -53,7 +53,8 @@ class Killed : public TrajectoryTest {
   }
   ~Killed() override { ::munmap(told_, sizeof(Told)); }
 
-  // Returns false if the run ended before that kill point.
+  // Performs the course in a child process that is killed at kill point number `moment`. Returns
+  // false if the run ended before it.
   bool run_to(Course const& course, long moment) {
     *told_ = {};
     std::filesystem::remove_all(folder_);

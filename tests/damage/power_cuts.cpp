@@ -199,7 +199,8 @@ class AllChoices {
   std::size_t next_ = 0;
 };
 
-// Tries all choices wherever they are few. The writes reach the disk in a fixed order.
+// At each cut for which few sequences of choices are possible, tries all of them. The writes reach
+// the disk in a fixed order.
 TEST_F(PowerCuts, LoseNothingWhateverOfFewWritesIsThere) {
   auto const recording = record(
       {.header = header_of({2, 1, 1}, "double"), .frames = 2, .samples = 1, .replaces = true});

@@ -147,7 +147,8 @@ TEST(DipolarBound, IsAboveTheLargestEigenvalueAndNotFarAbove) {
     }
 }
 
-// Layers of one film, at a distance that does not depend on the film's thickness.
+// The film has one layer of cells. Its thickness `across` scales the dipoles, but does not change
+// the distances between them.
 TEST(DipolarBound, OfAThinFilmIsNotFarAboveThatOfItsLayer) {
   for (double const across : {0.1, 0.6, 2.0}) {
     Lattice film = Lattice::square(16, 16);

@@ -26,7 +26,7 @@ SLENDER_CELLS = [(1.0, 1.0, 1e-4), (1.0, 1e-4, 1e-4), (1.0, 0.7, 1e-6), (1e-6, 1
 STEPS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (1, 0, 1), (0, 1, 1), (1, 1, 1),
          (-2, 1, -3), (0, 15, 0), (60, -30, 0), (1000, 0, 0)]
 
-# Positions by distance, in longest edges, and direction, given as a vector of any length.
+# Positions by distance, in units of the longest edge, and direction, a vector of any length.
 AXES = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
 DIAGONALS = [(1, 1, 1), (-1, 1, 0), (1, 0, -1), (0, 1, 1)]
 DISTANCES = [(1.7, [(1, -2, 5)]), (3.9999, [AXES[0], DIAGONALS[0]]), (4.0001, AXES + DIAGONALS),

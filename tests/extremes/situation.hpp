@@ -57,7 +57,7 @@ struct Situation {
 struct Section {
   std::string title;
   std::string promise;                  // an empty line and one paragraph
-  std::vector<Fate> kept, broken = {};  // fates of methods that keep |m|, and of others
+  std::vector<Fate> kept, broken = {};  // promised fates of methods that keep |m|; of others
   std::vector<Situation> situations = {};
 
   /// Adds a situation with this setting in both precisions.

@@ -37,7 +37,7 @@ def direct_energy(places, moments):
 
 class ClosedForms(PackageTest):
     # Two spins on the x axis: along it, parallel and antiparallel, and across it (LAMMPS issue
-    # 4717). In meV and Angstrom mu0 mu_B^2 / (4 pi) is 0.053681.
+    # 4717). mu0 * mu_B^2 / (4 pi) is 0.0536814 meV Angstrom^3.
     def test_two_spins(self):
         apart, moment, meV = 3.0, 2.2, 1.602176634e-22
         pair = moment**2 * 0.0536814 / apart**3
@@ -51,7 +51,8 @@ class ClosedForms(PackageTest):
                           "damping_form": "gilbert"})
             self.assertAlmostEqual(sim.energy() / meV, expected * pair, delta=1e-5 * pair)
 
-    # Spins point along the ring: a pair at the angle f has the energy -(3 + cos f) / (2 r^3).
+    # Spins point along the ring: a pair at the distance r, whose spins are at the angle f, has the
+    # energy -(3 + cos f) / (2 r^3).
     def test_rings(self):
         for count in (3, 6, 11):
             f = 2 * np.pi * np.arange(count) / count

@@ -61,7 +61,7 @@ class PlotPath(PlotFound):
             result = self.plot(self.path(name, shape))
             self.assert_drawn(png, (9, 4.2), (BLUE,), result)
 
-    # On squares, its triangles would be sheared.
+    # Drawn as squares, the cells of this triangular lattice would be sheared.
     def test_a_skew_cell(self):
         file = self.path("skew.h5", (1, 8, 10))
         with h5py.File(file, "r+") as data:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Test scripts of mumax3 as scenes, with the values that they expect and their tolerances.
 
-Each test has the name of a script. mumax3 computes in single precision, and its tensors of the
-demagnetising field are integrated with DemagAccuracy = 6. Where this error exceeds the tolerance of
-a script, the limit here is wider and a comment gives the script's. std5b has DemagAccuracy = 29 and
-the tolerance of its script."""
+Each test has the name of a script. mumax3 computes in single precision and integrates its
+demagnetising tensors numerically, with DemagAccuracy = 6. Where the error of its expected values
+exceeds the tolerance of a script, the limit here is wider and a comment gives the script's. std5b
+has DemagAccuracy = 29 and the tolerance of its script."""
 
 import math
 import os
@@ -64,7 +64,7 @@ class Mumax3Tests(PackageTest):
                 {"anisotropy": {"cubic": first, "axes": [[1, 0, 0], [0, 1, 0]],
                                 "constant2": second}}, {"uniform": m}, Ms=1e6))
             # The script allows 1e-2. The closed form, 35254.001, differs from the script's first
-            # value by more.
+            # value by more than that.
             self.assertAlmostEqual(sim.energy() / 1e-27 / joules_per_volume, 1, delta=1e-6)
 
     # Cubic and both uniaxial terms: if one had a wrong factor, the energy would oscillate.
@@ -175,7 +175,8 @@ class Mumax3Tests(PackageTest):
         self.assert_mean(sim, [0.14497971, 0.248994603, 0.002248812], 1e-4)
 
     # A vortex wall between head-to-head domains moves in a field, and the lattice follows it. As in
-    # the script, a field removes the charges at the ends; there is one charge on each cell's face.
+    # the script, an extra field compensates the magnetic charges at both ends, each cell's face
+    # counting as one point charge.
     def test_centerwall(self):
         j, i = np.mgrid[:32, :128] + 0.5
         of_charges = np.zeros((1, 32, 128, 3))
@@ -200,7 +201,8 @@ class Mumax3Tests(PackageTest):
         sim.run()
         self.assertAlmostEqual(sim.magnetization()[0], 0, delta=0.1)
 
-    # The anisotropy is a sine of time, in the whole film or in a region of all cells.
+    # The anisotropy is a sine of time. It is given for the whole film, or for a region that has all
+    # cells.
     def test_timedep(self):
         for Ku, regions in ((1e5, "0"), ({"regions": [0, 1e5]}, "1")):
             sim = cayspin.Simulation(scene(
@@ -212,7 +214,8 @@ class Mumax3Tests(PackageTest):
             sim.run()
             self.assert_mean(sim, [0, 0.9909376502037048, 0], 1e-5)
 
-    # A field turns in time: it is uniform, or two sources with masks. The script allows 1e-5.
+    # A field that rotates in time, given as a uniform field or as two sources with masks. The
+    # script allows 1e-5.
     def test_timedep3(self):
         sine, cosine = "0.01*sin(2*pi*1e9*t)", "0.01*cos(2*pi*1e9*t)"
         for field in ({"applied": [sine, cosine, 0]},
@@ -243,7 +246,7 @@ class Mumax3Tests(PackageTest):
         np.testing.assert_allclose([x, y, -abs(z)], [0, 0, -0.001], atol=1e-3)
         np.testing.assert_allclose(np.abs(sim.spins[0, 31:33, 63:65, 2]), 0.75, atol=0.25)
 
-    # With three values of interfacial DMI, the energy falls.
+    # In a film with a different interfacial DMI in each of three regions, the energy falls.
     @long
     def test_dmienergy_vardmi(self):
         sim = cayspin.Simulation(scene(

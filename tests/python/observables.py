@@ -120,7 +120,7 @@ class Dispersions(PackageTest):
                 self.assertLessEqual(abs(frequency - w), found.resolution / 2 + 1e-9)
 
     def test_a_spin_in_a_field_has_a_positive_frequency(self):
-        # In the library's own motion, m' = -m x H.
+        # The library's equation of motion is m' = -m x H: a spin precesses right-handed about H.
         w = 0.5
         of = scene(system={"kind": "llg", "damping": 0.0}, lattice={"boundary": "open"},
                    field={"exchange": None, "anisotropy": None, "slab_demag": None, "mu0": None,
@@ -185,8 +185,8 @@ class Dispersions(PackageTest):
                                    cell=hexagonal)
         np.testing.assert_allclose(np.diff(found.corners),
                                    [2 * np.pi / math.sqrt(3), 4 * np.pi / 3])
-        # A corner between the lattice's wave vectors has a place on the axis but is not in the
-        # list.
+        # A corner between the lattice's wave vectors has a place on the axis but is not in the list
+        # of wave vectors.
         odd = cayspin.dispersion(m[..., :9, :], 1.0, [(0, 0, 0), (0.5, 0, 0), (0, 0, 0)])
         self.assertEqual([round(9 * k) for k in odd.wave_vectors[:, 0]],
                          [0, 1, 2, 3, 4, 4, 3, 2, 1, 0])

@@ -161,7 +161,7 @@ class Charge(TextureTest):
         self.assertLess(values.max(), 1e-12)
 
     def test_every_plane(self):
-        m = skyrmion()[0]  # turned so that x becomes y, y z and z x, once and twice
+        m = skyrmion()[0]  # rotated so that x -> y -> z -> x, once and twice
         about_x = m[..., [2, 0, 1]][:, :, None]
         about_y = m[..., [1, 2, 0]].swapaxes(0, 1)[:, None]
         for spins, plane in ((about_x, "x=0"), (about_y, "y=0")):

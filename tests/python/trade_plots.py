@@ -92,7 +92,8 @@ class PlotTrade(ScriptTest):
 
     def test_an_error_that_no_method_reaches(self):
         self.assertEqual(trade_costs.cheapest(self.trade["methods"], 1e-8), (math.inf, None))
-        # Another method needs the fewest evaluations for one of the three errors reached.
+        # Makes a method that is not the fastest need the fewest evaluations for one of the three
+        # errors that are reached.
         self.trade["methods"][1]["costs"][2]["evaluations"] = 1
         self.assertEqual(trade_figure.axes_that_differ(self.trade), ["seconds", "evaluations"])
 

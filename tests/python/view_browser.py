@@ -31,7 +31,8 @@ const observer = new MutationObserver(next);
 observer.observe(document.body, {attributeFilter: ["data-shown"]});
 setTimeout(() => { observer.disconnect(); done(count / milliseconds * 1000); }, milliseconds);
 next();"""
-# A script that makes the page count as hidden for a second, from the second time it asks on.
+# A script that hides the page for a second, beginning with the page's second query of
+# document.hidden.
 HIDDEN = """let looks = 0, hidden = false;
 Object.defineProperty(document, "hidden", {get: () => {
   if (++looks === 2) {
@@ -187,7 +188,8 @@ class Controls(Browser):
         self.wait(lambda: self.driver.execute_script(ASKED) == 2)
 
     def shown_at_last(self, still=3, seconds=60):
-        """Returns the frame that stays for `still` seconds."""
+        """Waits until the shown frame has not changed for `still` seconds, and returns its
+        number."""
         begin = changed = time.monotonic()
         shown = self.shown()
         while time.monotonic() < changed + still:
@@ -201,7 +203,7 @@ class Controls(Browser):
         (self.folder / "scene.toml").write_text(LONG_SCENE)
         self.open("scene.toml")
         self.assertIn("random", self.element("scene").get_attribute("textContent"))
-        self.wait(lambda: self.shown() > 2)  # it follows by itself
+        self.wait(lambda: self.shown() > 2)  # the page shows new frames by itself
         self.element("pause").click()
         self.wait(lambda: self.element("state").text == "paused")
         shown = self.shown_at_last()  # the frames written so far appear

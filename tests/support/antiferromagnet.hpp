@@ -18,7 +18,8 @@ struct AntiferromagneticCone {
   static AntiferromagneticCone of(double exchange, double anisotropy, double gamma,
                                   double opening) {
     double const sin_a = std::sin(opening), cos_a = std::cos(opening), wave = exchange * gamma;
-    // Spins turn rigidly where the field's component normal to the axis is along the spin's.
+    // The components of field and spin normal to the axis are collinear, so each sublattice turns
+    // rigidly about the axis, at this rate.
     auto const rate_a = [&](double b) {
       return exchange * std::cos(b) + anisotropy * cos_a - wave * std::sin(b) * cos_a / sin_a;
     };

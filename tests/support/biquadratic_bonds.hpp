@@ -15,7 +15,7 @@ struct BiquadraticBonds {
     return as_value<ValueOf<Stencil>>(2 * constant) *
            (along<0>(stencil) + along<1>(stencil) + along<2>(stencil));
   }
-  /// Returns half the energy of each bond of the site.
+  /// Returns half the sum of the energies of the site's bonds.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     return as_value<ValueOf<Stencil>>(-0.25) * dot(stencil.center(), field(stencil));

@@ -12,7 +12,7 @@
 
 // Common code of most tests, compiled in compiled_once.cpp instead of in each test: fields, the
 // memory of common steppers, runs of the slab, and messages of GoogleTest. Compilers for devices
-// compile kernels where they are used, so they omit this.
+// must compile kernels where these are used, so nothing is precompiled for them.
 #if !defined(KOKKOS_ENABLE_CUDA) && !defined(KOKKOS_ENABLE_HIP) && !defined(KOKKOS_ENABLE_SYCL)
 #ifndef CAYSPIN_TEST_COMPILES
 #define CAYSPIN_TEST_COMPILES extern

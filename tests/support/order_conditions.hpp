@@ -90,7 +90,8 @@ void expect_conditions(char const* name, int order, double exact, double missed,
       EXPECT_GT(largest, missed);
   }
 }
-/// Checks the steps of a tableau at its own order.
+/// Expects the weights b of a tableau to satisfy the conditions up to its order, and to miss those
+/// of the next order.
 template <class Tableau>
 void expect_conditions(char const* name, double exact, double missed = 1e-3) {
   expect_conditions<Tableau>(name, Tableau::order, exact, missed,

@@ -10,7 +10,7 @@
 
 namespace cayspin::test {
 
-/// Returns the error message of a call, or "taken".
+/// Returns the error message of a call, or "taken" if the call raises no error.
 template <class Error = std::invalid_argument>
 std::string refusal(std::function<void()> const& call) {
   try {

@@ -34,8 +34,8 @@ def hue_colors(spins: np.ndarray) -> np.ndarray:
 
 
 def map_colors(values: np.ndarray, name: str, lowest: float, highest: float) -> Any:
-    """Colours of values by one of MAPS between two limits, white for NaN; and the ScalarMappable
-    that draws the scale."""
+    """Returns the colours of values, white for NaN, and the ScalarMappable that draws the scale.
+    The colour map MAPS[name] extends from `lowest` to `highest`."""
     import matplotlib
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize

@@ -260,7 +260,7 @@ def draw(texture: Texture, axes: Any = None, *, plane: str | None = None,
     `quantity` "charge": the topological charge of each cell of a film, seen against the normal.
     `before`: other spins of the same shape; |difference| is drawn. `limit`: the end of the colour
     scale for "charge" and for a difference. `key`: whether the wheel or the scale is drawn to the
-    right of the axes (default: where the figure is new).
+    right of the axes (default: only if the figure is new).
 
     Raises ValueError for other words, planes and shapes.
     """

@@ -46,7 +46,7 @@ class Plane:
         return [self.right, self.up, self.normal]
 
     def vectors(self, values: np.ndarray) -> np.ndarray:
-        """Returns the spins with components along right, up and the normal."""
+        """Returns the vectors of this plane, with components along right, up and the normal."""
         return self.cut(values)[..., self.axes]
 
     def sites(self, positions: np.ndarray | None) -> tuple[np.ndarray, float]:

@@ -50,7 +50,7 @@ class Reader:
 
     def __init__(self, path: str | pathlib.Path):
         self.path = pathlib.Path(path)
-        self.frames = self.samples = 0  # that are trusted
+        self.frames = self.samples = 0  # numbers of trusted rows
         self._seen, self._identity, self._kept = (0, 0), None, (None, None)
         try:
             require_file(path)

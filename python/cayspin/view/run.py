@@ -13,7 +13,8 @@ from ..texture import toml
 
 
 def _output_of(scene):
-    """`output.file`; None for a scene that `cayspin run` refuses with its own message."""
+    """Returns the scene's output.file, or None if the scene cannot be read or has no such key.
+    `cayspin run` then refuses the scene with its own message."""
     try:
         tables = toml.loads(scene.read_text(encoding="utf-8"))
     except (OSError, ValueError):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Serves the page and its data to this machine only. All but the page's scripts, style and icon
-requires the token."""
+"""Serves the page and its data to this machine only. Only the page's scripts, style and icon are
+sent without the token."""
 
 from __future__ import annotations
 

@@ -44,11 +44,11 @@ export function drawLines(canvas, rows, columns, now, clock) {
   stroke(pen, [[left, above], [left, below], [right, below]], ink("faint"));
   stroke(pen, [[x(now), above], [x(now), below]], ink("ink"));
   pen.lineWidth = 1.5;
-  for (const column in columns) // a missing number breaks no line
+  for (const column in columns) // lineTo() skips NaN
     stroke(pen, rows.map(row => [x(row[0]), y(row[column] ?? NaN)]), ink(columns[column]));
 }
 
-const [TURN, RISE] = [-0.7, 0.4]; // of the eye
+const [TURN, RISE] = [-0.7, 0.4]; // azimuth and elevation of the eye, in radians
 function seen([x, y, z]) { // right, up and towards the eye
   const towards = x * Math.cos(TURN) + y * Math.sin(TURN);
   return [y * Math.cos(TURN) - x * Math.sin(TURN), z * Math.cos(RISE) - towards * Math.sin(RISE),

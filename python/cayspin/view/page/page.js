@@ -12,7 +12,7 @@ window.onerror = text => say("page", text);
 const spins = new Spins($("spins"));
 let news, about, laidOut, playing = 0, place = null, path = [];
 
-// Redrawing the page takes time that a run may need.
+// Writes a text only if it has changed: redrawing takes time that a run may need.
 function write(id, text) {
   if ($(id).textContent !== text) $(id).textContent = text;
 }
@@ -130,7 +130,7 @@ const trace = lastOf("path", async () => {
   while (place !== null && path.length < times.length) {
     const asked = path;
     const got = new Float32Array(await bytes("path", {place, plane: plane(), first: path.length}));
-    if (asked !== path) continue; // another site was chosen
+    if (asked !== path) continue; // another site has been chosen meanwhile
     if (!got.length) return;
     for (let i = 0; i < got.length; i += 3) path.push([...got.subarray(i, i + 3)]);
     drawGraphs();
@@ -168,12 +168,12 @@ const readNews = lastOf("news", async () => {
   trace();
 });
 
-// Waits long enough between two looks that a run under way loses about a hundredth of its time to
-// this page. A look takes the browser and the server about twice as long as is measured here, on a
-// core for which all threads of the run wait.
+// Reads the news repeatedly, every 3 to 10 s, if possible so rarely that a run under way loses only
+// about a hundredth of its time to this page. A reading takes the browser and the server about
+// twice the time `took`, on a core for which all threads of the run wait.
 async function follow() {
   while (!news || news.more || news.state === "under way" || (news.run ?? "ended") !== "ended") {
-    const start = about ? performance.now() : Infinity, before = news; // the first look takes long
+    const start = about ? performance.now() : Infinity, before = news; // the first one takes long
     if (!document.hidden) await readNews();
     const took = performance.now() - start;
     if (news === before || !news.more) await sleep(Math.min(Math.max(3000, 200 * took), 10000));
