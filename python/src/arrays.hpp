@@ -32,7 +32,7 @@ io::HostVectors vectors_of(NumbersIn const& array);
 /// Returns a pointer whose deleter releases the GIL: freeing a Kokkos View waits for all kernels,
 /// and those of another thread may wait for the GIL.
 template <class Run>
-std::shared_ptr<Run> freed_without_gil(std::unique_ptr<Run> run) {
+std::shared_ptr<Run> shared(std::unique_ptr<Run> run) {
   return {run.release(), [](Run* held) {
             nb::gil_scoped_release const released;
             delete held;

@@ -122,7 +122,7 @@ void define_ensemble(nb::module_& module) {
                    "EnsembleSimulation: the scene has no [ensemble]; accepted: Simulation");
              RunSettings const settings{precision_of(precision), space, threads};
              nb::gil_scoped_release const released;
-             return freed_without_gil(
+             return shared(
                  std::make_unique<EnsembleRun>(scene, settings, !io::has_integrator(scene)));
            }),
            "scene"_a, "precision"_a, "space"_a.none(), "threads"_a.none())

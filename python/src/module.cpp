@@ -268,10 +268,9 @@ void define_run(nb::module_& module) {
                        std::optional<std::string> const& space, std::optional<int> threads,
                        std::optional<std::filesystem::path> const& restart) {
              RunSettings const settings{precision_of(precision), space, threads, restart};
-             if (restart)
-               return freed_without_gil(as_error([&] { return SceneRun::open(scene, settings); }));
+             if (restart) return shared(as_error([&] { return SceneRun::open(scene, settings); }));
              nb::gil_scoped_release const released;
-             return freed_without_gil(SceneRun::open(scene, settings));
+             return shared(SceneRun::open(scene, settings));
            }),
            "scene"_a, "precision"_a, "space"_a.none(), "threads"_a.none(), "restart"_a.none())
       .def("save",
