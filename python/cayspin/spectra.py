@@ -221,8 +221,11 @@ class _FileOfModes:
         if "torque" in read:
             raise CayspinError(f"{path}: its scene has a torque, and no thermal equilibrium; "
                                "accepted: modes of a scene without [torque]")
+        of_material = ("Ms", "mu_s", "gamma")
+        if read.get("material", {}).get("damping_form") == "gilbert":
+            of_material += ("alpha",)
         differs = [f"{table}.{key}" for table, names in
-                   (("lattice", ("moments", "gyromagnetic")), ("material", ("Ms", "mu_s", "gamma")))
+                   (("lattice", ("moments", "gyromagnetic")), ("material", of_material))
                    for key in names if key in read.get(table, {})
                    and not _is_number(read[table][key])]
         if moments is not None:
@@ -269,8 +272,9 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
     are not included.
 
     `moments`: mu / g of each site in reduced units, from lattice.moments and lattice.gyromagnetic,
-    an array that broadcasts to the spins without their last axis. Without `moments`, mu / g is 1,
-    or the number in the scene if `modes` is a file. `components`, `cell`, `positions`, `periodic`
+    an array that broadcasts to the spins without their last axis. In SI, if material.alpha of the
+    form "gilbert" is not a single number, they are mu (1 + alpha^2) / g. Without `moments`, mu / g
+    is 1, or the number in the scene if `modes` is a file. `components`, `cell`, `positions`, `periodic`
     and `zones` are those of structure_factor(); if `modes` is a file, the lattice is the scene's by
     default.
 

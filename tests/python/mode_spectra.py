@@ -204,6 +204,36 @@ class OfModes(PackageTest):
         np.testing.assert_allclose(np.sort(peaks), np.sort(2 * np.pi * file["frequency"][:]),
                                    rtol=0.01)
 
+    def test_damping_of_sites_in_si(self):
+        # The fluctuations at equilibrium do not depend on the damping. Frequencies of Gilbert's
+        # form have a factor 1 / (1 + alpha^2).
+        joule, kelvin, seconds = 1e-21, 5.0, np.linspace(-9e14, 9e14, 3)
+        for form, moments in (("gilbert", 1.25), ("landau_lifshitz", None)):
+            integrated = []
+            for alpha, given in ((0.5, None), ("0.5 + 0*x", moments)):
+                si = cayspin.Scene(
+                    units="SI", system={"kind": "llg"},
+                    material={"mu_s": {"bohr_magnetons": 2.0}, "alpha": alpha,
+                              "damping_form": form, "K": 0.3 * joule, "axis": [0, 0, 1]},
+                    lattice={"shape": [8], "spacing": 3e-10, "boundary": "periodic"},
+                    field={"couplings": {"shells": [joule]}}, initial={"uniform": [0, 0, 1]})
+                file = self.run_program(si, "--count", "8", command="modes").filename
+                call = cayspin.linear_structure_factor
+                if given is not None:
+                    self.assert_refused(
+                        cayspin.CayspinError,
+                        "material.alpha is no single number; accepted: the argument moments",
+                        call, file, kelvin, seconds)
+                found = call(file, kelvin, seconds, moments=given)
+                integrated.append(found.integrated["yy"][0, 0])
+                modes, spins = modes_of(si)
+                other = call(modes, kelvin, seconds, spins=spins, moments=given)
+                np.testing.assert_allclose(other.integrated["yy"][0, 0], integrated[-1], rtol=1e-8)
+            k = 2 * np.pi * found.wave_vectors[0, 0, :, 0]
+            stiffness = 2 * joule * (1 - np.cos(k)) + 0.6 * joule
+            for one in integrated:
+                np.testing.assert_allclose(one, 1.380649e-23 * kelvin / stiffness, rtol=1e-8)
+
 
 if __name__ == "__main__":
     unittest.main()
