@@ -274,9 +274,9 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
     `moments`: mu / g of each site in reduced units, from lattice.moments and lattice.gyromagnetic,
     an array that broadcasts to the spins without their last axis. In SI, if material.alpha of the
     form "gilbert" is not a single number, they are mu (1 + alpha^2) / g. Without `moments`, mu / g
-    is 1, or the number in the scene if `modes` is a file. `components`, `cell`, `positions`, `periodic`
-    and `zones` are those of structure_factor(); if `modes` is a file, the lattice is the scene's by
-    default.
+    is 1, or the number in the scene if `modes` is a file. `components`, `cell`, `positions`,
+    `periodic` and `zones` are those of structure_factor(); if `modes` is a file, the lattice is the
+    scene's by default.
 
     Raises CayspinError for a mode that does not oscillate or lowers the energy, a file of bands or
     with [torque], Modes without spins, and arrays, words and numbers that do not fit.
