@@ -69,8 +69,8 @@ using Vectorized = hand_written::Steps<Chain<Loops::vectorized>>;
 template <class Loop>
 using MethodOf = void (Loop::*)(hand_written::Vectors<double>&, double, std::int64_t);
 
-/// Registers the method of the library and the hand-written loops; these must take the same steps
-/// as the stepper Renormalized.
+/// Registers benchmarks of the library's Stepper and of the hand-written loops. A loop is an error
+/// unless it takes the same steps as the stepper Renormalized.
 template <class Stepper, class Renormalized>
 void add(std::string const& name, MethodOf<Scalar> scalar, MethodOf<Vectorized> vectorized) {
   using Default = Kokkos::DefaultHostExecutionSpace;

@@ -20,8 +20,8 @@ double trajectory_order(std::vector<Body> const& bodies, MethodChoice const& cho
                   0.5);
 }
 
-// Returns the median order, from dt = 1 to 0.1, of energy errors that are means over ten bodies, as
-// in the paper's Table 4.
+// Returns the order of the energy error between dt = 1 and 0.1. As in the paper's Table 4, an error
+// is the mean over ten bodies; the median over these groups of ten is returned.
 double table4_slope(std::vector<Body> const& bodies, MethodChoice const& choice) {
   auto const means = [&](double dt) {
     return means_of_ten(run_ensemble(bodies, choice, dt, 100).energy_errors);

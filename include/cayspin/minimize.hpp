@@ -141,8 +141,9 @@ class Minimizer {
     detail::Hessian hessian(exec, field, options.time, spins, descent_.is_mobile,
                             detail::HessianArrays<Spins>{descent_.search.trial, pairs.change(2),
                                                          descent_.lbfgs.scratch()});
-    // Only curvatures below -tolerance count as negative. If a curvature is between -tolerance and
-    // 0, even a turn by one radian leaves the torque below its bound, or within round-off.
+    // Only curvatures below -tolerance count as negative. For one between -tolerance and 0, even a
+    // rotation by one radian along its eigenvector gives a torque that is below options.torque or
+    // within round-off.
     auto const found = detail::find_lowest_curvature(
         hessian, exec, arrays,
         {.scale = descent_.first_shift(),

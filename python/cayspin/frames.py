@@ -88,8 +88,8 @@ def at_equal_steps(file: Any, path: Any, count: int, frames: Any,
 
 
 def tables(path: Any, text: str, key: str, otherwise: str) -> dict:
-    """The tables of a scene. If Python cannot read TOML, the error names the `key` that is needed,
-    and what is accepted `otherwise`."""
+    """Parses the TOML text of a scene. If no TOML parser is installed, the error says that `key`
+    could not be read, and names `otherwise`, which the caller accepts instead."""
     try:
         return toml.loads(text)
     except ValueError as error:

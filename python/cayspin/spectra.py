@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The dynamic structure factor, from runs and from normal modes, in one normalisation."""
+"""The dynamic structure factor, from runs and from normal modes, with the same
+normalisation."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ def draw(sweep, axes_keys):
     for row, fixed in zip(axes, rows):
         where = ", ".join(f"{sweep.keys[i]} = {sweep.values[i][v]}" for i, v in zip(others, fixed)
                           if len(sweep.values[i]) > 1)
-        # Puts the keys of the picture's axes first among the axes of the arrays.
+        # Moves the plotted keys to the first dimensions of the arrays.
         order = axes_keys + others
         energy = sweep.energy.transpose(order)[(Ellipsis, *fixed)]
         m = sweep.magnetization.transpose(*order, len(order))[(Ellipsis, *fixed, slice(None))]

@@ -10,8 +10,8 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// While in scope, HDF5 does not print its error stack, and no other thread of the library uses
-/// HDF5, which may be built without thread safety.
+/// While an object exists, HDF5 does not print its error stack, and no other thread of this library
+/// uses HDF5, because HDF5 may be built without thread safety.
 class QuietErrors {
  public:
   QuietErrors();

@@ -86,7 +86,7 @@ std::string accepted_site_numbers(Lattice const& lattice);
 bool are_numbers_of_sites(Item const& item);
 /// Reads site-dependent numbers. Returns false for an item that is neither a string nor a table.
 bool read_site_numbers(Item const& item, Scene& scene, SiteNumbers& numbers);
-/// Reads site-dependent numbers and returns 1; or reads a number and returns that.
+/// Reads site-dependent numbers into `numbers` and returns 1, or reads one number and returns it.
 double number_of_sites(Item const& item, Scene& scene, SiteNumbers& numbers);
 /// Describes, for messages, what read_site_vectors accepts: a vector for each site.
 std::string accepted_site_vectors(Lattice const& lattice);

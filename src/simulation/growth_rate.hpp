@@ -7,8 +7,8 @@
 
 namespace cayspin::simulation {
 
-/// Returns the rate at which deviations from a saddle grow in the motion with damping. There is
-/// only one positive rate; it is found by inverse iteration. Returns 0 if none is found.
+/// Returns the rate at which a small deviation from a saddle grows in the damped dynamics. There is
+/// only one positive rate; it is found by inverse iteration. Returns 0 if the search fails.
 /// `unstable`: the eigenvector of the Hessian along which the energy falls. Throws NumbersFailed if
 /// a spin has neither precession nor damping.
 double growth_rate(io::Scene const& scene, StateHessian const& saddle,

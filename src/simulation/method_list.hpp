@@ -70,8 +70,8 @@ struct Cayley;
 namespace cayspin::simulation {
 
 /// A family defines the steppers of a method. Its template Stepper takes the type of the spins, an
-/// isotropy and a rotation, and ignores those of which the method offers no choice. If the method
-/// accepts the generator "tangent", the family also has Chart.
+/// isotropy and a rotation, and ignores an isotropy or a rotation that the method does not let the
+/// user choose. If the method accepts the generator "tangent", the family also has Chart.
 namespace family {
 
 template <template <class> class Of>

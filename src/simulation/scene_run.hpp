@@ -230,7 +230,7 @@ class SceneRun {
   virtual LentVectors evaluated_field() = 0;
 
   io::Scene scene_;
-  std::optional<Plan> held_plan_;  // always set; a Plan cannot be assigned
+  std::optional<Plan> held_plan_;  // always set; optional because a Plan cannot be assigned
   Plan const& plan() const { return *held_plan_; }
   std::optional<std::string> restart_warning_;
   // Other threads read these while the run advances.

@@ -121,7 +121,8 @@ class Parts {
   // lengths is short enough, or if the evaluations are used up.
   bool bound_the_rest(double begin, double end, std::vector<StepBound>& bounds) {
     constexpr int places = 256, halvings = 12;
-    // Earlier spans have used up the evaluations.
+    // Each span may exceed the limit here. Give up once all spans together have reached twice the
+    // limit.
     if (samples_.evaluations() > 2 * search_.most_evaluations) return false;
     double length = end - begin;
     for (auto const& bound : bounds)

@@ -29,7 +29,7 @@ class TimeSamples {
   double change(std::size_t i, std::size_t component) const;
   /// Returns true if change(i, component) is at least three times as large as most changes nearby.
   bool changes_unusually(std::size_t i, std::size_t component) const;
-  /// Returns the time from which on no component changes; 0 if none changes at all.
+  /// Returns the time after which no component changes; 0 if none changes at all.
   double last_change() const;
   /// Returns the index of the first sample between two times, and the index after that of the last
   /// one.

@@ -85,7 +85,7 @@ TYPED_TEST(DemagnetizingFieldOnRanks, HasEqualBits) {
   });
 }
 
-// Several ranks together need the memory that a single rank needs, and that of one more spectrum.
+// All ranks together need as much memory as a single rank would, plus one spectrum.
 TEST(DemagnetizingFieldOfParts, SharesItsMemory) {
   auto const lattice = Lattice::cubic(31, 16, 16);
   auto const of_one = DemagnetizingField<double>::work_bytes(lattice);

@@ -131,7 +131,8 @@ std::vector<typename Field::value_type> end_in(Field const& start) {
   return copy_to_host(spins);
 }
 TEST(SlowField, SameBitsOnHostSpaces) {
-  for (std::size_t const which : {10, 13, 19, 22}) {  // some with many tasks, open and periodic
+  // a few that are split into many tasks, open and periodic
+  for (std::size_t const which : {10, 13, 19, 22}) {
     Lattice const lattice = odd_lattices()[which];
     auto const check = [&]<class Field>(Field const& start) {
       auto const one = end_in<Kokkos::Serial>(start);

@@ -145,7 +145,7 @@ TEST_F(OvfTest, ValuesHaveToBeThoseOfTheMesh) {
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
-// Line breaks would end the line, and the rest would be read as a separate record.
+// A line break would end the header line, and the rest would be read as another header entry.
 TEST_F(OvfTest, LineBreaksInUnitsAreBlanks) {
   auto field = asymmetric_field();
   field.mesh.unit = "nm\n# xnodes: 1";

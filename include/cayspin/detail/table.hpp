@@ -8,7 +8,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Returns a View in MemorySpace with copies of the elements; waits.
+/// Returns a View in MemorySpace with copies of the elements, and waits until they are copied.
 template <class MemorySpace, class Element>
 Kokkos::View<Element*, MemorySpace> table_of(std::string const& label,
                                              std::vector<Element> const& elements) {

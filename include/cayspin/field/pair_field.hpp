@@ -191,7 +191,8 @@ class PairField {
         add_tensor(of_site, b, m, spins_.template load_at<OnHost>(rows[b] + x), sums);
     store(sums, to);
   }
-  /// Sums again the bonds of one site, some of which lead past an end of the row.
+  /// Sums the bonds of a site near an end of the row again, because the pass over packs read those
+  /// that lead past the end without wrapping.
   template <class Rows>
   CAYSPIN_DETAIL_NOINLINE void sum_near_end(BondsOfSite const& of_site, Rows const& rows,
                                             std::int32_t x, Real* to) const {

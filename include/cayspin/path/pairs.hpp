@@ -9,10 +9,11 @@
 #include <cstddef>
 #include <vector>
 
-// The last steps s of all images of a path, and the changes y of their gradients across the path.
-// From these, L-BFGS makes the next steps of all images together. Where s and y are used, they are
-// projected onto the current tangent planes and across the current path. Passes over the sites
-// compute inner products, and the recursion uses only these.
+// The latest steps s of all images of a path, and the changes y in their gradients, without the
+// gradients' parts along the path. From these, L-BFGS computes the next steps of all images
+// together. Before s and y are used, their parts along the current path and normal to the current
+// tangent planes are removed. The passes over the sites compute inner products; the recursion needs
+// nothing else.
 namespace cayspin::inline v0_2::detail {
 
 inline constexpr std::size_t path_pairs = 4;

@@ -67,9 +67,9 @@ class CellAxis {
     return {beside, 2 * std::abs(way) / (coarse_width(own) + coarse_width(beside))};
   }
 
-  /// Restriction is the transpose of the interpolation, scaled by widths. The value of coarse cell
-  /// number `coarse` is the weighted sum over `reach` cells, from cell 2 * coarse - 1 on, wrapping
-  /// around.
+  /// Restriction is the transpose of the interpolation, with each weight multiplied by the cell's
+  /// width and divided by the coarse cell's. The value of coarse cell c is the weighted sum over
+  /// `reach` cells, from cell 2 * c - 1 on, wrapping around.
   static constexpr std::size_t reach = 5;
   std::vector<std::array<double, reach>> restriction() const {
     std::vector<std::array<double, reach>> weights(coarse_cells(), std::array<double, reach>{});

@@ -120,7 +120,8 @@ struct RelaxCells {
   }
 
  private:
-  // Packs at an open end of a row read padding there, with a coupling of zero.
+  // At the ends of a row, packs read padding. At an open end, the coupling to it is zero; at a
+  // periodic end, RowOfCells computes the cell again by itself.
   template <int Axis, class Value>
   KOKKOS_FORCEINLINE_FUNCTION std::ptrdiff_t to_previous(std::int32_t index) const {
     if (lanes_of<Value> > 1 && Axis == 0) return -1;

@@ -51,7 +51,7 @@ class StageMemory {
     levels_[0] = Spins(name + "::next", lattice);
     buffers_ = Buffers("cayspin::" + name, plan);
     // A sweep reads its output only in the next step. By then other processes may have replaced
-    // most of the contents of a shared cache.
+    // most of a shared cache, so at most usual_cache_bytes of it count here.
     streaming_ =
         levels_[0].bytes() + bytes() > std::min(last_level_cache_bytes(), usual_cache_bytes);
   }

@@ -141,8 +141,9 @@ def require_trajectory(file: Any) -> None:
 
 def of_file(file: Any, frame: int = -1,
             before: int | None = None) -> tuple[Texture, np.ndarray | None]:
-    """A frame of an open trajectory file (h5py.File), and the spins of the frame `before`. Raises
-    ValueError for frames that are not in the file, and for a file that is not a trajectory."""
+    """Returns frame number `frame` of an open trajectory file (h5py.File), and the spins of frame
+    number `before`, or None. Raises ValueError for frames that are not in the file, and for a file
+    that is not a trajectory."""
     require_trajectory(file)
     number = frame_number(file, frame)
     spacing, boundary, si = lattice_of(file.attrs.get("scene", ""))
