@@ -41,3 +41,4 @@ class Modes:
     evaluations: int  #: of the field of all sites
     time_unit: float = 1.0  #: in SI the unit of reduced times, in s; 1 in reduced units
     energy_unit: float | None = None  #: in SI the unit of reduced energies, in J; else None
+    under_current: bool = False  #: whether the state is under a current, [torque]

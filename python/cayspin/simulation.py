@@ -186,7 +186,7 @@ class Simulation:
             shape = np.stack([sites.by_site(one, cell_sites) for one in shape])
         is_si, time_unit, energy_unit = self._scene._scene.units
         return Modes(*(np.array(each) for each in numbers), shape, converged, cost, time_unit,
-                     energy_unit if is_si else None)
+                     energy_unit if is_si else None, self._run.scene.has_torque)
 
     def set(self, keys: str | dict[str, Any], value: Any = None) -> None:
         """Changes keys of the scene. Spins, time and steps are kept. `keys` is one key with its

@@ -214,14 +214,13 @@ class _FileOfModes:
             parts = file["mode"][:]
             self.shape = parts[..., 0] + 1j * parts[..., 1]
             self.frequency, self.decay = file["frequency"][:], file["decay"][:]
+            self.converged = bool(file.attrs["converged"])
             self.time_unit, self.energy_unit = 1.0, None
             if file.attrs["units"] == "SI":
                 self.time_unit = float(file.attrs["time_unit"])
                 self.energy_unit = float(file.attrs["energy_unit"])
         read = frames.tables(path, self.scene, "the tables", "Modes with their spins")
-        if "torque" in read:
-            raise CayspinError(f"{path}: its scene has a torque, and no thermal equilibrium; "
-                               "accepted: modes of a scene without [torque]")
+        self.under_current = "torque" in read
         of_material = ("Ms", "mu_s", "gamma")
         if read.get("material", {}).get("damping_form") == "gilbert":
             of_material += ("alpha",)
@@ -279,8 +278,9 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
     `periodic` and `zones` are those of structure_factor(); if `modes` is a file, the lattice is the
     scene's by default.
 
-    Raises CayspinError for a mode that does not oscillate or lowers the energy, a file of bands or
-    with [torque], Modes without spins, and arrays, words and numbers that do not fit.
+    Raises CayspinError for a mode that does not oscillate or lowers the energy, for modes that did
+    not converge or are under [torque], for a file of bands, for Modes without spins, and for
+    arrays, words and numbers that do not fit.
     """
     name = "linear_structure_factor"
     temperature = arguments.real(temperature, f"{name}: temperature")
@@ -294,12 +294,13 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
         raise CayspinError(f"{name}: frequency of shape {frequency.shape}; accepted: rising "
                            "numbers (w,)")
     lattice = {"cell": cell, "positions": positions, "periodic": periodic}
-    time_unit = 1.0
+    time_unit, source = 1.0, name
     if isinstance(modes, (str, os.PathLike)):
         if spins is not None:
             raise CayspinError(f"{name}: spins beside a file that has them; accepted: Modes with "
                                "spins, or a file")
         modes = _FileOfModes(name, modes, moments)
+        source = modes.path
         spins, moments = modes.spins, modes.moments
         given = {key: value for key, value in lattice.items() if value is not None}
         lattice = frames.with_lattice(modes.path, modes.scene, given)
@@ -308,6 +309,11 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
                            "name of a file of cayspin modes")
     elif spins is None:
         raise CayspinError(f"{name}: Modes without spins; accepted: spins=sim.spins")
+    if getattr(modes, "under_current", False):
+        raise CayspinError(f"{source}: the scene has a torque, and no thermal equilibrium; "
+                           "accepted: modes of a scene without [torque]")
+    if not getattr(modes, "converged", True):
+        raise CayspinError(f"{source}: the modes did not converge; accepted: modes that converged")
     rates, decay = np.asarray(modes.frequency), np.asarray(modes.decay)
     if energy_unit := getattr(modes, "energy_unit", None):
         time_unit = modes.time_unit

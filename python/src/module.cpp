@@ -115,9 +115,8 @@ EndOfPath end_of_path(char const* name, StateIn const& state) {
   return {name, vectors_of(std::get<NumbersIn>(state))};
 }
 
-nb::dict as_dict(ScenePath found, std::array<std::int64_t, 3> const& shape) {
+nb::dict as_dict(io::Path path, std::array<std::int64_t, 3> const& shape) {
   auto const& [nx, ny, nz] = shape;
-  auto& path = found.path;
   auto const images = static_cast<std::int64_t>(path.energy.size());
   nb::dict all;
   all["end"] = path.end;
@@ -149,7 +148,7 @@ nb::dict path(SceneRun const& run, StateIn const& start, StateIn const& end, std
   }
   rethrow_interruption();
   if (!found->rates_failed.empty()) throw NumbersFailed(found->rates_failed);
-  return as_dict(std::move(*found), run.scene().lattice.shape);
+  return as_dict(std::move(found->path), run.scene().lattice.shape);
 }
 
 // Returns the scene. Refuses a list of applied fields, which needs a search for each of them.
@@ -233,6 +232,7 @@ void define_scene(nb::module_& module) {
                      return nb::make_tuple(units.si, units.time, units.energy);
                    })
       .def_prop_ro("has_integrator", io::has_integrator)
+      .def_prop_ro("has_torque", [](io::Scene const& scene) { return io::has_torque(scene.field); })
       .def_prop_ro(
           "method",
           [](io::Scene const& scene) { return std::string(scene.integrator.method->word); })

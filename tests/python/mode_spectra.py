@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Structure factors of normal modes, compared with the inverse Hessian and with linear theory."""
 
+import dataclasses
 import unittest
 
 import cayspin
@@ -139,6 +140,15 @@ class OfModes(PackageTest):
         closed.close()
         with h5py.File(turned, "r+") as file:
             file.attrs["scene"] += "\n[torque]\nslonczewski = {}\n"
+        closed = self.run_program(chain(), "--count", "2", command="modes")
+        early = closed.filename
+        closed.close()
+        with h5py.File(early, "r+") as file:
+            file.attrs["converged"] = 0
+        under_current = cayspin.Simulation(chain(lattice={"shape": [4]}, torque={
+            "slonczewski": {"damping_like": 0.01, "polarization": [0, 0, 1]}}))
+        pushed, rest = under_current.modes(4), under_current.spins
+        short = dataclasses.replace(modes, converged=False)
         run = self.run_program(scene(output={"every": 20})).filename
         text = self.folder / "text.h5"
         text.write_text("no HDF5")
@@ -155,6 +165,9 @@ class OfModes(PackageTest):
                 ("mode 0 does not oscillate", (still, 1, w), {}),
                 ("bands have no shapes", (bands, 1, w), {"spins": None}),
                 ("has a torque", (turned, 1, w), {"spins": None}),
+                ("has a torque", (pushed, 1, w), {"spins": rest}),
+                ("did not converge", (early, 1, w), {"spins": None}),
+                ("did not converge", (short, 1, w), {}),
                 ("no modes; accepted", (run, 1, w), {"spins": None}),
                 ("cannot be opened", (text, 1, w), {"spins": None}),
                 ("beside a file", (bands, 1, w), {})):
