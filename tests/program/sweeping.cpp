@@ -212,6 +212,28 @@ TEST_F(Sweeping, AnInterruptKeepsWhatIsDone) {
   EXPECT_TRUE(contains(output_of({"info", "stopped.h5"}), "open"));
 }
 
+TEST_F(Sweeping, TooManyJobsDestroyNothing) {
+  output_of(arguments("all.h5", {"--quiet"}));
+  auto const before = text_of("all.h5");
+  Arguments const large{"--jobs", "65536", "--set", "lattice.shape=[64,64,64]"};
+  expect_refused(
+      sweep_into("all.h5", joined({"--overwrite", "--over", "system.damping=0.1,0.2"}, large)),
+      "--jobs 65536");
+  EXPECT_EQ(text_of("all.h5"), before);
+  expect_refused(sweep_into("none.h5", joined({"--over", "system.damping=0.1,0.2"}, large)),
+                 "--jobs 65536");
+  EXPECT_FALSE(exists("none.h5"));
+}
+
+TEST_F(Sweeping, AnInterruptSaysHowToContinue) {
+  auto const all = sweep_into(
+      "again.h5", {"--jobs", "1", "--overwrite", "--over", "integrator.steps=10,1000000000"});
+  auto const outcome = expect_status(
+      130, all,
+      {.interrupt_after = 0.1, .interrupt_when = io::swept_run_file(in_folder("again.h5"), 1)});
+  EXPECT_TRUE(contains(outcome.errors, "the same command without --overwrite continues it"));
+}
+
 TEST_F(Sweeping, TakesWordsWithoutQuotes) {
   output_of(sweep_into("words.h5", {"--quiet", "--over", "integrator.method=heun,rkmk4"}));
   EXPECT_EQ(sweep_in("words.h5").header.overrides(0),

@@ -38,11 +38,8 @@ struct Sharing {
   std::optional<int> threads;
 };
 
-Sharing share_machine(SweepOptions const& options, Grid const& grid, std::size_t open) {
-  int const cores = grid.header.space == "serial" && expected_threads() == 1
-                        ? static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))
-                        : expected_threads();
-  bool const on_host = is_on_host(grid.header.space);
+// Returns how many runs fit in memory. Throws UsageError if --jobs asks for more.
+std::int64_t jobs_that_fit(SweepOptions const& options, Grid const& grid) {
   auto const fits =
       grid.largest > 0 ? io::available_memory() / grid.largest : io::available_memory();
   if (options.jobs && *options.jobs > fits)
@@ -50,6 +47,15 @@ Sharing share_machine(SweepOptions const& options, Grid const& grid, std::size_t
         "--jobs {}: each run takes {} of memory, and {} is available; "
         "accepted: at most {}",
         *options.jobs, bytes_text(grid.largest), bytes_text(io::available_memory()), fits));
+  return fits;
+}
+
+Sharing share_machine(SweepOptions const& options, Grid const& grid, std::size_t open) {
+  int const cores = grid.header.space == "serial" && expected_threads() == 1
+                        ? static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))
+                        : expected_threads();
+  bool const on_host = is_on_host(grid.header.space);
+  auto const fits = jobs_that_fit(options, grid);
   std::int64_t jobs = options.jobs.value_or(on_host ? cores / options.threads.value_or(1) : 1);
   jobs = std::clamp<std::int64_t>(std::min(jobs, fits), 1,
                                   static_cast<std::int64_t>(std::max<std::size_t>(open, 1)));
@@ -167,14 +173,16 @@ int close_sweep(SweepOptions const& options, Session const& session, double seco
 int sweep_over(SweepOptions const& options) {
   auto const begin = Clock::now();
   auto const grid = make_grid(options);
+  jobs_that_fit(options, grid);  // before an existing file is replaced
   catch_signals();
   Session session(options.output, grid, options.overwrite);
   if (run_all(options, grid, session) && session.close())
     return close_sweep(options, session,
                        std::chrono::duration<double>(Clock::now() - begin).count());
   auto const open = session.open_runs().size();
-  fmt::print(stderr, "{}: interrupted with {} of {} to do; the same command continues it\n",
-             options.output.string(), open, counted(std::ssize(session.info().runs), "run"));
+  fmt::print(stderr, "{}: interrupted with {} of {} to do; the same command{} continues it\n",
+             options.output.string(), open, counted(std::ssize(session.info().runs), "run"),
+             options.overwrite ? " without --overwrite" : "");
   return Status::interrupted;
 }
 

@@ -353,11 +353,14 @@ Advised advise(Pilot const& pilot, AdviceRequest const& request) {
   };
   for (bool again : {false, true}) {
     if (again && !(advised.others.empty() && search.find_any())) break;
-    advised.others = search.all_advice();
-    while (!advised.others.empty() &&
-           (is_too_long(advised.others.front()) ||
-            !holds(pilot, horizon, fine, request.error, advised.others.front())))
-      advised.others.erase(advised.others.begin());
+    auto& others = advised.others = search.all_advice();
+    while (!others.empty() && !others.front().holds) {
+      auto& first = others.front();
+      first.holds = !is_too_long(first) && holds(pilot, horizon, fine, request.error, first);
+      if (!first.holds) others.erase(others.begin());
+      // holds() may have refined the steps, so that another method is now the cheapest.
+      std::ranges::stable_sort(others, {}, &Advice::seconds);
+    }
   }
   if (!pilot.is_representative(horizon.time))
     horizon.why_shorter += "; the field changes later, so only adaptive methods are tried";

@@ -17,6 +17,7 @@ struct Advice {
   double seconds = 0;
   std::int64_t memory = 0;  // in bytes; only Advised::choice has it
   bool measured = true;     // false: the error is extrapolated from other steps
+  bool holds = false;       // true: the steps as resolved for the scene meet the error
 };
 
 struct AdviceRequest {
