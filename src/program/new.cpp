@@ -26,6 +26,20 @@ std::string replaced(std::string text, std::string_view what, std::string const&
   return text;
 }
 
+// Replaces the name of the file of results, which is a string of TOML or a word of a command.
+std::string with_results(std::string text, std::string const& old, std::string const& name) {
+  bool const is_plain = name.find_first_of("\"\\") == name.npos;
+  auto const quoted = is_plain ? '"' + name + '"' : io::toml_string(name);
+  for (std::size_t at = 0; (at = text.find(old, at)) != std::string::npos;) {
+    bool const is_string = at > 0 && text[at - 1] == '"';
+    auto const by = is_string ? quoted : simulation::shell_word(name);
+    at -= is_string ? 1 : 0;
+    text.replace(at, old.size() + (is_string ? 2 : 0), by);
+    at += by.size();
+  }
+  return text;
+}
+
 std::string names_of_new_scenes() {
   std::vector<std::string_view> names;
   for (auto const& scene : new_scenes) names.push_back(scene.kind);
@@ -43,13 +57,9 @@ int write_new(NewOptions const& options) {
   auto const results = [](std::filesystem::path name) {
     return name.filename().replace_extension(".h5").string();
   };
-  auto const quoted = [&](std::filesystem::path const& name) {
-    return io::toml_string(results(name));
-  };
   auto const text =
       replaced(std::string(scene->text), scene->path, simulation::shell_word(path.string()));
-  file.stream() << replaced(replaced(text, quoted(scene->path), quoted(path)), results(scene->path),
-                            simulation::shell_word(results(path)));
+  file.stream() << with_results(text, results(scene->path), results(path));
   file.commit();
   fmt::print("{0}: try `cayspin check {1}`, then `cayspin run {1}`\n", path.string(),
              simulation::shell_word(path.string()));

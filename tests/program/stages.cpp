@@ -251,11 +251,28 @@ TEST_F(Stages, AreCheckedOneByOne) {
   EXPECT_GT(stages[3].at("stable_dt"), 0);
   EXPECT_TRUE(stages[2].contains("relax"));
   EXPECT_FALSE(json.contains("notes"));
-  // A note that only a later stage has is among those of the scene.
-  auto const noted = nlohmann::json::parse(
-      output_of({"check", "scene.toml", "--json", "--set", "stage.2.field={ mu0 = 2 }"}));
+}
+
+TEST_F(Stages, HaveTheNotesOfAllStages) {
+  write("noted.toml", R"([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [4]
+[field]
+exchange = 1.0
+[initial]
+uniform = [1, 0, 0]
+[integrator]
+method = "heun"
+dt = 0.01
+steps = 5
+[[stage]]
+field.mu0 = 2
+)");
+  auto const noted = nlohmann::json::parse(output_of({"check", "noted.toml", "--json"}));
   ASSERT_EQ(noted.at("notes").size(), 1U);
-  EXPECT_TRUE(contains(noted.at("notes")[0].get<std::string>(), "field.mu0"));
+  EXPECT_TRUE(contains(noted.at("notes")[0].get<std::string>(), "noted.toml:15: field.mu0"));
 }
 
 TEST_F(Stages, AreSweptAndNotTraded) {
