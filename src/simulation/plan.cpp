@@ -243,6 +243,7 @@ Plan make_plan(io::Scene const& scene, Precision precision,
   // fastest modes; if there is a stable dt, or the method is stiff, steps need not resolve these.
   io::Scene followed = scene;
   if (plan.variant.method->stiff || std::isfinite(plan.stable_dt)) {
+    keep_numbers_of_free_sides(scene, followed.field.anisotropies);
     followed.field.exchange.reset();
     followed.field.exchange_factors = {};
     followed.field.couplings.clear();

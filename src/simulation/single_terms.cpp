@@ -14,20 +14,6 @@ namespace cayspin::simulation {
 
 namespace {
 
-// The constants of some anisotropies (free boundaries of DMI) are computed from other terms, which
-// a scene with one term does not have. Stores the values of these constants instead.
-void keep_numbers_of_free_sides(io::Scene const& scene, std::vector<io::Anisotropy>& terms) {
-  for (auto& term : terms) {
-    if (!io::is_of_free_sides(term.factors)) continue;
-    auto numbers = io::numbers_of_sites(scene, term.factors, "field.anisotropy",
-                                        {{0, 0, 0}, scene.lattice.shape});
-    io::SiteNumbers kept;
-    kept.key = term.factors.key;
-    kept.given = std::make_shared<std::vector<double> const>(std::move(numbers));
-    term.factors = kept;
-  }
-}
-
 // With dipoles, each site has its own moment. A scene with only another term has no dipoles, but
 // must keep these moments.
 void keep_moments_of_sites(io::Scene const& scene, io::Lattice& lattice) {
@@ -39,6 +25,18 @@ void keep_moments_of_sites(io::Scene const& scene, io::Lattice& lattice) {
 }
 
 }  // namespace
+
+void keep_numbers_of_free_sides(io::Scene const& scene, std::vector<io::Anisotropy>& terms) {
+  for (auto& term : terms) {
+    if (!io::is_of_free_sides(term.factors)) continue;
+    auto numbers = io::numbers_of_sites(scene, term.factors, "field.anisotropy",
+                                        {{0, 0, 0}, scene.lattice.shape});
+    io::SiteNumbers kept;
+    kept.key = term.factors.key;
+    kept.given = std::make_shared<std::vector<double> const>(std::move(numbers));
+    term.factors = kept;
+  }
+}
 
 std::vector<std::pair<std::string, io::Scene>> single_terms(io::Scene const& scene) {
   auto const& field = scene.field;

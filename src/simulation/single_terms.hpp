@@ -13,6 +13,10 @@ namespace cayspin::simulation {
 /// Returns, for each term of the field, the name of its key and a scene with only that term.
 std::vector<std::pair<std::string, io::Scene>> single_terms(io::Scene const& scene);
 
+/// Stores the values of constants that are computed from other terms (at free boundaries, from DMI
+/// and exchange) in `terms`. Call it before these other terms are removed from a copy of the scene.
+void keep_numbers_of_free_sides(io::Scene const& scene, std::vector<io::Anisotropy>& terms);
+
 /// Returns which numbers a scene's samples have in addition to Scalars. Rigid bodies have one term,
 /// "rotation".
 io::MoreScalars more_scalars(io::Scene const& scene);
