@@ -19,6 +19,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
@@ -348,9 +349,8 @@ void define_recorder(nb::module_& module) {
            "run"_a, "end"_a, "path"_a, "overwrite"_a, nb::keep_alive<0, 1>())
       .def_prop_ro("next", &RunRecorder::next)
       .def("look", [](RunRecorder& recorder, bool last) { as_error([&] { recorder.look(last); }); })
-      .def("finish", [](RunRecorder& recorder, bool as_planned) {
-        as_error([&] { recorder.finish(as_planned); });
-      });
+      .def("finish",
+           [](RunRecorder& one, bool planned) { as_error([&] { one.finish(planned); }); });
 }
 
 // Removes "Scene:12: " from a message: scenes given as tables have no lines.
