@@ -5,10 +5,12 @@
 #include "simulation/multirate_method.hpp"
 #include "simulation/variant.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace cayspin::simulation::test {
@@ -108,6 +110,12 @@ TEST(OwnFields, AreNotCalledAfterAnInterruptOfASearch) {
     auto scene = with_own_field("method='rkmk4'\ndt=0.1\nsteps=1", calls);
     auto given = scene.field.own;
     scene = io::with_overrides(scene, {lattice});
+    // The search asks about twenty times a second whether it is interrupted.
+    given.nonlocal = [inner = given.nonlocal](io::HostVectors const& spins,
+                                              io::HostVectors const& field, double t) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      inner(spins, field, t);
+    };
     scene.field.own = given;
     auto const run = SceneRun::open(scene, {});
     int at_interrupt = -1;
