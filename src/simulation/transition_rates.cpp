@@ -316,11 +316,14 @@ std::vector<double> StateHessian::far_state(unsigned sample) const {
   auto const number = [&] {
     return 2 * static_cast<double>(generator()) / static_cast<double>(std::mt19937::max()) - 1;
   };
-  Eigen::Quaterniond const turn(Eigen::Vector4d::NullaryExpr(number).normalized());
+  // With NullaryExpr(number), GCC 12 draws the numbers of a site only once at -O3.
+  Eigen::Vector4d const coefficients{number(), number(), number(), number()};
+  Eigen::Quaterniond const turn(coefficients.normalized());
   auto state = spins;
   for (auto const site : sites) {
     Eigen::Map<Eigen::Vector3d> m(&state[3 * site]);
-    m = (turn * m + 0.5 * Eigen::Vector3d::NullaryExpr(number)).normalized();
+    Eigen::Vector3d const change{number(), number(), number()};
+    m = (turn * m + 0.5 * change).normalized();
   }
   return state;
 }

@@ -54,6 +54,23 @@ StateHessian state_of(std::vector<double> const& spins, std::vector<Mode> const&
 }
 
 // Two spins along x: they turn together about z without a force, and about y against a weak one.
+TEST(RatesOfMatrices, TurnTheSpinsOfFarStatesDifferently) {
+  auto const state = state_of({1, 1, 1, 1, 1, 1});
+  for (unsigned sample = 0; sample < 8; ++sample) {
+    auto const far = state.far_state(sample);
+    for (std::size_t site = 0; site < 3; ++site) {
+      double square = 0, apart = 0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        double const other = far[3 * ((site + 1) % 3) + c];
+        square += far[3 * site + c] * far[3 * site + c];
+        apart += std::abs(far[3 * site + c] - other);
+      }
+      EXPECT_NEAR(square, 1, 1e-14) << sample;
+      EXPECT_GT(apart, 1e-3) << sample;
+    }
+  }
+}
+
 TEST(RatesOfMatrices, CountSoftModesThatNoSymmetryExplains) {
   io::Scene scene;
   scene.lattice.shape = {2, 1, 1};
