@@ -110,7 +110,7 @@ def along_axes(path: Any, text: str, key: str, default: Any, argument: str) -> l
 
 def crystal(path: Any, text: str, argument: str) -> Scene:
     """Returns a Scene with the cells of the scene `text`: their number, spacing, vectors and sites.
-    Everything else in it is a placeholder."""
+    The system and the initial state are arbitrary, because a Scene needs both."""
     read = tables(path, text, "lattice.cell", f"the argument {argument}")
     lattice = read.get("lattice")
     if not isinstance(lattice, dict) or not isinstance(lattice.get("shape"), list):

@@ -9,7 +9,6 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,16 +27,6 @@ using NumbersOut = nb::ndarray<nb::numpy, nb::ro>;
 /// Returns the memory of an array (nz, ny, nx, 3), without a copy. Throws UsageError for another
 /// shape or type.
 io::HostVectors vectors_of(NumbersIn const& array);
-
-/// Returns a pointer whose deleter releases the GIL: freeing a Kokkos View waits for all kernels,
-/// and those of another thread may wait for the GIL.
-template <class Run>
-std::shared_ptr<Run> shared(std::unique_ptr<Run> run) {
-  return {run.release(), [](Run* held) {
-            nb::gil_scoped_release const released;
-            delete held;
-          }};
-}
 
 /// Returns a read-only array that uses lent memory and keeps it alive.
 NumbersOut array_of(simulation::LentVectors const& lent);

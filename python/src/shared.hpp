@@ -3,6 +3,9 @@
 
 #include "simulation/precision.hpp"
 
+#include <nanobind/nanobind.h>
+
+#include <memory>
 #include <string>
 
 namespace cayspin::python {
@@ -14,5 +17,15 @@ void rethrow_interruption();
 
 /// Throws UsageError unless the name is "double" or "single".
 simulation::Precision precision_of(std::string const& name);
+
+/// Returns a pointer whose deleter releases the GIL: freeing a Kokkos View waits for all kernels,
+/// and those of another thread may wait for the GIL.
+template <class Run>
+std::shared_ptr<Run> shared(std::unique_ptr<Run> run) {
+  return {run.release(), [](Run* held) {
+            nanobind::gil_scoped_release const released;
+            delete held;
+          }};
+}
 
 }  // namespace cayspin::python
