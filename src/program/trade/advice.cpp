@@ -38,6 +38,11 @@ constexpr int horizons = 20;       // number of horizons to try, each half of th
 
 constexpr Repeats quick{1, 2e-3};
 
+/// Returns the number of steps of a run with the advised dt, which frames and samples may increase.
+double whole_steps(Pilot const& pilot, Advice const& advice) {
+  return static_cast<double>(resolve(pilot.scene(), advice).steps);
+}
+
 /// A fine solution and its estimated error.
 struct Known {
   FineSolution solution;
@@ -118,6 +123,12 @@ class Search {
     // Only adaptive steps can resolve features of the field that come after the horizon.
     if (!candidate.method->adaptive && !is_representative_) return;
     auto coarsest = coarsest_steps(pilot_, candidate, horizon_.time, horizon_.own_steps);
+    // A run takes at least the steps that its frames and samples ask for.
+    if (!candidate.method->adaptive)
+      coarsest.count = std::max(
+          coarsest.count,
+          static_cast<std::int64_t>(
+              std::ceil(whole_steps(pilot_, {candidate, {}, pilot_.end()}) / parts() - 1e-9)));
     if (pilot_.scene().integrator.refuse_unstable && !candidate.method->adaptive) {
       // Starts at the stable dt, because a larger dt is the usual reason for a refusal. Without
       // refuse_unstable the stable dt is not needed, and with a sigma it takes long to compute.
@@ -251,6 +262,7 @@ class Search {
       advice.steps.count =
           static_cast<std::int64_t>(std::ceil(static_cast<double>(steps.count) * parts()));
       advice.dt = pilot_.end() / static_cast<double>(advice.steps.count);
+      advice.seconds *= whole_steps(pilot_, advice) / static_cast<double>(advice.steps.count);
     }
     return advice;
   }
@@ -315,9 +327,8 @@ bool holds(Pilot const& pilot, Horizon const& horizon, Known const& fine, double
   constexpr double shorter = 1.5, closer = 4;
   for (int i = 0; i < refinements; ++i) {
     auto steps = advice.steps;
-    if (!adaptive)
-      steps.count = std::llround(static_cast<double>(resolve(pilot.scene(), advice).steps) *
-                                 horizon.time / pilot.end());
+    double const whole = whole_steps(pilot, advice);
+    if (!adaptive) steps.count = std::llround(whole * horizon.time / pilot.end());
     auto const tried = fine.solution.measure(advice.candidate, steps, true, {});
     advice.error = tried.error;
     advice.measured = true;
@@ -326,10 +337,10 @@ bool holds(Pilot const& pilot, Horizon const& horizon, Known const& fine, double
       advice.steps.tolerance /= closer;
       if (advice.steps.tolerance < advice.candidate.least_tolerance()) return false;
     } else {
-      advice.dt /= shorter;
-      advice.steps.count = std::llround(pilot.end() / advice.dt);
+      advice.steps.count = std::llround(whole * shorter);
+      advice.dt = pilot.end() / static_cast<double>(advice.steps.count);
     }
-    advice.seconds *= shorter;
+    advice.seconds *= adaptive ? shorter : whole_steps(pilot, advice) / whole;
   }
   return false;
 }
