@@ -15,6 +15,9 @@ namespace cayspin::simulation {
 /// Returns the scene without [torque], for functions that need an energy.
 io::Scene without_torque(io::Scene scene);
 
+/// Throws io::SceneError for spins that have neither precession nor damping.
+void require_motion(io::Scene const& scene);
+
 /// Plans a search for modes that follows a search for the equilibrium. Throws like
 /// make_plan_to_relax, except that torques are accepted, for up to most_sites_with_torques sites.
 /// Throws io::SceneError also for spins that have neither precession nor damping.

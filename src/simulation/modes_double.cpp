@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "compile_modes.hpp"
+
+namespace cayspin::simulation {
+
+CAYSPIN_FOR_EACH_SPACE(CAYSPIN_COMPILE_MODES, double)
+
+}  // namespace cayspin::simulation
