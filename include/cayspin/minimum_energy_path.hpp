@@ -3,6 +3,7 @@
 
 #include <cayspin/minimize.hpp>
 #include <cayspin/path/found.hpp>
+#include <cayspin/path/probed_field.hpp>
 #include <cayspin/path/saddle.hpp>
 #include <cayspin/path/string.hpp>
 
@@ -17,6 +18,7 @@
 #include <numbers>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace cayspin::inline v0_2 {
@@ -63,16 +65,10 @@ class PathFinder {
         options_(options),
         string_(images),
         saddle_(images.front().lattice()),
-        is_mobile_("path::is_mobile", images.front().lattice()),
+        probed_(exec, field, images.front(), saddle_.spins(), options.time, options.preconditioned),
         highest_("path::highest", images.front().lattice()),
         peak_("path::peak", images.front().lattice()) {
-    auto const& like = images.front();
-    Kokkos::deep_copy(exec, is_mobile_.allocation(), Real(0));
-    auto const& pattern = saddle_.spins();
-    auto const found = probe(exec, field, options.time, like, pattern, is_mobile_);
-    found_.evaluations = evaluations + found.evaluations;
-    strongest_ = found.strongest();
-    preconditioner_.set(like.lattice(), found, options.preconditioned);
+    found_.evaluations = evaluations + probed_.evaluations;
   }
 
   MinimumEnergyPath find(Spins const& saddle, Energy const& from, Energy const& to) {
@@ -95,10 +91,10 @@ class PathFinder {
   /// the middle of the path.
   void make_start() {
     auto const &work = saddle_.spins(), &pattern = saddle_.vector();
-    make_disturbance(exec_, preconditioner_, work, pattern);
+    make_disturbance(exec_, probed_.preconditioner, work, pattern);
     for_each_site<Real>(
         exec_, "cayspin::path::keep_mobile", work.layout(),
-        KeepMobile<Real>{pattern.array(), is_mobile_.array(), pattern.output(false)});
+        KeepMobile<Real>{pattern.array(), probed_.is_mobile.array(), pattern.output(false)});
     std::size_t const last = string_.size() - 1;
     for (std::size_t k = 1; k < last; ++k) {
       double const fraction = static_cast<double>(k) / static_cast<double>(last);
@@ -160,7 +156,7 @@ class PathFinder {
                                int most_steps = std::numeric_limits<int>::max()) {
     double share = 1, least = std::numeric_limits<double>::infinity();
     if (of_highest && string_.sweeps()) string_.sweep(0);
-    bound = std::max(bound, 64.0 * std::numeric_limits<Real>::epsilon()) * strongest_;
+    bound = std::max(bound, 64.0 * std::numeric_limits<Real>::epsilon()) * probed_.strongest;
     for (int step = 0, since = 0;; ++step, ++since) {
       double const largest = string_.look(exec_, field_, options_.time);
       std::size_t highest = 0;
@@ -184,7 +180,7 @@ class PathFinder {
         since = 0;
         least = std::numeric_limits<double>::infinity();
       }
-      string_.step(exec_, preconditioner_, is_mobile_, longest_turn);
+      string_.step(exec_, probed_.preconditioner, probed_.is_mobile, longest_turn);
     }
   }
 
@@ -200,7 +196,7 @@ class PathFinder {
     for (auto& point : points) point.energy *= sign, point.slope *= sign;
     // The remaining gradient across the path can cause peaks up to this height.
     double const left =
-        is_settled_ ? 2 * found_.across * found_.across / preconditioner_.first_shift() : 0;
+        is_settled_ ? 2 * found_.across * found_.across / probed_.preconditioner.first_shift() : 0;
     double const least = std::max(smallest * span_of(points), left);
     for (auto const& peak : peaks_of(points))
       if (peak.prominence > least) return peak;
@@ -255,13 +251,8 @@ class PathFinder {
     Kokkos::deep_copy(exec_, peak_.allocation(), saddle_.spins().allocation());
     std::int64_t const so_far = found_.evaluations + string_.evaluations();
     auto const climbed =
-        saddle_.find(exec_, field_, is_mobile_, preconditioner_,
-                     {.time = options_.time,
-                      .torque = options_.torque,
-                      .scale = preconditioner_.first_shift(),
-                      .strongest_field = strongest_,
-                      .evaluations = std::max<std::int64_t>(
-                          1, std::min<std::int64_t>(2000, options_.evaluations - so_far))},
+        saddle_.find(exec_, field_, probed_.is_mobile, probed_.preconditioner,
+                     probed_.climb(options_.time, options_.torque, options_.evaluations - so_far),
                      [&](SaddleFound const& now) {
                        return proceeds(so_far + now.evaluations, now.energy.value, now.torque);
                      });
@@ -311,13 +302,39 @@ class PathFinder {
   PathOptions const& options_;
   PathString<Spins> string_;
   SaddleSearch<Spins> saddle_;
-  ScalarField<Real, typename Spins::memory_space> is_mobile_;
+  ProbedField<Spins> probed_;
   Spins highest_, peak_;
-  Preconditioner<Spins> preconditioner_;
-  double strongest_ = 0;
   bool stopped_ = false, is_settled_ = false;
   MinimumEnergyPath found_;
 };
+
+template <class Spins>
+void require_images(std::string const& who, std::vector<Spins> const& images, Spins const& saddle) {
+  if (images.size() < 3) throw std::invalid_argument(who + ": a path has at least 3 images");
+  for (auto const& image : images) require_lattice(who.c_str(), saddle.lattice(), image.lattice());
+}
+
+/// Relaxes an end of a path. Adds the evaluations to `unfinished`, and sets its end to what it is
+/// if this end does not converge.
+template <class Exec, class Field, class Spins>
+Minimum relax_end(Exec const& exec, Field const& field, Spins& spins, PathOptions const& options,
+                  MinimumEnergyPath& unfinished) {
+  auto const found = minimize(
+      exec, field, spins,
+      {.torque = options.torque,
+       .evaluations = options.evaluations,
+       .time = options.time,
+       .preconditioned = options.preconditioned,
+       .observer = [&](Minimum const& now) {
+         auto const evaluations = unfinished.evaluations + now.evaluations;
+         return options.observer ? options.observer({evaluations, now.energy.value, now.torque})
+                                 : Next::proceed;
+       }});
+  unfinished.evaluations += found.evaluations;
+  unfinished.end =
+      found.end == MinimizeEnd::interrupted ? PathEnd::interrupted : PathEnd::ends_not_at_rest;
+  return found;
+}
 
 }  // namespace detail
 
@@ -347,30 +364,12 @@ MinimumEnergyPath minimum_energy_path(Exec const& exec, Field const& field,
                                       std::vector<Spins>& images, Spins& saddle,
                                       PathOptions const& options = {}) {
   Kokkos::Profiling::ScopedRegion const region("cayspin::minimum_energy_path");
-  if (images.size() < 3)
-    throw std::invalid_argument("cayspin::minimum_energy_path: a path has at least 3 images");
-  for (auto const& image : images)
-    require_lattice("cayspin::minimum_energy_path", saddle.lattice(), image.lattice());
+  detail::require_images("cayspin::minimum_energy_path", images, saddle);
   MinimumEnergyPath unfinished;
-  auto const relax_end = [&](Spins& spins) {
-    return minimize(exec, field, spins,
-                    {.torque = options.torque,
-                     .evaluations = options.evaluations,
-                     .time = options.time,
-                     .preconditioned = options.preconditioned,
-                     .observer = [&](Minimum const& now) {
-                       auto const evaluations = unfinished.evaluations + now.evaluations;
-                       return options.observer
-                                  ? options.observer({evaluations, now.energy.value, now.torque})
-                                  : Next::proceed;
-                     }});
-  };
   std::array<Minimum, 2> ends;
   for (std::size_t i = 0; i < 2; ++i) {
-    ends[i] = relax_end(i == 0 ? images.front() : images.back());
-    unfinished.evaluations += ends[i].evaluations;
-    unfinished.end =
-        ends[i].end == MinimizeEnd::interrupted ? PathEnd::interrupted : PathEnd::ends_not_at_rest;
+    auto& end = i == 0 ? images.front() : images.back();
+    ends[i] = detail::relax_end(exec, field, end, options, unfinished);
     if (ends[i].end != MinimizeEnd::converged) return unfinished;
   }
   return detail::PathFinder(exec, field, images, options, unfinished.evaluations)

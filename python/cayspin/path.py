@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Minimum-energy paths between two states."""
+"""Minimum-energy paths between two states, or out of one."""
 
 from __future__ import annotations
 
@@ -57,10 +57,11 @@ def _end(state, name, shape, cell_sites):
     return sites.by_plane(spins, cell_sites)
 
 
-def path(scene: Scene, start: np.ndarray | str | os.PathLike, end: np.ndarray | str | os.PathLike,
-         images: int = 16, torque: float = 1e-6, evaluations: int = 1000000, rates: bool = False,
-         precision: str = "double", space: str | None = None,
-         threads: int | None = None) -> MinimumEnergyPath:
+def path(scene: Scene, start: np.ndarray | str | os.PathLike,
+         end: np.ndarray | str | os.PathLike | None = None, images: int = 16, torque: float = 1e-6,
+         evaluations: int = 1000000, rates: bool = False, precision: str = "double",
+         space: str | None = None, threads: int | None = None,
+         modes: int | None = None) -> MinimumEnergyPath:
     """Finds the minimum-energy path between two states, and the saddle that determines its barrier,
     as `cayspin path` does.
 
@@ -73,6 +74,11 @@ def path(scene: Scene, start: np.ndarray | str | os.PathLike, end: np.ndarray | 
     unit of H, T in SI. `evaluations` limits the evaluations of the field of all sites. `rates` adds
     prefactors of rates, for at most 4096 sites. `precision`, `space` and `threads` are those of
     Simulation.
+
+    Without `end`, climbs from `start` along its `modes` (default 4) modes of lowest curvature, in
+    both directions. The result is the path over the lowest saddle reached, to the state beyond it.
+
+        cayspin.path(scene, skyrmion).barrier_forward
 
     If the search ends early, `converged` is False, and the result has what was found so far. Raises
     NumbersFailed if there is no path (an end cannot be relaxed, or both ends relax to the same
@@ -89,10 +95,16 @@ def path(scene: Scene, start: np.ndarray | str | os.PathLike, end: np.ndarray | 
                        None if space is None else arguments.word(space, "space"),
                        None if threads is None else arguments.whole(threads, "threads", 32), None)
     shape, cell_sites = run.scene.shape, run.scene.cell_sites
-    ends = [_end(state, name, sites.shape_by_site(shape, cell_sites), cell_sites)
+    if end is None:
+        modes = 4 if modes is None else arguments.whole(modes, "path: modes")
+    elif modes is not None:
+        raise _cayspin.CayspinError(f"path: modes {arguments.shown(modes)}: `end` is given; "
+                                    "accepted: one of them")
+    ends = [None if state is None else
+            _end(state, name, sites.shape_by_site(shape, cell_sites), cell_sites)
             for state, name in ((start, "start"), (end, "end"))]
     try:
-        found = run.path(*ends, *options)
+        found = run.path(*ends, *options, modes)
     except (_cayspin.SceneError, _cayspin.NumbersFailed):
         raise
     except _cayspin.CayspinError as error:

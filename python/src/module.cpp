@@ -4,10 +4,10 @@
 #include "cayspin_git_commit.hpp"
 #include "ensemble.hpp"
 #include "io/relax.hpp"
+#include "path.hpp"
 #include "shared.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/guard.hpp"
-#include "simulation/path_of_run.hpp"
 #include "simulation/run_recorder.hpp"
 
 #include <cayspin/version.hpp>
@@ -107,49 +107,6 @@ nb::tuple modes(SceneRun& run, std::int64_t count, double tolerance, std::int64_
   for (auto& shape : found.shapes) shapes.append(array_of(std::move(shape), {nz, ny, 6 * nx}));
   return nb::make_tuple(found.frequencies, found.decays, found.errors, shapes,
                         found.end == ModesEnd::converged, found.evaluations);
-}
-
-using StateIn = std::variant<NumbersIn, std::filesystem::path>;
-
-EndOfPath end_of_path(char const* name, StateIn const& state) {
-  if (auto const* const file = std::get_if<std::filesystem::path>(&state)) return {name, *file};
-  return {name, vectors_of(std::get<NumbersIn>(state))};
-}
-
-nb::dict as_dict(io::Path path, std::array<std::int64_t, 3> const& shape) {
-  auto const& [nx, ny, nz] = shape;
-  auto const images = static_cast<std::int64_t>(path.energy.size());
-  nb::dict all;
-  all["end"] = path.end;
-  all["converged"] = path.converged;
-  all["evaluations"] = path.evaluations;
-  all["energy"] = path.energy;
-  all["distance"] = path.distance;
-  all["spins"] = array_of(std::move(path.spins), {images * nz, ny, 3 * nx});
-  nb::list saddles;
-  for (auto const& one : path.saddles)
-    saddles.append(nb::make_tuple(one.energy, one.curvature, one.next_curvature, one.image));
-  all["saddles"] = saddles;
-  all["saddle"] = array_of(std::move(path.saddle), {nz, ny, 3 * nx});
-  if (auto const& rates = path.rates)
-    all["rates"] = nb::make_tuple(rates->prefactor_forward, rates->prefactor_backward,
-                                  rates->langer_forward, rates->langer_backward, rates->zero_modes);
-  return all;
-}
-
-nb::dict path(SceneRun const& run, StateIn const& start, StateIn const& end, std::int64_t images,
-              double torque, std::int64_t evaluations, bool rates) {
-  auto const from = end_of_path("start", start), to = end_of_path("end", end);
-  std::optional<ScenePath> found;
-  {
-    nb::gil_scoped_release const released;
-    ScenePathOptions const options{
-        .images = images, .torque = torque, .evaluations = evaluations, .rates = rates};
-    found = path_of_run(run, from, to, options, interrupted, CAYSPIN_GIT_COMMIT);
-  }
-  rethrow_interruption();
-  if (!found->rates_failed.empty()) throw NumbersFailed(found->rates_failed);
-  return as_dict(std::move(found->path), run.scene().lattice.shape);
 }
 
 // Returns the scene. Refuses a list of applied fields, which needs a search for each of them.
@@ -291,7 +248,8 @@ void define_run(nb::module_& module) {
       .def("advance", advance, "count"_a, "period"_a, "until_torque"_a, "run_end"_a)
       .def("relax", relax, "torque"_a, "evaluations"_a, "applied"_a.none(), "keep_saddles"_a)
       .def("modes", modes, "count"_a, "tolerance"_a, "evaluations"_a)
-      .def("path", path, "start"_a, "end"_a, "images"_a, "torque"_a, "evaluations"_a, "rates"_a)
+      .def("path", path, "start"_a, "end"_a.none(), "images"_a, "torque"_a, "evaluations"_a,
+           "rates"_a, "modes"_a.none())
       .def("warning", &SceneRun::warning)
       .def("restart_warning", &SceneRun::restart_warning)
       .def("step_at", &SceneRun::step_at)

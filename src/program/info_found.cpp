@@ -94,7 +94,8 @@ void print_path(std::filesystem::path const& file, io::Path const& path) {
   auto const& header = path.header;
   fmt::print("{:<12} {}, a path of {} images\n", "file", file.string(), path.energy.size());
   fmt::print("{:<12} {}\n", "converged", path.converged ? "yes" : "no: " + path.end);
-  fmt::print("{:<12} {}\n{:<12} {}\n", "from", path.from, "to", path.to);
+  fmt::print("{:<12} {}\n", "from", path.from);
+  if (!path.to.empty()) fmt::print("{:<12} {}\n", "to", path.to);
   print_lattice(header.units, header.shape, header.cell_sites, header.precision);
   print_saddles(path);
   fmt::print("{:>6}  {:>12}  {:>20}\n", "image", "distance",

@@ -24,8 +24,10 @@
 namespace cayspin::program {
 namespace {
 
+constexpr std::int64_t default_modes = 4;
+
 struct PathCommandOptions : DeviceOptions {
-  std::filesystem::path from, to;
+  std::filesystem::path from, to;  // `to` is empty if only one state is known
   ScenePathOptions search;
   bool quiet = false, json = false;
 };
@@ -87,6 +89,25 @@ void require_same_vacancies(PathCommandOptions const& options, std::vector<doubl
           is_vacant(from, at) ? "none" : "one"));
 }
 
+/// Returns the spins of the file that --to names.
+std::vector<double> other_end(PathCommandOptions const& options, io::Scene const& scene,
+                              std::vector<double> const& from) {
+  EndOption const last{"--to", options.to};
+  auto const other = scene_from(options, last);
+  output_file(other, options.output);  // this file must not be replaced either
+  auto const cells_of = [](io::Lattice const& lattice) {
+    return cells_text(lattice.shape, std::ssize(lattice.basis));
+  };
+  if (scene.lattice.shape != other.lattice.shape)
+    throw UsageError(
+        fmt::format("--to {}: its lattice is {}, that of --from {} is {}; accepted: the same shape",
+                    options.to.string(), cells_of(other.lattice), options.from.string(),
+                    cells_of(scene.lattice)));
+  auto to = spins_of(other, last);
+  require_same_vacancies(options, from, to);
+  return to;
+}
+
 std::string barrier_text(io::Scene const& scene, io::Path const& path) {
   auto const text = [&](double energy) {
     return energy_text(scene.units, energy / scene.units.energy);
@@ -109,26 +130,21 @@ std::string barrier_text(io::Scene const& scene, io::Path const& path) {
 }
 
 int find_path(PathCommandOptions const& options) {
-  EndOption const first{"--from", options.from}, last{"--to", options.to};
-  auto const scene = scene_from(options, first), other = scene_from(options, last);
+  EndOption const first{"--from", options.from};
+  auto const scene = scene_from(options, first);
   auto search = options.search;
+  bool const has_end = !options.to.empty();
+  if (has_end && search.modes)
+    throw UsageError("--modes: --to names the other end; accepted: one of them");
+  if (!has_end && !search.modes) search.modes = default_modes;
   try {
     require_path(scene, search);
   } catch (UsageError const& error) {
     throw UsageError(std::string("--") + error.what());
   }
   auto const output = output_file(scene, options.output);
-  output_file(other, options.output);  // the file of --to must not be replaced either
-  auto const cells_of = [](io::Lattice const& lattice) {
-    return cells_text(lattice.shape, std::ssize(lattice.basis));
-  };
-  if (scene.lattice.shape != other.lattice.shape)
-    throw UsageError(
-        fmt::format("--to {}: its lattice is {}, that of --from {} is {}; accepted: the same shape",
-                    options.to.string(), cells_of(other.lattice), options.from.string(),
-                    cells_of(scene.lattice)));
-  auto const from = spins_of(scene, first), to = spins_of(other, last);
-  require_same_vacancies(options, from, to);
+  auto const from = spins_of(scene, first);
+  auto const to = has_end ? other_end(options, scene, from) : std::vector<double>();
   io::require_writable(output, options.overwrite);
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, options.device);
@@ -184,9 +200,14 @@ Command add_path(CLI::App& program) {
   command->add_option("--from", options->from, "The state where it begins: HDF5 or OVF")
       ->required()
       ->type_name("FILE");
-  command->add_option("--to", options->to, "The state where it ends")
-      ->required()
+  command
+      ->add_option(
+          "--to", options->to,
+          "The state where it ends; without it, the path over the lowest saddle to which a "
+          "mode of --from leads")
       ->type_name("FILE");
+  command->add_option("--modes", options->search.modes,
+                      "Without --to: modes of lowest curvature to climb along (default: 4)");
   command->add_option("--images", options->search.images,
                       "States of the path, both ends among them (default: 16)");
   command->add_option("--torque", options->search.torque,

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -47,17 +48,18 @@ std::vector<double> spins_of(io::Scene const& scene, EndOfPath const& end) {
 
 }  // namespace
 
-ScenePath path_of_run(SceneRun const& run, EndOfPath const& from, EndOfPath const& to,
-                      ScenePathOptions options, std::function<bool()> const& interrupted,
-                      std::string const& git_commit) {
+ScenePath path_of_run(SceneRun const& run, EndOfPath const& from,
+                      std::optional<EndOfPath> const& to, ScenePathOptions options,
+                      std::function<bool()> const& interrupted, std::string const& git_commit) {
   Turn const turn;
   auto const& scene = run.scene();
   require_path(scene, options);
   require_memory(scene, make_plan_of_path(scene, run.precision(), options));
   InterruptPoll poll(interrupted);
   options.observer = [&](PathProgress const&) { return poll() ? Next::stop : Next::proceed; };
-  return find_scene_path(scene, spins_of(scene, from), spins_of(scene, to), run.space(),
-                         run.precision(), options, git_commit);
+  auto const end = to && !options.modes ? spins_of(scene, *to) : std::vector<double>();
+  return find_scene_path(scene, spins_of(scene, from), end, run.space(), run.precision(), options,
+                         git_commit);
 }
 
 }  // namespace cayspin::simulation

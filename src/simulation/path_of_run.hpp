@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -17,12 +18,13 @@ struct EndOfPath {
   std::variant<std::filesystem::path, io::HostVectors> state;
 };
 
-/// Finds a minimum energy path between two states, in the scene, space and precision of a run. The
-/// run's own spins do not change. `interrupted` is polled between steps of the search. Throws what
+/// Finds a minimum energy path between two states, or from one state if options.modes is set, in
+/// the scene, space and precision of a run. `to` is ignored if options.modes is set. The run's own
+/// spins do not change. `interrupted` is polled between steps of the search. Throws what
 /// require_path, require_memory and find_scene_path throw, and UsageError for an end that is not a
 /// state of the scene.
-ScenePath path_of_run(SceneRun const& run, EndOfPath const& from, EndOfPath const& to,
-                      ScenePathOptions options, std::function<bool()> const& interrupted,
-                      std::string const& git_commit);
+ScenePath path_of_run(SceneRun const& run, EndOfPath const& from,
+                      std::optional<EndOfPath> const& to, ScenePathOptions options,
+                      std::function<bool()> const& interrupted, std::string const& git_commit);
 
 }  // namespace cayspin::simulation

@@ -7,10 +7,11 @@
 #include "run_files.hpp"
 #include "scene_field.hpp"
 #include "scene_minimizer.hpp"
+#include "scene_modes.hpp"
 #include "simulate.hpp"
 #include "transition_rates.hpp"
 
-#include <cayspin/minimum_energy_path.hpp>
+#include <cayspin/lowest_escape.hpp>
 
 #include <fmt/format.h>
 
@@ -32,6 +33,9 @@ double least_moment(io::Scene const& scene, Lattice const& lattice) {
   return std::isfinite(least) ? least : 1;
 }
 
+constexpr std::int64_t most_zero_modes = 4;  // of a state with more, fewer modes are climbed
+constexpr double zero_mode = 1e-4;           // curvature relative to that of the last mode found
+
 template <class Real, class Space>
 class PathOfScene {
   using Spins = SpinField<Real, typename Space::memory_space>;
@@ -48,7 +52,7 @@ class PathOfScene {
 
   ScenePath find(std::vector<double> const& from, std::vector<double> const& to) {
     copy_from_host(from, images_.front());
-    copy_from_host(to, images_.back());
+    if (!options_.modes) copy_from_host(to, images_.back());
     auto const found = search();
     ScenePath result{found.end, in_scene_units(found)};
     if (options_.rates && found.end == PathEnd::converged) add_rates(found, result);
@@ -74,16 +78,45 @@ class PathOfScene {
   }
 
   MinimumEnergyPath search() {
-    double const torque = std::max(moment_ * options_.torque / scene_.units.field,
-                                   Minimizer<SpinField<double>>::least_bound);
+    PathOptions const options{.torque = std::max(moment_ * options_.torque / scene_.units.field,
+                                                 Minimizer<SpinField<double>>::least_bound),
+                              .evaluations = options_.evaluations,
+                              .observer = options_.observer};
     try {
-      return minimum_energy_path(
-          exec_, field_, images_, saddle_,
-          {.torque = torque, .evaluations = options_.evaluations, .observer = options_.observer});
+      return options_.modes ? escape(options)
+                            : minimum_energy_path(exec_, field_, images_, saddle_, options);
     } catch (FieldNotFinite const&) {
       throw NumbersFailed(fmt::format("{}: the field of an end, or its energy, is not finite",
                                       scene_.path.string()));
     }
+  }
+
+  // Relaxes the only known end, and climbs from it along its modes of lowest curvature.
+  MinimumEnergyPath escape(PathOptions options) {
+    auto& state = images_.front();
+    MinimumEnergyPath unfinished;
+    auto const rest = cayspin::detail::relax_end(exec_, field_, state, options, unfinished);
+    if (rest.end != MinimizeEnd::converged) return unfinished;
+    auto const before = unfinished.evaluations;
+    auto const modes = find_curvatures<Real, Space>(
+        exec_, scene_, field_, state,
+        {.count = static_cast<std::size_t>(*options_.modes + most_zero_modes),
+         .tolerance = 1e-2,
+         .evaluations = std::max<std::int64_t>(1, options.evaluations - before),
+         .poll = [&] { return options_.observer ? options_.observer({before}) : Next::proceed; }});
+    unfinished.evaluations += modes.evaluations;
+    unfinished.end = PathEnd::interrupted;
+    if (modes.end == ModesEnd::interrupted) return unfinished;
+    std::vector<Spins> directions;
+    for (std::size_t i = 0; i < modes.values.size(); ++i) {
+      bool const is_zero = modes.values[i] < zero_mode * modes.values.back();
+      if (is_zero || std::ssize(directions) == *options_.modes) continue;
+      copy_from_host(modes.vectors[i], directions.emplace_back("path::mode", state.lattice()));
+    }
+    options.evaluations = std::max<std::int64_t>(1, options.evaluations - unfinished.evaluations);
+    auto path = lowest_escape(exec_, field_, directions, images_, saddle_, options);
+    path.evaluations += unfinished.evaluations;
+    return path;
   }
 
   io::Path in_scene_units(MinimumEnergyPath const& found) const {
@@ -147,6 +180,10 @@ void require_path(io::Scene const& scene, ScenePathOptions const& options) {
   if (!(options.torque / scene.units.field >= least) || !std::isfinite(options.torque))
     throw UsageError(fmt::format("torque {}; accepted: a number of at least {}", options.torque,
                                  least * scene.units.field));
+  constexpr std::int64_t most_modes = 100;
+  if (options.modes && (*options.modes < 1 || *options.modes > most_modes))
+    throw UsageError(
+        fmt::format("modes {}; accepted: a whole number from 1 to {}", *options.modes, most_modes));
   if (options.evaluations < 1)
     throw UsageError(
         fmt::format("evaluations {}; accepted: a whole number >= 1", options.evaluations));
@@ -161,6 +198,14 @@ Plan make_plan_of_path(io::Scene const& scene, Precision precision,
   auto plan = make_plan_to_relax(scene, precision);
   auto const images = static_cast<std::size_t>(options.images);
   plan.memory.work = plan.memory.spins * (path_work_fields(images) + options.images - 1);
+  if (options.modes) {
+    // The modes are searched before the path, and their vectors are kept.
+    auto const modes = most_zero_modes + *options.modes;
+    auto const of_search = plan.memory.spins * (6 * modes + 100 + options.images);
+    plan.memory.work =
+        std::max(plan.memory.work + plan.memory.spins * escape_work_fields, of_search);
+    plan.memory.work += plan.memory.spins * modes;
+  }
   if (options.rates) {
     constexpr std::int64_t matrices = 8;  // with two rows for each site
     auto const rows = 2 * io::sites(scene);
@@ -176,7 +221,7 @@ ScenePath find_scene_path(io::Scene const& scene, std::vector<double> const& fro
                           Precision precision, ScenePathOptions const& options,
                           std::string const& git_commit) {
   auto const plan = make_plan_of_path(scene, precision, options);
-  require_same_frozen_spins(scene, from, to);
+  if (!options.modes) require_same_frozen_spins(scene, from, to);
   Kokkos::Timer const clock;
   auto found = in_space(space, precision, [&]<class Real, class Space>() {
     return PathOfScene<Real, Space>(scene, plan.lattice, options).find(from, to);

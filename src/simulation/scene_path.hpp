@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct ScenePathOptions {
   double torque = 1e-6;  // bound on max |m x H| at the ends and the saddles
   std::int64_t evaluations = 1000000;
   bool rates = false;
+  std::optional<std::int64_t> modes = {};  // modes to climb along, if only one end is known
   std::function<Next(PathProgress const&)> observer = {};
 };
 
@@ -41,8 +43,10 @@ struct ScenePath {
   std::string rates_failed = {};  // why a converged path has no rates, or empty
 };
 /// Finds a minimum energy path between two states, each given as sites x 3 numbers in the order of
-/// io::initial_spins. Fills all members of the path except `from` and `to`. Throws io::SceneError
-/// if a frozen spin differs between the states, and NumbersFailed for a field that is not finite.
+/// io::initial_spins. If options.modes is set, ignores `to`, and finds the lowest saddle to which
+/// these modes of `from` lead, and the path over it (lowest_escape). Fills all members of the path
+/// except `from` and `to`. Throws io::SceneError if a frozen spin differs between the states, and
+/// NumbersFailed for a field that is not finite.
 ScenePath find_scene_path(io::Scene const& scene, std::vector<double> const& from,
                           std::vector<double> const& to, std::string const& space,
                           Precision precision, ScenePathOptions const& options,
