@@ -60,6 +60,7 @@ struct Field {
   std::vector<Coupling> couplings;       ///< as typed, or from shells
   std::filesystem::path couplings_file;  ///< in Vampire's format; or empty
   double couplings_scale = 1;            ///< multiplies the numbers in that file
+  bool has_couplings_scale = false;      ///< true if the scene gives the scale
   Torque torque;
   std::optional<std::array<AppliedComponent, 3>> applied;
   std::vector<Source> sources;          ///< added to applied

@@ -236,7 +236,7 @@ void read_couplings(Item const& item, Scene& scene, Field& field) {
   if (!shells && !pairs && !has_file) item.fail("has no bonds", accepted_couplings);
   if (both && !pairs) both->fail("belongs to pairs", "no such key");
   if (scale && !has_file) scale->fail("belongs to a file", "no such key");
-  if (scale) field.couplings_scale = number(*scale);
+  if (scale) field.couplings_scale = number(*scale), field.has_couplings_scale = true;
   if (has_file) field.couplings_file = input_file(table, "file", accepted_unit_cell_file);
   if (shells) field.couplings = read_shells(*shells, scene);
   if (pairs) add_bonds(read_pairs(*pairs, scene, both && boolean(*both)), field.couplings);
@@ -251,7 +251,7 @@ std::vector<Coupling> couplings(Scene const& scene) {
   if (field.couplings_file.empty()) return field.couplings;
   return detail::for_key(scene, "field.couplings.file", [&] {
     return detail::read_unit_cell_couplings(field.couplings_file, crystal(scene.lattice),
-                                            field.couplings_scale);
+                                            field.couplings_scale, field.has_couplings_scale);
   });
 }
 

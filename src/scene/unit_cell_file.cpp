@@ -13,6 +13,7 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <tuple>
@@ -20,7 +21,9 @@
 // The file lists the lengths of the cell's edges, its three vectors in units of these lengths, its
 // atoms, its bilinear interactions and, in some files, biquadratic ones. Vampire numbers atoms by
 // line and ignores the number at the start of the line. Each bond is listed from both ends, and
-// contributes E = -S.J S' once.
+// contributes E = -S.J S' once. Numbers of the kinds "normalised-.." are multiplied by an energy of
+// Vampire's .mat file: bilinear ones by exchange-matrix, which has an entry for each pair of
+// materials, biquadratic ones by biquadratic-exchange.
 namespace cayspin::inline v0_2::io::detail {
 namespace {
 
@@ -92,8 +95,14 @@ class Lines {
   std::int64_t number_ = 0;
 };
 
-Crystal read_crystal(Lines& lines) {
+struct UnitCell {
   Crystal crystal;
+  std::set<std::string> materials;  // as written; 0 if missing
+};
+
+UnitCell read_cell(Lines& lines) {
+  UnitCell cell;
+  auto& crystal = cell.crystal;
   auto const edges = lines.vector(lines.required(3, "the three lengths of a cell"), 0);
   double length = 0;  // of the first vector
   for (std::size_t i = 0; i < 3; ++i) {
@@ -107,14 +116,15 @@ Crystal read_crystal(Lines& lines) {
   auto const atoms = lines.integer(counts[0], 1, most_sites);
   crystal.basis.clear();
   auto const last = fmt::format("the last of {}", counted(atoms, "atom"));
-  for (std::int64_t i = 0; i < atoms; ++i)
-    crystal.basis.push_back(lines.vector(
-        lines.required(4, last,
-                       fmt::format("\"number x y z ..\" for each of {}", counted(atoms, "atom"))),
-        1));
+  auto const accepted = fmt::format("\"number x y z ..\" for each of {}", counted(atoms, "atom"));
+  for (std::int64_t i = 0; i < atoms; ++i) {
+    auto const atom = lines.required(4, last, accepted);
+    crystal.basis.push_back(lines.vector(atom, 1));
+    cell.materials.insert(atom.size() > 4 ? atom[4] : "0");
+  }
   if (auto const two = crystal.sites_at_one_place())
     lines.fail(fmt::format("atoms {} and {} are at one place", (*two)[0], (*two)[1]));
-  return crystal;
+  return cell;
 }
 
 void require_sites(Lines const& lines, Crystal const& file, Crystal const& scene) {
@@ -130,13 +140,18 @@ void require_sites(Lines const& lines, Crystal const& file, Crystal const& scene
   }
 }
 
-/// Returns how many numbers an interaction of this kind has.
-std::size_t numbers_of(Lines const& lines, std::string_view word) {
+struct Kind {
+  std::size_t numbers = 1;  // of an interaction
+  bool normalised = false;
+};
+
+Kind kind_of(Lines const& lines, std::string_view word) {
   constexpr std::string_view normalised = "normalised-";
-  auto const kind = word.starts_with(normalised) ? word.substr(normalised.size()) : word;
-  if (kind == "isotropic" || kind == "0") return 1;
-  if (kind == "vectorial" || kind == "1") return 3;
-  if (kind == "tensorial" || kind == "2") return 9;
+  bool const is_normalised = word.starts_with(normalised);
+  auto const kind = is_normalised ? word.substr(normalised.size()) : word;
+  if (kind == "isotropic" || kind == "0") return {1, is_normalised};
+  if (kind == "vectorial" || kind == "1") return {3, is_normalised};
+  if (kind == "tensorial" || kind == "2") return {9, is_normalised};
   lines.fail(fmt::format(
       "\"{:.40}\" is no kind of exchange; accepted: isotropic, vectorial, tensorial", word));
 }
@@ -150,19 +165,25 @@ std::string name_of(BondKey const& key) {
                      between[1], offset[0], offset[1], offset[2]);
 }
 
-Tensor read_tensor(Lines const& lines, Words const& words, std::size_t numbers) {
+Tensor read_tensor(Lines const& lines, Words const& words, Kind const& kind) {
   Tensor tensor{};
   for (std::size_t i = 0; i < 9; ++i) {
-    if (numbers == 9) tensor[i] = lines.number(words[6 + i]);
-    if (numbers < 9 && i % 4 == 0) tensor[i] = lines.number(words[numbers == 1 ? 6 : 6 + i / 4]);
+    bool const on_diagonal = i % 4 == 0;
+    if (kind.numbers == 9) tensor[i] = lines.number(words[6 + i]);
+    if (kind.numbers < 9 && on_diagonal)
+      tensor[i] = lines.number(words[kind.numbers == 1 ? 6 : 6 + i / 4]);
+    if (kind.normalised && !on_diagonal && tensor[i] != 0)
+      lines.fail(
+          "has normalised numbers off the diagonal, which Vampire ignores; accepted: 0 there, "
+          "or tensorial, in J");
   }
   return tensor;
 }
 
-Tensors read_interactions(Lines& lines, Words const& head, std::int64_t atoms) {
+Tensors read_interactions(Lines& lines, Words const& head, Kind const& kind, std::int64_t atoms) {
   constexpr std::int64_t most_bonds = 100'000'000, most_cells = 1'000'000;
   auto const count = lines.integer(head[0], 0, most_bonds);
-  auto const numbers = head.size() > 1 ? numbers_of(lines, head[1]) : 1;
+  auto const numbers = kind.numbers;
   auto const accepted = fmt::format("\"number i j dx dy dz\" and {} of J for each of {}",
                                     counted(static_cast<std::int64_t>(numbers), "number"),
                                     counted(count, "interaction"));
@@ -178,10 +199,26 @@ Tensors read_interactions(Lines& lines, Words const& head, std::int64_t atoms) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       offset[axis] = static_cast<int>(lines.integer(words[3 + axis], -most_cells, most_cells));
     if (key == reversed(key)) lines.fail(fmt::format("couples atom {} to itself", between[0]));
-    if (!tensors.emplace(key, read_tensor(lines, words, numbers)).second)
+    if (!tensors.emplace(key, read_tensor(lines, words, kind)).second)
       lines.fail(name_of(key) + " occurs twice");
   }
   return tensors;
+}
+
+// Refuses normalised numbers that one factor does not turn into energies.
+void require_one_energy(Lines const& lines, Words const& head, UnitCell const& cell,
+                        bool scale_is_given) {
+  if (cell.materials.size() > 1)
+    lines.fail(
+        fmt::format("numbers of \"{:.40}\" are relative to exchange-matrix of the .mat file, which "
+                    "may differ between pairs of the {} materials; accepted: one material, or "
+                    "energies in J",
+                    head[1], cell.materials.size()));
+  if (!scale_is_given)
+    lines.fail(
+        fmt::format("numbers of \"{:.40}\" are relative to exchange-matrix of the .mat file; "
+                    "accepted: field.couplings.scale = that energy, or energies in J",
+                    head[1]));
 }
 
 /// Returns what is wrong with a line after the interactions. `head`: the line that counts them.
@@ -218,16 +255,20 @@ Tensors one_way(Lines const& lines, Tensors const& tensors) {
 
 Crystal read_unit_cell(std::filesystem::path const& path) {
   Lines lines(path);
-  return read_crystal(lines);
+  return read_cell(lines).crystal;
 }
 
 std::vector<Coupling> read_unit_cell_couplings(std::filesystem::path const& path,
-                                               Crystal const& crystal, double scale) {
+                                               Crystal const& crystal, double scale,
+                                               bool scale_is_given) {
   Lines lines(path);
-  require_sites(lines, read_crystal(lines), crystal);
+  auto const cell = read_cell(lines);
+  require_sites(lines, cell.crystal, crystal);
   auto const atoms = static_cast<std::int64_t>(crystal.basis.size());
   auto const head = lines.required(1, "the number of interactions");
-  auto const tensors = one_way(lines, read_interactions(lines, head, atoms));
+  auto const kind = head.size() > 1 ? kind_of(lines, head[1]) : Kind();
+  if (kind.normalised) require_one_energy(lines, head, cell, scale_is_given);
+  auto const tensors = one_way(lines, read_interactions(lines, head, kind, atoms));
   std::map<BondKey, Coupling> couplings;
   auto const coupling = [&](BondKey const& key) -> Coupling& {
     auto& found = couplings[key];
@@ -239,9 +280,15 @@ std::vector<Coupling> read_unit_cell_couplings(std::filesystem::path const& path
                            [&](double number) { return scale * number; });
   if (auto const more = lines.next()) {
     if (more->size() != 2) lines.fail(behind_last(head));
-    if (numbers_of(lines, (*more)[1]) != 1)
+    auto const biquadratic = kind_of(lines, (*more)[1]);
+    if (biquadratic.numbers != 1)
       lines.fail("biquadratic interactions that are not isotropic are not known");
-    for (auto const& [key, tensor] : one_way(lines, read_interactions(lines, *more, atoms)))
+    if ((kind.normalised || biquadratic.normalised) && (*more)[0] != "0")
+      lines.fail(
+          "has biquadratic interactions in a file with normalised numbers, and one scale cannot "
+          "be the energy of both; accepted: all numbers in J");
+    for (auto const& [key, tensor] :
+         one_way(lines, read_interactions(lines, *more, biquadratic, atoms)))
       coupling(key).biquadratic = scale * tensor[0];
     if (lines.next()) lines.fail(behind_last(*more));
   }

@@ -22,8 +22,10 @@ constexpr std::string_view accepted_unit_cell_file = "the name of a unit-cell fi
 Crystal read_unit_cell(std::filesystem::path const& path);
 
 /// Returns the bonds, each once, with their values multiplied by `scale`. The file's atoms must be
-/// the sites of `crystal`, and each bond must be listed from both ends.
+/// the sites of `crystal`, and each bond must be listed from both ends. Without `scale_is_given`,
+/// the numbers must be energies, not normalised.
 std::vector<Coupling> read_unit_cell_couplings(std::filesystem::path const& path,
-                                               Crystal const& crystal, double scale);
+                                               Crystal const& crystal, double scale,
+                                               bool scale_is_given);
 
 }  // namespace cayspin::inline v0_2::io::detail

@@ -73,6 +73,7 @@ std::vector<std::pair<std::string, io::Scene>> single_terms(io::Scene const& sce
     alone.couplings = field.couplings;
     alone.couplings_file = field.couplings_file;
     alone.couplings_scale = field.couplings_scale;
+    alone.has_couplings_scale = field.has_couplings_scale;
   }
   if (!field.anisotropies.empty() || !field.crystal_anisotropies.empty()) {
     auto& alone = add("anisotropy");

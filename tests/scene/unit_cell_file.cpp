@@ -96,7 +96,7 @@ TEST(UnitCellFile, MayBeWrittenInOtherWays) {
            {"2 isotropic", "2 isotropic # bonds"},
            {"2 isotropic", "2 0"},
            {"2 isotropic", "2"},
-           {"2 isotropic", "\t2 ,normalised-isotropic\r"},
+           {"2 isotropic", "\t2 ,isotropic\r"},
            {"0 0 0 1 0 0 2.5", "17 0 0 +1 0.0 0 2.5e0"},
            {"0 0 0 0 0\n", "1 0 0 0\n"},
            {"0 0 0 0 0\n", "1 0 0 0 0 0 0\n"},
@@ -126,13 +126,68 @@ TEST(UnitCellFile, MayHaveBiquadraticBonds) {
 /// Returns the part of a refusal that follows the place in the scene and the name of the file;
 /// "accepted" if there is none.
 std::string refusal_of_cell(Folder const& folder, std::string const& unit_cell,
-                            std::string const& lattice = {}) {
-  auto const message = refusal([&] { check_files(read_with(folder, unit_cell, lattice)); });
+                            std::string const& lattice = {}, std::string const& more = {}) {
+  auto const message = refusal([&] { check_files(read_with(folder, unit_cell, lattice, more)); });
   if (message == "accepted") return message;
   auto const begin = (folder / "scene.toml").string() +
                      ":14: field.couplings.file: " + (folder / "cell.ucf").string() + ':';
   EXPECT_TRUE(message.starts_with(begin)) << message;
   return message.substr(std::min(begin.size(), message.size()));
+}
+
+constexpr std::string_view biquadratic_bonds = "0 0 0 1 0 0 0.5\n1 0 0 -1 0 0 0.5\n";
+
+TEST(UnitCellFile, NormalisedNumbersAreMultipliedByTheScale) {
+  Folder const folder;
+  auto const isotropic = replaced(chain_cell, "2 isotropic", "2 normalised-isotropic");
+  auto const vectorial =
+      replaced(replaced(replaced(chain_cell, "2 isotropic", "2 normalised-vectorial"), "1 0 0 2.5",
+                        "1 0 0 2.5 2.5 2.5"),
+               "-1 0 0 2.5", "-1 0 0 2.5 2.5 2.5");
+  auto const tensorial =
+      replaced(replaced(replaced(chain_cell, "2 isotropic", "2 normalised-tensorial"), "-1 0 0 2.5",
+                        "-1 0 0 2.5 0 0 0 2.5 0 0 0 2.5"),
+               "1 0 0 2.5\n", "1 0 0 2.5 0 0 0 2.5 0 0 0 2.5\n");
+  for (auto const& cell : {isotropic, vectorial, tensorial, isotropic + "0 normalised-isotropic\n"})
+    EXPECT_EQ(couplings(read_with(folder, cell, "", ", scale = 2")),
+              (std::vector<Coupling>{Coupling::of({0, 0}, {-1, 0, 0}, 5)}))
+        << cell;
+  EXPECT_EQ(refusal_of_cell(folder, isotropic),
+            "8: numbers of \"normalised-isotropic\" are relative to exchange-matrix of the .mat "
+            "file; accepted: field.couplings.scale = that energy, or energies in J");
+  EXPECT_NE(refusal_of_cell(folder, vectorial), "accepted");
+  EXPECT_NE(refusal_of_cell(folder, tensorial), "accepted");
+}
+
+// In Vampire, exchange-matrix has an energy for each pair of materials, and does not multiply
+// numbers off the diagonal; biquadratic numbers have an energy of their own.
+TEST(UnitCellFile, NormalisedNumbersOfSeveralEnergiesAreRefused) {
+  Folder const folder;
+  std::string const scale = ", scale = 2";
+  auto const isotropic = replaced(chain_cell, "2 isotropic", "2 normalised-isotropic");
+  for (auto const& more : {"2 isotropic\n", "2 normalised-isotropic\n"})
+    EXPECT_TRUE(
+        refusal_of_cell(folder, isotropic + more + std::string(biquadratic_bonds), "", scale)
+            .starts_with("11: has biquadratic interactions in a file with normalised"));
+  EXPECT_TRUE(refusal_of_cell(folder,
+                              std::string(chain_cell) + "2 normalised-isotropic\n" +
+                                  std::string(biquadratic_bonds),
+                              "", scale)
+                  .starts_with("11: has biquadratic interactions in a file with normalised"));
+  auto const tensorial = replaced(
+      replaced(text_of("honeycomb_with_dmi.ucf"), "18 tensorial", "18 normalised-tensorial"),
+      "0 0.3333333333333333 0.6666666666666667 0.5 0",
+      "0 0.3333333333333333 0.6666666666666667 0.5");
+  EXPECT_TRUE(
+      refusal_of_cell(folder, tensorial, "", scale)
+          .starts_with("19: has normalised numbers off the diagonal, which Vampire ignores"));
+  auto const of_two = replaced(text_of("bcc_iron.ucf"), "0.5\t0\t0\t1", "0.5\t1\t0\t1");
+  EXPECT_EQ(refusal_of_cell(folder, of_two, "", scale), "accepted");
+  EXPECT_EQ(
+      refusal_of_cell(folder, replaced(of_two, "isotropic", "normalised-isotropic"), "", scale),
+      "12: numbers of \"normalised-isotropic\" are relative to exchange-matrix of the .mat "
+      "file, which may differ between pairs of the 2 materials; accepted: one material, or "
+      "energies in J");
 }
 
 // The scene's text contains the cell: a trajectory stores the text, and may be moved away from the
