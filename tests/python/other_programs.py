@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Files of UppASD and Spirit: energies of the scenes, compared with sums over the files' bonds."""
+"""Files of UppASD and Spirit: energies of the scenes, compared with sums over the files' bonds. The
+keys that replace those of Sunny: frequencies of magnons."""
 
 import itertools
 import unittest
@@ -277,6 +278,25 @@ class Spirit(Files):
                  "that file, a.txt")):
             self.assert_refused(cayspin.CayspinError, part, self.read, text)
         self.assert_refused(cayspin.CayspinError, "unit: -1; accepted", self.read, PAIRS, unit=-1)
+
+
+class SunnyModes(unittest.TestCase):
+    def test_magnons_of_a_chain_in_a_field(self):
+        # Sunny's E is J sum S.S' + mu_B g B.S, here with J < 0; m is opposite to S.
+        joule, hbar, g, tesla = 1e-21, 1.054571817e-34, 2.2, 1.5
+        k = 2 * np.pi * np.arange(8) / 8
+        for spin in (1.0, 2.5):
+            sim = cayspin.Simulation(cayspin.Scene(
+                units="SI", system={"kind": "llg"},
+                material={"mu_s": {"bohr_magnetons": g * spin}, "alpha": 0,
+                          "gamma": g * MU_B / hbar},
+                lattice={"shape": [8], "spacing": 3e-10, "boundary": "periodic"},
+                field={"couplings": [{"offset": [1, 0, 0], "J": spin**2 * joule}],
+                       "applied": [0, 0, tesla]},
+                initial={"uniform": [0, 0, 1]}))
+            expected = (2 * spin * joule * (1 - np.cos(k)) + g * MU_B * tesla) / hbar
+            np.testing.assert_allclose(2 * np.pi * sim.modes(8).frequency, np.sort(expected),
+                                       rtol=1e-8)
 
 
 if __name__ == "__main__":
