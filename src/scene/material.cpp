@@ -191,8 +191,15 @@ void check_si(Scene const& scene) {
          {"lattice.crystal", "lattice.cell", "lattice.basis", "field.couplings"})
       refuse_if_typed(key, "is of atoms, and material.Ms of a continuum",
                       "material.mu_s, or no such key");
-  auto const& moments = scene.material->moments;
-  if (std::ranges::adjacent_find(moments, std::not_equal_to<>()) != moments.end())
+  // The field of a slab is that of the moments per volume, but is computed from each site's own
+  // moment.
+  auto const differ = [](std::vector<double> const& numbers) {
+    return std::ranges::adjacent_find(numbers, std::not_equal_to<>()) != numbers.end();
+  };
+  auto const& of_sites = scene.material->moment_factors;
+  bool const may_differ_in_cell = of_sites.there() && scene.lattice.basis.size() > 1 &&
+                                  (of_sites.per_region.empty() || differ(of_sites.per_region));
+  if (differ(scene.material->moments) || may_differ_in_cell)
     refuse_if_typed("field.slab_demag", "needs moments that are all alike",
                     "one number in material.mu_s, or field.dipoles");
 }

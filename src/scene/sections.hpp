@@ -23,8 +23,8 @@ bool read_is_si(Table const& root);
 /// Reads [material]. Call it after reading the lattice and before the other sections.
 void read_material(Table const& root, Scene& scene);
 /// Refuses keys that do not go with the material: lattice.moments, because [material] has the
-/// moments; keys of crystals and bonds in a continuum; and slab_demag if the sites of a cell have
-/// different moments.
+/// moments; keys of crystals and bonds in a continuum; and slab_demag if the sites of a cell may
+/// have different moments.
 void check_si(Scene const& scene);
 /// Converts a completely read scene to reduced units.
 void convert_to_reduced(Scene& scene);

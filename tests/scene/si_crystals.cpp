@@ -182,6 +182,9 @@ TEST(SiCrystals, ASlabHasTheMagnetizationOfTheCrystal) {
   expect_near(strength("lattice.crystal='bcc'"), 2 * cube);
   expect_near(strength("lattice.crystal='fcc'"), 4 * cube);
   EXPECT_NEAR(strength("lattice.crystal='honeycomb'"), 2 * cube / std::sqrt(0.75), 1e-15);
+  auto const slab = "field.slab_demag={normal=[0,0,1]}";
+  EXPECT_NO_THROW(
+      iron_with({"lattice.regions='s'", "material.mu_s={regions=[1e-23,1e-23]}", slab}));
 }
 
 TEST(SiScenes, BulkDmiIsThatOfAnInterfaceWithoutItsNormal) {
@@ -322,6 +325,10 @@ torque = {slonczewski={current_density=1e12,efficiency=0.4,thickness=1e-9,polari
   | damping_like, or material.Ms
 material.mu_s = { bohr_magnetons = [1, 2] }; field.slab_demag = { normal = [0, 0, 1] }
   | : needs moments that are all alike | one number in material.mu_s, or field.dipoles
+material.mu_s = '1e-23*(1+s)'; field.slab_demag = { normal = [0, 0, 1] }
+  | : needs moments that are all alike | one number
+lattice.regions = 's'; material.mu_s = { regions = [1e-23, 2e-23] };
+ field.slab_demag = { normal = [0, 0, 1] } | : needs moments that are all alike | one number
 )");
 }
 
