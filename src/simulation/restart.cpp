@@ -40,6 +40,18 @@ std::optional<io::Scene> same_stage(std::optional<io::Scene> scene, io::StageBeg
   return stage;
 }
 
+// Returns the start of a stage, as it is in a file, with its time in the unit of that stage of
+// `stages`. The unit depends on keys that may have changed, such as material.alpha.
+io::StageBegin in_units_of(std::vector<io::Stage> const& stages, io::StageBegin begin,
+                           std::string const& scene_as_run) {
+  if (begin.time == 0 || begin.stage < 0 || begin.stage >= std::ssize(stages)) return begin;
+  auto const& now = stages[static_cast<std::size_t>(begin.stage)].scene;
+  auto const before = same_stage(parsed(scene_as_run, now), begin);
+  if (before && before->units.time != now.units.time)
+    begin.time *= before->units.time / now.units.time;
+  return begin;
+}
+
 bool remembers(io::Scene const& scene, Variant const& variant) {
   return variant.remembers || scene.integrator.energy_control ||
          scene.integrator.until_torque.has_value() || has_slow_field(scene) ||
@@ -157,9 +169,14 @@ LastFrame last_frame(io::TrajectoryInfo const& trajectory, std::vector<io::Stage
 
 io::StageBegin EarlierRun::enter(std::vector<io::Stage> stages) {
   auto const* const stored = checkpoint ? &checkpoint->header() : nullptr;
-  auto const in_file = trajectory && trajectory->header.stage
-                           ? *trajectory->header.stage
-                           : (stored ? stored->stage : io::StageBegin{});
+  auto const begin_now = [&](io::StageBegin const& begin) {
+    return in_units_of(stages, begin, scene_as_run());
+  };
+  auto const of_checkpoint = stored ? begin_now(stored->stage) : io::StageBegin{};
+  if (trajectory && trajectory->header.stage)
+    trajectory->header.stage = begin_now(*trajectory->header.stage);
+  auto const in_file =
+      trajectory && trajectory->header.stage ? *trajectory->header.stage : of_checkpoint;
   if (stages.size() == 1) {
     bool const has_left = in_file.stage > 0 || (trajectory && !trajectory->frame_stages.empty() &&
                                                 trajectory->frame_stages.back() > 0);
@@ -168,8 +185,8 @@ io::StageBegin EarlierRun::enter(std::vector<io::Stage> stages) {
   auto state = trajectory ? last_frame(*trajectory, stages) : LastFrame{};
   bool const has_frame = state.step >= 0;
   auto const use_checkpoint = [&] {
-    if (has_frame && stored->stage.stage != state.begin.stage) trajectory->frames = 0;
-    state = {stored->stage, stored->step};
+    if (has_frame && of_checkpoint.stage != state.begin.stage) trajectory->frames = 0;
+    state = {of_checkpoint, stored->step};
   };
   bool from_checkpoint = stored && (!has_frame || std::pair(stored->stage.stage, stored->step) >
                                                       std::pair(state.begin.stage, state.step));

@@ -94,6 +94,36 @@ class Stages(PackageTest):
         np.testing.assert_array_equal(again.spins, sim.spins)
         self.assertEqual(again.time, sim.time)
 
+    # In SI, the reduced unit of time depends on the damping and on J.
+    def test_a_restart_after_it_with_another_material(self):
+        def of(dt, **changed):
+            return cayspin.Scene(
+                units="SI", system={"kind": "llg"},
+                material={"mu_s": {"bohr_magnetons": 2.0}, "J": 1e-21, "alpha": 0.1,
+                          "damping_form": "gilbert", **changed},
+                lattice={"shape": [12, 3], "spacing": 3e-10}, field={"applied": [0, 0, 1.0]},
+                initial={"random": {"seed": 3}},
+                integrator={"method": "rkmk4", "dt": dt, "steps": 25})
+
+        sim = cayspin.Simulation(of(1e-15))
+        sim.step(7)
+        sim.set({"integrator.dt": 3e-15})
+        sim.step(5)
+        path = os.path.join(self.folder, "after.h5")
+        sim.save(path)
+        for key, value in (("alpha", 0.4), ("J", 1.7e-21)):
+            with self.assertWarnsRegex(UserWarning, f"differ from its scene: material.{key}"):
+                again = cayspin.Simulation(of(3e-15, **{key: value}), restart=path)
+            self.assertEqual(again.steps, 12)
+            self.assertAlmostEqual(again.time / sim.time, 1, delta=1e-14)
+            np.testing.assert_array_equal(again.spins, sim.spins)
+            other = cayspin.Simulation(of(3e-15, **{key: value}))
+            other.spins = sim.spins
+            for one in (again, other):
+                one.step(4)
+            np.testing.assert_allclose(again.spins, other.spins, rtol=0, atol=1e-13)
+            self.assertAlmostEqual(again.time / 3.4e-14, 1, delta=1e-14)
+
     def test_a_function_gives_way_to_numbers(self):
         sim = cayspin.Simulation(scene(field={"applied": lambda t: [0, 0, 5.0]}))
         sim.set("system.damping", 0.2)
