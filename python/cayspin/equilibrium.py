@@ -42,3 +42,5 @@ class Modes:
     time_unit: float = 1.0  #: in SI the unit of reduced times, in s; 1 in reduced units
     energy_unit: float | None = None  #: in SI the unit of reduced energies, in J; else None
     under_current: bool = False  #: whether the state is under a current, [torque]
+    #: mu / g of each site, (nz, ny, nx) or (site, ..), as linear_structure_factor() takes them
+    moments: np.ndarray | None = None

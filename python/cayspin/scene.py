@@ -91,6 +91,12 @@ def _nonlocal_by_planes(function, shape, cell_sites):
     return called
 
 
+def moments_over_g(scene):
+    """Returns mu / g of each site of a compiled scene, as linear_structure_factor() takes them."""
+    _, time_unit, energy_unit = scene.units
+    return sites.by_site(scene.moments_over_g(), scene.cell_sites) * (time_unit * energy_unit)
+
+
 class Scene:
     """A description of what to simulate: the tables of a scene file, with the same keys, units and
     checks (docs/reference/scene.md).

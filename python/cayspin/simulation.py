@@ -13,7 +13,7 @@ import numpy as np
 from cayspin import _cayspin, arguments, sites, texture, toml_text
 from cayspin.averages import Averages
 from cayspin.equilibrium import Minimum, Modes
-from cayspin.scene import Scene
+from cayspin.scene import Scene, moments_over_g
 from cayspin.simulation_texture import texture_of
 
 _GUARD_PERIOD = 100  # steps between two checks of energy and lengths in step()
@@ -180,13 +180,13 @@ class Simulation:
             arguments.whole(count, "modes: count"), arguments.real(tolerance, "modes: tolerance"),
             arguments.whole(evaluations, "modes: evaluations"))
         parts = np.array(shapes).reshape((len(shapes), *self._run.spins().shape, 2))
-        cell_sites = self._scene._scene.cell_sites
+        scene = self._scene._scene
         shape = parts[..., 0] + 1j * parts[..., 1]
-        if cell_sites > 1 and len(shapes):
-            shape = np.stack([sites.by_site(one, cell_sites) for one in shape])
-        is_si, time_unit, energy_unit = self._scene._scene.units
+        if scene.cell_sites > 1 and len(shapes):
+            shape = np.stack([sites.by_site(one, scene.cell_sites) for one in shape])
+        is_si, time_unit, energy_unit = scene.units
         return Modes(*(np.array(each) for each in numbers), shape, converged, cost, time_unit,
-                     energy_unit if is_si else None, self._run.scene.has_torque)
+                     energy_unit if is_si else None, scene.has_torque, moments_over_g(scene))
 
     def set(self, keys: str | dict[str, Any], value: Any = None) -> None:
         """Changes keys of the scene. Spins, time and steps are kept. `keys` is one key with its

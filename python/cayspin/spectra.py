@@ -10,9 +10,10 @@ from typing import Any, Sequence
 
 import numpy as np
 
-from cayspin import arguments, frames
+from cayspin import _cayspin, arguments, frames
 from cayspin._cayspin import CayspinError
 from cayspin.observables import checked_lattice, hann, window_in_space
+from cayspin.scene import moments_over_g
 
 _BOLTZMANN = 1.380649e-23  # J/K
 _PAIRS = tuple(a + b for a in "xyz" for b in "xyz")
@@ -231,11 +232,21 @@ class _FileOfModes:
         if moments is not None:
             self.moments = moments
         elif differs:
-            raise CayspinError(f"{path}: {differs[0]} is no single number; accepted: the argument "
-                               "moments")
+            self.moments = self._moments_of_sites(differs[0])
         else:
             lattice = read["lattice"]
-            self.moments = lattice.get("moments", 1.0) / lattice.get("gyromagnetic", 1.0)
+            self.moments = lattice.get("moments", 1.0) / lattice.get("gyromagnetic", 1.0) * (
+                self.time_unit * (self.energy_unit or 1.0))
+
+    def _moments_of_sites(self, key):
+        """Returns mu / g of each site. `key`: a key of the scene that may be a file, for the
+        error."""
+        try:
+            return moments_over_g(_cayspin.Scene.parse(self.scene, self.path, [], None, {}))
+        except CayspinError as error:
+            raise CayspinError(f"{self.path}: {key} of its scene cannot be read; accepted: the "
+                               "argument moments, or the scene's files beside this one"
+                               ) from error
 
 
 def _is_number(value):
@@ -271,12 +282,15 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
     they hold for small damping. The elastic line of the state itself and longitudinal fluctuations
     are not included.
 
-    `moments`: mu / g of each site in reduced units, from lattice.moments and lattice.gyromagnetic,
-    an array that broadcasts to the spins without their last axis. In SI, if material.alpha of the
-    form "gilbert" is not a single number, they are mu (1 + alpha^2) / g. Without `moments`, mu / g
-    is 1, or the number in the scene if `modes` is a file. `components`, `cell`, `positions`,
-    `periodic` and `zones` are those of structure_factor(); if `modes` is a file, the lattice is the
-    scene's by default.
+    `moments`: mu / g of each site, an array that broadcasts to the spins without their last axis.
+    By default they are those of the scene, so they are needed only if the scene of a file has
+    values per site in other files, which are not beside it. In reduced units, mu and g are
+    lattice.moments and lattice.gyromagnetic. In SI, mu / g is mu_s / gamma in J s, with `Ms` times
+    the volume of a cell in place of mu_s; with the damping_form "gilbert", it is multiplied by
+    1 + alpha^2.
+
+    `components`, `cell`, `positions`, `periodic` and `zones` are those of structure_factor(); if
+    `modes` is a file, the lattice is the scene's by default.
 
     Raises CayspinError for a mode that does not oscillate or lowers the energy, for modes that did
     not converge or are under [torque], for a file of bands, for Modes without spins, and for
@@ -301,7 +315,7 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
                                "spins, or a file")
         modes = _FileOfModes(name, modes, moments)
         source = modes.path
-        spins, moments = modes.spins, modes.moments
+        spins = modes.spins
         given = {key: value for key, value in lattice.items() if value is not None}
         lattice = frames.with_lattice(modes.path, modes.scene, given)
     elif not all(hasattr(modes, part) for part in ("frequency", "decay", "shape")):
@@ -326,7 +340,11 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
         raise CayspinError(f"{name}: spins of shape {spins.shape} and modes of shape "
                            f"{modes.shape.shape}; accepted: modes (mode, ..) of these spins")
     waves = _Waves(name, spins.shape[:-1], components, zones=zones, **lattice)
+    if moments is None:
+        moments = getattr(modes, "moments", None)
     weights = arguments.numbers(1.0 if moments is None else moments, f"{name}: moments")
+    if energy_unit and moments is not None:
+        weights = weights.astype(np.float64) / (energy_unit * time_unit)
     try:
         weights = np.broadcast_to(weights, spins.shape[:-1])
     except ValueError:

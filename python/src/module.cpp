@@ -9,6 +9,7 @@
 #include "simulation/failure.hpp"
 #include "simulation/guard.hpp"
 #include "simulation/run_recorder.hpp"
+#include "values_of_sites.hpp"
 
 #include <cayspin/version.hpp>
 
@@ -52,19 +53,6 @@ using namespace simulation;
 using namespace nb::literals;
 
 using Overrides = std::vector<std::string>;
-
-SiteNumbersOut at_sites(io::Scene const& scene, std::string const& expression) {
-  auto const& [nx, ny, nz] = scene.lattice.shape;
-  try {
-    io::SiteNumbers numbers;
-    numbers.expression = expression;
-    auto values =
-        io::numbers_of_sites(scene, numbers, "at_sites", {{0, 0, 0}, scene.lattice.shape});
-    return array_of(std::move(values), {nz, ny, nx});
-  } catch (std::invalid_argument const& error) {
-    throw UsageError(std::string("at_sites: ") + error.what());
-  }
-}
 
 bool advance(SceneRun& run, std::int64_t count, std::int64_t period, bool until_torque,
              std::int64_t run_end) {
@@ -162,6 +150,7 @@ void define_scene(nb::module_& module) {
           },
           "uniform"_a.none(), "nonlocal_"_a.none())
       .def("at_sites", at_sites)
+      .def("moments_over_g", moments_over_g)
       .def_prop_ro("given_start",
                    [](io::Scene const& scene) {
                      return std::holds_alternative<io::GivenStart>(scene.initial);

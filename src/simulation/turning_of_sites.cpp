@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "turning_of_sites.hpp"
 
+#include "turn.hpp"
+
 #include <cstddef>
 
 namespace cayspin::simulation {
@@ -31,6 +33,13 @@ TurningOfSites turning_of_sites(io::Scene const& scene) {
     turning.damping[site] = rate * lambda;
   }
   return turning;
+}
+
+std::vector<double> moments_over_g(io::Scene const& scene) {
+  Turn const turn;
+  auto values = turning_of_sites(scene).precession;
+  for (double& value : values) value = value > 0 ? 1 / value : 0;
+  return values;
 }
 
 }  // namespace cayspin::simulation

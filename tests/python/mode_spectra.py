@@ -10,6 +10,8 @@ import numpy as np
 from package_test import PackageTest, scene
 from spectra_test import ANISOTROPY, EXCHANGE, SITES, chain, magnons, modes_of
 
+BOLTZMANN, MU_B, GAMMA = 1.380649e-23, 9.2740100657e-24, 1.760859e11
+
 
 class OfModes(PackageTest):
     FREQUENCY = np.linspace(-12, 12, 4801)
@@ -110,18 +112,58 @@ class OfModes(PackageTest):
                            {"between": [1, 0], "offset": [1, 0, 0], "J": 1.0}]})
             modes, spins = modes_of(made)
             weights = np.divide(moments, ratios)[:, None, None, None]
-            found = cayspin.linear_structure_factor(
-                modes, 0.3, self.FREQUENCY, spins=spins, width=0.1, moments=weights,
-                positions=made.basis, zones=(2, 1, 1))
-            k = np.pi * found.wave_vectors[0, 0, :, 0]
-            np.testing.assert_allclose(found.integrated["xx"][0, 0],
-                                       0.3 / (2 * (1 - np.cos(k)) + 1), rtol=1e-8)
+            np.testing.assert_allclose(modes.moments, np.broadcast_to(weights, (2, 1, 1, 6)),
+                                       rtol=1e-14)
             file = self.run_program(made, "--count", "12", command="modes").filename
-            self.assert_refused(cayspin.CayspinError, "lattice.moments is no single number",
-                                cayspin.linear_structure_factor, file, 0.3, self.FREQUENCY)
-            read = cayspin.linear_structure_factor(
-                file, 0.3, self.FREQUENCY, width=0.1, moments=weights, zones=(2, 1, 1))
-            np.testing.assert_allclose(read.integrated["xx"], found.integrated["xx"], rtol=1e-8)
+            for given in (None, weights):
+                found = cayspin.linear_structure_factor(
+                    modes, 0.3, self.FREQUENCY, spins=spins, width=0.1, moments=given,
+                    positions=made.basis, zones=(2, 1, 1))
+                k = np.pi * found.wave_vectors[0, 0, :, 0]
+                np.testing.assert_allclose(found.integrated["xx"][0, 0],
+                                           0.3 / (2 * (1 - np.cos(k)) + 1), rtol=1e-8)
+                read = cayspin.linear_structure_factor(
+                    file, 0.3, self.FREQUENCY, width=0.1, moments=given, zones=(2, 1, 1))
+                np.testing.assert_allclose(read.integrated["xx"], found.integrated["xx"],
+                                           rtol=1e-8)
+
+    def test_moments_of_a_crystal_in_si(self):
+        joule, kelvin, w = 1e-21, 5.0, np.linspace(-9e14, 9e14, 3)
+        typed = np.array([2.0, 0.8])[:, None, None, None] * MU_B
+        stored = self.folder / "moments.h5"
+        with h5py.File(stored, "w") as file:
+            file["values"] = np.broadcast_to(typed, (2, 1, 1, 6))
+        options = {"width": 1e12, "zones": (2, 1, 1)}
+        for mu_s in ({"bohr_magnetons": [2.0, 0.8]}, {"regions": [2 * MU_B, 0.8 * MU_B]},
+                     f"{MU_B!r}*(2 - 1.2*s)", {"file": str(stored)}):
+            with self.subTest(mu_s=mu_s):
+                made = cayspin.Scene(
+                    units="SI", system={"kind": "llg"},
+                    material={"mu_s": mu_s, "alpha": 0, "K": 0.3 * joule, "axis": [0, 0, 1]},
+                    lattice={"shape": [6], "spacing": 3e-10, "boundary": "periodic",
+                             "basis": [[0, 0, 0], [0.5, 0, 0]], "regions": "s"},
+                    field={"couplings": [
+                        {"between": [0, 1], "offset": [0, 0, 0], "J": joule},
+                        {"between": [1, 0], "offset": [1, 0, 0], "J": joule}]},
+                    initial={"uniform": [0, 0, 1]})
+                modes, spins = modes_of(made)
+                np.testing.assert_allclose(
+                    modes.moments, np.broadcast_to(typed / GAMMA, (2, 1, 1, 6)), rtol=1e-12)
+                file = self.run_program(made, "--count", "12", command="modes").filename
+                for given in (None, typed / GAMMA):
+                    for found in (
+                            cayspin.linear_structure_factor(
+                                modes, kelvin, w, spins=spins, moments=given, cell=made.cell,
+                                positions=made.basis, **options),
+                            cayspin.linear_structure_factor(
+                                file, kelvin, w, moments=given, **options)):
+                        k = np.pi * found.wave_vectors[0, 0, :, 0]
+                        stiffness = 2 * joule * (1 - np.cos(k)) + 0.6 * joule
+                        np.testing.assert_allclose(found.integrated["xx"][0, 0],
+                                                   BOLTZMANN * kelvin / stiffness, rtol=1e-8)
+        stored.unlink()
+        self.assert_refused(cayspin.CayspinError, "material.mu_s of its scene cannot be read",
+                            cayspin.linear_structure_factor, file, kelvin, w)
 
     def test_wrong_calls(self):
         modes, spins = modes_of(chain())
@@ -221,9 +263,10 @@ class OfModes(PackageTest):
         # The fluctuations at equilibrium do not depend on the damping. Frequencies of Gilbert's
         # form have a factor 1 / (1 + alpha^2).
         joule, kelvin, seconds = 1e-21, 5.0, np.linspace(-9e14, 9e14, 3)
-        for form, moments in (("gilbert", 1.25), ("landau_lifshitz", None)):
+        call = cayspin.linear_structure_factor
+        for form, factor in (("gilbert", 1.25), ("landau_lifshitz", 1.0)):
             integrated = []
-            for alpha, given in ((0.5, None), ("0.5 + 0*x", moments)):
+            for alpha in (0.5, "0.5 + 0*x"):
                 si = cayspin.Scene(
                     units="SI", system={"kind": "llg"},
                     material={"mu_s": {"bohr_magnetons": 2.0}, "alpha": alpha,
@@ -231,17 +274,11 @@ class OfModes(PackageTest):
                     lattice={"shape": [8], "spacing": 3e-10, "boundary": "periodic"},
                     field={"couplings": {"shells": [joule]}}, initial={"uniform": [0, 0, 1]})
                 file = self.run_program(si, "--count", "8", command="modes").filename
-                call = cayspin.linear_structure_factor
-                if given is not None:
-                    self.assert_refused(
-                        cayspin.CayspinError,
-                        "material.alpha is no single number; accepted: the argument moments",
-                        call, file, kelvin, seconds)
-                found = call(file, kelvin, seconds, moments=given)
-                integrated.append(found.integrated["yy"][0, 0])
                 modes, spins = modes_of(si)
-                other = call(modes, kelvin, seconds, spins=spins, moments=given)
-                np.testing.assert_allclose(other.integrated["yy"][0, 0], integrated[-1], rtol=1e-8)
+                for given in (None, factor * 2 * MU_B / GAMMA):
+                    for found in (call(file, kelvin, seconds, moments=given),
+                                  call(modes, kelvin, seconds, spins=spins, moments=given)):
+                        integrated.append(found.integrated["yy"][0, 0])
             k = 2 * np.pi * found.wave_vectors[0, 0, :, 0]
             stiffness = 2 * joule * (1 - np.cos(k)) + 0.6 * joule
             for one in integrated:
