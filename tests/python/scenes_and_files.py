@@ -4,6 +4,8 @@
 import importlib.util
 import math
 import os
+import subprocess
+import sys
 import unittest
 
 import cayspin
@@ -12,6 +14,15 @@ import numpy as np
 from package_test import TABLES, PackageTest, scene, stepped
 
 CLOCKS = {"wall_seconds", "step_seconds"}
+
+# Kokkos starts once in a process, with the number of threads of the first simulation.
+SERIAL_RUN = """
+import sys
+import cayspin
+sim = cayspin.Simulation(cayspin.Scene.from_file(sys.argv[1]), space="serial")
+sim.step(20)
+print(sim.space, sim.threads, sim.spins.tobytes().hex())
+"""
 
 
 class Scenes(PackageTest):
@@ -77,6 +88,16 @@ class Spaces(PackageTest):
                 sim.step(20)
                 self.assertEqual(sim.space, os.environ.get("CAYSPIN_SPACE", sims[0].space))
             np.testing.assert_array_equal(sims[0].spins, sims[1].spins)
+
+    def test_serial_runs_on_one_thread_with_the_bits_of_the_default_space(self):
+        sim = cayspin.Simulation(scene())
+        if sim.space not in ("openmp", "threads"):
+            self.skipTest(f"the default space, {sim.space}, has one thread or is a device")
+        sim.step(20)
+        serial = subprocess.run([sys.executable, "-B", "-c", SERIAL_RUN, self.written(scene())],
+                                env={**os.environ, "OMP_NUM_THREADS": "2"}, check=True,
+                                capture_output=True, text=True).stdout
+        self.assertEqual(serial.split(), ["serial", "1", sim.spins.tobytes().hex()])
 
 
 class OwnFields(PackageTest):
