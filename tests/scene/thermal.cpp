@@ -27,9 +27,13 @@ TEST(ThermalScene, ANumberAsTimeIsAFactor) {
   EXPECT_DOUBLE_EQ(scene_of(with_time("200", "0.01")).thermal->temperature, 2);
   std::vector<std::string> const steps{"system.damping=0.1", "integrator.dt=0.1"};
   EXPECT_EQ(refusal_of(with_time("200", "0.01"), steps), "accepted");
-  EXPECT_NE(refusal_of(with_time("200", "1"), steps), "accepted");
+  expect_holds(refusal_of(with_time("200", "1"), steps),
+               "integrator.dt: damping times temperature times dt is 2: ");
   EXPECT_EQ(refusal_of(with_time("1", "0"), {"integrator.until_torque=1e-6"}), "accepted");
-  EXPECT_NE(refusal_of(with_time("1", "-1"), {}), "accepted");
+  expect_holds(refusal_of(with_time("1", "-1")),
+               "thermal.temperature.time: is negative; accepted: a number >= 0");
+  expect_holds(refusal_of(with_time("-1", "1")),
+               "thermal.temperature.profile: is negative; accepted: a number >= 0");
 }
 
 // Temperature 0 means no noise, so keys that a temperature excludes are accepted.
