@@ -206,25 +206,30 @@ TYPED_TEST(EqualBits, FieldOfAllSpins) {
 TYPED_TEST(EqualBits, ThermalNoise) {
   using Spins = typename TypeParam::Spins;
   typename TypeParam::Exec const exec;
-  auto const run = [&](Spins& spins) {
+  auto const run = [&](Spins& spins, double temperature) {
     auto const generator = Still::generator_on(spins.lattice());
-    ThermalNoise<Spins> const noise(spins, 0.1, {.temperature = 0.5, .seed = 3});
+    ThermalNoise<Spins> const noise(spins, 0.1, {.temperature = temperature, .seed = 3});
     LieHeun<Spins> stepper(spins);
     Times const times{0, 0.05, 4};
     integrate(exec, stepper, generator, spins, times, noise.after_steps(times),
               noise.before_steps());
     return numbers_of(spins);
   };
-  for (Lattice const& lattice : lattices())
+  int compared = 0;
+  for (Lattice const& lattice : lattices()) {
+    auto const numbers = random_directions(lattice.sites(), 7);
+    auto whole = spins_of<Spins>(lattice, numbers), cold = spins_of<Spins>(lattice, numbers);
+    auto const expected = run(whole, 0.5);
+    EXPECT_NE(expected, run(cold, 0)) << "no noise";
     for (mpi::Division const& division : divisions(lattice, 2)) {
-      auto const numbers = random_directions(lattice.sites(), 7);
-      auto whole = spins_of<Spins>(lattice, numbers);
       mpi::Domain const domain(MPI_COMM_WORLD, lattice, 2, division);
       auto part = spins_of<Spins>(domain.local(), numbers_of_part(domain.local(), numbers));
-      run(whole);
-      EXPECT_EQ(run(part), numbers_of_part(domain.local(), numbers_of(whole)))
+      EXPECT_EQ(run(part, 0.5), numbers_of_part(domain.local(), expected))
           << name_of(lattice, division);
+      ++compared;
     }
+  }
+  EXPECT_GT(compared, 1);
 }
 
 }  // namespace
