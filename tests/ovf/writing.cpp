@@ -52,13 +52,10 @@ TEST_F(OvfTest, LongFilesAreReadBack) {
   for (int i = 0; i < 3 * 70001; ++i) field.values.push_back(1.0 / (1 + i));
   for (auto const& [name, format] : words<OvfFormat>()) {
     write_ovf(folder_ / "long.ovf", field, format, true);
-    auto const back = read_ovf(folder_ / "long.ovf").values;
-    ASSERT_EQ(back.size(), field.values.size());
-    if (format != OvfFormat::binary4) {
-      EXPECT_EQ(back, field.values) << name;
-    } else {
-      EXPECT_EQ(back.back(), static_cast<double>(static_cast<float>(field.values.back())));
-    }
+    auto expected = field.values;
+    if (format == OvfFormat::binary4)
+      for (double& value : expected) value = static_cast<double>(static_cast<float>(value));
+    EXPECT_EQ(read_ovf(folder_ / "long.ovf").values, expected) << name;
   }
 }
 
