@@ -3,6 +3,8 @@
 
 #include "../support/file_bytes.hpp"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
@@ -32,12 +34,30 @@ class Chance {
 /// For each thing that was tried, the number of times that each outcome occurred.
 using OutcomeCounts = std::map<std::string, std::map<std::string, long>>;
 
-inline void print(OutcomeCounts const& tried) {
+/// Prints the counts. Expects that some files were read as they had been written, about a fifth
+/// usually are, and that some were refused. If a thing was tried with 50 files or more, expects
+/// both for this thing, too.
+inline void print_and_expect_both(OutcomeCounts const& tried) {
+  long all_right = 0, all_refused = 0;
   for (auto const& [name, counts] : tried) {
     std::cout << name << ':';
-    for (auto const& [outcome, count] : counts) std::cout << "  " << count << ' ' << outcome;
+    long files = 0, right = 0, refused = 0;
+    for (auto const& [outcome, count] : counts) {
+      std::cout << "  " << count << ' ' << outcome;
+      files += count;
+      if (outcome == "right")
+        right += count;
+      else if (outcome != "WRONG" && outcome != "changed, without a checksum")
+        refused += count;  // or a message about the kind of damage
+    }
     std::cout << '\n';
+    EXPECT_GE(right, files / 50) << name;
+    EXPECT_GE(refused, files / 50) << name;
+    all_right += right;
+    all_refused += refused;
   }
+  EXPECT_GT(all_right, 0);
+  EXPECT_GT(all_refused, 0);
 }
 
 /// Returns the bytes with damage of one kind: bits flipped, bytes replaced, the end cut off, a

@@ -164,7 +164,7 @@ TEST_F(Damage, TrajectoriesAreRefusedOrReadAsTheyWere) {
          files_ / 5);
   damage(trajectory("planes.h5", "double", {.chunk = 1}, 5), of_trajectories, true, files_ / 5);
   damage(trajectory("crystal.h5", "double", {}, 5, 2), of_trajectories, true, files_ / 5);
-  cayspin::test::print(counts_);
+  cayspin::test::print_and_expect_both(counts_);
 }
 
 // Without checksums the values may be wrong, but nothing crashes.
@@ -172,7 +172,7 @@ TEST_F(Damage, InertiaOfAnotherMakerNeverCrashes) {
   auto const path = folder_ / "inertia.h5";
   cayspin::test::write_inertia(path, 24);
   damage(path, of_inertia, false, files_);
-  cayspin::test::print(counts_);
+  cayspin::test::print_and_expect_both(counts_);
 }
 
 }  // namespace

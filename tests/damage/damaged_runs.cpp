@@ -117,7 +117,7 @@ TEST_F(DamagedRuns, TrajectoriesAndCheckpointsAreRightOrRefused) {
   expect_right_or_refused(
       {"--restart, its checkpoint", with(again, {"--set", "integrator.method='ab2'"}), "again.h5"},
       in_folder("memory.checkpoint.h5"), files_ / 4);
-  cayspin::test::print(counts_);
+  cayspin::test::print_and_expect_both(counts_);
 }
 
 TEST_F(DamagedRuns, InertiaOfAnotherMakerEndsWithoutASignal) {
@@ -130,7 +130,7 @@ TEST_F(DamagedRuns, InertiaOfAnotherMakerEndsWithoutASignal) {
       "again.h5",
       false};
   expect_right_or_refused(use, path, files_ / 4);
-  cayspin::test::print(counts_);
+  cayspin::test::print_and_expect_both(counts_);
 }
 
 }  // namespace
