@@ -6,11 +6,14 @@
 
 #include <cayspin/field/site_dependent_exchange.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <set>
+#include <stdexcept>
 #include <vector>
 
 // Bonds between regions, for FieldInPass. Included by compile_field_in_pass.hpp.
@@ -94,6 +97,12 @@ void FieldInPass<Spins>::Terms::add_distant_bonds(io::Scene const& scene, io::Si
     for (std::int64_t const range : ranges)
       for (std::int64_t const reach : {range + 1, -range - 1}) {
         if (range + 1 >= scene.lattice.shape[axis]) continue;
+        for (auto const ghosts : {lattice_.ghosts[axis].before, lattice_.ghosts[axis].after})
+          if (ghosts != 0 && ghosts < range + 1)
+            throw std::invalid_argument(
+                fmt::format("field.interlayer: a bond of range {} needs {} ghosts at each inner "
+                            "end, and the part has {}",
+                            range, range + 1, ghosts));
         auto const pairs = io::regions_across(scene, box, axis, reach);
         std::vector<double> bilinear(pairs.size()), biquadratic(pairs.size());
         double const spacing = lattice_.spacing[axis];

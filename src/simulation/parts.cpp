@@ -23,7 +23,9 @@ mpi::Depth depth_of_parts(io::Scene const& scene, Plan const& plan) {
     auto const [rows, cells] = bonds.rows_and_cells();
     depth.y = std::max(depth.y, rows);
     depth.z = std::max(depth.z, cells * static_cast<int>(plan.lattice.cell_sites));
-    if (auto const reach = io::reach_of_interlayers(scene); reach > 0) {
+    for (auto const& bond : scene.field.interlayers) {
+      if (bond.range == 0) continue;
+      auto const reach = bond.range + 1;
       if (reach < plan.lattice.shape[1]) depth.y = std::max(depth.y, static_cast<int>(reach));
       if (reach < plan.lattice.shape[2]) depth.z = std::max(depth.z, static_cast<int>(reach));
     }

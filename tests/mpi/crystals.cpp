@@ -213,7 +213,13 @@ damping_like = { profile = "0.1*i", time = "cos(t)" }
 field_like = { regions = [0.1, -0.2, 0.3] }
 lambda = 1.6
 polarization = { regions = [[0, 1, 0.5], [1, 0, 0], [0, 0, 1]] })toml";
-  for (auto const& text : {layers + torque, layers + bonds + torque})
+  // The second bond is longer than y and z, and leaves the reach of the first as it is.
+  std::string const with_long = R"toml(
+interlayer = [
+  { between = [0, 0], J = -0.2, biquadratic = 0.03, range = 2 },
+  { between = [0, 0], J = 0.1, range = 13 },
+])toml";
+  for (auto const& text : {layers + torque, layers + bonds + torque, layers + with_long + torque})
     expect_bits_of_one(scene_of(text, heun), {{2, "1,2"}, {3, "3,1"}, {4, "2,2"}});
 }
 
