@@ -14,13 +14,13 @@
 #include "simulation/restart.hpp"
 #include "simulation/single_terms.hpp"
 #include "simulation/text.hpp"
+#include "simulation/threads_of_rank.hpp"
 #include "trade/resolved.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -132,9 +132,10 @@ void warn(std::vector<PlannedStage> const& stages) {
   for (auto const& note : notes) fmt::print(stderr, "warning: {}\n", note);
 }
 
-std::optional<int> threads_of_rank(RunOptions const& options, Ranks const& ranks) {
-  if (options.threads || !ranks.many() || std::getenv("OMP_NUM_THREADS")) return options.threads;
-  return std::max(1, expected_threads() / ranks.on_this_machine());
+std::optional<int> threads_for(RunOptions const& options, std::string const& space,
+                               Ranks const& ranks) {
+  if (options.threads || !ranks.many()) return options.threads;
+  return threads_of_rank(space, cores_for_threads(), ranks.on_these_cores());
 }
 
 int run(RunOptions const& options, Ranks& ranks) {
@@ -147,7 +148,7 @@ int run(RunOptions const& options, Ranks& ranks) {
     return run_ensemble(typed, options);
   }
   auto const space = ranks.together([&] { return chosen_space(options.space); });
-  KokkosOfCommand const kokkos(space, threads_of_rank(options, ranks), options.device);
+  KokkosOfCommand const kokkos(space, threads_for(options, space, ranks), options.device);
   auto left = ranks.together(
       [&] { return options.restart ? std::make_unique<EarlierRun>(*options.restart) : nullptr; });
   auto const scene = with_method(typed, left.get(), options, space, ranks);

@@ -12,6 +12,7 @@ class OneRank final : public Ranks {
   int count() const override { return 1; }
   int rank() const override { return 0; }
   int on_this_machine() const override { return 1; }
+  int on_these_cores() const override { return 1; }
   std::array<int, 2> division(cayspin::Lattice const&, mpi::Depth const&,
                               std::optional<std::string> const& asked) const override {
     if (asked && *asked != "1,1")

@@ -41,6 +41,8 @@ class Ranks {
   bool is_first() const { return rank() == 0; }
   /// Returns how many ranks are on this machine, including this one.
   virtual int on_this_machine() const = 0;
+  /// Returns how many ranks may run on a core of this one, including this one.
+  virtual int on_these_cores() const = 0;
 
   /// Returns the numbers of parts along y and z, with at least `depth` rows or planes each: those
   /// requested as "y,z", otherwise as many as possible, up to one for each rank. Throws UsageError

@@ -4,6 +4,7 @@
 #include "simulation/one_rank.hpp"
 #include "simulation/parts.hpp"
 #include "simulation/text.hpp"
+#include "simulation/threads_of_rank.hpp"
 
 #include <cayspin/mpi/domain.hpp>
 
@@ -17,6 +18,7 @@
 #include <cstdlib>
 #include <memory>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 namespace cayspin::program {
@@ -62,6 +64,7 @@ class MpiRanks final : public Ranks {
     MPI_Comm here = MPI_COMM_NULL;
     MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
     MPI_Comm_size(here, &on_this_machine_);
+    find_those_on_these_cores(here);
     MPI_Comm_free(&here);
   }
   MpiRanks(MpiRanks const&) = delete;
@@ -75,6 +78,7 @@ class MpiRanks final : public Ranks {
   int count() const override { return count_; }
   int rank() const override { return rank_; }
   int on_this_machine() const override { return on_this_machine_; }
+  int on_these_cores() const override { return on_these_cores_; }
 
   std::array<int, 2> division(cayspin::Lattice const& lattice, mpi::Depth const& depth,
                               std::optional<std::string> const& asked) const override {
@@ -168,6 +172,17 @@ class MpiRanks final : public Ranks {
     MPI_Comm_rank(comm, &rank_);
   }
 
+  /// `here`: the ranks on this machine.
+  void find_those_on_these_cores(MPI_Comm here) {
+    static_assert(std::is_trivially_copyable_v<Cores>);
+    std::vector<Cores> cores(static_cast<std::size_t>(on_this_machine_));
+    auto const own = cores_of_process();
+    MPI_Allgather(&own, sizeof own, MPI_BYTE, cores.data(), sizeof own, MPI_BYTE, here);
+    int rank = 0;
+    MPI_Comm_rank(here, &rank);
+    on_these_cores_ = sharing_cores(cores, static_cast<std::size_t>(rank));
+  }
+
   std::array<int, 2> most_parts(cayspin::Lattice const& lattice, mpi::Depth const& depth) const {
     for (int parts = count_; parts > 1; --parts) {
       try {
@@ -193,7 +208,7 @@ class MpiRanks final : public Ranks {
 
   MPI_Comm comm_ = MPI_COMM_NULL;
   std::vector<io::SiteBox> boxes_;  // the boxes of all parts, on the first rank
-  int threads_ = 0, count_ = 0, rank_ = 0, on_this_machine_ = 1;
+  int threads_ = 0, count_ = 0, rank_ = 0, on_this_machine_ = 1, on_these_cores_ = 1;
 };
 
 /// Environment variables set by launchers.
