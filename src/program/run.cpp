@@ -172,6 +172,8 @@ int run(RunOptions const& options, Ranks& ranks) {
       if (plan) require_one_rank(stage, *plan, ranks);
     return ranks.division(lattice, depth, options.ranks);
   });
+  // Ranks without a part must survive an interrupt, too: a launcher ends all ranks if one dies.
+  catch_signals();
   auto const part = ranks.divide(lattice, depth, parts);
   if (part.none) return Status::done;
   auto const on_part = [&](io::Stage const& stage, Plan plan) {
@@ -193,7 +195,6 @@ int run(RunOptions const& options, Ranks& ranks) {
       fmt::print(stderr, "warning: --restart {}\n", *warning);
     return from;
   });
-  catch_signals();
   auto const resolved = typed.integrator.method->automatic ? scene.text : std::string();
   return in_space(space, options.precision, [&]<class Real, class Space>() {
     return RunOfStages<Real, Space>(

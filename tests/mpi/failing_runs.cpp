@@ -11,7 +11,9 @@
 #include <cstdio>
 #include <fstream>
 #include <random>
+#include <set>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace cayspin::program::test {
@@ -103,30 +105,36 @@ TEST_F(OnRanks, SayOnceThatNumbersFailed) {
 
 TEST_F(OnRanks, EndTogetherWhenInterrupted) {
   auto const scene = write("scene.toml", film("[16, 33, 8]", "method = \"rkmk4\""));
-  Treatment interrupted;
-  interrupted.program = CAYSPIN_MPIEXEC;
-  interrupted.interrupt_after = 0.3;
-  interrupted.interrupt_when = in_folder("out.h5");
-  // An interrupted launcher may lose the statuses of its ranks, so each rank stores its own.
-  auto command = launch(3, run_of(scene, "out.h5", {"--set", "integrator.steps=1000000"}));
-  command.insert(command.begin() + 2,
-                 {"sh", "-c", "trap : INT; \"$@\"; echo $? > status.$$", "sh"});
-  auto const outcome = start(command, interrupted);
-  int ended = 0;
-  for (auto const& entry : fs::directory_iterator(folder_)) {
-    if (entry.path().stem() != "status") continue;
-    int status = 0;
-    std::ifstream(entry.path()) >> status;
-    EXPECT_EQ(status, 130) << entry.path();
-    ++ended;
+  // A rank without a part waits for the others, and then ends with 0.
+  for (auto const& [ranks, expected] :
+       {std::pair{3, std::multiset{130, 130, 130}}, {4, {0, 130, 130, 130}}}) {
+    SCOPED_TRACE(ranks);
+    auto const name = fmt::format("on_{}", ranks), file = name + ".h5";
+    Treatment interrupted;
+    interrupted.program = CAYSPIN_MPIEXEC;
+    interrupted.interrupt_after = 0.3;
+    interrupted.interrupt_when = in_folder(file);
+    // An interrupted launcher may lose the statuses of its ranks, so each rank stores its own.
+    auto command =
+        launch(ranks, run_of(scene, file, {"--ranks", "3,1", "--set", "integrator.steps=1000000"}));
+    command.insert(command.begin() + 2,
+                   {"sh", "-c", "trap : INT; \"$@\"; echo $? > " + name + ".status.$$", "sh"});
+    auto const outcome = start(command, interrupted);
+    std::multiset<int> statuses;
+    for (auto const& entry : fs::directory_iterator(folder_)) {
+      if (entry.path().stem() != name + ".status") continue;
+      int status = -1;
+      std::ifstream(entry.path()) >> status;
+      statuses.insert(status);
+    }
+    EXPECT_EQ(statuses, expected);
+    auto const line = outcome.errors.find("interrupted after step ");
+    ASSERT_NE(line, std::string::npos) << outcome.errors;
+    EXPECT_EQ(outcome.errors.find("interrupted after step ", line + 1), std::string::npos);
+    auto const info = io::read_info(in_folder(file));
+    EXPECT_FALSE(info.complete);
+    EXPECT_EQ(std::stoll(outcome.errors.substr(line + 23)), info.frame_steps.back());
   }
-  EXPECT_EQ(ended, 3);
-  auto const line = outcome.errors.find("interrupted after step ");
-  ASSERT_NE(line, std::string::npos) << outcome.errors;
-  EXPECT_EQ(outcome.errors.find("interrupted after step ", line + 1), std::string::npos);
-  auto const info = io::read_info(in_folder("out.h5"));
-  EXPECT_FALSE(info.complete);
-  EXPECT_EQ(std::stoll(outcome.errors.substr(line + 23)), info.frame_steps.back());
 }
 
 TEST_F(OnRanks, SurviveTheDeathOfOne) {
