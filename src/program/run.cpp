@@ -148,7 +148,10 @@ int run(RunOptions const& options, Ranks& ranks) {
     return run_ensemble(typed, options);
   }
   auto const space = ranks.together([&] { return chosen_space(options.space); });
-  KokkosOfCommand const kokkos(space, threads_for(options, space, ranks), options.device);
+  auto const kokkos = ranks.together([&] {
+    return std::make_unique<KokkosOfCommand>(space, threads_for(options, space, ranks),
+                                             options.device);
+  });
   auto left = ranks.together(
       [&] { return options.restart ? std::make_unique<EarlierRun>(*options.restart) : nullptr; });
   auto const scene = with_method(typed, left.get(), options, space, ranks);

@@ -46,6 +46,7 @@ TEST_F(OnRanks, AreRefusedInOneLine) {
   refused({"--set", "initial={expression=['0','0','k-12']}"}, "the spin of site (0, 0, 12)");
   refused({"--restart", "nothing.h5"}, "nothing.h5");
   refused({"--space", "nowhere"}, "--space nowhere");
+  refused({"--device", "1000"}, "--device 1000: ");
   refused({"--no-such-option"}, "--no-such-option");
   expect_refused(start_on(2, run_of(scene, "no/such/folder/out.h5")), "no/such/folder");
   expect_refused(start(run_of(scene, "out.h5", {"--ranks", "1,2"})),
