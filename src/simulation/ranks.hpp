@@ -49,7 +49,8 @@ class Ranks {
   /// for an invalid division.
   virtual std::array<int, 2> division(cayspin::Lattice const& lattice, mpi::Depth const& depth,
                                       std::optional<std::string> const& asked) const = 0;
-  /// Divides a lattice. From then on, count() and rank() ignore ranks without a part.
+  /// Divides a lattice. From then on, count(), rank() and on_this_machine() ignore ranks without a
+  /// part.
   virtual PartOfRank divide(cayspin::Lattice const& lattice, mpi::Depth const& depth,
                             std::array<int, 2> const& parts) = 0;
 

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Runs on several ranks that are refused, fail, are interrupted or lose a rank.
+#include "files/available_memory.hpp"
 #include "io/checkpoint.hpp"
+#include "io/scene.hpp"
 #include "on_ranks.hpp"
+#include "simulation/plan.hpp"
 
 #include <sys/types.h>
 
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <fstream>
 #include <random>
@@ -89,6 +93,27 @@ TEST_F(OnRanks, SayOnceThatOneHasTooLittleMemory) {
     EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
     EXPECT_TRUE(outcome.errors.find("memory") != std::string::npos) << outcome.errors;
   }
+}
+
+// Only ranks with a part need memory. The restart file is of another lattice, and so ends the run
+// before it allocates any.
+TEST_F(OnRanks, LeaveTheMemoryOfIdleOnesToTheOthers) {
+  std::string const method = "method = \"rkmk4\"";
+  auto const large = [&](std::int64_t planes) {
+    return film(fmt::format("[200, 200, {}]", planes), method);
+  };
+  auto const bytes = [&](std::int64_t planes) {
+    auto const scene = io::parse_scene(large(planes), "large.toml");
+    return simulation::make_plan(scene, simulation::Precision::double_precision).memory.total();
+  };
+  auto const available = io::available_memory();
+  std::int64_t planes = 8;
+  while (bytes(planes) < available * 2 / 5) planes += planes / 4;  // up to half of it
+  auto const small = write("small.toml", film("[7, 9, 13]", method));
+  ASSERT_EQ(start(run_of(small, "small.h5")).status, 0);
+  auto const outcome = start_on(4, run_of(write("large.toml", large(planes)), "out.h5",
+                                          {"--ranks", "1,1", "--restart", "small.h5"}));
+  EXPECT_TRUE(contains(outcome.errors, "small.h5: its lattice is "));
 }
 
 TEST_F(OnRanks, SayOnceThatNumbersFailed) {

@@ -61,11 +61,7 @@ class MpiRanks final : public Ranks {
   MpiRanks() {
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &threads_);
     use(MPI_COMM_WORLD);
-    MPI_Comm here = MPI_COMM_NULL;
-    MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
-    MPI_Comm_size(here, &on_this_machine_);
-    find_those_on_these_cores(here);
-    MPI_Comm_free(&here);
+    find_those_on_these_cores();
   }
   MpiRanks(MpiRanks const&) = delete;
   MpiRanks& operator=(MpiRanks const&) = delete;
@@ -170,16 +166,26 @@ class MpiRanks final : public Ranks {
     comm_ = comm;
     MPI_Comm_size(comm, &count_);
     MPI_Comm_rank(comm, &rank_);
+    MPI_Comm here = those_on_this_machine();
+    MPI_Comm_size(here, &on_this_machine_);
+    MPI_Comm_free(&here);
   }
 
-  /// `here`: the ranks on this machine.
-  void find_those_on_these_cores(MPI_Comm here) {
+  MPI_Comm those_on_this_machine() const {
+    MPI_Comm here = MPI_COMM_NULL;
+    MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
+    return here;
+  }
+
+  void find_those_on_these_cores() {
     static_assert(std::is_trivially_copyable_v<Cores>);
+    MPI_Comm here = those_on_this_machine();
     std::vector<Cores> cores(static_cast<std::size_t>(on_this_machine_));
     auto const own = cores_of_process();
     MPI_Allgather(&own, sizeof own, MPI_BYTE, cores.data(), sizeof own, MPI_BYTE, here);
     int rank = 0;
     MPI_Comm_rank(here, &rank);
+    MPI_Comm_free(&here);
     on_these_cores_ = sharing_cores(cores, static_cast<std::size_t>(rank));
   }
 
