@@ -288,7 +288,7 @@ int check(CheckOptions const& options) {
   if (scene.integrator.method->automatic) {
     auto const space = chosen_space({});
     KokkosSession const kokkos(space, {}, {});
-    scene = trade::with_method(scene, space, options.precision);
+    scene = trade::with_method(scene, space, options.precision, options.ranks.has_value());
   }
   auto const plan = make_plan(scene, options.precision);
   auto const repeated = repeated_on(options, scene, plan);

@@ -89,7 +89,8 @@ io::Scene with_method(io::Scene const& typed, EarlierRun const* left, RunOptions
   std::optional<io::Scene> scene;
   ranks.together([&] {
     TrialProgress progress(silent, true);
-    if (ranks.is_first()) scene = trade::with_method(typed, space, options.precision, &progress);
+    if (ranks.is_first())
+      scene = trade::with_method(typed, space, options.precision, ranks.many(), &progress);
   });
   std::string text = scene ? scene->text : std::string();
   ranks.tell(text);

@@ -168,6 +168,40 @@ TEST_F(OnRanks, RunRandomScenesOfEveryMethod) {
   EXPECT_EQ(scenes, wanted);
 }
 
+// Exchange makes this slab stiff, so that the methods for one rank are by far the fastest.
+TEST_F(OnRanks, ChooseAMethodThatRunsOnSeveral) {
+  auto const scene = write("scene.toml", R"toml(
+[system]
+kind = "llg"
+damping = 0.5
+[lattice]
+shape = [1, 1, 100]
+spacing = [1, 1, 0.01]
+[field]
+exchange = 1.0
+anisotropy = { constant = 1.0, axis = [1, 0, 0] }
+applied = [0.05, 0.05, 0.0]
+slab_demag = { normal = [0, 0, 1] }
+[initial]
+expression = ["0.8", "0.5 + 0.1*cos(2*pi*z)", "0.3 + 0.2*cos(pi*z)"]
+[integrator]
+method = "auto"
+error = 1e-3
+dt = 0.0125
+end = 0.125
+[output]
+every = 5
+)toml");
+  ASSERT_EQ(start(run_of(scene, "one.h5")).status, 0);
+  EXPECT_TRUE(contains(info_of("one.h5").header.resolved_scene, "stiff"));
+  auto const outcome = start_on(2, run_of(scene, "two.h5"));
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_EQ(outcome.errors.find("nothing to do"), std::string::npos) << outcome.errors;
+  EXPECT_LT(distance(last_spins("two.h5"), last_spins("one.h5")), 4e-3);
+  auto const checked = start({"check", scene, "--ranks", "1,2"});
+  EXPECT_EQ(checked.status, 0) << checked.errors;
+}
+
 TEST_F(OnRanks, GoOnFromFilesOfOtherRanks) {
   for (std::string const method :
        {"method = \"rkmk4\"", "method = \"ab2\"", "method = \"rkmk4\"\ncompensated = true",

@@ -62,7 +62,7 @@ class Search {
         is_representative_(pilot.is_representative(horizon.time)),
         error_(accepted * request.error - fine.error),
         goal_(aim * error_) {
-    for (auto const& candidate : candidates(pilot.scene(), request.precision))
+    for (auto const& candidate : candidates(pilot.scene(), request.precision, request.in_parts))
       if (candidate.least_error() < request.error) add(candidate);
     std::ranges::stable_sort(prospects_, {}, &Prospect::expected_evaluations);
   }

@@ -25,6 +25,7 @@ struct AdviceRequest {
   std::optional<double> budget;        // seconds that the run may take
   std::optional<Precision> precision;  // if given, only this one is tried
   TrialProgress* progress = nullptr;
+  bool in_parts = false;  // true: only methods that run on several ranks
 };
 
 /// Result of a search for advice, with the horizon of its trials.

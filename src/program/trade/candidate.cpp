@@ -51,12 +51,13 @@ double rate_of_couplings(io::Scene const& scene) {
   return rates.front() * sum;
 }
 
-bool is_possible(io::Scene const& scene, Candidate const& candidate) {
+bool is_possible(io::Scene const& scene, Candidate const& candidate, bool in_parts) {
   try {
     auto const tried = with(scene, candidate, 1, 1, {1, 1});
     io::check_combination(tried);
-    require_slow_field_fits(tried, find_variant(tried));
-    return true;
+    auto const& variant = find_variant(tried);
+    require_slow_field_fits(tried, variant);
+    return !in_parts || variant.ghosts > 0;
   } catch (io::SceneError const&) {
     return false;
   }
@@ -98,7 +99,8 @@ std::vector<Candidate> in_double(io::Scene const& scene) {
 
 }  // namespace
 
-std::vector<Candidate> candidates(io::Scene const& scene, std::optional<Precision> precision) {
+std::vector<Candidate> candidates(io::Scene const& scene, std::optional<Precision> precision,
+                                  bool in_parts) {
   auto all = in_double(scene);
   auto const doubles = all.size();
   for (std::size_t i = 0; i < doubles; ++i) {
@@ -109,7 +111,7 @@ std::vector<Candidate> candidates(io::Scene const& scene, std::optional<Precisio
     single.compensated = true;
     if (trials.contains(io::Trial::compensated_single_precision)) all.push_back(single);
   }
-  std::erase_if(all, [&](Candidate const& one) { return !is_possible(scene, one); });
+  std::erase_if(all, [&](Candidate const& one) { return !is_possible(scene, one, in_parts); });
   if (precision)
     std::erase_if(all, [&](Candidate const& one) { return one.precision != *precision; });
   return all;

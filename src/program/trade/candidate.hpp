@@ -44,8 +44,10 @@ struct Try {
 
 /// Returns all candidates that can run a scene: those in double precision, then those in single
 /// precision, each by falling order. If `precision` is given, returns only those in this precision.
-/// Some candidates evaluate an expensive field once a step, others in each stage.
-std::vector<Candidate> candidates(io::Scene const& scene, std::optional<Precision> precision = {});
+/// If `in_parts`, returns only those that run on several ranks. Some candidates evaluate an
+/// expensive field once a step, others in each stage.
+std::vector<Candidate> candidates(io::Scene const& scene, std::optional<Precision> precision = {},
+                                  bool in_parts = false);
 
 /// Returns the scene with a candidate as its method and `horizon` as its end. For an adaptive
 /// method, `intervals` equal intervals become the steps of the scene.

@@ -108,7 +108,7 @@ Resolved resolve(io::Scene const& scene, Advice const& advice) {
 }
 
 io::Scene with_method(io::Scene const& scene, std::string const& space, Precision precision,
-                      TrialProgress* progress) {
+                      bool in_parts, TrialProgress* progress) {
   auto const& integrator = scene.integrator;
   if (!integrator.method->automatic) return scene;
   Advised advised;
@@ -116,7 +116,7 @@ io::Scene with_method(io::Scene const& scene, std::string const& space, Precisio
     advised.choice = {{{.method = io::find_method("rkmk4")}}, {}, integrator.dt};  // no steps
   else
     advised = advise(Pilot(scene, space, *integrator.error),
-                     {*integrator.error, {}, precision, progress});
+                     {*integrator.error, {}, precision, progress, in_parts});
   if (!advised.choice)
     throw NumbersFailed(
         fmt::format("{}: no method reaches an error of {:g} in {} precision; accepted: a larger "

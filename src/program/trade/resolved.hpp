@@ -22,10 +22,10 @@ struct Resolved {
 Resolved resolve(io::Scene const& scene, Advice const& advice);
 
 /// For a scene with method "auto", returns the scene with the method advised for its error, in one
-/// precision. Returns any other scene unchanged. Call inside a KokkosSession. Throws NumbersFailed
-/// if no method meets the error.
+/// precision; if `in_parts`, only a method that runs on several ranks. Returns any other scene
+/// unchanged. Call inside a KokkosSession. Throws NumbersFailed if no method meets the error.
 io::Scene with_method(io::Scene const& scene, std::string const& space, Precision precision,
-                      TrialProgress* progress = nullptr);
+                      bool in_parts, TrialProgress* progress = nullptr);
 
 /// For a scene with method "auto", returns the scene with the method that an earlier run chose.
 /// `typed_before`, `resolved_before`: the scene of the earlier run as typed, and with the chosen
