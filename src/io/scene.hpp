@@ -187,6 +187,11 @@ std::vector<double> directions_of_sites(Scene const& scene, SiteVectors const& v
 std::array<std::vector<double>, 2> crystal_axes(Scene const& scene, CrystalAnisotropy const& term,
                                                 SiteBox const& box);
 
+/// Reads all site-dependent axes, normals and polarizations of the field and the torques, some
+/// planes at a time. Throws SceneError for a site where one has no direction, or where two axes of
+/// an anisotropy are not at right angles.
+void require_directions(Scene const& scene);
+
 /// For each site of a box, returns its region and the region of the next site along an axis, which
 /// may be outside the box. Past an open end, both are the site's own region.
 std::vector<std::array<std::int64_t, 2>> regions_of_bonds(Scene const& scene, SiteBox const& box,

@@ -195,6 +195,24 @@ std::vector<double> directions_of_sites(Scene const& scene, SiteVectors const& v
   return directions;
 }
 
+void require_directions(Scene const& scene) {
+  auto const require = [&](SiteVectors const& vectors, std::string_view key) {
+    if (!vectors.there()) return;
+    for_each_box_of_planes(scene.lattice.shape, 3 * sizeof(double), [&](SiteBox const& box) {
+      directions_of_sites(scene, vectors, key, box);
+    });
+  };
+  auto const& field = scene.field;
+  for (auto const& term : field.anisotropies) require(term.axes, "field.anisotropy");
+  for (auto const& term : field.crystal_anisotropies)
+    if (std::ranges::any_of(term.axes_of_sites, &SiteVectors::there))
+      for_each_box_of_planes(scene.lattice.shape, 6 * sizeof(double),
+                             [&](SiteBox const& box) { crystal_axes(scene, term, box); });
+  require(field.dmi_normals, "field.dmi");
+  if (auto const& torque = field.torque.slonczewski)
+    require(torque->polarizations, "torque.slonczewski.polarization");
+}
+
 std::vector<std::array<std::int64_t, 2>> regions_of_bonds(Scene const& scene, SiteBox const& box,
                                                           std::size_t axis) {
   auto const& lattice = scene.lattice;

@@ -177,6 +177,7 @@ Plan make_plan(io::Scene const& scene, Precision precision,
   require_demagnetization(scene);
   io::require_alike_where_followed(scene);
   auto const lattice = make_lattice(scene);
+  io::require_directions(scene);
   require_limits_of_terms(scene, lattice);
   auto const& integrator = scene.integrator;
   auto const& begin = scene.begin;

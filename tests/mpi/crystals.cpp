@@ -287,6 +287,13 @@ TEST_F(CrystalsOnRanks, SayOnceWhatIsWrongAtOneSite) {
                  "lattice.frozen");
   expect_refused(start_on(3, run_of(text("", "\"0.1 - 0.2*(k == 7)\""), "out.h5")),
                  "is negative at a site");
+  // Both parts have such sites.
+  expect_refused(
+      start_on(2,
+               run_of(text("", "0.1"), "out.h5",
+                      {"--ranks", "1,2", "--set",
+                       "field.anisotropy={constant=1,axis=[0,0,'(k == 0 || k == 7) ? 0 : 1']}"})),
+      "has no direction at site (0, 0, 0)");
 }
 
 }  // namespace

@@ -282,5 +282,26 @@ TEST_F(Checking, RefusesInterlayersThatARunCannotEvaluate) {
   expect_refused({"check", layers}, "field.interlayer: is 1 times the exchange of half a cell");
 }
 
+// A run uses the directions of a later stage only when that stage begins.
+TEST_F(Checking, RefusesSitesWithoutADirection) {
+  auto const stages = write("stages.toml", chain_scene() +
+                                               "[[stage]]\n"
+                                               "field.anisotropy = { constant = 1, axis = [0, 0, "
+                                               "'i'] }\n"
+                                               "integrator.steps = 1\n");
+  std::string const nowhere = "has no direction at site (0, 0, 0)";
+  expect_refused({"check", stages}, nowhere);
+  expect_refused({"run", stages, "--quiet", "--output", "out.h5"}, nowhere);
+  EXPECT_FALSE(exists("out.h5"));
+  for (std::string const key : {"field.anisotropy={constant=1,axis=[0,0,'i']}",
+                                "field.anisotropy={cubic=1,axes=[[0,0,'i'],[1,0,0]]}",
+                                "field.dmi={interfacial=0.1,normal=['i',0,0]}",
+                                "torque={slonczewski={damping_like=1,polarization=['i',0,0]}}"})
+    expect_refused(joined({"check", "chain.toml"}, set(key)), nowhere);
+  expect_refused(
+      joined({"check", "chain.toml"}, set("field.anisotropy={cubic=1,axes=[[0,0,1],[0,1,'i']]}")),
+      "the axes are not at right angles, by 0.707, at site (1, 0, 0)");
+}
+
 }  // namespace
 }  // namespace cayspin::program::test
