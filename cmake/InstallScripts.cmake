@@ -7,7 +7,8 @@ function(cayspin_install_scripts prefix)
   install(FILES ${python}/plot_texture.py ${python}/view_texture.py DESTINATION ${folder} ${ARGN})
   install(DIRECTORY ${python}/cayspin_plots DESTINATION ${folder} ${ARGN} PATTERN __pycache__
                                                                                   EXCLUDE)
-  install(FILES ${python}/cayspin/command_line.py DESTINATION ${folder}/cayspin ${ARGN})
+  install(FILES ${python}/cayspin/command_line.py ${python}/cayspin/processes.py
+          DESTINATION ${folder}/cayspin ${ARGN})
   install(DIRECTORY ${python}/cayspin/texture ${python}/cayspin/view DESTINATION ${folder}/cayspin
           ${ARGN} PATTERN __pycache__ EXCLUDE)
 endfunction()

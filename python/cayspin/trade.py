@@ -15,6 +15,7 @@ from typing import Any
 
 from cayspin import arguments, toml_text
 from cayspin._cayspin import CayspinError, NumbersFailed
+from cayspin.processes import environment
 from cayspin.scene import Scene
 from cayspin.texture import toml
 
@@ -83,7 +84,8 @@ def _ask(command: str, scene: Scene, *options: str) -> dict:
         settings = [part for one in changed for part in ("--set", one)]
         try:
             done = subprocess.run([program(), command, str(file), *settings, *options, "--json"],
-                                  capture_output=True, text=True, timeout=LONGEST)
+                                  capture_output=True, text=True, timeout=LONGEST,
+                                  env=environment())
         except subprocess.TimeoutExpired:
             raise CayspinError(f"{command}: the program has not ended after {LONGEST} s") from None
         except OSError as error:

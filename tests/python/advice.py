@@ -10,6 +10,7 @@ import unittest.mock
 import cayspin
 import matplotlib
 import numpy as np
+from cayspin.view.run import Run
 from package_test import PROGRAM, PackageTest, scene, stepped
 
 matplotlib.use("Agg")
@@ -76,6 +77,28 @@ class Advice(PackageTest):
         with unittest.mock.patch.dict(os.environ, {"CAYSPIN_PROGRAM": "/bin/false"}):
             self.assert_refused(cayspin.CayspinError, "advise: the program ended with status 1",
                                 cayspin.advise, scene(), error=0.1)
+
+    def test_programs_are_no_ranks(self):
+        ranked = dict.fromkeys(
+            ("PMI_RANK", "PMI_SIZE", "PMIX_RANK", "OMPI_COMM_WORLD_SIZE"), "2")
+        program, text = self.folder / "program", self.folder / "environment"
+        program.write_text(f"#!/bin/sh\nenv > '{text}'\necho it ends >&2\nexit 2\n")
+        program.chmod(0o755)
+        file = self.written(scene(output={"file": "out.h5"}))
+
+        def assert_alone(names):
+            self.assertIn("PATH", names)
+            self.assertFalse(set(ranked) & set(names))
+
+        with unittest.mock.patch.dict(os.environ, {"CAYSPIN_PROGRAM": str(program), **ranked}):
+            for error, call in ((cayspin.CayspinError, lambda: cayspin.advise(scene(), error=0.1)),
+                                (ValueError, lambda: Run(str(program), file))):
+                self.assert_refused(error, "it ends", call)
+                assert_alone([line.partition("=")[0] for line in text.read_text().splitlines()])
+                text.unlink()
+            with unittest.mock.patch("subprocess.Popen", side_effect=OSError) as popen:
+                self.assertRaises(OSError, cayspin.view, file)
+            assert_alone(popen.call_args.kwargs["env"])
 
 
 class Trade(PackageTest):

@@ -10,6 +10,8 @@ import subprocess
 import sys
 import tempfile
 
+from cayspin.processes import environment
+
 
 LONGEST_START = 600  # seconds: for a scene the run starts first, which may take minutes
 LONGEST_END = 90  # seconds: longer than the server waits for its run
@@ -29,7 +31,7 @@ class View:
         with tempfile.TemporaryFile("w+") as messages:
             self._server = subprocess.Popen(
                 command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=messages, text=True,
-                env={**os.environ, "CAYSPIN_PROGRAM": program()}, start_new_session=True)
+                env=environment(CAYSPIN_PROGRAM=program()), start_new_session=True)
             self.address: str = ""  #: for any browser on this machine
             if select.select([self._server.stdout], [], [], LONGEST_START)[0]:
                 self.address = self._server.stdout.readline().strip()

@@ -9,6 +9,7 @@ import subprocess
 import tempfile
 import time
 
+from ..processes import environment
 from ..texture import toml
 
 
@@ -43,7 +44,8 @@ class Run:
             # only through stop().
             self._process = subprocess.Popen(
                 [program, "run", scene, "--quiet"], stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL, stderr=self._messages, start_new_session=True)
+                stdout=subprocess.DEVNULL, stderr=self._messages, start_new_session=True,
+                env=environment())
         except OSError as error:
             raise ValueError(f"{program}: cannot be started: {error.strerror}; accepted: the "
                              "program cayspin") from None

@@ -217,7 +217,7 @@ class MpiRanks final : public Ranks {
   int threads_ = 0, count_ = 0, rank_ = 0, on_this_machine_ = 1, on_these_cores_ = 1;
 };
 
-/// Environment variables set by launchers.
+/// Environment variables set by launchers. python/cayspin/processes.py has the same list.
 constexpr std::array launch_variables{"PMI_RANK", "PMI_SIZE", "PMIX_RANK", "OMPI_COMM_WORLD_SIZE"};
 
 }  // namespace
