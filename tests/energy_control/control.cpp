@@ -41,8 +41,8 @@ struct Drift {
   void operator()(Exec const& exec, Step const& step, Field const& spins) {
     double const now = cayspin::energy(exec, source, spins).value;
     if (step.number == 0) begin = now;
-    energy = std::fmax(energy, std::abs(now - begin) / static_cast<double>(spins.sites()));
-    norm = std::fmax(norm, norm_defect(exec, spins));
+    energy = larger(energy, std::abs(now - begin) / static_cast<double>(spins.sites()));
+    norm = larger(norm, norm_defect(exec, spins));
   }
 };
 

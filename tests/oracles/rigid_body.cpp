@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Single steps and trajectories of rigid bodies against 70-digit arithmetic.
 #include "../support/evaluate.hpp"
+#include "../support/larger.hpp"
 #include "steps.hpp"
 
 #include <cayspin_paper/series4.hpp>
@@ -124,8 +125,7 @@ TYPED_TEST(RigidBodyOracles, Trajectories) {
     auto const expected = decimals(entry.at("m_n")), found = numbers_of(spins);
     double energy_error = 0;
     for (auto const& sample : samples)
-      energy_error =
-          std::max(energy_error, std::abs(sample.energy.value - samples[0].energy.value));
+      energy_error = larger(energy_error, std::abs(sample.energy.value - samples[0].energy.value));
     for (int c = 0; c < 3; ++c)
       EXPECT_NEAR(found[c], expected[c], step_tolerance<Real>) << method << ", component " << c;
     EXPECT_NEAR(energy_error, static_cast<double>(decimal(entry.at("max_abs_energy_error"))),

@@ -3,6 +3,7 @@
 // during a time of 2 and for fixed step sizes.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
+#include "../support/larger.hpp"
 
 #include <cayspin_paper/analytic_sigma.hpp>
 #include <cayspin_paper/series4.hpp>
@@ -61,7 +62,7 @@ Errors errors(Stepper& stepper, Generator const& generator, int steps) {
     auto const numbers = copy_to_host(now);
     for (int i = 0; i < bodies; ++i)
       found.energy[i] =
-          std::max(found.energy[i], std::abs(energy_of(numbers, i) - energy_of(start, i)));
+          larger(found.energy[i], std::abs(energy_of(numbers, i) - energy_of(start, i)));
   };
   integrate(Space{}, stepper, generator, spins, Times{0, end_time / steps, steps}, observe);
   for (int i = 0; i < bodies; ++i) {

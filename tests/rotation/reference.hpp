@@ -30,7 +30,10 @@ inline Long outer(Long const& a, Long const& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 inline long double norm(Long const& a) { return std::sqrt(inner(a, a)); }
+/// Returns the largest magnitude, or NaN if an entry is NaN, which std::max might pass over.
 inline long double largest(Long const& a) {
+  for (long double const x : a)
+    if (std::isnan(x)) return x;
   return std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])});
 }
 

@@ -3,6 +3,7 @@
 #include "../support/backends.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
+#include "../support/larger.hpp"
 
 using namespace cayspin;
 using namespace cayspin::test;
@@ -58,7 +59,7 @@ double error_of_precession(std::int64_t steps) {
   double largest = 0;
   for (std::int64_t site = 0; site < lattice.sites(); ++site)
     largest =
-        std::max(largest, length(spin(spins, site) - Exponential::rotate(axis, spin(start, site))));
+        larger(largest, length(spin(spins, site) - Exponential::rotate(axis, spin(start, site))));
   return largest;
 }
 

@@ -4,6 +4,7 @@
 #include "../support/backends.hpp"
 #include "../support/evaluate.hpp"
 #include "../support/landau_lifshitz.hpp"
+#include "../support/larger.hpp"
 
 #include <gtest/gtest.h>
 
@@ -47,8 +48,8 @@ class ImplicitStep : public ::testing::Test {
     auto const a = evaluated(Space{}, slab.natural(), spins_of<Spins>(slab.lattice, point));
     double largest = 0;
     for (std::int64_t site = 0; site < slab.lattice.sites(); ++site)
-      largest = std::max(
-          largest, length(spin(end, site) - Cayley::rotate(dt * at(a, site), at(from, site))));
+      largest = larger(largest,
+                       length(spin(end, site) - Cayley::rotate(dt * at(a, site), at(from, site))));
     return largest;
   }
 };

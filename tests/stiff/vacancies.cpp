@@ -5,6 +5,7 @@
 #include "../support/coefficients.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
+#include "../support/larger.hpp"
 
 #include <cayspin/stepper/adaptive_runge_kutta.hpp>
 #include <cayspin/stepper/adaptive_stiff_gauss.hpp>
@@ -112,7 +113,7 @@ void expect_that_of_the_film_alone(char const* name, double tolerance) {
   double largest = 0;
   for (std::int64_t site = 0; site < film.sites(); ++site)
     for (std::int64_t c = 0; c < 3; ++c)
-      largest = std::max(
+      largest = larger(
           largest,
           std::abs(static_cast<double>(one[static_cast<std::size_t>(3 * site + c)]) -
                    static_cast<double>(other[static_cast<std::size_t>(3 * place(site) + c)])));

@@ -2,6 +2,7 @@
 // A Bloch wall, relaxed on finer and finer chains: energy and profile, compared with the continuum.
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
+#include "../support/larger.hpp"
 
 using namespace cayspin;
 using namespace cayspin::test;
@@ -36,7 +37,7 @@ Wall relaxed_wall(int sites) {
   auto const numbers = copy_to_host(spins);
   for (int i = 0; i < sites; ++i)
     wall.profile_error =
-        std::max(wall.profile_error, std::abs(numbers[3 * i + 2] - std::tanh(position(i) / width)));
+        larger(wall.profile_error, std::abs(numbers[3 * i + 2] - std::tanh(position(i) / width)));
   return wall;
 }
 

@@ -31,7 +31,7 @@ Path path(Generator const& generator, double end_time, double dt, Options const&
   for (int n = 0; n < samples; ++n) {
     advance(stepper, generator, spins, dt, steps, n * steps);
     path.samples.push_back(spin(spins, watched));
-    path.norm_defect = std::max(path.norm_defect, norm_defect(exec, spins));
+    path.norm_defect = larger(path.norm_defect, norm_defect(exec, spins));
   }
   return path;
 }
