@@ -45,10 +45,11 @@ every = 10
   }
 };
 
+// Kernels over few sites run on one thread, so the lattice is large.
 TEST_F(Thermal, BitsDependOnSeedAndTemperatureAlone) {
   for (std::string const precision : {"double", "single"}) {
     auto const with = [&](Arguments const& more) {
-      return joined(more, {"--precision", precision});
+      return joined(more, {"--precision", precision, "--set", "lattice.shape=[37,16,8]"});
     };
     auto const whole = end_of("whole.h5", with({}));
     for (Arguments const& other :
