@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Detection of damaged files.
 #include "hdf5/attribute.hpp"
+#include "hdf5/dataset.hpp"
 #include "hdf5/guarded_reading.hpp"
 #include "hdf5/handle.hpp"
 #include "io/checkpoint.hpp"
 #include "program/read_in_child.hpp"
 #include "trajectory/checksum.hpp"
+#include "trajectory/fletcher32.hpp"
 #include "trajectory_test.hpp"
 
 #include <sys/wait.h>
 
+#include <array>
 #include <atomic>
 #include <bit>
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <span>
 #include <thread>
 
 namespace cayspin::inline v0_2::io {
@@ -36,6 +40,47 @@ TEST(Checksum, DependsOnEveryNumberAndIsNeverZero) {
   EXPECT_NE(row_checksum(Sample{}), 0u);
   EXPECT_NE(spins_checksum(Sample{}, 0), 0u);
   EXPECT_NE(spins_checksum(sample, 8), spins_checksum(sample, 7));
+}
+
+// Numbers computed from the definition outside cayspin. With other checksums, files written before
+// could not be read.
+TEST(Checksum, IsThatOfFilesWrittenBefore) {
+  Sample const sample{3, 0.5, {-1, 1e-16, {0.1, 0.2, 0.3}}};
+  EXPECT_EQ(row_checksum(sample), 0xb109a328U);
+  EXPECT_EQ(row_checksum(sample, std::array{0.25, -2.0}), 0x04bc10f8U);
+  EXPECT_EQ(spins_checksum(sample, 7), 0x5d82921dU);
+}
+
+TEST(Fletcher, IsTheSumOfWordsAndOfTheirSums) {
+  auto const sum = [](std::string const& bytes) {
+    return fletcher32(std::as_bytes(std::span(bytes)));
+  };
+  EXPECT_EQ(sum(std::string(4, '\0')), 0U);
+  EXPECT_EQ(sum({'\0', '\1', '\0', '\2'}), 0x00040003U);  // the words 1 and 2
+  EXPECT_EQ(sum(std::string(1U << 22U, '\xff')), 0xffffffffU);
+}
+
+// HDF5's filter appends the sum to a chunk. There are more than 2^20 words, after which Fletcher32
+// first reduces its sums.
+TEST_F(TrajectoryTest, FletcherIsThatOfHdf5) {
+  auto const path = folder_ / "a.h5";
+  std::string mixed(4'000'002, '\0');
+  for (std::size_t i = 0; i < mixed.size(); ++i) mixed[i] = static_cast<char>(i * i >> 3U);
+  for (auto const& bytes : {mixed, std::string(mixed.size(), '\xff')}) {
+    {
+      FileHandle const file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+      PropertyHandle const properties(H5Pcreate(H5P_DATASET_CREATE));
+      hsize_t const size = bytes.size();
+      ASSERT_GE(H5Pset_chunk(properties.get(), 1, &size), 0);
+      ASSERT_GE(H5Pset_fletcher32(properties.get()), 0);
+      write_dataset(file.get(), "bytes", H5T_STD_U8LE, H5T_NATIVE_UINT8, {size}, bytes.data(), path,
+                    properties.get());
+    }
+    std::uint32_t const sum = fletcher32(std::as_bytes(std::span(bytes)));
+    std::string appended(sizeof sum, '\0');
+    std::memcpy(appended.data(), &sum, sizeof sum);
+    EXPECT_NE(read_bytes(path).find(bytes + appended), std::string::npos) << sum;
+  }
 }
 
 TEST_F(TrajectoryTest, ZeroedFrameIsNoticed) {

@@ -72,21 +72,23 @@ TEST_F(TrajectoryTest, OutputIsTheSameWithAndWithoutChunks) {
   }
 }
 
-// HDF5 accepts the checksums of frames of zeros, of NaNs with all bits set, and of other numbers.
-// Each frame has more than 2^20 words, after which Fletcher32 first reduces its sums.
-TEST_F(TrajectoryTest, ChecksumsAreThoseThatHdf5Expects) {
+// NaNs have all bits set. Each frame has more than 2^20 words, after which Fletcher32 first reduces
+// its sums.
+TEST_F(TrajectoryTest, OutputOfZerosAndOfNaNsIsReadBack) {
   auto header = small_header("single");
   header.shape = {100, 100, 100};
   for (float const value : {0.0F, std::bit_cast<float>(0xffffffffU), 1 / 3.0F}) {
     auto const path = folder_ / "a.h5";
     RunOutput output(path, header, {.overwrite = true});
-    auto* const room = output.frame<float>();
-    for (std::size_t i = 0; i < 3000000; ++i) room[i] = i % 7 == 0 ? value : value * 0;
-    if (std::isnan(value)) std::fill_n(room, 3000000, value);
+    std::vector<float> numbers(3000000, value);
+    for (std::size_t i = 0; i < numbers.size() && !std::isnan(value); ++i)
+      if (i % 7 != 0) numbers[i] = 0;
+    std::ranges::copy(numbers, output.frame<float>());
     output.write_frame(0, 0, {});
     output.finish({});
-    auto const back = read_spins(path, header.shape);
-    EXPECT_EQ(std::isnan(back.at(7)), std::isnan(value));
+    EXPECT_TRUE(std::ranges::equal(read_spins(path, header.shape), numbers, [](double a, double b) {
+      return a == b || (std::isnan(a) && std::isnan(b));
+    }));
   }
 }
 
