@@ -98,6 +98,7 @@ bool expect_dense_modes(Lattice const& lattice, Field const& field, double dampi
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> const exact(
       0.5 * (dense.hessian + dense.hessian.transpose()));
   double const largest = exact.eigenvalues().cwiseAbs().maxCoeff();
+  EXPECT_EQ(curvatures.curvatures.size(), 6) << seed;
   for (std::size_t i = 0; i < curvatures.curvatures.size(); ++i)
     EXPECT_NEAR(curvatures.curvatures[i].value, exact.eigenvalues()[static_cast<Eigen::Index>(i)],
                 1e-9 * largest)

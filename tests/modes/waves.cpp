@@ -41,6 +41,7 @@ TYPED_TEST(WaveModes, OfAFerromagnetInThreeDimensions) {
       this->expect_frequencies(normal_modes(this->exec, LandauLifshitz(field, damping), m), all,
                                damping);
     auto const curvatures = lowest_curvatures(this->exec, field, m, {.count = 12});
+    ASSERT_EQ(curvatures.curvatures.size(), 12);
     std::ranges::sort(all);
     for (std::size_t i = 0; i < 12; ++i)
       EXPECT_NEAR(curvatures.curvatures[i].value, all[i / 2], this->accurate * all[i / 2]) << i;
@@ -90,6 +91,7 @@ TYPED_TEST(WaveModes, HaveAZeroModeInAnEasyPlane) {
   auto const m = this->uniform(lattice, {1, 0, 0});
   auto const found = normal_modes(this->exec, LandauLifshitz(field, 0.0), m);
   ASSERT_EQ(found.end, ModesEnd::converged);
+  ASSERT_EQ(found.modes.size(), 8);
   std::vector<double> all, rates;
   for (int i = 1; i < 16; ++i) {
     double const b = 2 * a * (1 - std::cos(2 * std::numbers::pi * i / 16));
