@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // cayspin check and cayspin methods.
+#include "io/method.hpp"
 #include "program_test.hpp"
 
 #include <nlohmann/json.hpp>
+
+#include <set>
+#include <sstream>
 
 namespace cayspin::program::test {
 namespace {
@@ -194,19 +198,29 @@ TEST_F(Checking, TextNamesWhatIsModelled) {
   EXPECT_FALSE(contains(spin, "1 sites"));
 }
 
-TEST_F(Checking, MethodsListsEveryMethodOnce) {
-  auto const list = output_of({"methods"});
-  for (std::string const method : {"euler",         "implicit_euler",    "heun",
-                                   "rkmk4",         "rkmk4_as_printed",  "rkmk5",
-                                   "rkmk8",         "series4",           "series4_paper",
-                                   "ab2",           "implicit_midpoint", "stiff2",
-                                   "stiff4",        "classical_euler",   "classical_heun",
-                                   "classical_rk4", "projected_euler",   "projected_heun",
-                                   "projected_rk4", "projected_rk5",     "projected_rk8",
-                                   "rkmk64",        "projected_rk64",    "projected_rk74"}) {
-    EXPECT_TRUE(contains(list, "\n" + method + " "));
-    output_of({"check", "chain.toml", "--set", "integrator.method='" + method + "'"});
+TEST_F(Checking, MethodsListsEveryMethodAndNoRowTwice) {
+  auto const text = output_of({"methods"});
+  std::set<std::string> expected, found;
+  for (auto const* const method : io::methods()) {
+    if (method->automatic) continue;
+    std::string const word(method->word);
+    expected.insert(word);
+    EXPECT_TRUE(contains(text, "\n" + word + " "));
+    auto settings = set("integrator.method='" + word + "'");
+    if (method->adaptive) settings = joined(settings, set("integrator.tolerance=1e-6"));
+    output_of(joined({"check", "chain.toml"}, settings));
   }
+  std::set<std::string> rows, lines;
+  auto const table = nlohmann::json::parse(output_of({"methods", "--json"}));
+  for (auto const& row : table.at("methods")) {
+    found.insert(row.at("method").get<std::string>());
+    EXPECT_TRUE(rows.insert(row.dump()).second) << row;
+  }
+  EXPECT_EQ(found, expected);
+  std::istringstream stream(text.substr(text.find('\n') + 1));
+  for (std::string line; std::getline(stream, line) && !line.empty();)
+    EXPECT_TRUE(lines.insert(line).second) << line;
+  EXPECT_EQ(lines.size(), rows.size());
 }
 
 TEST_F(Checking, HelpAndVersion) {
