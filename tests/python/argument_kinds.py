@@ -154,7 +154,7 @@ class Calls(PackageTest):
 
     def test_observe_and_averages(self):
         sim = cayspin.Simulation(scene())
-        self.accepted(lambda n: sim.observe(n, print), ())
+        self.accepted(lambda n: sim.observe(n, print), TWO)
         self.refused("observe: every: ", lambda n: sim.observe(n, print), NO_WHOLE_NUMBERS)
         self.accepted(lambda n: cayspin.Simulation(scene()).averages(n, n), TWO)
         self.refused("averages: window: ", lambda n: sim.averages(1, n),
