@@ -70,10 +70,9 @@ TEST(Override, FileNamesNeedNoQuotes) {
   for (std::string const name : {"/tmp/x.h5", "../x.h5", "./a b,c.h5", "~/x.h5", "d/x.h5", "1x",
                                  "100nm.h5", ".x.h5", "/a\"\\b"})
     EXPECT_EQ(scene_of(llg_scene, {"output.file=" + name}).output.file, name) << name;
-  for (std::string const number : {"0x1F", "1e2", "0.5", "1_0"}) {
-    auto const scene = scene_of(llg_scene, {"system.damping=" + number});
-    EXPECT_GT(scene.system.damping, 0) << number;
-  }
+  for (auto const& [text, number] :
+       {std::pair<std::string, double>{"0x1F", 31}, {"1e2", 100}, {"0.5", 0.5}, {"1_0", 10}})
+    EXPECT_EQ(scene_of(llg_scene, {"system.damping=" + text}).system.damping, number) << text;
   for (std::string const value : {"1979-05-27", "07:32:00", "1.5", "inf", "true"})
     EXPECT_NE(refusal_of(llg_scene, {"output.file=" + value}).find("output.file: "),
               std::string::npos)
