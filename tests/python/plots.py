@@ -106,14 +106,22 @@ class PlotTexture(ScriptTest):
     def test_other_frames_and_quantities(self):
         png = self.folder / "other.png"
         size = 8.1, 0.8 * 5.5 + 1.1
-        for arguments in (("--frame", 0), ("--colors", "safe"), ("--difference", 0), ("--charge",),
-                          ("--plane", "z=0")):
+
+        def drawn(*arguments, color):
+            result = self.plot(*arguments, "--output", png)
+            self.assert_drawn(png, size, (color,), result)
+            return matplotlib.image.imread(png)
+
+        usual = drawn(color=self.CYAN)
+        # -z; the distance of every spin from +y; a charge of 0
+        lowest, largest, none = (59, 76, 192), (253, 231, 37), (247, 247, 247)
+        for color, *arguments in (((128, 255, 0), "--frame", 0), (lowest, "--colors", "safe"),
+                                  (largest, "--difference", 0), (none, "--charge")):
             with self.subTest(arguments):
-                self.assert_drawn(png, size, (), self.plot(*arguments, "--output", png))
-        self.plot("--frame", 0, "--output", png)
-        self.assert_has_color(png, (128, 255, 0))
-        self.plot("--frame", "last", "--output", png)
-        self.assert_has_color(png, self.CYAN)
+                self.assertFalse(np.array_equal(drawn(*arguments, color=color), usual))
+        for arguments in (("--plane", "z=0"), ("--frame", "last")):
+            with self.subTest(arguments):
+                np.testing.assert_array_equal(drawn(*arguments, color=self.CYAN), usual)
 
     def test_chain_and_vector_graphics(self):
         chain, svg = write(self.folder / "chain.h5"), self.folder / "chain.svg"
