@@ -22,7 +22,7 @@ namespace cayspin::simulation {
 /// columns of a few lattices (ReplicaColumns); otherwise each is a separate run, and small ones run
 /// side by side on the threads of the host. The results of replica r are bitwise identical to those
 /// of a run of io::replica_of(scene, r). Calls from several threads take turns, as with SceneRun;
-/// steps() and time() do not wait for a turn.
+/// steps(), time() and replicas() do not wait for a turn.
 class EnsembleRun {
  public:
   /// Opens the replicas for `cayspin run` or, if `relaxes` is true, for `cayspin relax`.
@@ -32,7 +32,7 @@ class EnsembleRun {
   EnsembleRun(EnsembleRun const&) = delete;
   EnsembleRun& operator=(EnsembleRun const&) = delete;
 
-  std::size_t replicas() const { return at_rest_.size(); }
+  std::size_t replicas() const { return static_cast<std::size_t>(scene_.ensemble.replicas); }
   /// Returns the run of the first replica. If the replicas are columns, this run's spins do not
   /// advance with them.
   SceneRun const& first() const { return *runs_.front(); }
