@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "calls.hpp"
 #include "cayspin_git_commit.hpp"
 #include "io/relax.hpp"
-#include "simulation/failure.hpp"
 #include "simulation/guard.hpp"
 #include "simulation/run_recorder.hpp"
 
@@ -9,15 +9,14 @@
 #include <cayspin/version.hpp>
 
 #include <algorithm>
-#include <exception>
 #include <filesystem>
 #include <memory>
 #include <mutex>
-#include <new>
 #include <optional>
 #include <string>
 
 using namespace cayspin::simulation;
+using namespace cayspin::c_interface;
 namespace io = cayspin::io;
 
 struct cayspin_simulation {
@@ -28,75 +27,13 @@ struct cayspin_simulation {
 
 namespace {
 
-/// Returns the calling thread's text for cayspin_last_error.
-std::string& last_error() {
-  thread_local std::string message;
-  return message;
-}
-
-/// Returns the status of the exception being handled, and stores its message.
-cayspin_status failure() {
-  auto const is = [](cayspin_status status, char const* message) {
-    try {
-      last_error() = message;
-    } catch (...) {
-      last_error().clear();  // no memory for the message
-    }
-    return status;
-  };
-  try {
-    throw;
-  } catch (UsageError const& error) {
-    return is(CAYSPIN_WRONG_USAGE, error.what());
-  } catch (io::SceneError const& error) {
-    return is(CAYSPIN_WRONG_SCENE, error.what());
-  } catch (NumbersFailed const& error) {
-    return is(CAYSPIN_NUMBERS_FAILED, error.what());
-  } catch (std::bad_alloc const&) {
-    return is(CAYSPIN_FAILED, "out of memory");
-  } catch (std::exception const& error) {
-    return is(CAYSPIN_FAILED, error.what());
-  } catch (...) {
-    return is(CAYSPIN_FAILED, "an exception of unknown type");
-  }
-}
-
-/// Calls work(). Returns CAYSPIN_OK, or the status of the exception that it throws.
-template <class Work>
-cayspin_status guarded(Work const& work) {
-  try {
-    work();
-    return CAYSPIN_OK;
-  } catch (...) {
-    return failure();
-  }
-}
-
-/// Returns *pointer; throws UsageError with `name` for a null pointer.
-template <class Type>
-Type& required(Type* pointer, char const* name) {
-  if (pointer == nullptr)
-    throw UsageError(std::string(name) + " is NULL; accepted: a valid pointer");
-  return *pointer;
-}
-
-Precision precision_of(cayspin_precision precision) {
-  if (precision == CAYSPIN_DOUBLE) return Precision::double_precision;
-  if (precision == CAYSPIN_SINGLE) return Precision::single_precision;
-  throw UsageError("precision " + std::to_string(precision) +
-                   "; accepted: CAYSPIN_SINGLE, CAYSPIN_DOUBLE");
-}
-
 cayspin_simulation* opened(io::Scene const& scene, cayspin_precision precision, char const* space) {
   if (!scene.field.applied_in_turn.empty())
     throw io::scene_error(scene, "field.applied",
                           "a list of fields is for cayspin relax; accepted: three numbers or "
                           "expressions in t, and cayspin_relax for each of a list");
-  RunSettings settings;
-  settings.precision = precision_of(precision);
-  if (space != nullptr) settings.space = space;
   auto simulation = std::make_unique<cayspin_simulation>();
-  simulation->run = SceneRun::open(scene, settings);
+  simulation->run = SceneRun::open(scene, settings_of(precision, space));
   return simulation.release();
 }
 
