@@ -5,9 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 namespace cayspin::test {
 
@@ -39,6 +41,30 @@ inline Simulation open(std::string const& text, cayspin_precision precision = CA
   EXPECT_EQ(cayspin_open_text(text.c_str(), nullptr, precision, space, &simulation), CAYSPIN_OK)
       << cayspin_last_error();
   return Simulation(simulation);
+}
+
+/// Returns the numbers of an array; components vary fastest, then x, y and z.
+inline std::vector<double> numbers_of(cayspin_array const& array) {
+  auto const at = [&](int64_t offset) {
+    return array.precision == CAYSPIN_DOUBLE
+               ? static_cast<double const*>(array.data)[offset]
+               : static_cast<double>(static_cast<float const*>(array.data)[offset]);
+  };
+  std::vector<double> numbers;
+  for (int64_t z = 0; z < array.shape[0]; ++z)
+    for (int64_t y = 0; y < array.shape[1]; ++y)
+      for (int64_t x = 0; x < array.shape[2]; ++x)
+        for (int64_t c = 0; c < array.shape[3]; ++c)
+          numbers.push_back(at(z * array.strides[0] + y * array.strides[1] + x * array.strides[2] +
+                               c * array.strides[3]));
+  return numbers;
+}
+
+/// Returns the spins of a simulation in the order of numbers_of.
+inline std::vector<double> spins_of(cayspin_simulation* simulation) {
+  cayspin_array spins{};
+  EXPECT_EQ(cayspin_borrow_spins(simulation, &spins), CAYSPIN_OK) << cayspin_last_error();
+  return numbers_of(spins);
 }
 
 /// Expects the status `is` of a failed call to be `expected`, and the message to be one line that

@@ -30,21 +30,6 @@ std::string chain(std::string const& initial, std::string const& more) {
          initial + "\n[integrator]\nmethod = \"ab2\"\ndt = 0.02\nsteps = 60\n[output]\n" + more;
 }
 
-std::vector<double> spins_of(cayspin_simulation* simulation) {
-  cayspin_array spins{};
-  EXPECT_EQ(cayspin_borrow_spins(simulation, &spins), CAYSPIN_OK) << cayspin_last_error();
-  std::vector<double> numbers;
-  for (int64_t y = 0; y < spins.shape[1]; ++y)
-    for (int64_t x = 0; x < spins.shape[2]; ++x)
-      for (int64_t c = 0; c < 3; ++c) {
-        auto const at = y * spins.strides[1] + x * spins.strides[2] + c * spins.strides[3];
-        numbers.push_back(spins.precision == CAYSPIN_DOUBLE
-                              ? static_cast<double const*>(spins.data)[at]
-                              : static_cast<double>(static_cast<float const*>(spins.data)[at]));
-      }
-  return numbers;
-}
-
 /// The scenes of one thread of the test. The thread runs `scene`, which writes `file`, and opens
 /// `from_file`, a scene that starts from that file.
 struct Course {

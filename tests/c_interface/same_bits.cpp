@@ -32,18 +32,6 @@ class SameBits : public cayspin::program::test::ProgramTest {
   }
 };
 
-template <class Real>
-std::vector<double> borrowed(cayspin_simulation* simulation) {
-  cayspin_array spins{};
-  EXPECT_EQ(cayspin_borrow_spins(simulation, &spins), CAYSPIN_OK);
-  std::vector<double> numbers;
-  for (int64_t x = 0; x < spins.shape[2]; ++x)
-    for (int64_t c = 0; c < 3; ++c)
-      numbers.push_back(
-          static_cast<Real const*>(spins.data)[x * spins.strides[2] + c * spins.strides[3]]);
-  return numbers;
-}
-
 TEST_F(SameBits, StepsInPieces) {
   for (auto const precision : {CAYSPIN_SINGLE, CAYSPIN_DOUBLE}) {
     cayspin_simulation* simulation = nullptr;
@@ -51,9 +39,7 @@ TEST_F(SameBits, StepsInPieces) {
     Simulation const owner(simulation);
     for (int64_t const count : {1, 7, 0, 492, 700})
       ASSERT_EQ(cayspin_step(simulation, count), CAYSPIN_OK) << cayspin_last_error();
-    bool const single = precision == CAYSPIN_SINGLE;
-    EXPECT_EQ(single ? borrowed<float>(simulation) : borrowed<double>(simulation),
-              of_program(single ? "single" : "double"));
+    EXPECT_EQ(spins_of(simulation), of_program(precision == CAYSPIN_SINGLE ? "single" : "double"));
     std::filesystem::remove(in_folder("program.h5"));
   }
 }
