@@ -2,9 +2,10 @@
 /* Runs scenes from C, and from every language that can call C. All functions but cayspin_last_error
    and cayspin_version return a cayspin_status, and write results through their pointers only if it
    is CAYSPIN_OK. No function throws a C++ exception. Functions may be called from any thread: calls
-   for the same simulation wait for each other, and only one simulation computes at a time.
-   cayspin_time and cayspin_steps do not wait, so they can report the progress of a run. Call
-   cayspin_close only when no other call for that simulation is in progress. No function starts a
+   for the same simulation or ensemble wait for each other, and only one of all simulations and
+   ensembles computes at a time. cayspin_time, cayspin_steps and their counterparts for ensembles do
+   not wait, so they can report the progress of a run. Call cayspin_close and cayspin_ensemble_close
+   only when no other call for that simulation or ensemble is in progress. No function starts a
    process. A damaged HDF5 file may crash HDF5, and the program with it; `cayspin check` reads the
    files of a scene in a separate process. */
 #ifndef CAYSPIN_CAYSPIN_H
@@ -21,6 +22,9 @@ extern "C" {
 
 /* A run of a scene: its spins, its method and the time. */
 typedef struct cayspin_simulation cayspin_simulation;
+
+/* The replicas of a scene with [ensemble], which run together. */
+typedef struct cayspin_ensemble cayspin_ensemble;
 
 /* In C++ as in C, the enumerations below can hold any int. */
 #ifdef __cplusplus
@@ -54,7 +58,8 @@ typedef struct cayspin_array {
   int64_t strides[4]; /* in elements, not bytes */
 } cayspin_array;
 
-/* The result of cayspin_relax, in the units of the scene. */
+/* The result of cayspin_relax or, for one replica, of cayspin_ensemble_relax, in the units of the
+   scene. */
 typedef struct cayspin_minimum {
   int converged;       /* 1, or 0 if round-off or the limit on evaluations ended the search */
   double torque;       /* max |m x H| */
@@ -71,7 +76,8 @@ char const* cayspin_version(void);
 
 /* Opens a scene file. A scene without [integrator] can be relaxed, but takes no steps. `space` is
    the execution space: "openmp", "threads", "cuda", ...; "serial" for the host's space with one
-   thread; or NULL for Kokkos' default. Starts Kokkos unless the program has done so. */
+   thread; or NULL for Kokkos' default. Starts Kokkos unless the program has done so. Returns
+   CAYSPIN_WRONG_SCENE for a scene with [ensemble], which cayspin_ensemble_open_file opens. */
 cayspin_status cayspin_open_file(char const* path, cayspin_precision precision, char const* space,
                                  cayspin_simulation** simulation);
 
@@ -123,6 +129,56 @@ cayspin_status cayspin_magnetization(cayspin_simulation* simulation, double magn
 
 /* Ends a simulation and frees its memory. Does nothing if it is NULL. */
 cayspin_status cayspin_close(cayspin_simulation* simulation);
+
+/* Open a scene with [ensemble], as cayspin_open_file and cayspin_open_text open one without it, for
+   which these return CAYSPIN_WRONG_SCENE. The results of replica r, counted from 0, are
+   bit-identical to those of a simulation of the scene without [ensemble], with the values and seeds
+   of this replica. If one replica fails, calls return CAYSPIN_NUMBERS_FAILED, and the message has
+   its number. */
+cayspin_status cayspin_ensemble_open_file(char const* path, cayspin_precision precision,
+                                          char const* space, cayspin_ensemble** ensemble);
+cayspin_status cayspin_ensemble_open_text(char const* text, char const* name,
+                                          cayspin_precision precision, char const* space,
+                                          cayspin_ensemble** ensemble);
+
+/* The number of replicas. Does not wait for other calls. */
+cayspin_status cayspin_ensemble_replicas(cayspin_ensemble const* ensemble, int64_t* replicas);
+
+/* Takes `count` steps in every replica; integrator.until_torque does not end them. After
+   CAYSPIN_NUMBERS_FAILED some replicas may be ahead of others. In later calls they wait until all
+   are at the same step. Returns CAYSPIN_WRONG_SCENE for a dt that integrator.refuse_unstable
+   refuses. */
+cayspin_status cayspin_ensemble_step(cayspin_ensemble* ensemble, int64_t count);
+
+/* Moves each replica to an equilibrium of its own, as cayspin_relax does without `applied`. `found`
+   is an array of the caller: one result for each replica. If one replica fails, others may have
+   moved. */
+cayspin_status cayspin_ensemble_relax(cayspin_ensemble* ensemble, double torque,
+                                      int64_t evaluations, cayspin_minimum* found);
+
+/* The time that all replicas have reached, in reduced units or, for a scene in SI, in seconds; and
+   how many steps all have taken. */
+cayspin_status cayspin_ensemble_time(cayspin_ensemble const* ensemble, double* time);
+cayspin_status cayspin_ensemble_steps(cayspin_ensemble const* ensemble, int64_t* steps);
+
+/* The spins of one replica, counted from 0. They are part of a copy in host memory, which belongs
+   to the ensemble and has the spins of all replicas one after the other: `data` of replica 0 is
+   also a packed array (replica, nz, ny, nx, 3). Valid until the next call of
+   cayspin_ensemble_step, cayspin_ensemble_relax or cayspin_ensemble_close. */
+cayspin_status cayspin_ensemble_borrow_spins(cayspin_ensemble* ensemble, int64_t replica,
+                                             cayspin_array* spins);
+
+/* The energy of each replica, summed over its sites, in the units of cayspin_energy. `energies` is
+   an array of the caller: one number for each replica. */
+cayspin_status cayspin_ensemble_energies(cayspin_ensemble* ensemble, double* energies);
+
+/* The mean of the spins of each replica, as cayspin_magnetization gives it. `magnetizations` is an
+   array of the caller: three numbers for each replica. Component c of replica r is
+   magnetizations[3 * r + c]. */
+cayspin_status cayspin_ensemble_magnetizations(cayspin_ensemble* ensemble, double* magnetizations);
+
+/* Ends an ensemble and frees its memory. Does nothing if it is NULL. */
+cayspin_status cayspin_ensemble_close(cayspin_ensemble* ensemble);
 
 #ifdef __GNUC__
 #pragma GCC visibility pop

@@ -27,7 +27,13 @@ struct cayspin_simulation {
 
 namespace {
 
-cayspin_simulation* opened(io::Scene const& scene, cayspin_precision precision, char const* space) {
+/// `opens_ensembles`: the function to name if the scene has [ensemble].
+cayspin_simulation* opened(io::Scene const& scene, cayspin_precision precision, char const* space,
+                           std::string const& opens_ensembles) {
+  if (scene.ensemble.there())
+    throw io::scene_error(
+        scene, "ensemble",
+        "a simulation has no replicas; accepted: no such table, or " + opens_ensembles);
   if (!scene.field.applied_in_turn.empty())
     throw io::scene_error(scene, "field.applied",
                           "a list of fields is for cayspin relax; accepted: three numbers or "
@@ -107,7 +113,8 @@ cayspin_status cayspin_open_file(char const* path, cayspin_precision precision, 
                                  cayspin_simulation** simulation) {
   return guarded([&] {
     auto& result = required(simulation, "simulation");
-    result = opened(io::read_scene_to_run_or_relax(&required(path, "path")), precision, space);
+    result = opened(io::read_scene_to_run_or_relax(&required(path, "path")), precision, space,
+                    "cayspin_ensemble_open_file");
   });
 }
 
@@ -117,7 +124,7 @@ cayspin_status cayspin_open_text(char const* text, char const* name, cayspin_pre
     auto& result = required(simulation, "simulation");
     auto const scene =
         io::parse_scene_to_run_or_relax(&required(text, "text"), name != nullptr ? name : "scene");
-    result = opened(scene, precision, space);
+    result = opened(scene, precision, space, "cayspin_ensemble_open_text");
   });
 }
 

@@ -24,8 +24,10 @@ inline std::string scene_text(std::string const& more = {}, std::string const& e
 
 struct Close {
   void operator()(cayspin_simulation* simulation) const { cayspin_close(simulation); }
+  void operator()(cayspin_ensemble* ensemble) const { cayspin_ensemble_close(ensemble); }
 };
 using Simulation = std::unique_ptr<cayspin_simulation, Close>;
+using Ensemble = std::unique_ptr<cayspin_ensemble, Close>;
 
 /// The space of simulations. Null: the default.
 #if defined(CAYSPIN_HOST_DEVICE)
@@ -41,6 +43,15 @@ inline Simulation open(std::string const& text, cayspin_precision precision = CA
   EXPECT_EQ(cayspin_open_text(text.c_str(), nullptr, precision, space, &simulation), CAYSPIN_OK)
       << cayspin_last_error();
   return Simulation(simulation);
+}
+
+inline Ensemble open_ensemble(std::string const& text,
+                              cayspin_precision precision = CAYSPIN_DOUBLE) {
+  cayspin_ensemble* ensemble = nullptr;
+  EXPECT_EQ(cayspin_ensemble_open_text(text.c_str(), nullptr, precision, space, &ensemble),
+            CAYSPIN_OK)
+      << cayspin_last_error();
+  return Ensemble(ensemble);
 }
 
 /// Returns the numbers of an array; components vary fastest, then x, y and z.
