@@ -130,6 +130,92 @@ module cayspin
       type(c_ptr), value :: simulation
       integer(c_int) :: status
     end function
+
+    ! Ensembles. `found`, `energies` and the second extent of `magnetizations`: one for each replica.
+    function cayspin_ensemble_open_file(path, precision, space, ensemble) bind(c) result(status)
+      import c_char, c_int, c_ptr
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int), value :: precision
+      type(c_ptr), value :: space
+      type(c_ptr), intent(inout) :: ensemble
+      integer(c_int) :: status
+    end function
+
+    function cayspin_ensemble_open_text(text, name, precision, space, ensemble) bind(c) &
+      result(status)
+      import c_char, c_int, c_ptr
+      character(kind=c_char), intent(in) :: text(*), name(*)
+      integer(c_int), value :: precision
+      type(c_ptr), value :: space
+      type(c_ptr), intent(inout) :: ensemble
+      integer(c_int) :: status
+    end function
+
+    function cayspin_ensemble_replicas(ensemble, replicas) bind(c) result(status)
+      import c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: ensemble
+      integer(c_int64_t), intent(inout) :: replicas
+      integer(c_int) :: status
+    end function
+
+    function cayspin_ensemble_step(ensemble, count) bind(c) result(status)
+      import c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: ensemble
+      integer(c_int64_t), value :: count
+      integer(c_int) :: status
+    end function
+
+    function cayspin_ensemble_relax(ensemble, torque, evaluations, found) bind(c) result(status)
+      import c_double, c_int, c_int64_t, c_ptr, cayspin_minimum
+      type(c_ptr), value :: ensemble
+      real(c_double), value :: torque
+      integer(c_int64_t), value :: evaluations
+      type(cayspin_minimum), intent(inout) :: found(*)
+      integer(c_int) :: status
+    end function
+
+    function cayspin_ensemble_time(ensemble, time) bind(c) result(status)
+      import c_double, c_int, c_ptr
+      type(c_ptr), value :: ensemble
+      real(c_double), intent(inout) :: time
+      integer(c_int) :: status
+    end function
+
+    function cayspin_ensemble_steps(ensemble, steps) bind(c) result(status)
+      import c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: ensemble
+      integer(c_int64_t), intent(inout) :: steps
+      integer(c_int) :: status
+    end function
+
+    ! `replica` counts from 0, as in C.
+    function cayspin_ensemble_borrow_spins(ensemble, replica, spins) bind(c) result(status)
+      import c_int, c_int64_t, c_ptr, cayspin_array
+      type(c_ptr), value :: ensemble
+      integer(c_int64_t), value :: replica
+      type(cayspin_array), intent(inout) :: spins
+      integer(c_int) :: status
+    end function
+
+    function cayspin_ensemble_energies(ensemble, energies) bind(c) result(status)
+      import c_double, c_int, c_ptr
+      type(c_ptr), value :: ensemble
+      real(c_double), intent(inout) :: energies(*)
+      integer(c_int) :: status
+    end function
+
+    function cayspin_ensemble_magnetizations(ensemble, magnetizations) bind(c) result(status)
+      import c_double, c_int, c_ptr
+      type(c_ptr), value :: ensemble
+      real(c_double), intent(inout) :: magnetizations(3, *)
+      integer(c_int) :: status
+    end function
+
+    function cayspin_ensemble_close(ensemble) bind(c) result(status)
+      import c_int, c_ptr
+      type(c_ptr), value :: ensemble
+      integer(c_int) :: status
+    end function
   end interface
 
 contains

@@ -6,6 +6,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <iterator>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -62,6 +64,31 @@ TEST_F(SameBits, ExampleInC) { expect_from(CAYSPIN_EXAMPLE_C); }
 #endif
 #ifdef CAYSPIN_EXAMPLE_FORTRAN
 TEST_F(SameBits, ExampleInFortran) { expect_from(CAYSPIN_EXAMPLE_FORTRAN); }
+
+// The example prints the energy and the mean spin of each replica after 100 steps, with all digits.
+TEST_F(SameBits, ExampleOfAnEnsembleInFortran) {
+  auto const file = write("ensemble.toml", scene_text("[ensemble]\nreplicas = 3\n"
+                                                      "vary.\"field.applied.0\" = [0, 0.5, 2]\n"));
+  auto const done = start({file.string()}, {.program = CAYSPIN_EXAMPLE_FORTRAN_ENSEMBLE});
+  EXPECT_EQ(done.status, 0) << done.errors;
+  std::istringstream output(done.output);
+  std::vector<double> const printed{std::istream_iterator<double>(output), {}};
+
+  cayspin_ensemble* ensemble = nullptr;
+  ASSERT_EQ(cayspin_ensemble_open_file(file.c_str(), CAYSPIN_DOUBLE, nullptr, &ensemble),
+            CAYSPIN_OK);
+  Ensemble const owner(ensemble);
+  ASSERT_EQ(cayspin_ensemble_step(ensemble, 100), CAYSPIN_OK) << cayspin_last_error();
+  double energies[3] = {}, m[9] = {};
+  ASSERT_EQ(cayspin_ensemble_energies(ensemble, energies), CAYSPIN_OK);
+  ASSERT_EQ(cayspin_ensemble_magnetizations(ensemble, m), CAYSPIN_OK);
+  std::vector<double> expected;
+  for (int replica = 0; replica < 3; ++replica) {
+    expected.push_back(energies[replica]);
+    expected.insert(expected.end(), &m[3 * replica], &m[3 * replica] + 3);
+  }
+  EXPECT_EQ(printed, expected) << done.output;
+}
 #endif
 
 }  // namespace
