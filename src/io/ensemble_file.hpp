@@ -67,13 +67,18 @@ struct EnsembleInfo {
   std::vector<RelaxedReplica> relaxed;   ///< each replica's search; empty for a run
 };
 
+/// Consecutive replicas of an ensemble.
+struct ReplicaRange {
+  std::int64_t first = 0, count = 0;
+};
+
 bool is_ensemble(std::filesystem::path const& path);
 /// Throws std::runtime_error with one line.
 EnsembleInfo read_ensemble_info(std::filesystem::path const& path);
-/// Reads the spins of all replicas in the last frame, one replica after the other, each packed as
+/// Reads the spins of these replicas in the last frame, one replica after the other, each packed as
 /// (nz, ny, nx, 3) in the order of TrajectoryHeader::shape. Numbers are not rounded. Throws
 /// std::runtime_error with one line.
-std::vector<double> read_ensemble_spins(std::filesystem::path const& path,
-                                        EnsembleInfo const& info);
+std::vector<double> read_ensemble_spins(std::filesystem::path const& path, EnsembleInfo const& info,
+                                        ReplicaRange const& replicas);
 
 }  // namespace cayspin::inline v0_2::io

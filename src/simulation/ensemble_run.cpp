@@ -2,6 +2,7 @@
 #include "ensemble_run.hpp"
 
 #include "failure.hpp"
+#include "io/notes.hpp"
 #include "plan.hpp"
 #include "restart.hpp"
 #include "run_files.hpp"
@@ -21,30 +22,33 @@ namespace cayspin::simulation {
 namespace {
 
 void require_memory_of_all(io::Scene const& scene, io::Scene const& replica, Precision precision,
-                           bool relaxes) {
+                           bool relaxes, std::int64_t replicas) {
   auto const plan =
       relaxes ? make_plan_to_relax(replica, precision) : make_plan(replica, precision);
-  require_memory(scene, plan, static_cast<int>(scene.ensemble.replicas));
+  require_memory(scene, plan, static_cast<int>(replicas));
 }
 
 }  // namespace
 
-EnsembleRun::EnsembleRun(io::Scene const& scene, RunSettings const& settings, bool relaxes)
-    : scene_(scene), settings_(settings) {
-  auto const replicas = static_cast<std::size_t>(scene.ensemble.replicas);
+EnsembleRun::EnsembleRun(io::Scene const& scene, RunSettings const& settings, bool relaxes,
+                         ReplicaShare const& share)
+    : scene_(scene), settings_(settings), share_(share) {
+  auto const replicas = static_cast<std::size_t>(share.own.count);
   at_rest_.assign(replicas, false);
   runs_.reserve(replicas);  // no reallocation, because other threads read the first run
   for (std::size_t number = 0; number < replicas; ++number) {
-    auto const at = static_cast<std::int64_t>(number);
+    auto const at = number_of(number);
     auto const replica = relaxes ? io::replica_to_relax(scene, at) : io::replica_of(scene, at);
-    if (number == 1) require_memory_of_all(scene, replica, settings.precision, relaxes);
+    // Columns need less memory, and are tried first.
+    if (number == 1 || (replicas == 1 && share.on_this_machine > 1))
+      require_memory_of_all(scene, replica, settings.precision, relaxes, share.on_this_machine);
     try {
       runs_.push_back(SceneRun::open(replica, settings));
     } catch (io::SceneError const& error) {
-      throw io::SceneError(fmt::format("replica {}: {}", number, error.what()));
+      throw io::SceneError(fmt::format("replica {}: {}", at, error.what()));
     }
     if (number > 0 || relaxes) continue;
-    columns_ = ReplicaColumns::open(scene, replica, settings);
+    columns_ = ReplicaColumns::open(scene, replica, settings, share);
     if (columns_) break;
   }
   if (!columns_) return;
@@ -59,6 +63,11 @@ EnsembleRun::EnsembleRun(io::Scene const& scene, RunSettings const& settings, bo
   }
 }
 
+io::Scene EnsembleRun::scene_of_first() const {
+  if (share_.own.first == 0) return first().scene();
+  return io::with_shape_of_start(io::replica_of(scene_, 0));
+}
+
 std::optional<std::string> EnsembleRun::continue_from(std::filesystem::path const& file) {
   Turn::Reserved const turn;
   if (!io::is_ensemble(file)) {
@@ -71,18 +80,19 @@ std::optional<std::string> EnsembleRun::continue_from(std::filesystem::path cons
     throw UsageError(fmt::format("{}: it has {}, and the scene has {}; accepted: the same number",
                                  file.string(), counted(info.ensemble.replicas, "replica"),
                                  scene_.ensemble.replicas));
-  auto const plan = make_plan(first().scene(), settings_.precision);
+  auto const of_first = scene_of_first();
+  auto const plan = make_plan(of_first, settings_.precision);
   auto const end =
       scene_.integrator.steps > 0 ? plan.times.steps : std::numeric_limits<std::int64_t>::max();
-  // Times are in the units of the first replica, as in the file. These units differ from those of
-  // the ensemble's own scene if, for example, the damping is varied.
+  // Times are in the units of the ensemble's first replica, as in the file. These units differ from
+  // those of the ensemble's own scene if, for example, the damping is varied.
   auto scene = scene_;
-  scene.units = first().scene().units;
-  scene.integrator.dt = first().scene().integrator.dt;
+  scene.units = of_first.units;
+  scene.integrator.dt = of_first.integrator.dt;
   Restart const restart({file, info}, scene, plan, settings_.precision, end);
   steps_ = restart.step();
   at_rest_.assign(replicas(), false);
-  auto const spins = io::read_ensemble_spins(file, info);
+  auto const spins = io::read_ensemble_spins(file, info, share_.own);
   if (columns_) columns_->continue_from(steps_, spins);
   auto const size = static_cast<std::ptrdiff_t>(3 * io::sites(first().scene()));
   for (std::size_t number = 0; number < runs_.size(); ++number) {
@@ -96,14 +106,14 @@ std::optional<std::string> EnsembleRun::warning() const {
   Turn::Reserved const turn;
   if (columns_ && !columns_->temperatures().empty()) {
     auto const& all = columns_->temperatures();
-    auto const hottest = std::ranges::max_element(all) - all.begin();
+    auto const hottest = share_.own.first + (std::ranges::max_element(all) - all.begin());
     auto const warning = SceneRun::open(io::replica_of(scene_, hottest), settings_)->warning();
     if (!warning) return std::nullopt;
     return fmt::format("replica {}: {}", hottest, *warning);
   }
   for (std::size_t number = 0; number < runs_.size(); ++number)
     if (auto const warning = runs_[number]->warning())
-      return fmt::format("replica {}: {}", number, *warning);
+      return fmt::format("replica {}: {}", number_of(number), *warning);
   return std::nullopt;
 }
 
@@ -174,7 +184,7 @@ Advanced EnsembleRun::advance_runs(std::int64_t target, Looks const& looks) {
     try {
       std::rethrow_exception(outcomes[i].error);
     } catch (NumbersFailed const& failure) {
-      throw NumbersFailed(fmt::format("replica {}: {}", numbers[i], failure.what()));
+      throw NumbersFailed(fmt::format("replica {}: {}", number_of(numbers[i]), failure.what()));
     }
   }
   if (interrupted) return Advanced::interrupted;
@@ -188,9 +198,10 @@ Advanced EnsembleRun::advance_columns(std::int64_t target, Looks const& looks) {
   if (ended.error) {
     // A lattice of columns does not tell which of its replicas failed; separate runs of the
     // replicas do.
-    for (auto const number : ended.failed) {
+    for (auto const failed : ended.failed) {
+      auto const number = share_.own.first + failed;
       auto const run = SceneRun::open(io::replica_of(scene_, number), settings_);
-      columns_->continue_in(*run, number);
+      columns_->continue_in(*run, failed);
       try {
         run->advance(target - run->steps(), looks);
       } catch (NumbersFailed const& failure) {
@@ -214,19 +225,19 @@ void EnsembleRun::check_columns() {
         {energy.value / units.energy, energy.magnitude / units.energy}, defect);
     if (failure)
       throw NumbersFailed(
-          fmt::format("replica {}: {}: {}", number, scene_.path.string(), *failure));
+          fmt::format("replica {}: {}: {}", number_of(number), scene_.path.string(), *failure));
   }
 }
 
 void EnsembleRun::leave_columns() {
-  require_memory_of_all(scene_, first().scene(), settings_.precision, false);
+  require_memory_of_all(scene_, first().scene(), settings_.precision, false,
+                        share_.on_this_machine);
   // If an exception is thrown here, the columns stay in use. The first run is not replaced, because
   // other threads read it.
   std::vector<std::unique_ptr<SceneRun>> others;
   for (std::size_t number = 1; number < replicas(); ++number) {
-    auto const replica = static_cast<std::int64_t>(number);
-    others.push_back(SceneRun::open(io::replica_of(scene_, replica), settings_));
-    columns_->continue_in(*others.back(), replica);
+    others.push_back(SceneRun::open(io::replica_of(scene_, number_of(number)), settings_));
+    columns_->continue_in(*others.back(), static_cast<std::int64_t>(number));
   }
   columns_->continue_in(*runs_.front(), 0);
   for (auto& run : others) runs_.push_back(std::move(run));
@@ -246,7 +257,7 @@ std::vector<Minimum> EnsembleRun::relax(RelaxSettings const& settings) {
     try {
       if (error) std::rethrow_exception(error);
     } catch (NumbersFailed const& failure) {
-      throw NumbersFailed(fmt::format("replica {}: {}", found.size(), failure.what()));
+      throw NumbersFailed(fmt::format("replica {}: {}", number_of(found.size()), failure.what()));
     }
     found.push_back(minimum);
   }

@@ -18,25 +18,30 @@
 
 namespace cayspin::simulation {
 
-/// The replicas of a scene with [ensemble], which advance together. If possible they are the
-/// columns of a few lattices (ReplicaColumns); otherwise each is a separate run, and small ones run
-/// side by side on the threads of the host. The results of replica r are bitwise identical to those
-/// of a run of io::replica_of(scene, r). Calls from several threads take turns, as with SceneRun;
-/// steps(), time() and replicas() do not wait for a turn.
+/// The replicas of a scene with [ensemble], or a share of them, which advance together. If possible
+/// they are the columns of a few lattices (ReplicaColumns); otherwise each is a separate run, and
+/// small ones run side by side on the threads of the host. The results of replica r are bitwise
+/// identical to those of a run of io::replica_of(scene, r). Calls from several threads take turns,
+/// as with SceneRun; steps(), time() and replicas() do not wait for a turn.
 class EnsembleRun {
  public:
   /// Opens the replicas for `cayspin run` or, if `relaxes` is true, for `cayspin relax`.
   /// settings.restart must be empty. Throws what SceneRun::open throws, also if there is too little
   /// memory for all replicas.
-  EnsembleRun(io::Scene const& scene, RunSettings const& settings, bool relaxes);
+  EnsembleRun(io::Scene const& scene, RunSettings const& settings, bool relaxes)
+      : EnsembleRun(scene, settings, relaxes, all_replicas(scene)) {}
+  /// Opens a share of the replicas. Members count these from 0; messages have their numbers in the
+  /// whole ensemble.
+  EnsembleRun(io::Scene const& scene, RunSettings const& settings, bool relaxes,
+              ReplicaShare const& share);
   EnsembleRun(EnsembleRun const&) = delete;
   EnsembleRun& operator=(EnsembleRun const&) = delete;
 
-  std::size_t replicas() const { return static_cast<std::size_t>(scene_.ensemble.replicas); }
+  std::size_t replicas() const { return static_cast<std::size_t>(share_.own.count); }
   /// Returns the run of the first replica. If the replicas are columns, this run's spins do not
   /// advance with them.
   SceneRun const& first() const { return *runs_.front(); }
-  /// Continues from the last frame of an ensemble's file. If the scene of the file differs
+  /// Continues from the last frame of the whole ensemble's file. If the scene of the file differs
   /// unexpectedly, returns one line that names the differences. Throws UsageError for a file that
   /// does not fit the scene, and if the run needs more than the spins to continue exactly.
   std::optional<std::string> continue_from(std::filesystem::path const& file);
@@ -80,6 +85,11 @@ class EnsembleRun {
   std::vector<std::byte> spins();
 
  private:
+  std::int64_t number_of(std::size_t run) const {
+    return share_.own.first + static_cast<std::int64_t>(run);
+  }
+  /// Returns the scene of the whole ensemble's first replica.
+  io::Scene scene_of_first() const;
   Advanced advance_runs(std::int64_t target, Looks const& looks);
   Advanced advance_columns(std::int64_t target, Looks const& looks);
   /// Computes the value of steps() from the steps of the runs.
@@ -90,6 +100,7 @@ class EnsembleRun {
 
   io::Scene scene_;
   RunSettings settings_;
+  ReplicaShare share_;
   std::vector<std::unique_ptr<SceneRun>> runs_;  // if there are columns: only the first one
   std::optional<ReplicaColumns> columns_;
   std::vector<Guard> guards_;    // one for each replica in columns

@@ -47,8 +47,8 @@ bool steps_each_site_alike(io::Integrator const& integrator) {
          integrator.substeps == 1 && !integrator.energy_control && !integrator.until_torque;
 }
 
-bool can_be_columns(io::Scene const& scene, io::Scene const& one) {
-  return scene.ensemble.replicas >= least_replicas && io::sites(one) <= most_sites &&
+bool can_be_columns(io::Scene const& scene, io::Scene const& one, std::int64_t replicas) {
+  return replicas >= least_replicas && io::sites(one) <= most_sites &&
          one.system.kind == io::SystemKind::llg && !one.system.dampings.there() &&
          is_plain(one.lattice) && is_local_but_for_exchange(one.field) &&
          steps_each_site_alike(one.integrator) && !(one.thermal && one.thermal->of_sites.there()) &&
@@ -99,11 +99,11 @@ io::Scene scene_of_columns(io::Scene const& one, std::int64_t first, std::int64_
   return columns;
 }
 
-std::vector<double> temperatures_of(io::Scene const& scene) {
+std::vector<double> temperatures_of(io::Scene const& scene, io::ReplicaRange const& replicas) {
   std::vector<double> temperatures;
   if (scene.ensemble.vary.empty()) return temperatures;
-  for (std::int64_t replica = 0; replica < scene.ensemble.replicas; ++replica)
-    temperatures.push_back(io::replica_of(scene, replica).thermal->temperature);
+  for (std::int64_t number = 0; number < replicas.count; ++number)
+    temperatures.push_back(io::replica_of(scene, replicas.first + number).thermal->temperature);
   return temperatures;
 }
 
@@ -131,11 +131,12 @@ std::vector<double> starts_of(io::Scene& one, std::int64_t first, std::int64_t c
 }  // namespace
 
 std::optional<ReplicaColumns> ReplicaColumns::open(io::Scene const& scene, io::Scene const& first,
-                                                   RunSettings const& settings) {
+                                                   RunSettings const& settings,
+                                                   ReplicaShare const& share) {
   std::optional<ReplicaColumns> opened;
   auto one = io::with_shape_of_start(first);
-  if (!can_be_columns(scene, one)) return opened;
-  auto const replicas = scene.ensemble.replicas, sites = io::sites(one);
+  auto const replicas = share.own.count, sites = io::sites(one);
+  if (!can_be_columns(scene, one, replicas)) return opened;
   auto sample = SceneRun::open(one, settings);
   bool const on_host = is_on_host(sample->space());
   // On several threads, larger replicas are faster as separate runs, one per thread.
@@ -143,9 +144,9 @@ std::optional<ReplicaColumns> ReplicaColumns::open(io::Scene const& scene, io::S
   auto const columns =
       on_host ? columns_of_a_lattice(replicas, sites, sample->threads()) : replicas;
   require_memory(scene, make_plan(scene_of_columns(one, 0, columns, {}), settings.precision),
-                 static_cast<int>((replicas + columns - 1) / columns));
+                 static_cast<int>((share.on_this_machine + columns - 1) / columns));
   opened.emplace();
-  auto const& temperatures = opened->temperatures_ = temperatures_of(scene);
+  auto const& temperatures = opened->temperatures_ = temperatures_of(scene, share.own);
   for (std::int64_t begin = 0; begin < replicas; begin += columns) {
     std::int64_t const count = std::min(columns, replicas - begin);
     auto run = SceneRun::open(scene_of_columns(one, begin, count, temperatures), settings);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "replica_share.hpp"
 #include "scene_run.hpp"
 
 #include <cstddef>
@@ -12,20 +13,20 @@
 
 namespace cayspin::simulation {
 
-/// The replicas of a scene with [ensemble] as the columns of a few lattices: x counts replicas, y
-/// and z are the (at most two) axes of the scene's lattice. A kernel then advances as many replicas
-/// at once as a register has lanes, and one launch serves all replicas of a lattice. The spacing
-/// along x is so large that exchange along x vanishes. The results of each replica are bitwise
-/// identical to those of a separate run.
+/// A share of the replicas of a scene with [ensemble] as the columns of a few lattices: x counts
+/// replicas, y and z are the (at most two) axes of the scene's lattice. A kernel then advances as
+/// many replicas at once as a register has lanes, and one launch serves all replicas of a lattice.
+/// The spacing along x is so large that exchange along x vanishes. The results of each replica are
+/// bitwise identical to those of a separate run. Members count the replicas of the share from 0.
 class ReplicaColumns {
  public:
-  /// `one`: the scene of the first replica. Returns nothing if separate runs would be faster, or if
-  /// columns do not support the scene: for example, if there are few replicas; if the lattice has
-  /// three axes, many sites, or moments other than 1; if constants are site-dependent; if the
-  /// method or a term other than exchange couples sites; or if the replicas differ in more than
-  /// seeds and temperatures.
+  /// `one`: the scene of the share's first replica. Returns nothing if separate runs would be
+  /// faster, or if columns do not support the scene: for example, if there are few replicas; if the
+  /// lattice has three axes, many sites, or moments other than 1; if constants are site-dependent;
+  /// if the method or a term other than exchange couples sites; or if the replicas differ in more
+  /// than seeds and temperatures.
   static std::optional<ReplicaColumns> open(io::Scene const& scene, io::Scene const& one,
-                                            RunSettings const& settings);
+                                            RunSettings const& settings, ReplicaShare const& share);
 
   /// Returns the temperatures of the replicas in reduced units; empty if all have the scene's.
   std::vector<double> const& temperatures() const { return temperatures_; }

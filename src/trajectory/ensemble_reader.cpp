@@ -94,13 +94,16 @@ EnsembleInfo read_whole_info(std::filesystem::path const& path) {
   return info;
 }
 
-std::vector<double> read_last_spins(std::filesystem::path const& path, EnsembleInfo const& info) {
+std::vector<double> read_last_spins(std::filesystem::path const& path, EnsembleInfo const& info,
+                                    ReplicaRange const& replicas) {
   auto const file = open_file(path);
   auto const dataset = open_dataset(file.get(), "spins", path);
   auto extents = dataset_extents(dataset.get(), path);
   Extents begin(extents.size(), 0);
   begin[0] = static_cast<hsize_t>(info.frames) - 1;
   extents[0] = 1;
+  begin[1] = static_cast<hsize_t>(replicas.first);
+  extents[1] = static_cast<hsize_t>(replicas.count);
   std::vector<double> spins(elements(extents));
   read_block(dataset.get(), H5T_NATIVE_DOUBLE, begin, extents, spins.data(), path);
   return by_planes(spins, info.header);
@@ -120,10 +123,10 @@ EnsembleInfo read_ensemble_info(std::filesystem::path const& path) {
   return read_guarded(path, [&] { return read_whole_info(path); });
 }
 
-std::vector<double> read_ensemble_spins(std::filesystem::path const& path,
-                                        EnsembleInfo const& info) {
+std::vector<double> read_ensemble_spins(std::filesystem::path const& path, EnsembleInfo const& info,
+                                        ReplicaRange const& replicas) {
   if (info.frames == 0) throw_failure(path, "cannot read dataset spins", "there is no frame");
-  return read_guarded(path, [&] { return read_last_spins(path, info); });
+  return read_guarded(path, [&] { return read_last_spins(path, info, replicas); });
 }
 
 }  // namespace cayspin::inline v0_2::io

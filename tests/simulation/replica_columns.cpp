@@ -27,7 +27,7 @@ replicas = 40
 std::string const noise = "[thermal]\ntemperature = 0.1\nseed = 3\n";
 
 bool are_columns(io::Scene const& scene) {
-  return ReplicaColumns::open(scene, io::replica_of(scene, 0), {}).has_value();
+  return ReplicaColumns::open(scene, io::replica_of(scene, 0), {}, all_replicas(scene)).has_value();
 }
 
 TEST(ReplicaColumns, AreUsedForSmallLatticesOfLocalTermsAndExchange) {
