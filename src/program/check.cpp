@@ -281,7 +281,7 @@ int check(CheckOptions const& options) {
   auto scene =
       io::with_shape_of_start(io::read_scene_to_run_or_relax(options.scene, options.overrides));
   io::check_files(scene);
-  if (options.ranks) io::require_no_ensemble(scene, "a run on several ranks");
+  require_divisible(scene, options.ranks);
   if (scene.ensemble.there()) scene = first_replica(options, scene);
   if (io::is_to_relax(scene)) return check_to_relax(options, scene);
   if (!scene.stages.empty()) return check_in_stages(options, scene);

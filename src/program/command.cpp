@@ -44,6 +44,13 @@ void add_ranks_option(CLI::App& command, std::optional<std::string>& ranks, char
   command.add_option("--ranks", ranks, what)->type_name("Y,Z");
 }
 
+void require_divisible(io::Scene const& scene, std::optional<std::string> const& ranks) {
+  if (ranks && scene.ensemble.there())
+    throw UsageError(
+        "--ranks takes no ensemble, whose lattices are not divided: each rank runs "
+        "some of the replicas; accepted: no --ranks");
+}
+
 void require_name(fs::path const& output) {
   if (output.empty())
     throw UsageError("--output: the file name is empty; accepted: the name of a file");

@@ -107,6 +107,8 @@ void add_device_options(CLI::App& command, DeviceOptions& options);
 
 /// Adds --ranks, whose value has the form "Y,Z". `what`: its description in --help.
 void add_ranks_option(CLI::App& command, std::optional<std::string>& ranks, char const* what);
+/// Throws UsageError if --ranks is given for an ensemble.
+void require_divisible(io::Scene const& scene, std::optional<std::string> const& ranks);
 
 /// Throws UsageError if the name of the output file is empty.
 void require_name(std::filesystem::path const& output);

@@ -142,11 +142,15 @@ std::optional<int> threads_for(RunOptions const& options, std::string const& spa
 int run(RunOptions const& options, Ranks& ranks) {
   auto const typed = typed_scene(options, ranks);
   if (typed.ensemble.there()) {
-    ranks.together([&] {
-      if (ranks.many()) io::require_no_ensemble(typed, "a run on several ranks");
-      if (options.ranks) io::require_no_ensemble(typed, "--ranks");
-    });
-    return run_ensemble(typed, options);
+    ranks.together([&] { require_divisible(typed, options.ranks); });
+    catch_signals();
+    auto const replicas = typed.ensemble.replicas;
+    if (!ranks.keep_first(replicas, "the ensemble has " + counted(replicas, "replica")))
+      return Status::done;
+    auto on_rank = options;
+    on_rank.threads = threads_for(options, ranks.together([&] { return chosen_space(options.space); }),
+                                  ranks);
+    return run_ensemble(typed, on_rank, ranks);
   }
   auto const space = ranks.together([&] { return chosen_space(options.space); });
   auto const kokkos = ranks.together([&] {

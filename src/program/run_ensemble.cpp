@@ -3,6 +3,7 @@
 
 #include "cayspin_git_commit.hpp"
 #include "describe.hpp"
+#include "ensemble_on_ranks.hpp"
 #include "files/file_beside.hpp"
 #include "info_file.hpp"
 #include "io/ensemble_file.hpp"
@@ -16,8 +17,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,33 +32,34 @@ RunSettings settings_of(DeviceOptions const& options, std::string const& space) 
   return {.precision = options.precision, .space = space, .threads = options.threads};
 }
 
-io::EnsembleFile open_file(io::Scene const& scene, DeviceOptions const& options, EnsembleRun& run) {
-  auto header = run_header(run.first().scene(), options.precision, run.first().space(),
-                           run.first().threads(), CAYSPIN_GIT_COMMIT);
+/// `first`: the run of the first replica.
+io::EnsembleFile open_file(io::Scene const& scene, DeviceOptions const& options,
+                           SceneRun const& first) {
+  auto header = run_header(first.scene(), options.precision, first.space(), first.threads(),
+                           CAYSPIN_GIT_COMMIT);
   header.scene_text = scene.text;
   return {output_file(scene, options.output), header, scene.ensemble,
-          run_output_options(run.first().scene(), options.overwrite)};
+          run_output_options(first.scene(), options.overwrite)};
 }
 
-std::string kept(io::EnsembleFile const& file, std::filesystem::path const& path) {
-  return file.frames() == 0
-             ? std::string("no frame was written")
-             : fmt::format("the last good frame is {} in {}", file.frames() - 1, path.string());
-}
-
-/// Runs an ensemble, and writes its frames and samples into a file.
+/// Runs an ensemble. The first rank writes the frames and samples of all ranks into a file.
 class RecordedEnsemble {
  public:
-  RecordedEnsemble(io::Scene const& scene, RunOptions const& options, std::string const& space)
+  RecordedEnsemble(io::Scene const& scene, RunOptions const& options, std::string const& space,
+                   Ranks& ranks)
       : scene_(scene),
-        run_(scene, settings_of(options, space), false),
-        looks_(run_.looks(true, interrupt_requested)),
-        progress_(io::sites(scene) * scene.ensemble.replicas, options.listener),
+        ranks_(ranks),
+        run_(scene, settings_of(options, space), ranks),
+        looks_(run_.own().looks(true, interrupt_requested)),
+        progress_(io::sites(scene) * scene.ensemble.replicas,
+                  ranks.is_first() ? options.listener : Listener::nobody),
         path_(output_file(scene, options.output)) {
     if (options.restart) continue_from(*options.restart);
     // warning() throws if the scene sets refuse_unstable and the dt of any replica is too large.
     if (auto const warning = run_.warning()) fmt::print(stderr, "warning: {}\n", *warning);
-    file_.emplace(open_file(scene, options, run_));
+    ranks_.together([&] {
+      if (ranks_.is_first()) file_.emplace(open_file(scene, options, run_.own().first()));
+    });
   }
 
   int run() {
@@ -69,35 +73,34 @@ class RecordedEnsemble {
         auto const after = [&](std::int64_t every) { return (run_.steps() / every + 1) * every; };
         auto const next =
             std::min({end, after(scene_.output.every), after(scene_.output.scalars_every)});
-        ending = run_.advance(next - run_.steps(), looks_);
-        // advance() calls interrupt_requested only now and then, and may reach the next frame
-        // without doing so.
-        if (interrupt_requested() && run_.steps() < end) ending = Advanced::interrupted;
+        ending = run_.advance(next, looks_);
         if (ending == Advanced::interrupted) break;
         look(ending == Advanced::at_rest || run_.steps() == end);
       }
     } catch (NumbersFailed const& error) {
-      file_->close(cost());
-      throw NumbersFailed(fmt::format("{}; {}", error.what(), kept(*file_, path_)));
+      end_file(false);
+      throw NumbersFailed(fmt::format("{}; {}", error.what(), kept()));
+    } catch (OtherRankFailed const& other) {
+      if (other.status == Status::numbers_failed) end_file(false);
+      throw;
     }
     bool const interrupted = ending == Advanced::interrupted;
-    interrupted ? file_->close(cost()) : file_->finish(cost());
+    auto const cost = end_file(!interrupted);
     Summary total;
     total.steps = run_.steps() - first_;
-    total.step_seconds = run_.step_seconds();
-    progress_.close(total, file_->frames(), path_.string());
+    total.step_seconds = cost.step_seconds;
+    progress_.close(total, frames_, path_.string());
     if (!interrupted) return Status::done;
-    fmt::print(stderr, "{}: interrupted after step {} of {}; {}\n", scene_.path.string(),
-               run_.steps(), end, kept(*file_, path_));
+    if (ranks_.is_first())
+      fmt::print(stderr, "{}: interrupted after step {} of {}; {}\n", scene_.path.string(),
+                 run_.steps(), end, kept());
     return Status::interrupted;
   }
 
  private:
   void continue_from(std::filesystem::path const& file) {
-    auto const warning = as_restart([&] {
-      require_not_written(file, path_);
-      return run_.continue_from(file);
-    });
+    ranks_.together([&] { as_restart([&] { require_not_written(file, path_); }); });
+    auto const warning = as_restart([&] { return run_.continue_from(file); });
     if (warning) fmt::print(stderr, "warning: --restart {}\n", *warning);
     first_ = run_.steps();
   }
@@ -110,32 +113,53 @@ class RecordedEnsemble {
     Step const now{step, 0, 0, last};
     if (progress_.due(now)) progress_.show(now);
     if (!due(scene_.output.every) && !due(scene_.output.scalars_every)) return;
+    bool const has_frame = due(scene_.output.every);
     auto const scalars = run_.scalars();
-    if (due(scene_.output.scalars_every)) file_->write_scalars(step, run_.time(), scalars);
-    if (due(scene_.output.every)) file_->write_frame(step, run_.time(), scalars, run_.spins());
+    auto const spins = has_frame ? run_.spins() : std::vector<std::byte>();
+    ranks_.together([&] {
+      if (!file_) return;
+      if (due(scene_.output.scalars_every)) file_->write_scalars(step, run_.time(), scalars);
+      if (has_frame) file_->write_frame(step, run_.time(), scalars, spins);
+    });
+    if (has_frame) ++frames_;
   }
 
-  io::RunCost cost() const { return {run_.evaluations(), clock_.seconds(), run_.step_seconds()}; }
+  io::RunCost end_file(bool whole) {
+    auto const cost = run_.cost(clock_.seconds());
+    ranks_.together([&] {
+      if (file_) whole ? file_->finish(cost) : file_->close(cost);
+    });
+    return cost;
+  }
+
+  std::string kept() const {
+    return frames_ == 0
+               ? std::string("no frame was written")
+               : fmt::format("the last good frame is {} in {}", frames_ - 1, path_.string());
+  }
 
   io::Scene const& scene_;
-  EnsembleRun run_;
-  std::int64_t first_ = 0;
+  Ranks& ranks_;
+  EnsembleOnRanks run_;
+  std::int64_t first_ = 0, frames_ = 0;
   simulation::Looks looks_;
   Progress progress_;
   std::filesystem::path path_;
-  std::optional<io::EnsembleFile> file_;
+  std::optional<io::EnsembleFile> file_;  // on the first rank
   Kokkos::Timer clock_;
 };
 
 }  // namespace
 
-int run_ensemble(io::Scene const& scene, RunOptions const& options) {
-  auto const space = chosen_space(options.space);
-  KokkosOfCommand const kokkos(space, options.threads, options.device);
-  warn_of_notes(scene);
-  io::require_free(output_file(scene, options.output), options.overwrite);
-  catch_signals();
-  return RecordedEnsemble(scene, options, space).run();
+int run_ensemble(io::Scene const& scene, RunOptions const& options, Ranks& ranks) {
+  auto const space = ranks.together([&] { return chosen_space(options.space); });
+  auto const kokkos = ranks.together(
+      [&] { return std::make_unique<KokkosOfCommand>(space, options.threads, options.device); });
+  if (ranks.is_first()) warn_of_notes(scene);
+  ranks.together([&] {
+    if (ranks.is_first()) io::require_free(output_file(scene, options.output), options.overwrite);
+  });
+  return RecordedEnsemble(scene, options, space, ranks).run();
 }
 
 int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
@@ -147,7 +171,7 @@ int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
   catch_signals();
   Kokkos::Timer const clock;
   EnsembleRun run(scene, settings_of(options, space), true);
-  auto file = open_file(scene, options, run);
+  auto file = open_file(scene, options, run.first());
   std::vector<io::RelaxedReplica> found;
   io::RunCost cost;
   auto const minima = run.relax({.torque = search.torque,

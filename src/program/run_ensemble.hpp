@@ -6,8 +6,9 @@
 
 namespace cayspin::program {
 
-/// Performs `cayspin run` for a scene with [ensemble], on one rank. Returns the exit status.
-int run_ensemble(io::Scene const& scene, RunOptions const& options);
+/// Performs `cayspin run` for a scene with [ensemble], on ranks that each have at least one
+/// replica. Returns the exit status.
+int run_ensemble(io::Scene const& scene, RunOptions const& options, Ranks& ranks);
 
 /// How `cayspin relax` searches for the equilibrium of each replica.
 struct RelaxEnsembleOptions {

@@ -26,14 +26,14 @@ class OneRank final : public Ranks {
                     std::array<int, 2> const&) override {
     return {lattice};
   }
+  bool keep_first(std::int64_t, std::string const&) override { return true; }
   std::array<bool, 2> any(std::array<bool, 2> wanted) const override { return wanted; }
+  std::int64_t lowest(std::int64_t number) const override { return number; }
   void tell(std::string&) const override {}
   void gather(cayspin::Lattice const&, std::size_t, std::int64_t, std::int64_t, void const*,
               void*) const override {}
+  std::vector<std::byte> gather(std::vector<std::byte> own) const override { return own; }
   void leave_by(int) override {}
-
- protected:
-  int lowest(int number) const override { return number; }
 };
 
 }  // namespace cayspin::simulation

@@ -19,6 +19,7 @@
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace cayspin::simulation {
 
@@ -53,6 +54,9 @@ class Ranks {
   /// part.
   virtual PartOfRank divide(cayspin::Lattice const& lattice, mpi::Depth const& depth,
                             std::array<int, 2> const& parts) = 0;
+  /// Leaves out the ranks beyond the first `most`; the warning says `why`. Returns false on a rank
+  /// that is left out. From then on, count() and rank() ignore those ranks.
+  virtual bool keep_first(std::int64_t most, std::string const& why) = 0;
 
   /// Returns how many planes along z of the whole lattice the first rank holds at a time: nz /
   /// count(), at least 1.
@@ -62,6 +66,8 @@ class Ranks {
 
   /// Returns for each of two flags whether any rank has set it.
   virtual std::array<bool, 2> any(std::array<bool, 2> wanted) const = 0;
+  /// Returns the lowest `number` of any rank.
+  virtual std::int64_t lowest(std::int64_t number) const = 0;
   /// Replaces the text by that of the first rank.
   virtual void tell(std::string& text) const = 0;
   /// Gathers `planes` planes along z of the whole lattice, from plane `first` on, into `gathered`,
@@ -69,6 +75,8 @@ class Ranks {
   /// varying fastest.
   virtual void gather(cayspin::Lattice const& local, std::size_t bytes_of_site, std::int64_t first,
                       std::int64_t planes, void const* own, void* gathered) const = 0;
+  /// Returns the bytes of all ranks, in the order of the ranks; nothing on ranks but the first.
+  virtual std::vector<std::byte> gather(std::vector<std::byte> own) const = 0;
 
   /// Returns true if all ranks were given the same text.
   bool same(std::string const& text) const {
@@ -104,14 +112,11 @@ class Ranks {
   /// failure.
   bool agreed() const { return agreed_; }
 
- protected:
-  /// Returns the lowest `number` of any rank.
-  virtual int lowest(int number) const = 0;
-
  private:
   void agree(std::exception_ptr const& error) {
     constexpr int none = 1 << 30, statuses = 256;
-    int const failed = lowest(error ? rank() * statuses + status_of(error) : none);
+    auto const failed =
+        static_cast<int>(lowest(error ? rank() * statuses + status_of(error) : none));
     if (failed == none) return;
     agreed_ = true;
     if (error && failed / statuses == rank()) std::rethrow_exception(error);

@@ -73,26 +73,9 @@ TEST_F(OnRanks, AreRefusedInOneLine) {
 }
 
 TEST_F(OnRanks, SayOnceThatOneHasTooLittleMemory) {
+  // A rank's field is 131 MB.
   auto const scene = write("scene.toml", film("[256, 256, 160]", "method = \"rkmk4\""));
-  Treatment launcher;
-  launcher.program = CAYSPIN_MPIEXEC;
-  for (int const poor : {0, 1}) {
-    SCOPED_TRACE(poor);
-    Arguments both;
-    for (int rank = 0; rank < 2; ++rank) {
-      auto const run = launch(1, run_of(scene, "out.h5"));
-      both.insert(both.end(), run.begin(), run.begin() + 2);
-      // A rank's field is 131 MB, and a limit of 300 MB is too low for any run with it.
-      if (rank == poor)
-        both.insert(both.end(), {"sh", "-c", "ulimit -v 300000; exec \"$0\" \"$@\""});
-      both.insert(both.end(), run.begin() + 2, run.end());
-      if (rank == 0) both.push_back(":");
-    }
-    auto const outcome = start(both, launcher);
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
-    EXPECT_TRUE(outcome.errors.find("memory") != std::string::npos) << outcome.errors;
-  }
+  expect_too_little_memory(run_of(scene, "out.h5"));
 }
 
 // Only ranks with a part need memory. The restart file is of another lattice, and so ends the run

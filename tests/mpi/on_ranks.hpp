@@ -55,6 +55,25 @@ class OnRanks : public ProgramTest {
     EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
     EXPECT_TRUE(contains(outcome.errors, part));
   }
+
+  /// Runs on two ranks, one of which has only 300 MB. Expects one line about memory.
+  void expect_too_little_memory(Arguments const& arguments) const {
+    Treatment launcher;
+    launcher.program = CAYSPIN_MPIEXEC;
+    for (int const poor : {0, 1}) {
+      SCOPED_TRACE(poor);
+      Arguments both;
+      for (int rank = 0; rank < 2; ++rank) {
+        auto const run = launch(1, arguments);
+        both.insert(both.end(), run.begin(), run.begin() + 2);
+        if (rank == poor)
+          both.insert(both.end(), {"sh", "-c", "ulimit -v 300000; exec \"$0\" \"$@\""});
+        both.insert(both.end(), run.begin() + 2, run.end());
+        if (rank == 0) both.push_back(":");
+      }
+      expect_refused(start(both, launcher), "memory");
+    }
+  }
 };
 
 inline std::string film(std::string const& shape, std::string const& integrator) {

@@ -17,6 +17,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <numeric>
 #include <thread>
 #include <type_traits>
 #include <vector>
@@ -90,15 +91,7 @@ class MpiRanks final : public Ranks {
                     std::array<int, 2> const& numbers) override {
     int const parts = numbers[0] * numbers[1];
     bool const has_part = rank_ < parts;
-    if (parts < count_) {
-      MPI_Comm those = MPI_COMM_NULL;
-      MPI_Comm_split(comm_, has_part ? 0 : 1, rank_, &those);
-      if (is_first())
-        fmt::print(stderr, "warning: {} of {} ranks {} nothing to do: a part needs at least {}\n",
-                   count_ - parts, count_, count_ - parts == 1 ? "has" : "have",
-                   mpi::to_text(depth));
-      use(those);
-    }
+    keep_first(parts, "a part needs at least " + mpi::to_text(depth));
     if (!has_part || parts == 1) return {.local = lattice, .none = !has_part};
     auto const domain = std::make_shared<mpi::Domain>(
         comm_, lattice, depth, mpi::Division{.y = numbers[0], .z = numbers[1]});
@@ -108,12 +101,32 @@ class MpiRanks final : public Ranks {
     return {domain->local(), domain};
   }
 
+  bool keep_first(std::int64_t most, std::string const& why) override {
+    if (most >= count_) return true;
+    auto const kept = static_cast<int>(most);
+    bool const is_kept = rank_ < kept;
+    MPI_Comm those = MPI_COMM_NULL;
+    MPI_Comm_split(comm_, is_kept ? 0 : 1, rank_, &those);
+    if (is_first())
+      fmt::print(stderr, "warning: {} of {} ranks {} nothing to do: {}\n", count_ - kept, count_,
+                 count_ - kept == 1 ? "has" : "have", why);
+    use(those);
+    return is_kept;
+  }
+
   std::array<bool, 2> any(std::array<bool, 2> wanted) const override {
     std::array<int, 2> both{wanted[0], wanted[1]};
     MPI_Request request = MPI_REQUEST_NULL;
     MPI_Iallreduce(MPI_IN_PLACE, both.data(), 2, MPI_INT, MPI_MAX, comm_, &request);
     wait(request);
     return {both[0] != 0, both[1] != 0};
+  }
+
+  std::int64_t lowest(std::int64_t number) const override {
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Iallreduce(MPI_IN_PLACE, &number, 1, MPI_INT64_T, MPI_MIN, comm_, &request);
+    wait(request);
+    return number;
   }
 
   void tell(std::string& text) const override {
@@ -146,6 +159,27 @@ class MpiRanks final : public Ranks {
     MPI_Wait(&request, MPI_STATUS_IGNORE);
   }
 
+  std::vector<std::byte> gather(std::vector<std::byte> own) const override {
+    auto const size = static_cast<std::int64_t>(own.size());
+    std::vector<std::int64_t> sizes(is_first() ? static_cast<std::size_t>(count_) : 0);
+    MPI_Gather(&size, 1, MPI_INT64_T, sizes.data(), 1, MPI_INT64_T, 0, comm_);
+    if (!is_first()) {
+      for_each_message(size, [&](std::int64_t begin, int bytes) {
+        MPI_Send(own.data() + begin, bytes, MPI_BYTE, 0, 0, comm_);
+      });
+      return {};
+    }
+    own.resize(
+        static_cast<std::size_t>(std::accumulate(sizes.begin(), sizes.end(), std::int64_t{0})));
+    std::int64_t at = size;
+    for (int rank = 1; rank < count_; ++rank)
+      for_each_message(sizes[static_cast<std::size_t>(rank)], [&](std::int64_t, int bytes) {
+        MPI_Recv(own.data() + at, bytes, MPI_BYTE, rank, 0, comm_, MPI_STATUS_IGNORE);
+        at += bytes;
+      });
+    return own;
+  }
+
   void leave_by(int status) override {
     if (!many()) return;
     // The message has been printed, and MPI would add another.
@@ -153,15 +187,15 @@ class MpiRanks final : public Ranks {
     MPI_Abort(MPI_COMM_WORLD, status);
   }
 
- protected:
-  int lowest(int number) const override {
-    MPI_Request request = MPI_REQUEST_NULL;
-    MPI_Iallreduce(MPI_IN_PLACE, &number, 1, MPI_INT, MPI_MIN, comm_, &request);
-    wait(request);
-    return number;
+ private:
+  /// Calls send(begin, bytes) for the pieces of a message that is too long for MPI's int.
+  template <class Send>
+  static void for_each_message(std::int64_t size, Send const& send) {
+    constexpr std::int64_t most = 1 << 30;
+    for (std::int64_t begin = 0; begin < size; begin += most)
+      send(begin, static_cast<int>(std::min(most, size - begin)));
   }
 
- private:
   void use(MPI_Comm comm) {
     comm_ = comm;
     MPI_Comm_size(comm, &count_);
