@@ -148,8 +148,8 @@ int run(RunOptions const& options, Ranks& ranks) {
     if (!ranks.keep_first(replicas, "the ensemble has " + counted(replicas, "replica")))
       return Status::done;
     auto on_rank = options;
-    on_rank.threads = threads_for(options, ranks.together([&] { return chosen_space(options.space); }),
-                                  ranks);
+    on_rank.threads =
+        threads_for(options, ranks.together([&] { return chosen_space(options.space); }), ranks);
     return run_ensemble(typed, on_rank, ranks);
   }
   auto const space = ranks.together([&] { return chosen_space(options.space); });
