@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -31,7 +32,7 @@ class EscapeSearch {
       : exec_(exec),
         field_(field),
         state_(state),
-        rest_(rest.value),
+        rest_(rest),
         options_(options),
         climber_(state.lattice()),
         probed_(exec, field, state, climber_.spins(), options.time, options.preconditioned),
@@ -110,8 +111,8 @@ class EscapeSearch {
         });
     evaluations_ += climbed.evaluations;
     is_stopped_ = climbed.is_stopped;
-    double const barrier = climbed.energy.value - rest_;
-    if (is_stopped_ || !climbed.is_saddle || !(barrier > 0)) return;
+    double const barrier = climbed.energy.value - rest_.value;
+    if (is_stopped_ || !climbed.is_saddle || !(barrier > 4 * round_off())) return;
     if (energy_ && !(climbed.energy.value < *energy_)) return;
     std::array<Minimum, 2> ends;
     double const down = fall / largest_length(exec_, climber_.vector());
@@ -120,18 +121,34 @@ class EscapeSearch {
       ends[side] = relax(sides_[side]);
       if (ends[side].end != MinimizeEnd::converged) return;
     }
-    // A state that can move without a barrier may come back elsewhere, so the energies are
-    // compared.
-    auto const gap = [&](std::size_t side) { return std::abs(ends[side].energy.value - rest_); };
-    auto const way = [&](std::size_t side) {
-      return distance_between(exec_, state_, sides_[side]);
-    };
-    std::size_t const out = way(0) < way(1) ? 1 : 0;
-    if (gap(1 - out) > 1e-6 * barrier || way(out) < same) return;
+    std::array<double, 2> way{};
+    std::array<bool, 2> comes_back{};
+    for (std::size_t side = 0; side < 2; ++side) {
+      way[side] = distance_between(exec_, state_, sides_[side]);
+      // A state that can move without a barrier may come back elsewhere, so the energies are
+      // compared. The torque that is left of either state changes the energy on the way.
+      double const left_torque = options_.torque * std::sqrt(sites()) * way[side];
+      double const most = std::min(1e-6 * barrier + left_torque, 1e-2 * barrier);
+      comes_back[side] =
+          std::abs(ends[side].energy.value - rest_.value) <= std::max(round_off(), most);
+    }
+    if (!comes_back[0] && !comes_back[1]) return;
+    bool const both = comes_back[0] && comes_back[1];
+    std::size_t const out = both ? (way[0] < way[1] ? 1 : 0) : (comes_back[0] ? 1 : 0);
+    if (way[out] < same) return;
     energy_ = climbed.energy.value;
     energy_beyond_ = ends[out].energy;
     Kokkos::deep_copy(exec_, saddle_.allocation(), climber_.spins().allocation());
     Kokkos::deep_copy(exec_, beyond_.allocation(), sides_[out].allocation());
+  }
+
+  double sites() const { return static_cast<double>(state_.lattice().sites()); }
+
+  /// Returns a bound on the round-off of an energy, as Descent does.
+  double round_off() const {
+    constexpr double epsilon = std::numeric_limits<Real>::epsilon();
+    return 8 * (epsilon / std::sqrt(sites()) + std::numeric_limits<double>::epsilon()) *
+           rest_.magnitude;
   }
 
   Minimum relax(Spins& spins) {
@@ -153,7 +170,7 @@ class EscapeSearch {
   Exec const& exec_;
   Field const& field_;
   Spins const& state_;
-  double rest_;  // energy of the state
+  Energy rest_;  // of the state
   PathOptions const& options_;
   SaddleSearch<Spins> climber_;
   ProbedField<Spins> probed_;

@@ -100,9 +100,9 @@ def path(scene: Scene, start: np.ndarray | str | os.PathLike,
     elif modes is not None:
         raise _cayspin.CayspinError(f"path: modes {arguments.shown(modes)}: `end` is given; "
                                     "accepted: one of them")
-    ends = [None if state is None else
-            _end(state, name, sites.shape_by_site(shape, cell_sites), cell_sites)
-            for state, name in ((start, "start"), (end, "end"))]
+    of_sites = sites.shape_by_site(shape, cell_sites)
+    ends = [_end(start, "start", of_sites, cell_sites),
+            None if end is None else _end(end, "end", of_sites, cell_sites)]
     try:
         found = run.path(*ends, *options, modes)
     except (_cayspin.SceneError, _cayspin.NumbersFailed):

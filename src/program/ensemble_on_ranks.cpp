@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "ensemble_on_ranks.hpp"
 
+#include "files/available_memory.hpp"
+
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -19,17 +21,29 @@ std::vector<Number> gathered(std::vector<Number> const& own, Ranks const& ranks)
   auto const bytes = std::as_bytes(std::span(own));
   auto const all_bytes = ranks.gather({bytes.begin(), bytes.end()});
   std::vector<Number> all(all_bytes.size() / sizeof(Number));
-  std::memcpy(all.data(), all_bytes.data(), all_bytes.size());
+  if (!all.empty()) std::memcpy(all.data(), all_bytes.data(), all_bytes.size());
   return all;
+}
+
+// Returns the memory available to the replicas on this machine. All ranks look before any of them
+// opens its replicas. The first rank keeps room for a frame of all replicas, which it gathers.
+std::int64_t memory_for_replicas(io::Scene const& scene, RunSettings const& settings,
+                                 Ranks const& ranks) {
+  auto const bytes =
+      settings.precision == Precision::double_precision ? sizeof(double) : sizeof(float);
+  auto const frame =
+      scene.ensemble.replicas * io::sites(scene) * 3 * static_cast<std::int64_t>(bytes);
+  return std::max<std::int64_t>(0, io::available_memory() - (ranks.is_first() ? frame : 0));
 }
 
 }  // namespace
 
 EnsembleOnRanks::EnsembleOnRanks(io::Scene const& scene, RunSettings const& settings, Ranks& ranks)
     : ranks_(ranks),
+      available_(ranks.together([&] { return memory_for_replicas(scene, settings, ranks); })),
       own_(ranks.together([&] {
-        auto const share =
-            share_of_rank(scene, ranks.rank(), ranks.count(), ranks.on_this_machine());
+        auto share = share_of_rank(scene, ranks.rank(), ranks.count(), ranks.on_this_machine());
+        if (ranks.many()) share.available = available_;
         return std::make_unique<EnsembleRun>(scene, settings, false, share);
       })),
       last_step_(ranks.lowest(ranks.is_first() ? own_->last_step() : beyond)) {}

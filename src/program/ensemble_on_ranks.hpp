@@ -48,6 +48,7 @@ class EnsembleOnRanks {
 
  private:
   Ranks& ranks_;
+  std::int64_t available_;  // memory, in bytes
   std::unique_ptr<EnsembleRun> own_;
   std::int64_t steps_ = 0, last_step_;
 };

@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,7 +28,8 @@ namespace {
 constexpr std::int64_t default_modes = 4;
 
 struct PathCommandOptions : DeviceOptions {
-  std::filesystem::path from, to;  // `to` is empty if only one state is known
+  std::filesystem::path from;
+  std::optional<std::filesystem::path> to;  // empty if only one state is known
   ScenePathOptions search;
   bool quiet = false, json = false;
 };
@@ -85,14 +87,14 @@ void require_same_vacancies(PathCommandOptions const& options, std::vector<doubl
       throw UsageError(fmt::format(
           "--to {}: has {} spin on site {} (counted from 0, x fastest), where --from {} "
           "has {}; accepted: spins on the same sites",
-          options.to.string(), is_vacant(to, at) ? "no" : "a", at / 3, options.from.string(),
+          options.to->string(), is_vacant(to, at) ? "no" : "a", at / 3, options.from.string(),
           is_vacant(from, at) ? "none" : "one"));
 }
 
 /// Returns the spins of the file that --to names.
 std::vector<double> other_end(PathCommandOptions const& options, io::Scene const& scene,
                               std::vector<double> const& from) {
-  EndOption const last{"--to", options.to};
+  EndOption const last{"--to", *options.to};
   auto const other = scene_from(options, last);
   output_file(other, options.output);  // this file must not be replaced either
   auto const cells_of = [](io::Lattice const& lattice) {
@@ -101,7 +103,7 @@ std::vector<double> other_end(PathCommandOptions const& options, io::Scene const
   if (scene.lattice.shape != other.lattice.shape)
     throw UsageError(
         fmt::format("--to {}: its lattice is {}, that of --from {} is {}; accepted: the same shape",
-                    options.to.string(), cells_of(other.lattice), options.from.string(),
+                    options.to->string(), cells_of(other.lattice), options.from.string(),
                     cells_of(scene.lattice)));
   auto to = spins_of(other, last);
   require_same_vacancies(options, from, to);
@@ -133,7 +135,7 @@ int find_path(PathCommandOptions const& options) {
   EndOption const first{"--from", options.from};
   auto const scene = scene_from(options, first);
   auto search = options.search;
-  bool const has_end = !options.to.empty();
+  bool const has_end = options.to.has_value();
   if (has_end && search.modes)
     throw UsageError("--modes: --to names the other end; accepted: one of them");
   if (!has_end && !search.modes) search.modes = default_modes;
@@ -157,7 +159,7 @@ int find_path(PathCommandOptions const& options) {
   auto [end, path, rates_failed] =
       find_scene_path(scene, from, to, space, options.precision, search, CAYSPIN_GIT_COMMIT);
   path.from = options.from.string();
-  path.to = options.to.string();
+  if (has_end) path.to = options.to->string();
   // An interrupt may also come after the path was found, during the computation of rates, which
   // takes long.
   if (end == PathEnd::interrupted || interrupt_requested()) {

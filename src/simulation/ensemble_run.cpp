@@ -22,10 +22,11 @@ namespace cayspin::simulation {
 namespace {
 
 void require_memory_of_all(io::Scene const& scene, io::Scene const& replica, Precision precision,
-                           bool relaxes, std::int64_t replicas) {
+                           bool relaxes, std::int64_t replicas,
+                           std::optional<std::int64_t> available = {}) {
   auto const plan =
       relaxes ? make_plan_to_relax(replica, precision) : make_plan(replica, precision);
-  require_memory(scene, plan, static_cast<int>(replicas));
+  require_memory(scene, plan, static_cast<int>(replicas), available);
 }
 
 }  // namespace
@@ -41,7 +42,8 @@ EnsembleRun::EnsembleRun(io::Scene const& scene, RunSettings const& settings, bo
     auto const replica = relaxes ? io::replica_to_relax(scene, at) : io::replica_of(scene, at);
     // Columns need less memory, and are tried first.
     if (number == 1 || (replicas == 1 && share.on_this_machine > 1))
-      require_memory_of_all(scene, replica, settings.precision, relaxes, share.on_this_machine);
+      require_memory_of_all(scene, replica, settings.precision, relaxes, share.on_this_machine,
+                            share.available);
     try {
       runs_.push_back(SceneRun::open(replica, settings));
     } catch (io::SceneError const& error) {

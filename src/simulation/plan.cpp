@@ -298,8 +298,9 @@ void keep_part(Plan& plan, io::Scene const& scene, Precision precision, Lattice 
 
 bool fits(Plan const& plan) { return plan.memory.total() <= io::available_memory(); }
 
-void require_memory(io::Scene const& scene, Plan const& plan, int ranks) {
-  std::int64_t const available = io::available_memory() / ranks;
+void require_memory(io::Scene const& scene, Plan const& plan, int ranks,
+                    std::optional<std::int64_t> of_all) {
+  std::int64_t const available = of_all.value_or(io::available_memory()) / ranks;
   if (plan.memory.total() > available)
     throw io::scene_error(
         scene, "lattice.shape",

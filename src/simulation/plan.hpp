@@ -76,6 +76,7 @@ void keep_part(Plan& plan, io::Scene const& scene, Precision precision, Lattice 
 
 /// Throws io::SceneError if the run needs more memory than is available to one of `ranks` ranks on
 /// this machine.
-void require_memory(io::Scene const& scene, Plan const& plan, int ranks = 1);
+void require_memory(io::Scene const& scene, Plan const& plan, int ranks = 1,
+                    std::optional<std::int64_t> available = {});
 
 }  // namespace cayspin::simulation

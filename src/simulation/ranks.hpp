@@ -50,12 +50,11 @@ class Ranks {
   /// for an invalid division.
   virtual std::array<int, 2> division(cayspin::Lattice const& lattice, mpi::Depth const& depth,
                                       std::optional<std::string> const& asked) const = 0;
-  /// Divides a lattice. From then on, count(), rank() and on_this_machine() ignore ranks without a
-  /// part.
+  /// Divides a lattice. From then on, all members ignore ranks without a part.
   virtual PartOfRank divide(cayspin::Lattice const& lattice, mpi::Depth const& depth,
                             std::array<int, 2> const& parts) = 0;
   /// Leaves out the ranks beyond the first `most`; the warning says `why`. Returns false on a rank
-  /// that is left out. From then on, count() and rank() ignore those ranks.
+  /// that is left out. From then on, all members ignore those ranks.
   virtual bool keep_first(std::int64_t most, std::string const& why) = 0;
 
   /// Returns how many planes along z of the whole lattice the first rank holds at a time: nz /

@@ -144,7 +144,8 @@ std::optional<ReplicaColumns> ReplicaColumns::open(io::Scene const& scene, io::S
   auto const columns =
       on_host ? columns_of_a_lattice(replicas, sites, sample->threads()) : replicas;
   require_memory(scene, make_plan(scene_of_columns(one, 0, columns, {}), settings.precision),
-                 static_cast<int>((share.on_this_machine + columns - 1) / columns));
+                 static_cast<int>((share.on_this_machine + columns - 1) / columns),
+                 share.available);
   opened.emplace();
   auto const& temperatures = opened->temperatures_ = temperatures_of(scene, share.own);
   for (std::int64_t begin = 0; begin < replicas; begin += columns) {

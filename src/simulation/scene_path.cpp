@@ -12,6 +12,7 @@
 #include "transition_rates.hpp"
 
 #include <cayspin/lowest_escape.hpp>
+#include <cayspin/path/probed_field.hpp>
 
 #include <fmt/format.h>
 
@@ -34,7 +35,8 @@ double least_moment(io::Scene const& scene, Lattice const& lattice) {
 }
 
 constexpr std::int64_t most_zero_modes = 4;  // of a state with more, fewer modes are climbed
-constexpr double zero_mode = 1e-4;           // curvature relative to that of the last mode found
+// Curvatures of zero modes are below this fraction of the field without exchange.
+constexpr double zero_mode = 1e-4;
 
 template <class Real, class Space>
 class PathOfScene {
@@ -97,19 +99,24 @@ class PathOfScene {
     MinimumEnergyPath unfinished;
     auto const rest = cayspin::detail::relax_end(exec_, field_, state, options, unfinished);
     if (rest.end != MinimizeEnd::converged) return unfinished;
+    // Exchange says nothing about modes in which all spins turn together.
+    cayspin::detail::ProbedField<Spins> const probed(exec_, field_, state, saddle_, options.time,
+                                                     options.preconditioned);
+    unfinished.evaluations += probed.evaluations;
     auto const before = unfinished.evaluations;
     auto const modes = find_curvatures<Real, Space>(
         exec_, scene_, field_, state,
         {.count = static_cast<std::size_t>(*options_.modes + most_zero_modes),
-         .tolerance = 1e-2,
+         .tolerance = 1e-4,
          .evaluations = std::max<std::int64_t>(1, options.evaluations - before),
          .poll = [&] { return options_.observer ? options_.observer({before}) : Next::proceed; }});
     unfinished.evaluations += modes.evaluations;
     unfinished.end = PathEnd::interrupted;
     if (modes.end == ModesEnd::interrupted) return unfinished;
+    double const scale = probed.preconditioner.first_shift() * scene_.units.energy;
     std::vector<Spins> directions;
     for (std::size_t i = 0; i < modes.values.size(); ++i) {
-      bool const is_zero = modes.values[i] < zero_mode * modes.values.back();
+      bool const is_zero = modes.values[i] < zero_mode * std::min(scale, modes.values.back());
       if (is_zero || std::ssize(directions) == *options_.modes) continue;
       copy_from_host(modes.vectors[i], directions.emplace_back("path::mode", state.lattice()));
     }

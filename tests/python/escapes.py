@@ -132,6 +132,7 @@ class Escapes(PackageTest):
         state = np.tile([0.0, 0.0, 1.0], (1, 1, cluster.count, 1))
         self.assert_refused(error, "path: modes 3: `end` is given; accepted: one of them",
                             cayspin.path, cluster.scene, state, -state, modes=3)
+        self.assert_refused(error, "path: start", cayspin.path, cluster.scene, None)
         self.assert_refused(error, "path: modes 0; accepted: a whole number from 1 to 100",
                             cayspin.path, cluster.scene, state, modes=0)
         self.assert_refused(error, "path: modes: 2.5; accepted: a whole number", cayspin.path,

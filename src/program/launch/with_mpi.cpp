@@ -62,7 +62,6 @@ class MpiRanks final : public Ranks {
   MpiRanks() {
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &threads_);
     use(MPI_COMM_WORLD);
-    find_those_on_these_cores();
   }
   MpiRanks(MpiRanks const&) = delete;
   MpiRanks& operator=(MpiRanks const&) = delete;
@@ -200,23 +199,16 @@ class MpiRanks final : public Ranks {
     comm_ = comm;
     MPI_Comm_size(comm, &count_);
     MPI_Comm_rank(comm, &rank_);
-    MPI_Comm here = those_on_this_machine();
-    MPI_Comm_size(here, &on_this_machine_);
-    MPI_Comm_free(&here);
+    count_neighbours();
   }
 
-  MPI_Comm those_on_this_machine() const {
+  void count_neighbours() {
+    static_assert(std::is_trivially_copyable_v<Cores>);
     MPI_Comm here = MPI_COMM_NULL;
     MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
-    return here;
-  }
-
-  void find_those_on_these_cores() {
-    static_assert(std::is_trivially_copyable_v<Cores>);
-    MPI_Comm here = those_on_this_machine();
+    MPI_Comm_size(here, &on_this_machine_);
     std::vector<Cores> cores(static_cast<std::size_t>(on_this_machine_));
-    auto const own = cores_of_process();
-    MPI_Allgather(&own, sizeof own, MPI_BYTE, cores.data(), sizeof own, MPI_BYTE, here);
+    MPI_Allgather(&cores_, sizeof cores_, MPI_BYTE, cores.data(), sizeof cores_, MPI_BYTE, here);
     int rank = 0;
     MPI_Comm_rank(here, &rank);
     MPI_Comm_free(&here);
@@ -247,7 +239,8 @@ class MpiRanks final : public Ranks {
   }
 
   MPI_Comm comm_ = MPI_COMM_NULL;
-  std::vector<io::SiteBox> boxes_;  // the boxes of all parts, on the first rank
+  Cores const cores_ = cores_of_process();  // before OpenMP binds the main thread to one of them
+  std::vector<io::SiteBox> boxes_;          // the boxes of all parts, on the first rank
   int threads_ = 0, count_ = 0, rank_ = 0, on_this_machine_ = 1, on_these_cores_ = 1;
 };
 
