@@ -141,13 +141,14 @@ class Minimizer {
     detail::Hessian hessian(exec, field, options.time, spins, descent_.is_mobile,
                             detail::HessianArrays<Spins>{descent_.search.trial, pairs.change(2),
                                                          descent_.lbfgs.scratch()});
-    // Only curvatures below -tolerance count as negative. For one between -tolerance and 0, even a
-    // rotation by one radian along its eigenvector gives a torque that is below options.torque or
-    // within round-off.
+    // Only curvatures below -tolerance count as negative. By default, for one between -tolerance
+    // and 0, even a rotation by one radian along its eigenvector gives a torque that is below
+    // options.torque or within round-off.
     auto const found = detail::find_lowest_curvature(
         hessian, exec, arrays,
         {.scale = descent_.first_shift(),
-         .tolerance = std::max(options.torque, hessian.round_off(descent_.strongest_field())),
+         .tolerance = std::max(options.least_curvature.value_or(options.torque),
+                               hessian.round_off(descent_.strongest_field())),
          .error = options.lowest_curvature
                       ? std::max(5e-7, 16 * Descent::epsilon) * descent_.strongest_field()
                       : std::numeric_limits<double>::infinity(),

@@ -102,6 +102,11 @@ Minimum SceneMinimizer<Real, Space>::relax(Space const& exec, io::Scene const& s
     return std::max(torque, Minimizer<SpinField<double>>::least_bound);
   };
   closer.torque = bound(options.torque * largest);
+  // The energy of a spin with a small moment has a small curvature.
+  double least = largest;
+  for (double const moment : moments)
+    if (moment > 0) least = std::min(least, moment);
+  closer.least_curvature = bound(options.torque * least);
   Minimum all;
   all.iterations = all.evaluations = all.saddles = 0;
   constexpr int tries = 20;

@@ -153,6 +153,19 @@ TYPED_TEST(Paths, LeaveAHardAxis) {
   EXPECT_NEAR(std::abs(at(numbers_of(found.saddle_spins), 0).y), 1, 1e-5);
 }
 
+// A direction with which the field is measured may be normal to the easy axis.
+TYPED_TEST(Paths, BetweenEasyAxesInAnyDirection) {
+  for (Vec3<double> axis : {Vec3<double>{2, -1, 0}, Vec3<double>{1, 1, -1}, Vec3<double>{1, -2, 1},
+                            Vec3<double>{4, 1, -2}}) {
+    axis = 1 / std::sqrt(dot(axis, axis)) * axis;
+    EffectiveField const field(UniaxialAnisotropy(1, axis));
+    auto const found = this->find(field, Lattice::chain(1), {axis.x, axis.y, axis.z},
+                                  {-axis.x, -axis.y, -axis.z}, this->options());
+    ASSERT_EQ(found.end, PathEnd::converged) << axis.x << axis.y << axis.z;
+    EXPECT_NEAR(found.barrier_forward(), 0.5, this->exact());
+  }
+}
+
 // Two spins that turn one after the other: two saddles, and the higher one counts.
 TYPED_TEST(Paths, HaveTwoSaddles) {
   auto const lattice = Lattice::chain(2);
@@ -272,6 +285,24 @@ TYPED_TEST(Paths, TakeFewEvaluations) {
         this->find(field, state.lattice, numbers_of(spins), state.uniform, {.torque = torque});
     ASSERT_EQ(found.end, PathEnd::converged);
     EXPECT_LE(found.evaluations, 60 * 16) << n;
+  }
+}
+
+// An observer can stop a search for a saddle, also between the products with the Hessian.
+TYPED_TEST(Paths, StopAtOnce) {
+  auto const state = skyrmion(16, 8, 8);
+  auto options = this->options();
+  options.torque = this->is_double ? 1e-6 : 1e-3;
+  std::int64_t asked = 0, last = 0;
+  options.observer = [&](PathProgress const& now) {
+    last = now.evaluations;
+    return now.evaluations < asked ? Next::proceed : Next::stop;
+  };
+  for (asked = 400; asked < 700; asked += 37) {
+    auto const found = this->find(skyrmion_field(state.lattice), state.lattice, state.spins,
+                                  state.uniform, options);
+    EXPECT_EQ(found.end, PathEnd::interrupted) << asked;
+    EXPECT_LT(last, asked + 120) << asked;
   }
 }
 

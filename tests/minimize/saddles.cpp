@@ -59,6 +59,26 @@ TYPED_TEST(Saddles, KeptOnesHaveTheirLowestCurvature) {
   EXPECT_NEAR(found.curvature, -2, 1e-5);
 }
 
+// At the start there is no torque, and only one site of many has a descent, with a small share in
+// the start of the search for it.
+TYPED_TEST(Saddles, OnOneSiteOfMany) {
+  using Real = typename TypeParam::Real;
+  for (std::int64_t const n : {32, 128}) {
+    auto const lattice = Lattice::square(n, n);
+    std::vector<double> constants(static_cast<std::size_t>(lattice.sites()), 1);
+    constants[static_cast<std::size_t>(n / 2 * (n + 1))] = -1;
+    ScalarField<Real, typename TypeParam::MemorySpace> const field("constants", lattice);
+    copy_from_host(constants, field);
+    auto spins =
+        spins_of<typename TestFixture::Spins>(lattice, uniform(lattice.sites(), {0, 0, 1}));
+    auto const found =
+        minimize(this->exec, SiteDependentUniaxialAnisotropy(field, {0, 0, 1}), spins);
+    EXPECT_EQ(found.end, MinimizeEnd::converged);
+    EXPECT_EQ(found.saddles, 1) << n;
+    EXPECT_NEAR(at(numbers_of(spins), n / 2 * (n + 1)).z, 0, 1e-5) << n;
+  }
+}
+
 // Without a preconditioner, some of these searches find a curvature below zero in their last step.
 TYPED_TEST(Saddles, WhereTheSearchOnlyJustFindsTheWay) {
   auto const lattice = Lattice::chain(200);

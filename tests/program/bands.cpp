@@ -176,6 +176,24 @@ TEST_F(Bands, KeepTheRealRateThatDecaysLeast) {
     }
 }
 
+// The demagnetising field of a film is a sum of many small parts, beside strong exchange.
+TEST_F(Bands, HaveTheWholeDipolarFieldInSinglePrecision) {
+  std::string const large =
+      "[system]\nkind = \"llg\"\ndamping = 0\n[lattice]\nshape = [32, 32]\n"
+      "boundary = \"periodic\"\n[field]\nexchange = 2.0\ndemag = true\n"
+      "applied = [0.05, 0, 0]\n[initial]\nuniform = [1, 0, 0]\n"
+      "[integrator]\nmethod = \"heun\"\ndt = 0.01\nsteps = 1\n";
+  std::vector<double> lowest;
+  for (std::string const precision : {"double", "single"}) {
+    auto const outcome = modes(large, {"--wave-vector", "0,0,0", "--torque", "1e-5", "--quiet",
+                                       "--overwrite", "--precision", precision});
+    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+    lowest.push_back(numbers("frequency").at(0));
+  }
+  EXPECT_GT(lowest[0], 0.1);
+  EXPECT_NEAR(lowest[1] / lowest[0], 1, 3e-3);
+}
+
 // The lowest frequency is less than 1e-5 of the largest. In single precision, round-off of the
 // Hessian changes it by about 1 %, and must not decide its sign.
 TEST_F(Bands, HaveLowFrequenciesInBothPrecisions) {

@@ -29,6 +29,25 @@ random = { seed = 3 }
   }
 };
 
+// The spin of the small moment starts at the maximum of its energy, without torque.
+TEST_F(Relax, TurnsASpinOfASmallMoment) {
+  auto const outcome = relax(R"toml([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [2]
+moments = "i == 0 ? 1 : 1e-3"
+[field]
+applied = [0, 0, 1e-4]
+[initial]
+expression = ["0", "0", "i == 0 ? 1 : -1"]
+)toml");
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  auto const spins = read_dataset("out.h5", "/spins").values;
+  EXPECT_NEAR(spins.at(2), 1, 1e-6);
+  EXPECT_NEAR(spins.at(5), 1, 1e-3);  // max |m x H| is below 1e-6 where H is 1e-4
+}
+
 TEST_F(Relax, FindsTheStateOfAFilm) {
   for (std::string const precision : {"double", "single"}) {
     auto const outcome = relax(scene, {"--precision", precision, "--overwrite"});

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <tuple>
@@ -56,6 +57,7 @@ struct CurvatureArrays {
 struct LowestCurvature {
   double value = std::numeric_limits<double>::infinity();  // upper bound
   bool is_negative = false;                                // below -tolerance
+  bool is_stopped = false;
 };
 
 struct CurvatureSearch {
@@ -64,15 +66,18 @@ struct CurvatureSearch {
   /// Bound on the error of a curvature that is not below -tolerance. Infinity: only its sign is
   /// found.
   double error;
-  std::int64_t stream;     // of the random start vector
-  bool has_start = false;  // arrays.vector holds the start
+  std::int64_t stream;                  // of the random start vector
+  bool has_start = false;               // arrays.vector holds the start
+  int most_steps = 1000;                // if the error is not infinite
+  std::function<bool()> proceeds = {};  // called after each step; returns false to stop
 };
 
 /// Returns the lowest curvature found. Stops once the Rayleigh quotient is below -tolerance.
 /// Otherwise stops once its error is below search.error; if that is infinite, once the quotient is
-/// unlikely to fall below zero. Takes at most 1000 steps, or 40 if search.error is infinite. Each
-/// saddle needs a new random stream: a start that led out of one saddle can be orthogonal to the
-/// descent from the next. Calls `precondition(from, to)`. Leaves the vector in arrays.vector.
+/// unlikely to fall below zero. Takes at most search.most_steps steps, or 40 if search.error is
+/// infinite. Each saddle needs a new random stream: a start that led out of one saddle can be
+/// orthogonal to the descent from the next. Calls `precondition(from, to)`. Leaves the vector in
+/// arrays.vector.
 template <class AnyHessian, class Exec, class Spins, class Precondition>
 LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
                                       CurvatureArrays<Spins> const& arrays,
@@ -80,8 +85,10 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
                                       Precondition const& precondition) {
   using Real = typename Spins::value_type;
   bool const is_exact = std::isfinite(search.error);
-  int const most_steps = is_exact ? 1000 : 40;
-  auto const [scale, tolerance, error, stream, has_start] = search;
+  int const most_steps = is_exact ? search.most_steps : 40;
+  auto const& [scale, tolerance, error, stream, has_start, most, proceeds] = search;
+  // A descent on a few sites of many has a small share of the start, and grows from step to step.
+  double const first_judgement = 2 + std::log10(static_cast<double>(arrays.vector.sites()));
   LowestCurvature found;
   Spins const &x = arrays.vector, &hx = arrays.product, &w = arrays.residual,
               &hw = arrays.its_product, &p = arrays.direction, &hp = arrays.direction_product;
@@ -122,6 +129,10 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
       if (found.is_negative) break;
     }
     if (step == most_steps) break;
+    if (step > 0 && proceeds && !proceeds()) {
+      found.is_stopped = true;
+      break;
+    }
     // Computes w, the preconditioned residual, and an estimate of how much it will lower the
     // quotient.
     combine(exec, 1, hx, -found.value, x, hw);
@@ -132,12 +143,13 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
     double const decrease = inner_product(exec, hw, w);
     // An eigenvalue is within `rest` of the quotient, but it need not be the lowest one. Near an
     // instability a lower one may be negative, so a small quotient does not count as positive.
-    bool const is_positive = found.value > 1e-2 * scale && rest < 0.3 * found.value;
-    bool const is_clear = is_exact
-                              ? rest < error
-                              : rest < 0.1 * tolerance ||
-                                    (found.value > 10 * tolerance && rest < 1e-3 * found.value) ||
-                                    (is_positive && decrease < 0.01 * found.value);
+    bool const may_judge = step >= first_judgement;
+    bool const is_positive = may_judge && found.value > 1e-2 * scale && rest < 0.3 * found.value;
+    bool const is_clear =
+        is_exact ? rest < error
+                 : rest < 0.1 * tolerance ||
+                       (may_judge && found.value > 10 * tolerance && rest < 1e-3 * found.value) ||
+                       (is_positive && decrease < 0.01 * found.value);
     if (!(decrease > 0) || is_clear) break;
     bool const has_p = step > 0;
     if (!make_normal(w, has_p)) break;

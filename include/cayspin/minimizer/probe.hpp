@@ -19,17 +19,23 @@
 // of the rest, and which spins see no field.
 namespace cayspin::inline v0_2::detail {
 
-/// Functor that sets all spins to one direction, reversed on sites where `signs` are negative.
+/// Functor that sets all spins to one of three directions at right angles, reversed on sites where
+/// `signs` are negative.
 template <class Real>
 struct AlternateSpins {
   AlternatingSigns signs;
+  int direction;
   OutputArray<Real, 3> output;
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     using Value = typename Site::value_type;
-    // This direction is in no plane of symmetry.
-    Vec3<Value> const m{Value(Real(0.26726124)), Value(Real(0.53452248)), Value(Real(0.80178373))};
+    // The first direction is in no plane of symmetry.
+    constexpr Real directions[3][3] = {{Real(0.26726124), Real(0.53452248), Real(0.80178373)},
+                                       {Real(0.87287156), Real(0.21821789), Real(-0.43643578)},
+                                       {Real(-0.40824829), Real(0.81649658), Real(-0.40824829)}};
+    auto const& d = directions[direction];
+    Vec3<Value> const m{Value(d[0]), Value(d[1]), Value(d[2])};
     site.store(signs.template at<Value>(site) * m, output);
   }
 };
@@ -182,8 +188,8 @@ FieldStrengths probe(
         Sample{std::move(prepared), pattern.array(), is_mobile.array()});
   };
   using Sample = FieldAlongSpins<decltype(prepare_term(field, exec, pattern, time)), Real>;
-  auto const sample_at = [&](AlternatingSigns const& signs) {
-    return sample(AlternateSpins<Real>{signs, pattern.output(false)});
+  auto const sample_at = [&](AlternatingSigns const& signs, int direction = 0) {
+    return sample(AlternateSpins<Real>{signs, direction, pattern.output(false)});
   };
   auto const parallel = sample_at({});
   double rests = parallel[Sample::rests];
@@ -204,9 +210,22 @@ FieldStrengths probe(
     bool const is_odd_ring = lattice.boundary[i] == Boundary::periodic && lattice.shape[i] % 2 == 1;
     is_frustrated = is_frustrated || (is_odd_ring && found.couplings[i] < 0);
   }
-  found.rest = std::sqrt(rest_of_parallel(parallel[Sample::square], parallel[Sample::along_square],
-                                          parallel[Sample::along], isotropic,
-                                          std::max(1.0, parallel[Sample::sites])));
+  auto const rest_of = [&](auto const& of_parallel) {
+    return rest_of_parallel(of_parallel[Sample::square], of_parallel[Sample::along_square],
+                            of_parallel[Sample::along], isotropic,
+                            std::max(1.0, of_parallel[Sample::sites]));
+  };
+  found.rest = std::sqrt(rest_of(parallel));
+  // An anisotropy has no field where the first direction is normal to its axis.
+  if (found.rest <= 1e-3 * found.strongest()) {
+    double mean = found.rest * found.rest / 3;
+    for (int const direction : {1, 2}) {
+      auto const other = sample_at({}, direction);
+      rests = other[Sample::rests];
+      mean += rest_of(other) / 3;
+    }
+    found.rest = std::sqrt(mean);
+  }
   if (is_frustrated)
     for (double& coupling : found.couplings) coupling = std::max(0.0, coupling);
   if (rests > 0)

@@ -333,13 +333,14 @@ BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Sp
   for (std::int64_t z = 0; z < nz; ++z)
     for (std::int64_t y = 0; y < ny; ++y)
       for (std::int64_t x = 0; x < nx; ++x) {
-        auto const& block = blocks[block_of({x, y, z})];
-        if (!(block.cwiseAbs().maxCoeff() > least)) continue;
+        auto& block = blocks[block_of({x, y, z})];
         auto const distance = cells.distance({x, y, z});
-        for (std::size_t axis = 0; axis < 3; ++axis)
+        bool const couples = block.cwiseAbs().maxCoeff() > least;
+        for (std::size_t axis = 0; axis < 3 && couples; ++axis)
           if (distance[axis] != 0 && 2 * std::abs(distance[axis]) >= cells.cells[axis])
             problem.reaches_around[axis] = true;
-        problem.blocks.push_back({distance, block});
+        // Small blocks count, too: a dipolar field is the sum of many.
+        problem.blocks.push_back({distance, std::move(block)});
       }
   return problem;
 }

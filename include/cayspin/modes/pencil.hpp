@@ -95,6 +95,7 @@ inline std::vector<RitzMode> slowest_modes(Pencil const& pencil, bool is_undampe
 inline std::vector<RitzMode> lowest_modes(Pencil const& pencil) {
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> const found(pencil.hessian);
   std::vector<RitzMode> modes;
+  if (found.info() != Eigen::Success || !found.eigenvalues().allFinite()) return modes;
   for (Eigen::Index i = 0; i < pencil.size(); ++i) {
     Eigen::VectorXcd const vector = found.eigenvectors().col(i).cast<std::complex<double>>();
     modes.push_back({found.eigenvalues()[i], vector});

@@ -220,7 +220,7 @@ class ModeSearch {
     double const energy = std::abs(c.dot(pencil_.hessian.cast<std::complex<double>>() * c));
     double const least = 1e-4 * options_.scale * c.squaredNorm();
     errors_[mode] = std::sqrt(std::max(square, 0.0) / std::max(energy, least));
-    if (!(errors_[mode] >= options_.tolerance) || added >= most_added()) return false;
+    if (errors_[mode] < options_.tolerance || added >= most_added()) return false;
     added += parts;
     return true;
   }

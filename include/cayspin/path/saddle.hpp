@@ -112,22 +112,36 @@ class SaddleSearch {
                       HessianArrays<Spins>{fields_[3], fields_[4], fields_[5]});
       double const round_off = hessian.round_off(options.strongest_field);
       double const finest = std::max(1e-6 * options.strongest_field, round_off);
+      auto const so_far = [&] {
+        auto now = found;
+        now.evaluations += hessian.evaluations();
+        return now;
+      };
+      // At least a few steps, so that the vector follows the state.
+      auto const most_steps = [&] {
+        return static_cast<int>(
+            std::clamp<std::int64_t>(options.evaluations - so_far().evaluations, 50, 1000));
+      };
       auto const find_vector = [&](double error) {
-        found.curvature =
+        auto const lowest =
             find_lowest_curvature(hessian, exec, arrays(vector()),
                                   {.scale = options.scale,
                                    .tolerance = std::numeric_limits<double>::infinity(),
                                    .error = error,
                                    .stream = 0,
-                                   .has_start = true},
-                                  precondition)
-                .value;
+                                   .has_start = true,
+                                   .most_steps = most_steps(),
+                                   .proceeds = [&] { return proceeds(so_far()); }},
+                                  precondition);
+        found.curvature = lowest.value;
+        found.is_stopped = found.is_stopped || lowest.is_stopped;
       };
       double const coarse = std::clamp(0.3 * now.torque, 1e-3 * options.strongest_field,
                                        1e-2 * options.strongest_field);
       find_vector(is_at_rest ? finest : coarse);
       if (double const small = 0.1 * std::abs(found.curvature); !is_at_rest && small < coarse)
         find_vector(std::max(small, finest));
+      if (found.is_stopped) return so_far();
       HessianBeside beside(hessian, exec, vector());
       if (is_at_rest) {
         double const tolerance = std::max(options.torque, round_off);
