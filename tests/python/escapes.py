@@ -91,7 +91,7 @@ class Escapes(PackageTest):
         for seed in range(scenes):
             with self.subTest(seed=seed):
                 cluster = Cluster(seed)
-                start = cayspin.Simulation(cluster.scene, integrator=None).spins
+                start = cayspin.Simulation(cluster.scene).spins
                 try:
                     path = cayspin.path(cluster.scene, start, torque=1e-9)
                 except cayspin.NumbersFailed as none:
