@@ -58,7 +58,15 @@ Steps coarsest_steps(Pilot const& pilot, Candidate const& candidate, double hori
   auto const plan = pilot.plan(plain, horizon, {4, 0});
   double const stable =
       plan.stable_dt > 0 && std::isfinite(plan.stable_dt) ? horizon / plan.stable_dt : 0;
-  return {whole(std::max({few, stable, horizon / pilot.longest_step()})), 0};
+  // An explicit method without a known limit, such as ab2, may become unstable only after a horizon
+  // if the scene is damped and its steps turn spins far.
+  auto const& system = pilot.scene().system;
+  bool const is_damped = system.damping != 0 || system.dampings.there();
+  bool const may_grow = is_damped && !candidate.method->stiff && !std::isfinite(plan.stable_dt) &&
+                        plan.variant.evaluations;
+  constexpr double most_turn = 2;  // of a spin in a step, as dt_warning has it
+  double const followed = may_grow ? 4 * plan.turn / most_turn : 0;
+  return {whole(std::max({few, stable, followed, horizon / pilot.longest_step()})), 0};
 }
 
 Steps finer(Candidate const& candidate, Steps const& steps) {
