@@ -78,6 +78,7 @@ class EscapeSearch {
 
  private:
   static constexpr std::int64_t climb_evaluations = 600;  // most of one climb
+  static constexpr double zero_curvature = 1e-4;          // relative to the field without exchange
   static constexpr double push = 0.2;                     // turn of a spin away from the state, rad
   static constexpr double fall = 0.1;                     // turn of a spin away from a saddle, rad
   static constexpr double same = 1e-3;                    // distance of equal states, rad
@@ -113,6 +114,8 @@ class EscapeSearch {
     is_stopped_ = climbed.is_stopped;
     double const barrier = climbed.energy.value - rest_.value;
     if (is_stopped_ || !climbed.is_saddle || !(barrier > 4 * round_off())) return;
+    // A texture that slides over the lattice has such saddles everywhere.
+    if (-climbed.curvature < zero_curvature * probed_.preconditioner.first_shift()) return;
     if (energy_ && !(climbed.energy.value < *energy_)) return;
     std::array<Minimum, 2> ends;
     double const down = fall / largest_length(exec_, climber_.vector());
@@ -196,9 +199,9 @@ inline constexpr int escape_work_fields = detail::SaddleSearch<SpinField<double>
 /// for each site; the modes of lowest curvature are a good choice, but not zero modes, along which
 /// there is nothing to climb. From a saddle, the spins are relaxed on both sides. One side must
 /// lead back to a state of the same energy. The lowest such saddle counts, though there may be
-/// lower ones that no direction leads to. The other images become the path over it, from the state
-/// to that on the other side. If there is no such saddle, `end` is no_saddle, and the path has no
-/// energies.
+/// lower ones that no direction leads to; saddles with almost no curvature do not count. The other
+/// images become the path over it, from the state to that on the other side. If there is no such
+/// saddle, `end` is no_saddle, and the path has no energies.
 ///   std::vector<Spins> images = ...;  // the first one is the state
 ///   std::vector<Spins> directions;
 ///   for (auto const& one : cayspin::lowest_curvatures(exec, field, images[0]).curvatures)

@@ -158,7 +158,7 @@ uniform = [0, 0, 1]
   EXPECT_EQ(still, 2);
 }
 
-// The energy unit of this cell is mu_s * gamma / gamma_0 of nothing but K: barriers are K in J.
+// E = -K m_z^2 - mu_s B m_x of one spin.
 TEST_F(Escapes, AreInJoulesInSi) {
   write_state(R"toml(units = "SI"
 [system]
@@ -166,6 +166,7 @@ kind = "llg"
 [material]
 mu_s = { bohr_magnetons = 2.0 }
 alpha = 0.1
+damping_form = "gilbert"
 K = 1e-22
 axis = [0, 0, 1]
 [lattice]
