@@ -87,8 +87,6 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
   bool const is_exact = std::isfinite(search.error);
   int const most_steps = is_exact ? search.most_steps : 40;
   auto const& [scale, tolerance, error, stream, has_start, most, proceeds] = search;
-  // A descent on a few sites of many has a small share of the start, and grows from step to step.
-  double const first_judgement = 2 + std::log10(static_cast<double>(arrays.vector.sites()));
   LowestCurvature found;
   Spins const &x = arrays.vector, &hx = arrays.product, &w = arrays.residual,
               &hw = arrays.its_product, &p = arrays.direction, &hp = arrays.direction_product;
@@ -143,13 +141,17 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
     double const decrease = inner_product(exec, hw, w);
     // An eigenvalue is within `rest` of the quotient, but it need not be the lowest one. Near an
     // instability a lower one may be negative, so a small quotient does not count as positive.
-    bool const may_judge = step >= first_judgement;
-    bool const is_positive = may_judge && found.value > 1e-2 * scale && rest < 0.3 * found.value;
+    bool const is_positive =
+        found.value > 1e-2 * scale && rest < 0.3 * found.value && decrease < 0.01 * found.value;
+    bool const is_exactly_positive = found.value > 10 * tolerance && rest < 1e-3 * found.value;
+    // A descent on a few sites of many adds little to these sums, but much to their own residuals.
+    auto const is_positive_everywhere = [&] {
+      return largest_length(exec, hw) < found.value * largest_length(exec, x);
+    };
     bool const is_clear =
         is_exact ? rest < error
                  : rest < 0.1 * tolerance ||
-                       (may_judge && found.value > 10 * tolerance && rest < 1e-3 * found.value) ||
-                       (is_positive && decrease < 0.01 * found.value);
+                       ((is_positive || is_exactly_positive) && is_positive_everywhere());
     if (!(decrease > 0) || is_clear) break;
     bool const has_p = step > 0;
     if (!make_normal(w, has_p)) break;

@@ -216,8 +216,10 @@ FieldStrengths probe(
                             std::max(1.0, of_parallel[Sample::sites]));
   };
   found.rest = std::sqrt(rest_of(parallel));
-  // An anisotropy has no field where the first direction is normal to its axis.
-  if (found.rest <= 1e-3 * found.strongest()) {
+  // An anisotropy has no field where the first direction is normal to its axis. Without exchange,
+  // there is nothing to compare the field with.
+  bool const is_alone = std::ranges::all_of(found.couplings, [](double J) { return J == 0; });
+  if (is_alone || found.rest <= 1e-4 * found.strongest()) {
     double mean = found.rest * found.rest / 3;
     for (int const direction : {1, 2}) {
       auto const other = sample_at({}, direction);
