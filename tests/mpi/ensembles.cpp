@@ -89,10 +89,11 @@ TEST_F(EnsemblesOnRanks, WriteTheFileOfOneRankForRandomScenes) {
     auto const integrator =
         has_noise ? one_of({"method = 'rkmk4'", "method = 'heun'", "method = 'cf4'"})
                   : one_of({"method = 'rkmk4'", "method = 'ab2'", "method = 'implicit_midpoint'",
-                            "method = 'tsit5'\ntolerance = 1e-6",
-                            "method = 'dopri5'\ntolerance = "
-                            "1e-5\nuntil_torque = 0.3",
-                            "method = 'rkmk4'\nuntil_torque = 0.3"});
+                            "method = 'stiff2'", "method = 'tsit5'\ntolerance = 1e-6",
+                            "method = 'stiff2_adaptive'\ntolerance = 1e-5",
+                            "method = 'rkmk4'\nuntil_torque = 0.3",
+                            "method = 'dp5'\ntolerance = 1e-5\nuntil_torque = 0.3"});
+    bool const may_end = integrator.find("until_torque") != integrator.npos;
     auto const scene = fmt::format(
         "[system]\nkind = 'llg'\ndamping = 0.5\n[lattice]\nshape = {}\n{}[field]\n{}\napplied = "
         "[0.3, {}, 0.1]\n[initial]\n{}\n[integrator]\n{}\ndt = 0.02\nsteps = {}\n[output]\nevery = "
@@ -100,11 +101,9 @@ TEST_F(EnsemblesOnRanks, WriteTheFileOfOneRankForRandomScenes) {
         is_crystal ? "[4, 3, 2]" : one_of({"[1]", "[20]", "[3, 1, 4]", "[3, 4, 2]"}),
         is_crystal ? "crystal = 'bcc'\n" : "",
         is_crystal ? "couplings = { shells = [1.0] }" : "exchange = 1.0",
-        integrator.find("until_torque") == integrator.npos ? one_of({"-0.2", "'sin(9 * t)'"})
-                                                           : "-0.2",
+        may_end ? "-0.2" : one_of({"-0.2", "'sin(9 * t)'"}),
         one_of({"random = { seed = 3 }", "expression = ['1', 'i', '0.3']"}), integrator,
-        integrator.find("until_torque") == integrator.npos ? "13" : "400", one_of({"4", "7"}),
-        one_of({"0", "3"}));
+        may_end ? "400" : "13", one_of({"4", "7"}), one_of({"0", "3"}));
     auto const text = scene + (has_noise ? noise : "") + ensemble(replicas, one_of(varied));
     write("all.toml", text);
     Arguments const same{"--precision", one_of({"double", "single"}), "--threads",
@@ -190,28 +189,17 @@ TEST_F(EnsemblesOnRanks, NameTheReplicaWhoseNumbersFail) {
   auto const applied = [](std::string const& values) {
     return chain_scene() + ensemble(5, "'field.applied.2' = [" + values + "]\n");
   };
-  // In the last scene, the replicas are columns of lattices.
-  for (auto const& [scene, replica] :
-       {std::pair{applied("0.1, 0.2, 0.3, 0.4, 1e300"), 4},
-        {applied("0.1, 0.2, 1e300, 0.4, 1e300"), 2},
-        {applied("1e300, 0.2, 0.3, 0.4, 0.5"), 0},
-        {chain_scene() + noise +
-             ensemble(40, fmt::format("'thermal.temperature' = [{}1e300]\n",
-                                      [] {
-                                        std::string all;
-                                        for (int i = 0; i < 39; ++i) all += "0.01, ";
-                                        return all;
-                                      }())),
-         39}}) {
+  for (auto const& [scene, replica] : {std::pair{applied("0.1, 0.2, 0.3, 0.4, 1e300"), 4},
+                                       {applied("0.1, 0.2, 1e300, 0.4, 1e300"), 2},
+                                       {applied("1e300, 0.2, 0.3, 0.4, 0.5"), 0}}) {
     SCOPED_TRACE(scene);
     write("all.toml", scene);
-    auto const more = replica == 39 ? set("integrator.steps=1000", "output.every=30") : methods;
-    auto const alone = start(into("one.h5", more));
+    auto const alone = start(into("one.h5", methods));
     ASSERT_EQ(alone.status, 3) << alone.errors;
     auto const failure = fmt::format("replica {}: ", replica);
     EXPECT_TRUE(contains(alone.errors, failure));
     for (int const ranks : {2, 3}) {
-      auto const outcome = start_on(ranks, into("one.h5", more));
+      auto const outcome = start_on(ranks, into("one.h5", methods));
       EXPECT_EQ(outcome.status, 3);
       EXPECT_EQ(outcome.errors, alone.errors);
       auto const info = io::read_ensemble_info(in_folder("one.h5"));
@@ -250,9 +238,9 @@ TEST_F(EnsemblesOnRanks, EndTogetherWhenInterrupted) {
 }
 
 TEST_F(EnsemblesOnRanks, SpeakOnce) {
-  write("all.toml", chain_scene() + ensemble(4, "'field.exchange' = [1, 1, 1e4, 1e4]\n"));
+  write("all.toml", chain_scene() + ensemble(4, "'field.exchange' = [1, 1, 100, 100]\n"));
   for (int const ranks : {1, 2, 3}) {
-    auto const outcome = start_on(ranks, into("all.h5"));
+    auto const outcome = start_on(ranks, into("all.h5", set("integrator.energy_guard=false")));
     EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
     EXPECT_TRUE(contains(outcome.errors, "warning: replica 2: ")) << outcome.errors;
     expect_refused(start_on(ranks, into("b.h5", set("integrator.refuse_unstable=true"))),
