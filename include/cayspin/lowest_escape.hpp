@@ -10,10 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
-#include <stdexcept>
-#include <utility>
 #include <vector>
 
 namespace cayspin::inline v0_2 {
@@ -151,12 +148,7 @@ class EscapeSearch {
 
   double sites() const { return static_cast<double>(state_.lattice().sites()); }
 
-  /// Returns a bound on the round-off of an energy, as Descent does.
-  double round_off() const {
-    constexpr double epsilon = std::numeric_limits<Real>::epsilon();
-    return 8 * (epsilon / std::sqrt(sites()) + std::numeric_limits<double>::epsilon()) *
-           rest_.magnitude;
-  }
+  double round_off() const { return round_off_of_energy<Real>(rest_, sites()); }
 
   Minimum relax(Spins& spins) {
     auto const found = minimize(exec_, field_, spins,

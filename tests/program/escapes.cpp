@@ -198,7 +198,7 @@ uniform = [0, 0, 1]
   }
 }
 
-// A field alone has one minimum and one maximum.
+// Without other terms, a field has one minimum and one maximum.
 TEST_F(Escapes, AreNotFoundWhereThereIsOneState) {
   write_state(head("shape = [1]") +
               "[field]\napplied = [0, 0, 1]\n[initial]\nuniform = [0, 0, 1]\n");

@@ -18,6 +18,14 @@
 
 namespace cayspin::inline v0_2::detail {
 
+/// Returns a bound on the round-off of an energy summed over sites, for spin components of type
+/// Real that are rounded independently and sums in double.
+template <class Real>
+double round_off_of_energy(Energy const& energy, double sites) {
+  double const of_spins = std::numeric_limits<Real>::epsilon() / std::sqrt(sites);
+  return 8 * (of_spins + std::numeric_limits<double>::epsilon()) * energy.magnitude;
+}
+
 /// Descent of a Minimizer until the torque is below its bound, by line searches along L-BFGS
 /// directions, and by Newton steps when these searches are slow.
 template <class Spins>
@@ -119,12 +127,8 @@ class Descent {
     newton_until_ = so_far.evaluations + 250;
   }
 
-  /// Returns a bound on the round-off of an energy, for spin components that are rounded
-  /// independently and sums in double.
   double round_off(Energy const& energy) const {
-    auto const sites = static_cast<double>(is_mobile.lattice().sites());
-    double const of_spins = epsilon / std::sqrt(sites);
-    return 8 * (of_spins + std::numeric_limits<double>::epsilon()) * energy.magnitude;
+    return round_off_of_energy<Real>(energy, static_cast<double>(is_mobile.lattice().sites()));
   }
 
   /// Turns the spins along search.direction, and then corrects them by Newton steps that do not

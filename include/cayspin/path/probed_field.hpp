@@ -11,7 +11,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// What a search for saddles knows of a field from a few evaluations.
+/// Measurements of a field that searches for saddles need, from a few evaluations.
 template <class Spins>
 struct ProbedField {
   using Real = typename Spins::value_type;
