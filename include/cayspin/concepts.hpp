@@ -199,9 +199,21 @@ template <class Observer>
 inline constexpr bool changes_spins =
     requires { requires std::remove_cvref_t<std::unwrap_ref_decay_t<Observer>>::changes_spins; };
 
+/// True if an observer, or the one that a std::reference_wrapper refers to, already applies the
+/// first part of the next step, as ThermalNoise can.
+template <class Observer>
+inline constexpr bool begins_step =
+    requires { requires std::remove_cvref_t<std::unwrap_ref_decay_t<Observer>>::begins_step; };
+
 template <class Observer>
 bool is_due(Observer const& observer, Step const& step) {
   std::unwrap_reference_t<Observer> const& itself = observer;
+  static_assert(
+      !requires(std::remove_cvref_t<decltype(itself)>& any) { any.due(step); } ||
+          requires {
+            { itself.due(step) } -> std::convertible_to<bool>;
+          },
+      "An observer's due(Step) must be const, and return a bool.");
   if constexpr (requires {
                   { itself.due(step) } -> std::convertible_to<bool>;
                 })

@@ -50,6 +50,7 @@ template <class Observer>
 class Every {
  public:
   static constexpr bool changes_spins = detail::changes_spins<Observer>;
+  static constexpr bool begins_step = detail::begins_step<Observer>;
 
   /// Throws std::invalid_argument for a period below 1.
   Every(std::int64_t period, Observer&& observer)
@@ -96,9 +97,6 @@ template <class Exec, class Observer, class Spins>
 Next observe(Exec const& exec, Observer& observer, Step const& step, Spins const& spins) {
   static_assert(std::is_invocable_v<Observer&, Exec const&, Step const&, Spins const&>,
                 "An observer is called as observer(exec, Step, spins).");
-  static_assert(
-      !requires { observer.due(step); } || requires { std::as_const(observer).due(step); },
-      "An observer's due(Step) must be const.");
   if (!is_due(observer, step)) return Next::proceed;
   using Result = std::invoke_result_t<Observer&, Exec const&, Step const&, Spins const&>;
   if constexpr (std::is_same_v<Result, Next>) {
@@ -111,10 +109,6 @@ Next observe(Exec const& exec, Observer& observer, Step const& step, Spins const
   }
 }
 
-/// True if an observer already applies the first part of the next step, as ThermalNoise can.
-template <class Observer>
-inline constexpr bool begins_step = requires { requires Observer::begins_step; };
-
 /// Returns true if an observer that may stop the run comes after one with begins_step in the
 /// argument list.
 template <class Exec, class Spins, class... Observers>
@@ -125,7 +119,7 @@ constexpr bool may_stop_in_a_step() {
     begun = begun || begins;
   };
   (next(
-       begins_step<std::remove_cvref_t<Observers>>,
+       begins_step<Observers>,
        requires(Observers& one, Exec const& exec, Step const& step, Spins const& spins) {
          { one(exec, step, spins) } -> std::same_as<Next>;
        }),

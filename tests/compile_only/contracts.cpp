@@ -5,6 +5,7 @@
 
 #include <cayspin_paper/series4.hpp>
 
+#include <functional>
 #include <type_traits>
 #include <utility>
 
@@ -100,6 +101,11 @@ static_assert(Observer<Record<Zeeman>> && Observer<Normalize> && Observer<Every<
 static_assert(!Observer<Zeeman> && !Observer<int>);
 static_assert(detail::changes_spins<Every<Every<Normalize>>> && detail::changes_spins<Control> &&
               !detail::changes_spins<Every<Record<Zeeman>>>);
+using NoiseBefore = decltype(std::declval<ThermalNoise<F64> const&>().before_steps());
+static_assert(detail::begins_step<NoiseBefore> && detail::begins_step<Every<NoiseBefore>> &&
+              detail::begins_step<Every<NoiseBefore const&>> &&
+              detail::begins_step<std::reference_wrapper<NoiseBefore const>> &&
+              !detail::begins_step<Every<Normalize>>);
 
 // The template arguments of HostField are deduced from the solver and from spins or a lattice.
 using OnHost = SlabDemagOnHost;

@@ -58,6 +58,16 @@ struct NoDegree {
   void operator()(HostSpins const&, HostSpins const&, double) const {}
 };
 
+/// An observer that changes when it is asked whether it is due. Number: makes types differ, since
+/// each type is refused once.
+template <int Number>
+struct CountsQuestions {
+  int questions = 0;
+  bool due(Step const&) { return ++questions > 3; }
+  template <class Exec>
+  void operator()(Exec const&, Step const&, WithoutEvaluations::spins_type const&) {}
+};
+
 inline void refused() {
   Kokkos::DefaultHostExecutionSpace const exec;
   using Spins = SpinField<double, Kokkos::HostSpace>;
@@ -290,6 +300,31 @@ inline void refused() {
     AdaptiveRkmk<Spins, tableau::DormandPrince5> adaptive(spins);
     EnergyControl control(spins, body);
     integrate(exec, adaptive, body, spins, times, Every(10, std::ref(control)));
+  }
+#endif
+#if MISTAKE(45)  // due_that_changes_the_observer
+  // An observer's due.Step. must be const
+  integrate(exec, stepper, body, spins, times, CountsQuestions<1>());
+#endif
+#if MISTAKE(46)  // due_within_every_that_changes_the_observer
+  // An observer's due.Step. must be const
+  integrate(exec, stepper, body, spins, times, Every(10, CountsQuestions<2>()));
+#endif
+#if MISTAKE(47)  // stop_after_the_noise_within_every
+  // ThermalNoise's before_steps.. and between_steps.. come after every observer
+  {
+    ThermalNoise const noise(spins, 0.1, {.temperature = 1});
+    integrate(exec, stepper, spin_chain, spins, times, Every(1, noise.before_steps()),
+              [](auto const&, Step const&, auto const&) { return Next::stop; });
+  }
+#endif
+#if MISTAKE(48)  // stop_after_the_noise_by_reference
+  // ThermalNoise's before_steps.. and between_steps.. come after every observer
+  {
+    ThermalNoise const noise(spins, 0.1, {.temperature = 1});
+    auto const before = noise.before_steps();
+    integrate(exec, stepper, spin_chain, spins, times, std::ref(before),
+              [](auto const&, Step const&, auto const&) { return Next::stop; });
   }
 #endif
 }
