@@ -5,6 +5,7 @@
 
 #include <cayspin/cayspin.hpp>
 
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -121,6 +122,18 @@ TYPED_TEST(RigidBodies, WhatIsRefused) {
   double const infinity = std::numeric_limits<double>::infinity();
   EXPECT_THROW(RigidBody({1, 1, 1, 0, infinity, 0}), std::invalid_argument);
   EXPECT_THROW(RigidBody::principal(1, 0, 1), std::invalid_argument);
+  for (double const wrong : {infinity, std::nan("")})
+    for (std::size_t entry = 0; entry < 6; ++entry) {
+      auto const one_is_wrong = [&](std::int64_t body) {
+        auto tensor = body_tensor(body);
+        if (body == bodies - 1) tensor[entry] = wrong;
+        return tensor;
+      };
+      EXPECT_THROW(this->ensemble(one_is_wrong), std::invalid_argument);
+      if (entry < 3) {
+        EXPECT_THROW(this->template ensemble<3>(one_is_wrong), std::invalid_argument);
+      }
+    }
 }
 
 }  // namespace

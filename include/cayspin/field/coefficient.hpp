@@ -95,4 +95,33 @@ Signs signs_of(ScalarField<Real, MemorySpace> const& numbers, char const* what) 
   return {count[1] != 0, count[2] != 0, count[1] == 0 && count[2] == count[3]};
 }
 
+/// Functor that counts the numbers of a site that are infinite or NaN.
+template <class Real, int Components>
+struct NotFiniteOfSites {
+  SiteArray<Real, Components> numbers;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* count) const {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    count[0] = Value(0.0);
+    for (int component = 0; component < Components; ++component) {
+      Value const number = site.load(numbers, component);
+      count[0] =
+          count[0] + select<Value>(Kokkos::abs(number) < Value(infinity), Value(0.0), Value(1.0));
+    }
+  }
+};
+
+/// Throws std::invalid_argument when a number is not finite, after waiting for the kernel.
+template <class Real, int Components, class MemorySpace>
+void require_finite(SiteField<Real, Components, MemorySpace> const& field, char const* what) {
+  using Exec = typename MemorySpace::execution_space;
+  fence_all_instances<Exec>("cayspin::require_finite");
+  Exec const exec;
+  auto const count = reduce_sites<Sum, 1>(exec, "cayspin::require_finite", field.layout(),
+                                          NotFiniteOfSites<Real, Components>{field.array()});
+  if (count[0] != 0)
+    throw std::invalid_argument(std::string(what) + " must be finite on every site");
+}
+
 }  // namespace cayspin::inline v0_2::detail

@@ -123,7 +123,10 @@ class RigidBodyEnsemble {
  public:
   using Tensors = SiteField<Real, Components, MemorySpace>;
 
-  explicit RigidBodyEnsemble(Tensors inverse_inertia) : tensors_(std::move(inverse_inertia)) {}
+  /// Throws std::invalid_argument when a number of a body is not finite.
+  explicit RigidBodyEnsemble(Tensors inverse_inertia) : tensors_(std::move(inverse_inertia)) {
+    detail::require_finite(tensors_, "cayspin::RigidBodyEnsemble: the inverse inertia");
+  }
 
   template <class Spins>
   void check_spins(Spins const& spins) const {
