@@ -140,6 +140,10 @@ TEST(FiniteDifference, CapOfTheTurn) {
     }
   }
   EXPECT_GT(largest, 0.1) << "no spin that the caps bear on";
+  for (double const cap : {-0.1, std::nan("")}) {
+    EXPECT_THROW(LieEuler(start, FiniteDifference{cap}), std::invalid_argument);
+    EXPECT_THROW(LieEuler(start, FiniteDifferenceBackward{cap}), std::invalid_argument);
+  }
 }
 
 }  // namespace
