@@ -8,8 +8,10 @@
 
 #include <cayspin_paper/analytic_sigma.hpp>
 
+#include <array>
 #include <limits>
 #include <stdexcept>
+#include <vector>
 
 namespace cayspin::test {
 namespace {
@@ -63,6 +65,23 @@ TYPED_TEST(SiteDependent, ExchangeOfTinyAndHugeConstants) {
         energy(this->exec, EffectiveField(SiteDependentExchange(constants)), spins, 0).value;
     auto const uniform = energy(this->exec, EffectiveField(Exchange(lattice, constant)), spins, 0);
     EXPECT_NEAR(found / uniform.value, 1, 32 * std::numeric_limits<Real>::epsilon());
+  }
+}
+
+// Products of the constants divided by the squared spacing are beyond the range of float or double.
+TYPED_TEST(SiteDependent, ExchangeAcrossTinyAndHugeSpacings) {
+  using Spins = typename TypeParam::Spins;
+  using Real = typename TypeParam::Real;
+  std::vector<std::array<double, 2>> cases{{1e12, 1e-9}, {1e-14, 1e8}};
+  if (sizeof(Real) == sizeof(double)) cases.insert(cases.end(), {{1e150, 1e-50}, {1e-140, 1e20}});
+  for (auto const& [constant, spacing] : cases) {
+    auto const lattice = Lattice::chain(6, spacing);
+    auto const spins = random_spins<Spins>(lattice, 5);
+    auto const constants = random_numbers_on<Spins>(lattice, constant, constant, 5);
+    auto const found =
+        energy(this->exec, EffectiveField(SiteDependentExchange(constants)), spins, 0).value;
+    auto const uniform = energy(this->exec, EffectiveField(Exchange(lattice, constant)), spins, 0);
+    EXPECT_NEAR(found / uniform.value, 1, 32 * std::numeric_limits<Real>::epsilon()) << constant;
   }
 }
 

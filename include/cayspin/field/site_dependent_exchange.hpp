@@ -119,15 +119,17 @@ struct FindBonds {
  private:
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Value mean(Value const& own, Value const& other) const {
-    constexpr Real least = std::numeric_limits<Real>::min() / std::numeric_limits<Real>::epsilon(),
+    constexpr Real smallest = std::numeric_limits<Real>::min(),
+                   least = smallest / std::numeric_limits<Real>::epsilon(),
                    most = std::numeric_limits<Real>::max();
     Value const all = own + other, product = own * other,
-                factor = as_value<Value>(2 * inverse_square);
+                factor = as_value<Value>(2 * inverse_square), scaled = factor * product;
     Value const sum = select<Value>(all == Value(0), Value(1), all);
     // For products that overflow or almost underflow.
     Value const far = factor * (own * (other / sum));
-    Value const near = select<Value>(product < Value(most), factor * product / sum, far);
-    return select<Value>(Value(least) < product, near, far);
+    Value const near = select<Value>(scaled < Value(most), scaled / sum, far);
+    Value const found = select<Value>(scaled < Value(smallest), far, near);
+    return select<Value>(Value(least) < product, found, far);
   }
 };
 
