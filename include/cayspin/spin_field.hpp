@@ -270,8 +270,8 @@ void copy_from_host(std::vector<Number> const& from,
                Kokkos::MemoryUnmanaged> const host(from.data(), to.sites());
   detail::fence_all_instances<Exec>("cayspin::copy_from_host");
   Exec const exec;
-  auto const there =
-      Kokkos::create_mirror_view_and_copy(Kokkos::view_alloc(exec, MemorySpace()), host);
+  auto const there = Kokkos::create_mirror_view_and_copy(
+      Kokkos::view_alloc(exec, MemorySpace(), "cayspin::copy_from_host"), host);
   copy(exec, there, to);
   exec.fence("cayspin::copy_from_host");
 }
@@ -284,7 +284,14 @@ std::vector<Real> copy_to_host(SiteField<Real, Components, MemorySpace> const& f
   constexpr std::size_t components = Components;
   Kokkos::View<Real* [components], Kokkos::LayoutRight, Kokkos::HostSpace,
                Kokkos::MemoryUnmanaged> const host(numbers.data(), from.sites());
-  auto const there = Kokkos::create_mirror_view(MemorySpace(), host);
+  auto const there = [&] {
+    using View = Kokkos::View<Real* [components], Kokkos::LayoutRight, MemorySpace>;
+    if constexpr (std::is_same_v<MemorySpace, Kokkos::HostSpace>)
+      return host;
+    else  // create_mirror_view takes no label
+      return View(Kokkos::view_alloc(Kokkos::WithoutInitializing, "cayspin::copy_to_host"),
+                  host.extent(0));
+  }();
   detail::fence_all_instances<Exec>("cayspin::copy_to_host");
   Exec const exec;
   copy(exec, from, there);

@@ -147,6 +147,13 @@ TEST(Labels, Integrate) {
   expect_prefix(seen.allocations);
 }
 
+TEST(Labels, CopiesFromAndToTheHost) {
+  Field const spins("spins", slab.lattice);
+  Events const seen = events_of([&] { copy_from_host(copy_to_host(spins), spins); });
+  EXPECT_EQ(seen.kernels, (std::vector<std::string>{"cayspin::copy", "cayspin::copy"}));
+  expect_prefix(seen.allocations);
+}
+
 TEST(Labels, IterationsAndEnergies) {
   Exec const exec;
   Field spins("spins", slab.lattice);
