@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -120,6 +121,13 @@ TEST(DemagnetizingField, OfWhatItCannotTake) {
   EXPECT_THROW(Field(Crystal::bcc().lattice({2, 2, 2})), std::invalid_argument);
   EXPECT_THROW(Field(film, {std::nan("")}), std::invalid_argument);
   EXPECT_THROW(Field(film, {1, {0, -1, 0}}), std::invalid_argument);
+  DemagnetizingTensors of_larger;
+  using Compute = std::function<DemagnetizingTensors()>;
+  Field(Lattice::square(4, 5),
+        {.kept = [&](Compute const& compute) { return of_larger = compute(); }});
+  EXPECT_FALSE(of_larger.empty());
+  EXPECT_THROW(Field(film, {.kept = [&](Compute const&) { return of_larger; }}),
+               std::invalid_argument);
   HostSpins<double> const other("other", Lattice::square(4, 5));
   Field const of_film(film);
   EXPECT_THROW(of_film(other, other, 0), std::invalid_argument);

@@ -40,8 +40,9 @@ class DemagnetizingField {
   /// Throws std::invalid_argument for an invalid lattice, several sites in a cell, several
   /// replicas, cell edges with a ratio above 1e9, a non-finite strength, a negative number of
   /// images, and infinitely_many_images along three axes, along two whose lengths have a ratio
-  /// above 1e4, or with a tensor function other than the default; on a device also for a part of a
-  /// lattice. Throws std::runtime_error if FFTW or cuFFT fails.
+  /// above 1e4, or with a tensor function other than the default; also if the cache returns another
+  /// number of tensors, and on a device for a part of a lattice. Throws std::runtime_error if FFTW
+  /// or cuFFT fails.
   explicit DemagnetizingField(Lattice const& lattice, DemagnetizationOptions const& options = {})
       : lattice_(lattice),
         convolution_(std::make_shared<Convolution const>(

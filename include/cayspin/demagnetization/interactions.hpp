@@ -18,6 +18,7 @@
 #include <functional>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace cayspin::inline v0_2 {
@@ -30,7 +31,8 @@ struct DemagnetizationOptions {
   std::array<int, 3> periodic_images{};
   TensorOfCells* tensor = demagnetizing_tensor;
   /// Cache for the tensors of a whole lattice, times -strength. It receives the function that
-  /// computes them, and returns that function's result or a stored one. Empty: no cache.
+  /// computes them, and returns that function's result or a stored one; another number of tensors
+  /// throws std::invalid_argument. Empty: no cache.
   std::function<DemagnetizingTensors(std::function<DemagnetizingTensors()> const& compute)> kept{};
 };
 
@@ -79,9 +81,14 @@ class InteractionsOfCells {
   /// distances of the octant along x. The distance along x varies fastest, then that along y.
   /// Tensors are 0 for distances that no two cells have.
   DemagnetizingTensors of_lines(std::int64_t first, std::int64_t count) const {
-    if (options_.kept && count == lines())
-      return options_.kept([&] { return computed(first, count); });
-    return computed(first, count);
+    if (!options_.kept || count != lines()) return computed(first, count);
+    auto tensors = options_.kept([&] { return computed(first, count); });
+    std::int64_t const expected = octant(0) * count;
+    if (static_cast<std::int64_t>(tensors.size()) != expected)
+      throw std::invalid_argument("cayspin::DemagnetizingField: the cache returned " +
+                                  std::to_string(tensors.size()) + " tensors; accepted: the " +
+                                  std::to_string(expected) + " of this lattice");
+    return tensors;
   }
 
  private:
