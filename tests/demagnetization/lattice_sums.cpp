@@ -10,6 +10,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <vector>
 
 namespace cayspin::test {
 namespace {
@@ -160,6 +162,14 @@ TEST(DipolarBound, OfAThinFilmIsNotFarAboveThatOfItsLayer) {
     EXPECT_GE(bound, layer);
     EXPECT_LE(bound, 3 * layer) << across;
   }
+}
+
+TEST(DipolarBound, NeedsAMomentForEachSite) {
+  auto const crystal = Crystal::bcc();
+  auto const lattice = crystal.lattice({2, 2, 2});
+  for (auto const& moments : {std::vector<double>{}, {1.0}, {1.0, 1.0, 1.0}})
+    EXPECT_THROW(dipolar_bound(lattice, crystal, moments), std::invalid_argument);
+  EXPECT_GT(dipolar_bound(lattice, crystal, {1, 1}), 0);
 }
 
 // Chains along y, each of which consists of one site and its images.

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 #include <vector>
 
 namespace cayspin::inline v0_2 {
@@ -24,10 +25,14 @@ namespace cayspin::inline v0_2 {
 /// as in the field's DipolarOptions; it matters only along axes with a single cell. The two parts
 /// of Ewald's sum are bounded separately, for several ways to split the sum, and the smallest
 /// result is returned. For large sc, bcc and fcc lattices it is about twice the largest eigenvalue.
+/// Throws std::invalid_argument unless there is one moment for each site of a cell.
 inline double dipolar_bound(Lattice const& lattice, Crystal crystal,
                             std::vector<double> const& moments,
                             std::array<int, 3> const& periodic_images = {}) {
   using namespace detail;
+  if (moments.size() != crystal.basis.size())
+    throw std::invalid_argument(
+        "cayspin::dipolar_bound: there is not one moment for each site of a cell");
   std::vector<Point> places, cell;
   for (std::size_t site = 0; site < crystal.basis.size(); ++site)
     places.push_back(crystal.position({}, site));
