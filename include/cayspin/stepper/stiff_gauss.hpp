@@ -34,9 +34,9 @@ namespace cayspin::inline v0_2 {
 /// one axis only and the spins are nearly parallel. One or two corrections per step are typical. If
 /// the corrections of a step do not converge, the step is halved.
 ///
-/// Conserves |m|. If H is affine and the generator has no damping, also conserves the energy to
-/// round-off, and the total spin if isotropic exchange is the only term. Works with any generator,
-/// but not on parts of a lattice or on replicas.
+/// Conserves |m|. If H is affine and the generator's conserves_energy() is true, also conserves the
+/// energy to round-off, and the total spin if isotropic exchange is the only term. Works with any
+/// generator, but not on parts of a lattice or on replicas.
 template <class Spins, int Order>
 class StiffGauss : public detail::StepperBase<Spins> {
   static_assert(Order == 2 || Order == 4, "StiffGauss has order 2 or 4.");
