@@ -7,6 +7,7 @@
 #include <cayspin_paper/rkmk4_as_printed.hpp>
 #include <cayspin_paper/series4.hpp>
 
+#include <cmath>
 #include <memory>
 
 namespace cayspin::test {
@@ -96,6 +97,24 @@ TEST(WrongCallsOfSteppers, MadeForNoField) {
     expect_refused({{name, [&] { make(Spins()); }},
                     {name + ", moved", [&] { make(moved_from<Spins>(own_lattices[0])); }}});
   });
+}
+
+TEST(WrongCallsOfSteppers, SigmasThatAreNotFinite) {
+  Spins const like("like", own_lattices[0]);
+  for (double const wrong : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    isotropy::Constant const sigma{wrong};
+    expect_refused({
+        {"LieEuler", [&] { LieEuler(like, sigma); }},
+        {"Compensated", [&] { Compensated<LieHeun<Spins, isotropy::Constant>>(like, sigma); }},
+        {"LieAdamsBashforth2", [&] { LieAdamsBashforth2(like, sigma); }},
+        {"ImplicitLieEuler", [&] { ImplicitLieEuler(like, sigma); }},
+        {"AdaptiveRkmk",
+         [&] {
+           AdaptiveRkmk<Spins, tableau::BogackiShampine3, isotropy::Constant>(
+               like, {.tolerance = 1e-4}, sigma);
+         }},
+    });
+  }
 }
 
 TEST(WrongCallsOfSteppers, BatchesOfNoSteps) {

@@ -4,6 +4,7 @@
 #include <cayspin/vec3.hpp>
 
 #include <limits>
+#include <type_traits>
 
 // An isotropy policy turns the generator's A at a spin m into xi = A + sigma * m. The exact flow is
 // independent of sigma; methods of finite order are not.
@@ -18,7 +19,8 @@ struct Zero {
   }
 };
 
-/// A constant sigma for all spins, stages and steps.
+/// A constant sigma for all spins, stages and steps. Steppers throw std::invalid_argument when it
+/// is not finite.
 struct Constant {
   double sigma = 0;
 
@@ -45,3 +47,15 @@ struct FiniteDifferenceBackward {
 };
 
 }  // namespace cayspin::inline v0_2::isotropy
+
+namespace cayspin::inline v0_2::detail {
+
+/// Returns the policy; throws std::invalid_argument for a Constant whose sigma is not finite.
+template <class Isotropy>
+Isotropy checked_policy(Isotropy const& policy) {
+  if constexpr (std::is_same_v<Isotropy, isotropy::Constant>)
+    finite(policy.sigma, "cayspin::isotropy::Constant: sigma");
+  return policy;
+}
+
+}  // namespace cayspin::inline v0_2::detail

@@ -88,7 +88,7 @@ class Implicit : public StepperBase<Spins> {
 
   Implicit(std::string const& name, Spins const& like, Isotropy isotropy, ImplicitOptions options)
       : StepperBase<Spins>(name, like.lattice(), ghosts),
-        isotropy_(isotropy),
+        isotropy_(checked_policy(isotropy)),
         options_(options),
         level_(name + "::level", like.lattice()),
         next_(name + "::next", like.lattice()),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/isotropy/policies.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stage/kernel.hpp>
 #include <cayspin/stage/sweep.hpp>
@@ -65,7 +66,7 @@ class StagedStepper : public StepperBase<Spins> {
 
   StagedStepper(std::string const& name, Spins const& like, Isotropy isotropy, Memory memory)
       : StepperBase<Spins>(name, like.lattice(), ghosts),
-        isotropy_(isotropy),
+        isotropy_(checked_policy(isotropy)),
         memory_(std::move(memory)),
         name_(name),
         plan_(Sweeps::plan(like.layout(), DefaultExec().concurrency())) {

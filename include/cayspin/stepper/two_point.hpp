@@ -168,7 +168,7 @@ class TwoPoint : public detail::StepperBase<Spins> {
                     Isotropy isotropy = {})
       : Base(name, like.lattice(), ghosts),
         method_(method),
-        isotropy_(isotropy),
+        isotropy_(detail::checked_policy(isotropy)),
         next_(name + "::next", like.lattice()),
         kept_(name + "::kept_generator", like.lattice()),
         streaming_(detail::exceeds_caches<DefaultExec>(like.bytes() + work_bytes())) {}
