@@ -3,10 +3,13 @@
 // "cayspin::", and a step does not allocate, copy or fence.
 #include "../support/landau_lifshitz.hpp"
 
+#include <cayspin/observer/turns_at_random.hpp>
+
 #include <cayspin_paper/analytic_sigma.hpp>
 #include <cayspin_paper/series4.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -152,6 +155,20 @@ TEST(Labels, CopiesFromAndToTheHost) {
   Events const seen = events_of([&] { copy_from_host(copy_to_host(spins), spins); });
   EXPECT_EQ(seen.kernels, (std::vector<std::string>{"cayspin::copy", "cayspin::copy"}));
   expect_prefix(seen.allocations);
+}
+
+// A table may be in memory that both the host and kernels reach.
+TEST(Labels, TablesOfNoiseAreFilledAfterAFence) {
+  detail::TableOfTurns<double, Field::memory_space> table(1);
+  Exec const exec;
+  std::vector<std::string> before;
+  events_of([&] {
+    table.get(exec, 0.5, [&](auto const& numbers) {
+      before = events.fences;
+      numbers(0) = 1;
+    });
+  });
+  EXPECT_GT(std::ranges::count(before, "cayspin::ThermalNoise: the turns before are done"), 0);
 }
 
 TEST(Labels, IterationsAndEnergies) {

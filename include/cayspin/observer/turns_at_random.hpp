@@ -148,9 +148,13 @@ class TableOfTurns {
   template <class Exec, class Fill>
   Entry const* get(Exec const& exec, double u, Fill const& fill) {
     if (u != made_for_) {
+      // Kernels of any instance may still read the table, and the mirror of memory that the host
+      // can reach is this memory itself.
+      constexpr char const* label = "cayspin::ThermalNoise: the turns before are done";
+      fence_all_instances<Exec>(label);
+      exec.fence(label);
       auto const table = Kokkos::create_mirror_view(table_);
       fill(table);
-      exec.fence("cayspin::ThermalNoise: the turns before are done");
       Kokkos::deep_copy(exec, table_, table);
       exec.fence("cayspin::ThermalNoise: turns of the next steps");
       made_for_ = u;
