@@ -2,6 +2,7 @@
 #include "describe.hpp"
 
 #include "io/notes.hpp"
+#include "simulation/message.hpp"
 #include "simulation/multirate_method.hpp"
 #include "simulation/text.hpp"
 #include "simulation/thermal.hpp"
@@ -14,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 
 namespace cayspin::program {
@@ -379,7 +379,7 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
 }
 
 void warn_of_notes(io::Scene const& scene) {
-  for (auto const& note : io::notes(scene)) fmt::print(stderr, "warning: {}\n", note);
+  for (auto const& note : io::notes(scene)) print_message("warning: {}\n", note);
 }
 
 std::string describe_method(io::Scene const& scene) {

@@ -13,6 +13,7 @@
 #include "io/trajectory.hpp"
 #include "progress.hpp"
 #include "simulation/kokkos_settings.hpp"
+#include "simulation/message.hpp"
 #include "simulation/plan.hpp"
 #include "simulation/scene_minimizer.hpp"
 #include "simulation/scene_modes.hpp"
@@ -180,8 +181,8 @@ class ModesOfScene {
     else if (!options_.quiet)
       report(contents);
     if (contents.converged) return Status::done;
-    fmt::print(stderr, "{}: the modes did not converge: {}\n", scene_.path.string(),
-               why_ended(to_string(end)));
+    print_message("{}: the modes did not converge: {}\n", scene_.path.string(),
+                  why_ended(to_string(end)));
     return Status::numbers_failed;
   }
 
@@ -202,8 +203,7 @@ class ModesOfScene {
     auto const found = minimizer.relax(exec_, scene_, field, spins_, minimize);
     if (double const torque = found.torque * scene_.units.field;
         options_.at_rest && !io::has_torque(scene_.field) && torque > options_.torque)
-      fmt::print(
-          stderr,
+      print_message(
           "warning: {}: max |m x H| is {:.3g}{}, above --torque {:.3g}: these are modes of a "
           "state that moves\n",
           scene_.path.string(), torque, scene_.units.si ? " T" : "", options_.torque);
@@ -255,7 +255,7 @@ class ModesOfScene {
   }
 
   int interrupted() const {
-    fmt::print(stderr, "{}: interrupted; no file was written\n", scene_.path.string());
+    print_message("{}: interrupted; no file was written\n", scene_.path.string());
     return Status::interrupted;
   }
 

@@ -11,6 +11,7 @@
 #include "io/toml_string.hpp"
 #include "progress.hpp"
 #include "simulation/kokkos_settings.hpp"
+#include "simulation/message.hpp"
 #include "simulation/scene_path.hpp"
 #include "simulation/text.hpp"
 
@@ -163,7 +164,7 @@ int find_path(PathCommandOptions const& options) {
   // An interrupt may also come after the path was found, during the computation of rates, which
   // takes long.
   if (end == PathEnd::interrupted || interrupt_requested()) {
-    fmt::print(stderr, "{}: interrupted; nothing is written\n", scene.path.string());
+    print_message("{}: interrupted; nothing is written\n", scene.path.string());
     return Status::interrupted;
   }
   bool const has_path = !path.energy.empty() && end != PathEnd::same_ends;
@@ -176,18 +177,17 @@ int find_path(PathCommandOptions const& options) {
                counted(std::ssize(path.energy), "image"), barrier_text(scene, path));
   if (end == PathEnd::converged && rates_failed.empty()) return Status::done;
   if (end == PathEnd::converged)
-    fmt::print(stderr, "{}: {} has the path, but no {}\n", scene.path.string(), output.string(),
-               rates_failed);
+    print_message("{}: {} has the path, but no {}\n", scene.path.string(), output.string(),
+                  rates_failed);
   else if (has_saddles)
-    fmt::print(
-        stderr,
+    print_message(
         "{}: the saddles are found, but the path between them does not settle within {}; {} has "
         "the saddles and the path as it is; accepted: more --images\n",
         scene.path.string(), counted(path.evaluations, "evaluation"), output.string());
   else
-    fmt::print(
-        stderr, "{}: no {}path: {}, after {}{}\n", scene.path.string(),
-        has_path ? "converged " : "", path.end, counted(path.evaluations, "evaluation"),
+    print_message(
+        "{}: no {}path: {}, after {}{}\n", scene.path.string(), has_path ? "converged " : "",
+        path.end, counted(path.evaluations, "evaluation"),
         has_path ? fmt::format("; {} has the images as they are", output.string()) : std::string());
   return Status::numbers_failed;
 }

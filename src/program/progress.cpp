@@ -2,6 +2,7 @@
 #include "progress.hpp"
 
 #include "bar.hpp"
+#include "simulation/message.hpp"
 #include "simulation/text.hpp"
 
 #include <fmt/format.h>
@@ -19,12 +20,12 @@ namespace {
 
 // Draws a bar and a text over the current line.
 void draw_over(std::FILE* stream, double share, std::string const& text) {
-  fmt::print(stream, "\r{}\x1b[K", fitted(fmt::format("{} {}", bar(share), text)));
+  write_text(stream, fmt::format("\r{}\x1b[K", fitted(fmt::format("{} {}", bar(share), text))));
 }
 
 // Prints a line and flushes, so that lines reach a pipe one by one, too.
 void say(std::string const& line) {
-  fmt::print("{}\n", line);
+  write_text(stdout, line + '\n');
   std::fflush(stdout);
 }
 
@@ -52,7 +53,7 @@ void Progress::add(Summary const& summary) {
 
 void Progress::tell(std::string const& text) {
   if (listener_ != Listener::user) return;
-  if (on_line_) fmt::print("\r\x1b[K");
+  if (on_line_) write_text(stdout, "\r\x1b[K");
   on_line_ = false;
   say(fmt::format("{}: {}", stage_, text));
 }
@@ -92,7 +93,7 @@ void Progress::show(Step const& step) {
 
 void Progress::close(Summary const& summary, std::int64_t frames, std::string const& file) {
   if (listener_ != Listener::user) return;
-  if (on_line_) fmt::print("\r\x1b[K");
+  if (on_line_) write_text(stdout, "\r\x1b[K");
   auto const now = Clock::now();
   std::chrono::duration<double> const total = now - begin_.value_or(now);
   auto const updates = static_cast<double>(method_steps_) * static_cast<double>(sites_);
@@ -137,7 +138,7 @@ void TrialProgress::show(double share, std::string const& what) {
 }
 
 void TrialProgress::clear() {
-  if (drawn_) fmt::print(stderr, "\r\x1b[K");
+  if (drawn_) write_text(stderr, "\r\x1b[K");
   drawn_ = false;
 }
 

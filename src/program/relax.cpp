@@ -11,6 +11,7 @@
 #include "progress.hpp"
 #include "run_ensemble.hpp"
 #include "simulation/kokkos_settings.hpp"
+#include "simulation/message.hpp"
 #include "simulation/more_of_sample.hpp"
 #include "simulation/plan.hpp"
 #include "simulation/run_files.hpp"
@@ -84,10 +85,10 @@ class Relaxation {
     if (failures_ == 0) return Status::done;
     auto const why = why_ended(to_string(first_failure_));
     if (fields.size() == 1)
-      fmt::print(stderr, "{}: not converged: {}\n", scene_.path.string(), why);
+      print_message("{}: not converged: {}\n", scene_.path.string(), why);
     else
-      fmt::print(stderr, "{}: {} of {} states did not converge; the first: {}\n",
-                 scene_.path.string(), failures_, fields.size(), why);
+      print_message("{}: {} of {} states did not converge; the first: {}\n", scene_.path.string(),
+                    failures_, fields.size(), why);
     return interrupted ? Status::interrupted : Status::numbers_failed;
   }
 
@@ -122,10 +123,13 @@ class Relaxation {
 
   void report(std::size_t count, Minimum const& found) const {
     auto const& m = last_.magnetization;
-    fmt::print("{} of {}: {}, max |m x H| = {:.3g}{}, energy {}, <m> = ({:.6g}, {:.6g}, {:.6g})\n",
-               states_ + 1, count, end_text(found.end, found.evaluations),
-               found.torque * scene_.units.field, scene_.units.si ? " T" : "",
-               energy_text(scene_.units, last_.energy.value), m.x, m.y, m.z);
+    write_text(
+        stdout,
+        fmt::format(
+            "{} of {}: {}, max |m x H| = {:.3g}{}, energy {}, <m> = ({:.6g}, {:.6g}, {:.6g})\n",
+            states_ + 1, count, end_text(found.end, found.evaluations),
+            found.torque * scene_.units.field, scene_.units.si ? " T" : "",
+            energy_text(scene_.units, last_.energy.value), m.x, m.y, m.z));
     std::fflush(stdout);
   }
 

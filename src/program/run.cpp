@@ -9,6 +9,7 @@
 #include "run_stages.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
+#include "simulation/message.hpp"
 #include "simulation/parts.hpp"
 #include "simulation/plan.hpp"
 #include "simulation/restart.hpp"
@@ -126,11 +127,11 @@ void warn(std::vector<PlannedStage> const& stages) {
   for (auto const& [stage, plan] : stages) {
     if (!plan) continue;
     if (auto const warning = dt_warning(stage.scene, *plan); warning && !stage.relax)
-      fmt::print(stderr, "warning: {}\n", *warning);
+      print_message("warning: {}\n", *warning);
     for (auto const& note : io::notes(stage.scene))
       if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
   }
-  for (auto const& note : notes) fmt::print(stderr, "warning: {}\n", note);
+  for (auto const& note : notes) print_message("warning: {}\n", note);
 }
 
 std::optional<int> threads_for(RunOptions const& options, std::string const& space,
@@ -200,7 +201,7 @@ int run(RunOptions const& options, Ranks& ranks) {
     auto from =
         std::make_unique<Restart>(restart_of(std::move(*left), first.stage, *first.plan, options));
     if (auto const& warning = from->warning(); warning && ranks.is_first())
-      fmt::print(stderr, "warning: --restart {}\n", *warning);
+      print_message("warning: --restart {}\n", *warning);
     return from;
   });
   auto const resolved = typed.integrator.method->automatic ? scene.text : std::string();

@@ -11,6 +11,7 @@
 #include "simulation/ensemble_run.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
+#include "simulation/message.hpp"
 #include "simulation/run_files.hpp"
 #include "simulation/text.hpp"
 
@@ -56,7 +57,7 @@ class RecordedEnsemble {
         path_(output_file(scene, options.output)) {
     if (options.restart) continue_from(*options.restart);
     // warning() throws if the scene sets refuse_unstable and the dt of any replica is too large.
-    if (auto const warning = run_.warning()) fmt::print(stderr, "warning: {}\n", *warning);
+    if (auto const warning = run_.warning()) print_message("warning: {}\n", *warning);
     ranks_.together([&] {
       if (ranks_.is_first()) file_.emplace(open_file(scene, options, run_.own().first()));
     });
@@ -92,8 +93,8 @@ class RecordedEnsemble {
     progress_.close(total, frames_, path_.string());
     if (!interrupted) return Status::done;
     if (ranks_.is_first())
-      fmt::print(stderr, "{}: interrupted after step {} of {}; {}\n", scene_.path.string(),
-                 run_.steps(), end, kept());
+      print_message("{}: interrupted after step {} of {}; {}\n", scene_.path.string(), run_.steps(),
+                    end, kept());
     return Status::interrupted;
   }
 
@@ -101,7 +102,7 @@ class RecordedEnsemble {
   void continue_from(std::filesystem::path const& file) {
     ranks_.together([&] { as_restart([&] { require_not_written(file, path_); }); });
     auto const warning = as_restart([&] { return run_.continue_from(file); });
-    if (warning) fmt::print(stderr, "warning: --restart {}\n", *warning);
+    if (warning) print_message("warning: --restart {}\n", *warning);
     first_ = run_.steps();
   }
 
@@ -186,8 +187,8 @@ int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
   cost.wall_seconds = cost.step_seconds = clock.seconds();
   if (found.size() < run.replicas()) {
     file.close(cost);
-    fmt::print(stderr, "{}: interrupted after {} of {} replicas; no frame was written\n",
-               scene.path.string(), found.size(), run.replicas());
+    print_message("{}: interrupted after {} of {} replicas; no frame was written\n",
+                  scene.path.string(), found.size(), run.replicas());
     return Status::interrupted;
   }
   auto const scalars = run.scalars();
@@ -204,8 +205,8 @@ int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
                counted(std::ssize(found), "replica"), counted(cost.evaluations, "evaluation"),
                duration_text(cost.wall_seconds));
   if (failures == 0) return Status::done;
-  fmt::print(stderr, "{}: {} of {} did not converge\n", scene.path.string(), failures,
-             counted(std::ssize(found), "replica"));
+  print_message("{}: {} of {} did not converge\n", scene.path.string(), failures,
+                counted(std::ssize(found), "replica"));
   return Status::numbers_failed;
 }
 

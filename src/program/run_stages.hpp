@@ -12,6 +12,7 @@
 #include "run_writer.hpp"
 #include "simulation/checkpoint_of_ranks.hpp"
 #include "simulation/kokkos_settings.hpp"
+#include "simulation/message.hpp"
 #include "simulation/more_of_sample.hpp"
 #include "simulation/plan.hpp"
 #include "simulation/restart.hpp"
@@ -328,8 +329,8 @@ class RunOfStages {
             stages_.size() > 1 ? io::stage_text(stages_[number].stage) + ": " : std::string());
     if (!interrupted_) return Status::done;
     if (speaks)
-      fmt::print(stderr, "{}: interrupted after step {} of {}; {}\n", typed_.path.string(), step_,
-                 io::end_of(stages_.back().stage), kept());
+      print_message("{}: interrupted after step {} of {}; {}\n", typed_.path.string(), step_,
+                    io::end_of(stages_.back().stage), kept());
     return Status::interrupted;
   }
 

@@ -2,10 +2,13 @@
 #pragma once
 
 #include "failure.hpp"
+#include "message.hpp"
 #include "text.hpp"
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -39,7 +42,7 @@ inline std::optional<int> parse(CLI::App& app, int argc, char** argv) {
 inline int report(std::exception_ptr const& thrown) {
   auto const say = [](std::string const& message) {
     std::fflush(stdout);
-    fmt::print(stderr, "{}\n", one_line(message));
+    print_message("{}\n", one_line(message));
   };
   try {
     std::rethrow_exception(thrown);
@@ -62,9 +65,19 @@ inline void require_output_written() {
                                        errno == 0 ? "some of it was lost" : std::strerror(errno)));
 }
 
+/// Opens /dev/null in place of each standard stream that is closed. Otherwise a file that is opened
+/// later gets the number of the stream, and messages are written into the file. Reading and writing
+/// still fail, and programs that are started find the stream closed.
+inline void occupy_closed_streams() {
+  for (int const stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF)
+      ::open("/dev/null", (stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) | O_CLOEXEC);
+}
+
 /// Calls perform(argc, argv) and returns the exit status. Reports the error if `perform` throws, or
 /// if it returns 0 but standard output cannot be written.
 inline int perform_and_report(int (*perform)(int, char**), int argc, char** argv) {
+  occupy_closed_streams();
   try {
     int const status = perform(argc, argv);
     if (status == 0) require_output_written();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Ranks of a program with MPI, started by a launcher such as mpiexec.
 #include "launched_ranks.hpp"
+#include "simulation/message.hpp"
 #include "simulation/one_rank.hpp"
 #include "simulation/parts.hpp"
 #include "simulation/text.hpp"
@@ -107,8 +108,8 @@ class MpiRanks final : public Ranks {
     MPI_Comm those = MPI_COMM_NULL;
     MPI_Comm_split(comm_, is_kept ? 0 : 1, rank_, &those);
     if (is_first())
-      fmt::print(stderr, "warning: {} of {} ranks {} nothing to do: {}\n", count_ - kept, count_,
-                 count_ - kept == 1 ? "has" : "have", why);
+      print_message("warning: {} of {} ranks {} nothing to do: {}\n", count_ - kept, count_,
+                    count_ - kept == 1 ? "has" : "have", why);
     use(those);
     return is_kept;
   }

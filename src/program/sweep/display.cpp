@@ -3,6 +3,7 @@
 
 #include "program/bar.hpp"
 #include "simulation/failure.hpp"
+#include "simulation/message.hpp"
 #include "simulation/text.hpp"
 
 #include <fmt/format.h>
@@ -46,7 +47,7 @@ void Display::ended(std::int64_t number, io::SweptRun const& run,
     auto const left = time_left(running);
     if (!left.empty()) line += ", " + left;
   }
-  fmt::print("{}\n", line);
+  write_text(stdout, line + '\n');
   std::fflush(stdout);
   shown_ = {};
 }
@@ -57,7 +58,8 @@ void Display::show(std::vector<Running> const& running) {
   shown_ = now;
   clear();
   auto const line = [&](double share, std::string const& text) {
-    fmt::print("{}\n", fitted(fmt::format("{} {:5.1f} %  {}", bar(share), 100 * share, text)));
+    write_text(stdout,
+               fitted(fmt::format("{} {:5.1f} %  {}", bar(share), 100 * share, text)) + '\n');
     ++lines_;
   };
   // Lines that have scrolled off the top cannot be erased. Two lines are kept for the bar of all
@@ -75,7 +77,7 @@ void Display::show(std::vector<Running> const& running) {
 }
 
 void Display::clear() {
-  if (lines_ > 0) fmt::print("\x1b[{}A\r\x1b[J", lines_);
+  if (lines_ > 0) write_text(stdout, fmt::format("\x1b[{}A\r\x1b[J", lines_));
   lines_ = 0;
 }
 

@@ -7,6 +7,7 @@
 #include "session.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
+#include "simulation/message.hpp"
 #include "simulation/plan.hpp"
 #include "simulation/text.hpp"
 #include "table.hpp"
@@ -180,9 +181,9 @@ int sweep_over(SweepOptions const& options) {
     return close_sweep(options, session,
                        std::chrono::duration<double>(Clock::now() - begin).count());
   auto const open = session.open_runs().size();
-  fmt::print(stderr, "{}: interrupted with {} of {} to do; the same command{} continues it\n",
-             options.output.string(), open, counted(std::ssize(session.info().runs), "run"),
-             options.overwrite ? " without --overwrite" : "");
+  print_message("{}: interrupted with {} of {} to do; the same command{} continues it\n",
+                options.output.string(), open, counted(std::ssize(session.info().runs), "run"),
+                options.overwrite ? " without --overwrite" : "");
   return Status::interrupted;
 }
 
