@@ -23,6 +23,8 @@ endif()
 
 if(Kokkos_DIR)
   set(CAYSPIN_KOKKOS_HINT "${Kokkos_DIR}")
+elseif(IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
+  set(CAYSPIN_KOKKOS_HINT "${CMAKE_INSTALL_LIBDIR}/cmake/Kokkos")
 else()
   set(CAYSPIN_KOKKOS_HINT "\${PACKAGE_PREFIX_DIR}/${CMAKE_INSTALL_LIBDIR}/cmake/Kokkos")
 endif()

@@ -53,6 +53,15 @@ function(cayspin_link_flags target flags)
   set(${flags} ${${flags}} PARENT_SCOPE)
 endfunction()
 
+# Sets `result` to an installation folder in the form of a pkg-config file. CMAKE_INSTALL_LIBDIR and
+# the like may be absolute.
+function(cayspin_pkg_config_folder result folder)
+  if(NOT IS_ABSOLUTE "${folder}")
+    set(folder "\${prefix}/${folder}")
+  endif()
+  set(${result} "${folder}" PARENT_SCOPE)
+endfunction()
+
 # cayspin_install_pkg_config(<name> <description> <compile flags> <link flags>)
 function(cayspin_install_pkg_config name description compile_flags link_flags)
   # Flags depend on the language: CMake writes a file for each language, and the file for C++ is
@@ -60,13 +69,15 @@ function(cayspin_install_pkg_config name description compile_flags link_flags)
   string(REPLACE "$<LINK_LANGUAGE:" "$<COMPILE_LANGUAGE:" link_flags "${link_flags}")
   file(RELATIVE_PATH to_prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
   string(REGEX REPLACE "/$" "" to_prefix "${to_prefix}")
+  cayspin_pkg_config_folder(includedir "${CMAKE_INSTALL_INCLUDEDIR}")
+  cayspin_pkg_config_folder(libdir "${CMAKE_INSTALL_LIBDIR}")
   file(
     GENERATE
     OUTPUT ${PROJECT_BINARY_DIR}/$<COMPILE_LANGUAGE>/${name}.pc
     CONTENT
       "prefix=\${pcfiledir}/${to_prefix}
-includedir=\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}
-libdir=\${prefix}/${CMAKE_INSTALL_LIBDIR}
+includedir=${includedir}
+libdir=${libdir}
 cxx=${CMAKE_CXX_COMPILER}
 backends=${CAYSPIN_KOKKOS_BACKENDS}
 
