@@ -153,6 +153,9 @@ def run(arguments):
     command_line.require_file(arguments.file)
     try:
         file = h5py.File(arguments.file, "r")
+    except BlockingIOError:
+        raise ValueError("another program is writing it; accepted: the file of a run that has "
+                         "ended, or `cayspin view`") from None
     except OSError as error:
         raise ValueError(f"cannot be opened: {' '.join(str(error).split())}; accepted: a "
                          "file that cayspin wrote") from None

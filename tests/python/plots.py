@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Runs the drawing scripts as users do."""
 
+import fcntl
 import os
 import resource
 import shutil
@@ -234,6 +235,9 @@ class PlotTexture(ScriptTest):
         self.assert_no_picture("there is no such file", file=self.folder / "none.h5")
         self.assert_no_picture("it is a folder; accepted: a file", file=self.folder)
         self.assert_no_picture("cannot be opened", file=self.text_file())
+        with open(write(self.folder / "locked.h5"), "rb") as locked:
+            fcntl.flock(locked, fcntl.LOCK_EX)  # as HDF5 does while it writes
+            self.assert_no_picture("another program is writing it; accepted: ", file=locked.name)
         other = self.folder / "other.h5"
         h5py.File(other, "w").close()
         self.assert_no_picture("not a trajectory: it has no spins", file=other)
