@@ -29,10 +29,11 @@ inline std::optional<int> parse(CLI::App& app, int argc, char** argv) {
     app.parse(argc, argv);
   } catch (CLI::ParseError const& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    std::string help = "--help";
+    auto help = app.get_name() + " --help";
     for (auto const* command : app.get_subcommands({}))
-      if (argc > 1 && command->get_name() == argv[1]) help = "help " + command->get_name();
-    throw UsageError(fmt::format("{} (see cayspin {})", error.what(), help));
+      if (argc > 1 && command->get_name() == argv[1])
+        help = app.get_name() + " help " + command->get_name();
+    throw UsageError(fmt::format("{} (see {})", error.what(), help));
   }
   return std::nullopt;
 }

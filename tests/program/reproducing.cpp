@@ -221,7 +221,7 @@ TEST_F(Reproducing, TheSameForTheSameSeed) {
 TEST_F(Reproducing, WrongUses) {
   expect_refused({"reproduce", "table5"}, "table5");
   expect_refused({"reproduce", "table1", "--bodies", "0"}, "--bodies");
-  expect_refused({"reproduce", "table1", "--seed", "a"}, "--seed");
+  expect_refused({"reproduce", "table1", "--seed", "a"}, "(see cayspin reproduce --help)\n");
   write("taken", "");
   auto const outcome =
       expect_status(2, {"reproduce", "table1", "--bodies", "10", "--output", "taken"});
