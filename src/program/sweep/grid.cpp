@@ -26,11 +26,11 @@ constexpr double most_runs = 1e5;
 constexpr std::int64_t most_checked = 20'000'000;
 
 // Returns true if two keys are equal, or if one is a table that contains the other. Both may be
-// followed by =VALUE, which is ignored.
+// followed by =VALUE, which is ignored. Parts of keys may have quotes.
 bool overlap(std::string const& a, std::string const& b) {
   auto const path = [](std::string const& assignment) {
     auto key = assignment.substr(0, assignment.find('='));
-    std::erase(key, ' ');
+    std::erase_if(key, [](char c) { return c == ' ' || c == '"' || c == '\''; });
     return key + '.';
   };
   auto const first = path(a), second = path(b);
