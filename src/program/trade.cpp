@@ -283,6 +283,10 @@ int trade_off(TradeOptions const& options) {
 int advise_on(AdviseOptions const& options) {
   if (!(options.error >= 1e-13) || options.error > 1)
     throw UsageError(fmt::format("--error {}; accepted: a number from 1e-13 to 1", options.error));
+  if (options.budget && !(*options.budget > 0 && std::isfinite(*options.budget)))
+    throw UsageError(fmt::format(
+        "--budget {}; accepted: a number of seconds > 0, or a time such as 60s, 2min or 1h",
+        *options.budget));
   auto const scene = scene_to_try(options.scene, options.overrides);
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, {});
@@ -344,7 +348,6 @@ Command add_advise(CLI::App& program) {
       ->transform(
           CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}},
                                 CLI::AsNumberWithUnit::CASE_SENSITIVE, "TIME"))
-      ->check(CLI::PositiveNumber)
       ->type_name("TIME");
   add_json_option(*command, options->json);
   return {command, [options](Ranks&) { return advise_on(*options); }};

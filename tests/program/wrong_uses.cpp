@@ -99,6 +99,12 @@ std::vector<WrongUse> wrong_commands() {
        {"advise", "chain.toml", "--error", "0"},
        "cayspin: --error 0; accepted: a number from 1e-13 to 1\n"},
       {"AdviseForNan", {"advise", "chain.toml", "--error", "nan"}, "--error nan; accepted: "},
+      {"AdviseForNoTime",
+       {"advise", "chain.toml", "--error", "1e-3", "--budget", "0"},
+       "cayspin: --budget 0; accepted: a number of seconds > 0, or "},
+      {"AdviseForLessThanNoTime",
+       {"advise", "chain.toml", "--error", "1e-3", "--budget", "-2min"},
+       "cayspin: --budget -120; accepted: a number of seconds > 0, or "},
       {"MethodsWithArgument", {"methods", "euler"}, "euler"},
   };
 }
