@@ -93,7 +93,8 @@ cayspin_status cayspin_step(cayspin_simulation* simulation, int64_t count);
 
 /* Takes steps to the scene's end, or until integrator.until_torque ends the run, and writes a file
    as `cayspin run` does: `output` or, if that is NULL, the scene's output.file. Fails if the file
-   exists and `overwrite` is 0 and, as cayspin_step does, for a dt that is refused. */
+   exists and `overwrite` is 0, if the scene reads it and, as cayspin_step does, for a dt that is
+   refused. */
 cayspin_status cayspin_run(cayspin_simulation* simulation, char const* output, int overwrite);
 
 /* Moves the spins to an equilibrium, as `cayspin relax` does: until max |m x H| is below `torque`,

@@ -14,6 +14,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <system_error>
 
 using namespace cayspin::simulation;
 using namespace cayspin::c_interface;
@@ -77,6 +78,18 @@ cayspin_array array_of(io::HostVectors const& vectors) {
 /// Throws for a dt that is too large if the scene sets refuse_unstable.
 void require_stable(SceneRun const& run) {
   if (run.scene().integrator.refuse_unstable) run.warning();
+}
+
+/// Throws UsageError for an output file that the scene reads.
+void require_not_read(io::Scene const& scene, std::filesystem::path const& output) {
+  auto read = scene.files;
+  read.push_back(scene.path);
+  std::error_code ignored;
+  for (auto const& file : read)
+    if (std::filesystem::equivalent(file, output, ignored))
+      throw UsageError(file.string() +
+                       ": the scene reads it, and the run would replace it; accepted: another "
+                       "output");
 }
 
 void run_to_end(SceneRun& run, RunRecorder& recorder) {
@@ -147,8 +160,10 @@ cayspin_status cayspin_run(cayspin_simulation* simulation, char const* output, i
       throw UsageError("the simulation is at step " + std::to_string(run.steps()) +
                        " and the scene ends at step " + std::to_string(run.last_step()) +
                        "; accepted: a later end");
+    auto const path = output != nullptr ? std::filesystem::path(output) : *file;
+    require_not_read(run.scene(), path);
     require_stable(run);
-    run_with_file(run, output != nullptr ? std::filesystem::path(output) : *file, overwrite != 0);
+    run_with_file(run, path, overwrite != 0);
   });
 }
 

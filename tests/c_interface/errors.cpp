@@ -195,6 +195,10 @@ TEST(CInterfaceErrors, RunsAndFiles) {
   for (auto const& wrong : {std::string(), folder.string(), (folder / "run.txt" / "").string()})
     expect_failure(cayspin_run(simulation.get(), wrong.c_str(), 1), CAYSPIN_FAILED, "");
   EXPECT_EQ(cayspin_run(simulation.get(), file.c_str(), 1), CAYSPIN_OK) << cayspin_last_error();
+  auto from_file = scene_text();
+  from_file.replace(from_file.find("uniform = [1.0, 0.0, 0.0]"), 25, "file = '" + file + "'");
+  expect_failure(cayspin_run(open(from_file).get(), file.c_str(), 1), CAYSPIN_WRONG_USAGE,
+                 "run.h5: the scene reads it");
   EXPECT_EQ(cayspin_step(simulation.get(), 1), CAYSPIN_OK);
   expect_failure(cayspin_run(simulation.get(), file.c_str(), 1), CAYSPIN_WRONG_USAGE,
                  "at step 11 and the scene ends at step 10");
