@@ -58,7 +58,8 @@ bool is_path(std::filesystem::path const& path);
 /// Reads the file of a path except its spins. Errors are those of trajectory.hpp.
 Path read_path(std::filesystem::path const& path);
 
-/// Throws the error that write_path would throw if the file cannot be written.
+/// Throws the error that write_path, write_modes or write_bands would throw if the file cannot be
+/// written.
 void require_writable(std::filesystem::path const& path, bool overwrite);
 
 }  // namespace cayspin::inline v0_2::io

@@ -8,6 +8,7 @@
 #include "files/file_beside.hpp"
 #include "info_file.hpp"
 #include "io/notes.hpp"
+#include "io/path.hpp"
 #include "io/relax.hpp"
 #include "io/toml_string.hpp"
 #include "io/trajectory.hpp"
@@ -319,6 +320,7 @@ int find_modes_of_scene(ModesCommand const& options) {
     throw UsageError(fmt::format("--tolerance {}; accepted: a number between 0 and 1",
                                  options.search.tolerance));
   if (!options.corners.empty()) require_bands(scene, path_of(options));
+  io::require_writable(path, options.overwrite);
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, options.device);
   auto plan = make_plan_of_modes(scene, options.precision, options.search, options.hessian);

@@ -203,6 +203,8 @@ TEST_F(Modes, RefuseWhatHasNone) {
   refused(joined(torque, {"--hessian"}), "torque: does not go with --hessian");
   refused(joined(torque, {"--wave-vector", "0,0,0"}), "torque: does not go with --wave-vector");
   refused(joined(torque, {"--set", "lattice.shape=[1025]"}), "lattice.shape: has 1025 sites; ");
+  // before the search, which fails with so few evaluations
+  refused({"--evaluations", "3", "--output", "none/modes.h5"}, "the folder none does not exist");
   auto const few = start({"modes", write("scene.toml", film), "--evaluations", "3"});
   EXPECT_EQ(few.status, 3);
   EXPECT_FALSE(exists("modes.h5"));
