@@ -60,6 +60,19 @@ class Relaxation {
 
   int run() {
     auto const fields = io::fields_in_turn(scene_);
+    try {
+      return relax_all(fields);
+    } catch (NumbersFailed const& error) {
+      end_after_failure();
+      if (fields.size() == 1) throw;
+      throw NumbersFailed(fmt::format("{}; {} has {} of {} states", error.what(),
+                                      output_file(scene_, options_.output).string(), states_,
+                                      fields.size()));
+    }
+  }
+
+ private:
+  int relax_all(std::vector<io::Field> const& fields) {
     for (auto const& field : fields) {
       auto in_field = scene_;
       in_field.field = field;
@@ -92,7 +105,13 @@ class Relaxation {
     return interrupted ? Status::interrupted : Status::numbers_failed;
   }
 
- private:
+  // Keeps the states that were found before a field or an energy that is not finite.
+  void end_after_failure() {
+    cost_.wall_seconds = clock_.seconds();
+    file_->close(cost_);
+    if (options_.json && states_ > 0) print_found();
+  }
+
   Minimum relax_in(io::Scene const& in_field, SceneField<Spins> const& field) {
     Kokkos::Timer const clock;
     auto const found =

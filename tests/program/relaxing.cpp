@@ -197,6 +197,19 @@ TEST_F(Relax, IsExported) {
   EXPECT_TRUE(exists("ovf/out_000000.ovf"));
 }
 
+TEST_F(Relax, KeepsTheStatesBeforeAFieldThatIsNotFinite) {
+  auto const outcome =
+      relax(scene, {"--json", "--set", "field.applied=[[0.3, 0, 0.001], [0, 0, 1.7e308]]"});
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_TRUE(is_one_line(outcome.errors));
+  EXPECT_TRUE(contains(outcome.errors, "is not finite; out.h5 has 1 of 2 states"));
+  auto const found = nlohmann::json::parse(outcome.output);
+  EXPECT_EQ(found.at("frames"), 1);
+  EXPECT_EQ(found.at("converged"), false);
+  EXPECT_EQ(found.at("searches").size(), 1U);
+  EXPECT_TRUE(contains(output_of({"info", "out.h5"}), "no: interrupted or failed"));
+}
+
 // An equilibrium has a number, but no time.
 TEST_F(Relax, HasNoTimes) {
   ASSERT_EQ(relax(si_scene + "[field]\napplied = [[0, 0, 0.1], [0, 0, 0.2]]\n").status, 0);
