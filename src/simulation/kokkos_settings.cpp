@@ -17,18 +17,20 @@ bool is_on_host(std::string const& space) {
   return space == "serial" || space == "openmp" || space == "threads";
 }
 
+void require_threads(std::string const& space, std::optional<int> threads) {
+  if (space == "serial" && threads && *threads != 1)
+    throw UsageError(
+        fmt::format("--threads {}: --space serial has one thread; accepted: 1", *threads));
+}
+
 namespace {
 
 Kokkos::InitializationSettings settings(std::string const& space, std::optional<int> threads,
                                         std::optional<int> device) {
   Kokkos::InitializationSettings settings;
   settings.set_disable_warnings(true);
-  if (space == "serial") {
-    if (threads && *threads != 1)
-      throw UsageError(
-          fmt::format("--threads {}: --space serial has one thread; accepted: 1", *threads));
-    threads = 1;
-  }
+  require_threads(space, threads);
+  if (space == "serial") threads = 1;
   if (threads) settings.set_num_threads(*threads);
   if (!device) return settings;
   int const devices = Kokkos::num_devices();

@@ -34,6 +34,8 @@ bool is_on_host(std::string const& space);
 /// Returns the requested name, or that of Kokkos' default space. Throws UsageError for a space
 /// that is not compiled in, and for "serial" if Kokkos already runs with more than one thread.
 std::string chosen_space(std::optional<std::string> const& asked);
+/// Throws UsageError for "serial" with another number of threads than one.
+void require_threads(std::string const& space, std::optional<int> threads);
 
 /// Returns the number of threads of `exec`; 1 on devices.
 template <class Space>

@@ -313,6 +313,8 @@ TEST_F(Sweeping, WrongUsesAreOneLine) {
            {{"--over", "system.damping=0.1", "--set", "output.xdmf=true"},
             "output.xdmf: true: a sweep writes one file"},
            {{"--over", "output.table=false,true"}, "output.table: true: a sweep writes one file"},
+           {{"--over", "system.damping=0.1", "--space", "serial", "--threads", "2"},
+            "--space serial"},
            {{"--over", "system.damping=0.1", "--jobs", "0"}, "--jobs"}})
     expect_refused(sweep_into("wrong.h5", more), part);
   EXPECT_FALSE(exists("wrong.h5"));

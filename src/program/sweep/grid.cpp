@@ -106,6 +106,7 @@ Grid make_grid(SweepOptions const& options) {
   header.keys = read_keys(options);
   header.precision = to_string(options.precision);
   header.space = chosen_space(options.space);
+  require_threads(header.space, options.threads);
   header.cayspin_version = CAYSPIN_VERSION_STRING;
   header.git_commit = CAYSPIN_GIT_COMMIT;
   std::int64_t checked = 0;
