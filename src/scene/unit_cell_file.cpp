@@ -266,7 +266,11 @@ std::vector<Coupling> read_unit_cell_couplings(std::filesystem::path const& path
   require_sites(lines, cell.crystal, crystal);
   auto const atoms = static_cast<std::int64_t>(crystal.basis.size());
   auto const head = lines.required(1, "the number of interactions");
-  auto const kind = head.size() > 1 ? kind_of(lines, head[1]) : Kind();
+  if (head.size() < 2)
+    lines.fail(
+        "has no kind of exchange after the number of interactions; accepted: isotropic, vectorial "
+        "or tensorial for numbers in J, normalised-.. for multiples of exchange-matrix");
+  auto const kind = kind_of(lines, head[1]);
   if (kind.normalised) require_one_energy(lines, head, cell, scale_is_given);
   auto const tensors = one_way(lines, read_interactions(lines, head, kind, atoms));
   std::map<BondKey, Coupling> couplings;

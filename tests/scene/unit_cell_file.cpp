@@ -95,7 +95,6 @@ TEST(UnitCellFile, MayBeWrittenInOtherWays) {
            {"# a chain\n", "\n   # other\n\n"},
            {"2 isotropic", "2 isotropic # bonds"},
            {"2 isotropic", "2 0"},
-           {"2 isotropic", "2"},
            {"2 isotropic", "\t2 ,isotropic\r"},
            {"0 0 0 1 0 0 2.5", "17 0 0 +1 0.0 0 2.5e0"},
            {"0 0 0 0 0\n", "1 0 0 0\n"},
@@ -230,6 +229,9 @@ TEST(UnitCellFile, WrongLinesAreNamed) {
             "8: \"isotropisch\" is no kind of exchange; accepted: "
             "isotropic, vectorial, tensorial"},
            {"2 isotropic", "2 3", "8: \"3\" is no kind of exchange"},
+           {"2 isotropic", "2",
+            "8: has no kind of exchange after the number of interactions; accepted: isotropic, "
+            "vectorial or tensorial for numbers in J, normalised-.. for"},
            {"2 isotropic", "-2 isotropic", "8: -2 is not a whole number from 0"},
            {"2 isotropic", "1 isotropic",
             "9: the bond from atom 0 to atom 0 of the cell (1, 0, 0) "
