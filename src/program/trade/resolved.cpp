@@ -3,6 +3,7 @@
 
 #include "simulation/failure.hpp"
 #include "simulation/multirate_method.hpp"
+#include "simulation/variant.hpp"
 
 #include <fmt/format.h>
 
@@ -126,12 +127,13 @@ io::Scene with_method(io::Scene const& scene, std::string const& space, Precisio
 }
 
 std::optional<io::Scene> with_method_of(io::Scene const& scene, std::string const& typed_before,
-                                        std::string const& resolved_before) {
+                                        std::string const& resolved_before, bool in_parts) {
   if (!scene.integrator.method->automatic || resolved_before.empty()) return std::nullopt;
   auto const parsed = [&](std::string const& text) {
     return io::parse_scene(text, scene.path, {}, scene.given);
   };
   auto const typed = parsed(typed_before), resolved = parsed(resolved_before);
+  if (in_parts && find_variant(resolved).ghosts == 0) return std::nullopt;
   // The periods of frames and samples are in steps of the scene. They are scaled to steps of the
   // chosen method.
   double const ratio = typed.integrator.dt / resolved.integrator.dt;

@@ -30,8 +30,8 @@ io::Scene with_method(io::Scene const& scene, std::string const& space, Precisio
 /// For a scene with method "auto", returns the scene with the method that an earlier run chose.
 /// `typed_before`, `resolved_before`: the scene of the earlier run as typed, and with the chosen
 /// method. Returns nothing if there was no such choice, or if it does not fit this scene's error,
-/// dt and steps.
+/// dt and steps; if `in_parts`, also if it does not run on several ranks.
 std::optional<io::Scene> with_method_of(io::Scene const& scene, std::string const& typed_before,
-                                        std::string const& resolved_before);
+                                        std::string const& resolved_before, bool in_parts);
 
 }  // namespace cayspin::program::trade
