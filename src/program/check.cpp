@@ -46,7 +46,8 @@ std::optional<double> repeated_on(CheckOptions const& options, io::Scene const& 
         fmt::format("--ranks {}: method \"{}\" runs only on one rank; accepted: no --ranks, or "
                     "another integrator.method",
                     *options.ranks, plan.variant.method->word));
-  auto const parts = read_parts(*options.ranks, plan.lattice, depth_of_parts(scene, plan));
+  auto const depth = depth_of_parts(scene, plan.lattice, plan.variant.ghosts);
+  auto const parts = read_parts(*options.ranks, plan.lattice, depth);
   return repeated_share(plan.lattice, plan.variant.ghosts, parts);
 }
 
@@ -199,7 +200,8 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
     print("ranks",
           fmt::format("each does {:.3g} % more work than on its own sites, and holds {} of each "
                       "neighbour",
-                      100 * *repeated, mpi::to_text(depth_of_parts(scene, plan))));
+                      100 * *repeated,
+                      mpi::to_text(depth_of_parts(scene, plan.lattice, plan.variant.ghosts))));
   print_output(scene, plan);
 }
 

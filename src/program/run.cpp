@@ -122,6 +122,20 @@ std::vector<PlannedStage> planned_stages(io::Scene const& scene, EarlierRun* lef
   });
 }
 
+// Returns how many rows and planes the parts need from their neighbours in any stage. The start
+// takes no steps, but its field is evaluated.
+mpi::Depth depth_of_all(std::vector<PlannedStage> const& stages) {
+  mpi::Depth depth(0);
+  for (auto const& [stage, plan] : stages) {
+    if (!plan || stage.relax) continue;
+    int const ghosts = is_start(stage) ? 1 : plan->variant.ghosts;
+    auto const needed = depth_of_parts(stage.scene, plan->lattice, ghosts);
+    depth.y = std::max(depth.y, needed.y);
+    depth.z = std::max(depth.z, needed.z);
+  }
+  return depth;
+}
+
 void warn(std::vector<PlannedStage> const& stages) {
   std::vector<std::string> notes;
   for (auto const& [stage, plan] : stages) {
@@ -168,14 +182,8 @@ int run(RunOptions const& options, Ranks& ranks) {
                    : "dt " + time_text(scene.units, scene.integrator.dt));
   auto stages = planned_stages(scene, left.get(), options, ranks);
   auto const& first = *std::ranges::find_if(stages, [](auto& one) { return one.plan.has_value(); });
-  mpi::Depth depth(0);
-  for (auto const& [stage, plan] : stages)
-    if (plan && !stage.relax && !is_start(stage)) {
-      auto const needed = depth_of_parts(stage.scene, *plan);
-      depth.y = std::max(depth.y, needed.y);
-      depth.z = std::max(depth.z, needed.z);
-    }
   auto const& lattice = first.plan->lattice;
+  auto const depth = ranks.together([&] { return depth_of_all(stages); });
   auto const parts = ranks.together([&] {
     for (auto const& [stage, plan] : stages)
       if (plan) require_one_rank(stage, *plan, ranks);

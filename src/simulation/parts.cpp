@@ -3,7 +3,6 @@
 
 #include "failure.hpp"
 #include "io/scene.hpp"
-#include "plan.hpp"
 
 #include <cayspin/field/bonds_of_sites.hpp>
 
@@ -16,21 +15,21 @@
 
 namespace cayspin::simulation {
 
-mpi::Depth depth_of_parts(io::Scene const& scene, Plan const& plan) {
-  mpi::Depth depth(plan.variant.ghosts);
+mpi::Depth depth_of_parts(io::Scene const& scene, cayspin::Lattice const& lattice, int ghosts) {
+  mpi::Depth depth(ghosts);
   if (io::needs_pass(scene)) {
-    cayspin::detail::BondLists const bonds(plan.lattice, io::couplings(scene));
+    cayspin::detail::BondLists const bonds(lattice, io::couplings(scene));
     auto const [rows, cells] = bonds.rows_and_cells();
     depth.y = std::max(depth.y, rows);
-    depth.z = std::max(depth.z, cells * static_cast<int>(plan.lattice.cell_sites));
+    depth.z = std::max(depth.z, cells * static_cast<int>(lattice.cell_sites));
     for (auto const& bond : scene.field.interlayers) {
       if (bond.range == 0) continue;
       auto const reach = bond.range + 1;
-      if (reach < plan.lattice.shape[1]) depth.y = std::max(depth.y, static_cast<int>(reach));
-      if (reach < plan.lattice.shape[2]) depth.z = std::max(depth.z, static_cast<int>(reach));
+      if (reach < lattice.shape[1]) depth.y = std::max(depth.y, static_cast<int>(reach));
+      if (reach < lattice.shape[2]) depth.z = std::max(depth.z, static_cast<int>(reach));
     }
   }
-  return mpi::in_whole_cells(depth, plan.lattice);
+  return mpi::in_whole_cells(depth, lattice);
 }
 
 std::array<int, 2> read_parts(std::string const& text, cayspin::Lattice const& lattice,

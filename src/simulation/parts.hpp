@@ -13,11 +13,9 @@ struct Scene;
 
 namespace cayspin::simulation {
 
-struct Plan;
-
-/// Returns how many rows and planes a part needs from its neighbours: for the stages of a step, and
-/// for the range of couplings and interlayers.
-mpi::Depth depth_of_parts(io::Scene const& scene, Plan const& plan);
+/// Returns how many rows and planes a part needs from its neighbours: `ghosts` for the stages of a
+/// step, or more if couplings or interlayers reach further.
+mpi::Depth depth_of_parts(io::Scene const& scene, cayspin::Lattice const& lattice, int ghosts);
 
 /// Reads the numbers of parts along y and z from text such as "1,4". Throws UsageError for invalid
 /// text, and for parts of fewer rows or planes than `depth`.

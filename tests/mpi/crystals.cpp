@@ -223,6 +223,30 @@ interlayer = [
     expect_bits_of_one(scene_of(text, heun), {{2, "1,2"}, {3, "3,1"}, {4, "2,2"}});
 }
 
+// The bonds at the start, which takes no steps, reach further than those of the stage after it.
+TEST_F(CrystalsOnRanks, HaveGhostsAsDeepAsAnyStageNeeds) {
+  expect_bits_of_one(R"toml([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [6, 12, 14]
+regions = "i % 2"
+occupied = "k % 5 != 2 && k % 5 != 3 && j != 4"
+[field]
+exchange = 0.7
+applied = [0.3, 0.1, 0.2]
+interlayer = [ { between = [0, 0], J = -0.2, range = 2 } ]
+[initial]
+expression = ["cos(5*x + 2*y)", "sin(3*z + y)", "x - 0.3*k"]
+[output]
+every = 6
+[[stage]]
+integrator = { method = "heun", dt = 0.02, steps = 12 }
+field.interlayer = [ { between = [0, 0], J = -0.2, range = 1 } ]
+)toml",
+                     {{2, "1,2"}, {3, "3,1"}, {4, "2,2"}});
+}
+
 TEST_F(CrystalsOnRanks, StepByEveryKindOfMethod) {
   for (std::string const method :
        {"euler\"\nisotropy = \"finite_difference", "ab2", "rkmk4\"\ncompensated = true #", "rkmk8",
