@@ -115,35 +115,4 @@ TEST_P(DenseOutput, JoinsTheStepAtItsEnds) {
 
 INSTANTIATE_TEST_SUITE_P(Damping, DenseOutput, ::testing::Values(0.05, 1.0));
 
-// A sweep does not keep what dense output needs if only spins at a later time are wanted.
-TEST(DenseOutputOfASweep, EarlierTimesThanTheWantedOneAreRefused) {
-  if (!detail::is_host_execution<Space>) GTEST_SKIP() << "devices do not sweep";
-  auto const start = random_spins<Spins>(Lattice{.shape = {9, 7, 5}}, 5);
-  LandauLifshitz const generator(
-      EffectiveField(Exchange(start.lattice(), 1), Zeeman{{0.3, 0.1, 1}}), 0.1);
-  StepOptions const options{.tolerance = 1e-3, .first_dt = 0.02};
-  auto right = copy_of(start);
-  AdaptiveRkmk<Spins> reference(right, options);
-  for (double const t : {0.0, 0.004}) reference.step(Space(), generator, right, t, 0.004);
-  for (Path const path : {Path::pass, Path::sweep}) {
-    auto spins = copy_of(start);
-    AdaptiveRkmk<Spins> stepper(spins, options);
-    stepper.use(path);
-    stepper.step_towards(Space(), generator, spins, 0, 0.004, 10);
-    EXPECT_EQ(stepper.accepted_steps(), 1);
-    EXPECT_EQ(copy_to_host(spins), copy_to_host(start));
-    auto const step = [&] { stepper.step(Space(), generator, spins, 0.004, 0.004); };
-    if (path == Path::sweep) {
-      EXPECT_THROW(step(), std::invalid_argument);
-      EXPECT_EQ(copy_to_host(spins), copy_to_host(start));
-      // The end of the internal step is known.
-      stepper.step(Space(), generator, spins, 0.004, 0.016);
-      reference.step(Space(), generator, right, 0.008, 0.012);
-    } else {
-      step();
-    }
-    EXPECT_EQ(copy_to_host(spins), copy_to_host(right));
-  }
-}
-
 }  // namespace

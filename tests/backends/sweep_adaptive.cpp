@@ -86,6 +86,33 @@ TYPED_TEST(AdaptiveSweep, InSpace) {
   expect_same_on_both_paths<AdaptiveProjected<typename TestFixture::Field>>();
 }
 
+// A sweep leaves out the increments of a step that ends before the wanted time.
+TYPED_TEST(AdaptiveSweep, GivesSpinsBeforeTheTimeThatAnEarlierCallWanted) {
+  using Field = typename TestFixture::Field;
+  auto const lattice = Lattice::cubic(70, 20, 20);
+  auto const generator = turning(every_term(lattice));
+  auto const start = random_spins<Field>(lattice, 13);
+  Threaded const exec;
+  std::vector<std::vector<TypeParam>> seen;
+  for (Path const path : {Path::pass, Path::sweep}) {
+    auto spins = copy_of(start);
+    AdaptiveRkmk<Field> stepper(spins,
+                                {.tolerance = 1, .first_dt = 0.05, .min_dt = 0.05, .max_dt = 0.05});
+    stepper.use(path);
+    stepper.step_towards(exec, generator, spins, 0, 0.01, 0.5);
+    expect_equal_bits(copy_to_host(spins), copy_to_host(start), "not yet wanted");
+    stepper.step(exec, generator, spins, 0.01, 0.02);
+    EXPECT_EQ(stepper.accepted_steps(), 1);
+    seen.push_back(copy_to_host(spins));
+    stepper.step(exec, generator, spins, 0.03, 0.04);
+    EXPECT_EQ(stepper.accepted_steps(), 2);
+    EXPECT_EQ(stepper.path(), path);
+    seen.push_back(copy_to_host(spins));
+  }
+  expect_equal_bits(seen[0], seen[2], "within the first step");
+  expect_equal_bits(seen[1], seen[3], "within the second step");
+}
+
 TYPED_TEST(AdaptiveSweep, LeavesOffUnderANonlocalField) {
   expect_passes_under_a_nonlocal_field<AdaptiveRkmk<typename TestFixture::Field>>(0.5, options);
 }

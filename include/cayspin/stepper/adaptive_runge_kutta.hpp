@@ -19,8 +19,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <stdexcept>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -69,10 +67,8 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
   void visit_memory(Visit const& visit) {
     visit("evaluations", evaluations_done_);
     if (!visit_steps(visit)) return;
-    double const before = begin_time_;
     visit("begin_time", begin_time_);
     memory_.visit(visit);
-    if (begin_time_ != before) keeps_increments_ = true;  // another step was restored
   }
 
   /// Advances `spins` from t to t + dt under `generator`. Waits for each internal step. Throws
@@ -85,8 +81,7 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
 
   /// Like `step`, but changes `spins` only if the internal steps, which continue until they reach t
   /// + dt, also reach `wanted`, a time at or after t + dt. `spins` are then those at `wanted`.
-  /// Later calls may want earlier times only if the internal steps have not passed them. Throws
-  /// like `step`.
+  /// Throws like `step`.
   template <class Exec, class Generator>
   void step_towards(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
                     double wanted) {
@@ -95,7 +90,13 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
         t, dt,
         [&](double from) { begin(exec, generator, is_running() ? memory_.end : spins, from, dt); },
         [&] { take_step(exec, generator, wanted); });
-    if (has_reached(wanted, dt)) deliver(exec, spins, wanted);
+    if (!has_reached(wanted, dt)) return;
+    // An earlier call wanted a later time, so the last step left out its increments: take it again.
+    if (!has_increments_ && ends_beyond(wanted, end_time_, dt_)) {
+      try_step(exec, generator, begin_time_, dt_, begin_time_);
+      detail::update_ghosts(exec, this->lattice_, memory_.end, memory_.last);
+    }
+    deliver(exec, spins, wanted);
   }
 
  private:
@@ -136,15 +137,15 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
   double try_step(Exec const& exec, Generator const& generator, double t, double dt,
                   double wanted) {
     evaluations_done_ += stages - 1;
-    keeps_increments_ = true;
+    has_increments_ = true;
     bool at_once = false;
     if constexpr (detail::is_host_execution<Exec>) {
       bool const by_time = detail::stages_need_only_time<Isotropy>(generator, exec, memory_.begin);
       if (this->path() == Path::sweep && !by_time) this->use(Path::pass);
       if constexpr (Base::Sweeps::possible) {
         if (this->path() == Path::sweep) {
-          keeps_increments_ = ends_beyond(wanted, t + dt, dt);
-          sweep(exec, generator, t, dt, keeps_increments_);
+          has_increments_ = ends_beyond(wanted, t + dt, dt);
+          sweep(exec, generator, t, dt, has_increments_);
           return error(exec);
         }
       }
@@ -242,18 +243,10 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
   template <class Exec>
   void deliver(Exec const& exec, Spins const& spins, double t) const {
     double const fraction = end_time_ > begin_time_ ? (t - begin_time_) / dt_ : 1;
-    // Without increments, a time that differs from that of the end only by round-off is the end.
-    double const round_off =
-        keeps_increments_ ? 0 : 4 * std::numeric_limits<double>::epsilon() * std::abs(t);
-    if (!ends_beyond(t + round_off, begin_time_ + dt_, dt_) || fraction >= 1) {
+    if (!ends_beyond(t, end_time_, dt_) || fraction >= 1) {
       Kokkos::deep_copy(exec, spins.allocation(), memory_.end.allocation());
       return;
     }
-    if (!keeps_increments_)
-      throw std::invalid_argument(
-          this->label("::step: the spins at t = ") + detail::to_text(t) +
-          " are not known any more, because an earlier call wanted only those at a later time; "
-          "accepted: times that do not go back");
     detail::DenseOutput<Tableau, Update, Real> look{memory_.begin.array(), memory_.end.array(),
                                                     memory_.last.array(),  memory_.all_increments(),
                                                     spins.output(false),   static_cast<Real>(dt_)};
@@ -272,8 +265,8 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
   std::string begin_label_ = this->label("::begin"), end_label_ = this->label("::end"),
               dense_label_ = this->label("::dense_output"), error_label_ = this->label("::error"),
               step_label_ = this->label("::all_stages");
-  double begin_time_ = 0;         // start of the last internal step
-  bool keeps_increments_ = true;  // of the last internal step; only a sweep may omit them
+  double begin_time_ = 0;       // start of the last internal step
+  bool has_increments_ = true;  // of the last internal step; a sweep stores them only if needed
   std::int64_t evaluations_done_ = 0;
 };
 

@@ -38,7 +38,8 @@ struct StepOptions {
   double tolerance = 1e-6;  ///< desired bound on the error of a run: the largest angle between a
                             ///< spin and its exact direction, in radians
   double first_dt = 0;      ///< 0: chosen from the largest rate and the tolerance
-  double min_dt = 0;        ///< if the tolerance needs a shorter step, StepTooSmall is thrown
+  double min_dt = 0;  ///< if the tolerance needs a shorter step, StepTooSmall is thrown; other
+                      ///< steps are shorter only to end at `end`, or as `bounds` require
   double max_dt = std::numeric_limits<double>::infinity();
   double end = std::numeric_limits<double>::infinity();  ///< no stage is evaluated after this time
   /// Intervals in which the field jumps, or changes so fast that steps may miss the change between
