@@ -17,13 +17,14 @@ class Sweep:
     values: list  # for each key, its values as typed
     numbers: list  # for each key, its values as floats, or None
     done: np.ndarray  # bool
+    failed: np.ndarray  # bool; runs still to do are neither done nor failed
     energy: np.ndarray
     magnetization: np.ndarray  # (..., 3)
     complete: bool
 
 
 def read_sweep(path):
-    """Reads a sweep. Runs that failed or are still to do have done = False, and NaN as results."""
+    """Reads a sweep. Runs that failed or are still to do have NaN as results."""
     with opened(path, "sweep") as file:
         if "sweep_format" not in file.attrs:
             raise ValueError("it has no sweep")
@@ -34,7 +35,8 @@ def read_sweep(path):
         numbers = [list(dict(zip(column, file["parameters"][key][:])).values())
                    if key in file["parameters"] else None for key, column in zip(keys, columns)]
         shape = [len(value) for value in values]
-        done = file["status"][:].reshape(shape) == 0
+        status = file["status"][:].reshape(shape)  # exit status, or -1 without a run
+        done = status == 0
         magnetization = file["magnetization"][:].reshape(*shape, 3)
         return Sweep(
             path=str(path),
@@ -42,6 +44,7 @@ def read_sweep(path):
             values=values,
             numbers=numbers,
             done=done,
+            failed=status > 0,
             energy=np.where(done, file["energy"][:].reshape(shape), np.nan),
             magnetization=np.where(done[..., None], magnetization, np.nan),
             complete=bool(file.attrs["complete"]),

@@ -10,6 +10,7 @@ from . import scalars, style
 
 MOST_ROWS = 12
 MOST_TICKS = 12
+MARKS = {"failed": ("x", style.RED), "not run": ("|", style.GREY)}  # of runs without a result
 
 
 def choose_keys(sweep, names):
@@ -43,14 +44,21 @@ def draw(sweep, axes_keys):
         energy = sweep.energy.transpose(order)[(Ellipsis, *fixed)]
         m = sweep.magnetization.transpose(*order, len(order))[(Ellipsis, *fixed, slice(None))]
         if len(axes_keys) == 1:
-            _draw_curves(row, sweep, axes_keys[0], energy, m, where)
+            missing = {text: runs.transpose(order)[(Ellipsis, *fixed)]
+                       for text, runs in _missing(sweep).items()}
+            _draw_curves(row, sweep, axes_keys[0], energy, m, missing, where)
         else:
             _draw_maps(row, sweep, axes_keys, energy, m, where)
-    failed = int((~sweep.done).sum())
-    note = f", {failed} of them without an end" if failed else ""
     runs = "1 run" if sweep.done.size == 1 else f"{sweep.done.size} runs"
-    figure.suptitle(f"{pathlib.Path(sweep.path).name}: {runs}{note}", x=0.01, ha="left")
+    counts = [f"{int(of.sum())} {text}" for text, of in _missing(sweep).items() if of.any()]
+    title = ", ".join([f"{pathlib.Path(sweep.path).name}: {runs}", *counts])
+    figure.suptitle(title, x=0.01, ha="left")
     return figure
+
+
+def _missing(sweep):
+    """Returns the runs without a result, by why they have none."""
+    return {"failed": sweep.failed, "not run": ~(sweep.done | sweep.failed)}
 
 
 def _is_logarithmic(positions):
@@ -88,20 +96,20 @@ def _label(axis, sweep, key, positions, order):
         axis.axes.set(**{f"{axis.axis_name}scale": "log"})
 
 
-def _draw_curves(axes, sweep, key, energy, m, where):
+def _draw_curves(axes, sweep, key, energy, m, missing, where):
     positions, order = _coordinates(sweep, key)
     scalars.draw_means(axes[0], positions, m[order], "o-", markersize=4)
     axes[0].set_title(_title("magnetization at the end", where))
     axes[1].plot(positions, energy[order], "o-", markersize=4, color=style.BLUE)
     axes[1].set_title(_title("energy at the end", where))
-    missing = ~np.isfinite(energy[order])
     for axis in axes:
         _label(axis.xaxis, sweep, key, positions, order)
         axis.set_xlim(_edges(positions)[[0, -1]])
-        if missing.any():
-            bottom = np.full(int(missing.sum()), 0.02)
-            axis.plot(positions[missing], bottom, "x", color=style.RED, clip_on=False,
-                      transform=axis.get_xaxis_transform(), label="failed")
+        for text, (mark, color) in MARKS.items():
+            places = positions[missing[text][order]]
+            if places.size:
+                axis.plot(places, np.full(places.size, 0.02), mark, color=color, clip_on=False,
+                          transform=axis.get_xaxis_transform(), label=text)
     axes[0].legend(loc="best")
 
 

@@ -97,11 +97,24 @@ class Sweep(ScriptTest):
         np.testing.assert_array_equal(line.get_xdata(), [0.1, 0.1, 0.8])
         np.testing.assert_allclose(line.get_ydata(), np.tanh([0.1, 0.1, 0.8]), rtol=1e-9)
         sweep.numbers, sweep.done = [[0.1, np.inf, 0.8]], np.array([True, False, True])
-        sweep.energy[1] = np.nan
+        sweep.energy[1], sweep.failed[1] = np.nan, True
         axes = sweep_figure.draw(sweep, [0]).axes[0]
         self.assertEqual([text.get_text() for text in axes.get_xticklabels()],
                          ["0.1", "0.10", "0.8"])
         self.assertEqual(axes.get_legend().get_texts()[-1].get_text(), "failed")
+
+    def test_runs_still_to_do_are_not_failures(self):
+        file = self.sweep("part.h5", "system.damping=0.1,0.2,0.4,0.8")
+        with h5py.File(file, "r+") as data:
+            data["status"][1:] = [3, -1, -1]
+        sweep = read_sweep(file)
+        self.assertEqual(sweep.done.tolist(), [True, False, False, False])
+        self.assertEqual(sweep.failed.tolist(), [False, True, False, False])
+        self.assertTrue(np.isnan(sweep.energy[1:]).all())
+        figure = sweep_figure.draw(sweep, [0])
+        self.assertEqual(figure.texts[0].get_text(), "part.h5: 4 runs, 1 failed, 2 not run")
+        lines = {line.get_label(): line.get_xdata().tolist() for line in figure.axes[0].lines}
+        self.assertEqual((lines["failed"], lines["not run"]), ([0.2], [0.4, 0.8]))
 
     def test_other_files_are_refused(self):
         self.assert_no_picture("there is no such file", self.folder / "none.h5")
