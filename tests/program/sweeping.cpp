@@ -7,6 +7,7 @@
 #include <hdf5.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 
@@ -259,6 +260,19 @@ TEST_F(Sweeping, AnotherSweepInTheFileIsRefused) {
   run(chain_scene());
   expect_refused(arguments("out.h5"), "it exists and is not the file of a sweep");
 }
+
+#ifdef CAYSPIN_NO_LOCKS
+TEST_F(Sweeping, SaysThatAFolderCannotBeLocked) {
+  ::setenv("LD_PRELOAD", CAYSPIN_NO_LOCKS, 1);
+  auto const outcome = start(arguments("free.h5", {"--quiet"}));
+  ::unsetenv("LD_PRELOAD");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
+  EXPECT_TRUE(contains(outcome.errors, "free.h5.runs: the folder cannot be locked ("))
+      << outcome.errors;
+  EXPECT_TRUE(sweep_in("free.h5").complete);
+}
+#endif
 
 TEST_F(Sweeping, OnlyOneProcessHasAFile) {
   auto const all = sweep_into("busy.h5", {"--jobs", "1", "--over", "integrator.steps=1000000000"});

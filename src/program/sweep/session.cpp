@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <utility>
 
@@ -135,8 +136,15 @@ void Session::lock_folder() {
     throw UsageError(
         fmt::format("{}: cannot create the folder: {}", folder_.string(), error.message()));
   lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+  if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
+  int const reason = errno;
+  if (lock_ >= 0 && reason == EWOULDBLOCK)
     throw UsageError(fmt::format("--output {}: another sweep is writing it", file_.string()));
+  fmt::print(
+      stderr,
+      "warning: {}: the folder cannot be locked ({}); another sweep with this --output would "
+      "not be noticed\n",
+      folder_.string(), std::strerror(reason));
 }
 
 std::vector<std::int64_t> Session::open_runs() const {
