@@ -157,8 +157,8 @@ def run(arguments):
         raise ValueError("another program is writing it; accepted: the file of a run that has "
                          "ended, or `cayspin view`") from None
     except OSError as error:
-        raise ValueError(f"cannot be opened: {' '.join(str(error).split())}; accepted: a "
-                         "file that cayspin wrote") from None
+        raise ValueError(f"cannot be opened: {' '.join(str(error).split())}"
+                         f"{command_line.what_can_be_read(arguments.file)}") from None
     with file:
         shown = of_replica(file, arguments.replica)
         if arguments.movie:

@@ -60,3 +60,11 @@ def require_file(path: str | os.PathLike) -> None:
         there = ("it is a folder" if os.path.isdir(path) else
                  "it is not a regular file" if os.path.exists(path) else "there is no such file")
         raise ValueError(f"{there}; accepted: a file that cayspin wrote")
+
+
+def what_can_be_read(path: str | os.PathLike) -> str:
+    """Returns the end of a message about a file that cannot be read. After a power cut, `cayspin
+    info` completes a file from its journal."""
+    if os.path.exists(f"{path}.journal"):
+        return f"; accepted: `cayspin info {path}` first, which completes the file from its journal"
+    return "; accepted: a file that cayspin wrote"

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import h5py
 import numpy as np
-from command_line import require_file
+from command_line import require_file, what_can_be_read
 from texture import checksum
 
 
@@ -59,7 +59,8 @@ def opened(path, what):
             yield file
     except (OSError, KeyError, TypeError, ValueError) as error:
         reason = " ".join(str(error.args[-1] if error.args else error).split())
-        raise SystemExit(f"{path}: cannot read the {what}: {reason}") from None
+        raise SystemExit(f"{path}: cannot read the {what}: {reason}{what_can_be_read(path)}"
+                         ) from None
 
 
 def _dataset(file, name, rank, columns=()):

@@ -238,6 +238,8 @@ class PlotTexture(ScriptTest):
         with open(write(self.folder / "locked.h5"), "rb") as locked:
             fcntl.flock(locked, fcntl.LOCK_EX)  # as HDF5 does while it writes
             self.assert_no_picture("another program is writing it; accepted: ", file=locked.name)
+        (self.folder / "text.h5.journal").touch()
+        self.assert_no_picture("; accepted: `cayspin info ", file=self.text_file())
         other = self.folder / "other.h5"
         h5py.File(other, "w").close()
         self.assert_no_picture("not a trajectory: it has no spins", file=other)

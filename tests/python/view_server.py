@@ -129,6 +129,9 @@ class Start(ScriptTest):
         self.assert_no_page(f"cayspin: --port {port}: Address already in use", "--port", port, chain)
         os.truncate(chain, chain.stat().st_size // 2)
         self.assert_no_page("chain.h5: cannot be read", chain)
+        # As after a power cut.
+        (self.folder / "chain.h5.journal").touch()
+        self.assert_no_page(f"; accepted: `cayspin info {chain}` first", chain)
 
     def test_wrong_scenes(self):
         self.assert_no_page("none.toml: cannot be read", "none.toml")

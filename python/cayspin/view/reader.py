@@ -11,7 +11,7 @@ from typing import Any, Callable
 import h5py
 import numpy as np
 
-from ..command_line import require_file
+from ..command_line import require_file, what_can_be_read
 from ..texture import checksum, lattice_of, plane_of, require_trajectory
 from ..texture.replica import is_ensemble
 
@@ -75,8 +75,7 @@ class Reader:
                 reason = " ".join(str(error.args[-1] if error.args else error).split())
             if tries_left:
                 time.sleep(0.05)
-        raise ValueError(f"{self.path}: cannot be read: {reason}; accepted: a file that cayspin "
-                         "wrote")
+        raise ValueError(f"{self.path}: cannot be read: {reason}{what_can_be_read(self.path)}")
 
     def _look(self, file):
         status = self.path.stat()
