@@ -11,7 +11,7 @@ import numpy as np
 from cayspin import arguments, texture
 from cayspin._cayspin import CayspinError
 from cayspin.scene import Scene
-from cayspin.texture import toml
+from cayspin.texture import checksum, toml
 from cayspin.texture.replica import Replica
 
 
@@ -41,25 +41,41 @@ def texture_of(file: Any, path: Any, frame: int, before: int | None = None,
     for the file of an ensemble."""
     with reading(file, path):
         try:
-            return texture.of_file(file if replica is None else Replica(file, replica), frame,
-                                   before)
+            if replica is not None:
+                return texture.of_file(Replica(file, replica), frame, before)
+            shown, other = texture.of_file(file, frame, before)
+            _require_undamaged(file, frame, shown.spins)
+            if before is not None:
+                _require_undamaged(file, before, other)
+            return shown, other
         except ValueError as error:
             raise CayspinError(f"{path}: {error}") from None
 
 
+def _require_undamaged(file, frame, spins):
+    checksum.require_undamaged(file, texture.frame_number(file, frame), spins[np.newaxis])
+
+
 class Frames:
     """Some of the frames of a dataset, each read when it is indexed. With `replica`, the dataset is
-    that of an ensemble, and only this replica is read."""
+    that of an ensemble, and only this replica is read. Otherwise it is that of a trajectory, and a
+    damaged frame raises CayspinError."""
 
     def __init__(self, dataset: Any, frames: range, replica: int | None = None):
         self.dataset, self.frames, self.replica = dataset, frames, replica
-        self.path = dataset.file.filename
+        self.path, self.checksums = dataset.file.filename, None
         self.shape = (len(frames), *dataset.shape[1 if replica is None else 2:])
 
     def __getitem__(self, frame: int) -> np.ndarray:
         place = self.frames[frame]
         with reading(self.dataset, self.path):
-            return self.dataset[place if self.replica is None else (place, self.replica)]
+            if self.replica is not None:
+                return self.dataset[place, self.replica]
+            if self.checksums is None:
+                self.checksums = checksum.Checksums(self.dataset.file, 0, max(self.frames) + 1)
+            spins = self.dataset[place]
+            self.checksums.require_undamaged(place, spins)
+            return spins
 
 
 def at_equal_steps(file: Any, path: Any, count: int, frames: Any,

@@ -32,6 +32,9 @@ class Trajectory:
     - `shift`: (frame), the cells by which a lattice with lattice.follow has moved
     - `stage`: (frame), for a run in stages
 
+    Arrays come from h5py as they are in the file. Only the methods that compute from spins compare
+    them with their checksums, and raise CayspinError for a damaged frame.
+
     Raises AttributeError for an array that the file does not have.
     """
 

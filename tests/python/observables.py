@@ -335,7 +335,7 @@ class Files(PackageTest):
         means = random_spins((5, 2), 3)
         spins = random_spins((5, 2, 1, 3, 7), 4)
         with h5py.File(file, "r+") as changed:
-            del changed["spins"]
+            del changed["spins"], changed["checksum"]
             changed["spins"] = spins
             changed["sublattice_magnetization"] = means
         with cayspin.open(file) as run:

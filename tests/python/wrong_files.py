@@ -62,6 +62,18 @@ class WrongFiles(FilesTest):
         self.assert_refused(cayspin.CayspinError, "cannot be read: ", cayspin.open,
                             self.damaged(type(file)(ensemble.path), "energy"))
 
+    def test_spins_with_another_checksum(self):
+        file = self.run_of()
+        with h5py.File(file, "r+") as changed:
+            changed["spins"][3, 0, 1, 2] = [0, 0, 1]
+        with cayspin.open(file) as run:
+            self.assertEqual(run.spins.shape, (5, *FRAME))
+            path = [[0, 0, 0], [0.5, 0, 0]]
+            for call in (run.topological_charge, lambda: run.dispersion(path),
+                         run.structure_factor, lambda: run.plot(3)):
+                self.assert_refused(cayspin.CayspinError, "frame 3 is damaged", call)
+            run.plot(2)
+
     def test_files_without_what_a_run_writes(self):
         def written(name, **attributes):
             file = h5py.File(self.folder / name, "w")

@@ -46,15 +46,32 @@ def require_undamaged(file, first, spins):
     """Compares frames of an open trajectory file, from frame `first` on, with their checksums.
     Raises ValueError for a damaged frame. Files of early versions have no checksums, and pass.
     `spins`: the spins of these frames."""
-    if "checksum" not in file:
-        return
-    those = slice(first, first + len(spins))
-    stored, steps = file["checksum"][those], file["step"][those]
-    numbers = np.column_stack([file[name][those] for name in (
-        "time", "energy", "norm_defect", "magnetization")])
-    more = np.concatenate([np.empty((len(spins), 0)), *(
-        np.asarray(file[name][those], np.float64).reshape(len(spins), -1)
-        for name in ("sublattice_magnetization", "shift", "stage") if name in file)], axis=1)
-    for number, (known, *parts) in enumerate(zip(stored, steps, numbers, spins, more), first):
-        if of_frame(*parts) != int(known):
-            raise ValueError(f"frame {number} is damaged: its checksum differs")
+    known = Checksums(file, first, len(spins))
+    for number, one in enumerate(spins, first):
+        known.require_undamaged(number, one)
+
+
+class Checksums:
+    """The checksums of `count` frames of an open trajectory file, from frame `first` on, and the
+    numbers that they cover beside the spins, read once."""
+
+    def __init__(self, file, first, count):
+        self.first, self.rows = first, []
+        if "checksum" not in file:
+            return
+        those = slice(first, first + count)
+        stored, steps = file["checksum"][those], file["step"][those]
+        numbers = np.column_stack([file[name][those] for name in (
+            "time", "energy", "norm_defect", "magnetization")])
+        more = np.concatenate([np.empty((count, 0)), *(
+            np.asarray(file[name][those], np.float64).reshape(count, -1)
+            for name in ("sublattice_magnetization", "shift", "stage") if name in file)], axis=1)
+        self.rows = list(zip(stored, steps, numbers, more))
+
+    def require_undamaged(self, frame, spins):
+        """Raises ValueError if the frame with these spins is damaged."""
+        if frame - self.first >= len(self.rows):  # a kill may leave a frame without its checksum
+            return
+        known, step, numbers, more = self.rows[frame - self.first]
+        if of_frame(step, numbers, spins, more) != int(known):
+            raise ValueError(f"frame {frame} is damaged: its checksum differs")
