@@ -25,6 +25,14 @@ TEST(Division, RepeatsLeast) {
   EXPECT_EQ(divide(Lattice::chain(64), 4, 1), (Division{1, 1}));
 }
 
+TEST(Division, DependsOnTheDepths) {
+  EXPECT_EQ(divide(Lattice::cubic(8, 64, 64), {1, 4}, 2), (Division{2, 1}));
+  EXPECT_EQ(divide(Lattice::cubic(8, 64, 64), {4, 1}, 2), (Division{1, 2}));
+  EXPECT_EQ(divide(Lattice::cubic(8, 64, 64), {1, 4}, 4), (Division{4, 1}));
+  // Ghosts along z are whole cells, here of two planes.
+  EXPECT_EQ(divide(Crystal::bcc().lattice({3, 12, 8}), 1, 2), (Division{2, 1}));
+}
+
 TEST(Division, DepthsAreCountedInWords) {
   EXPECT_EQ(mpi::to_text(1), "1 row or plane");
   EXPECT_EQ(mpi::to_text({1, 2}), "1 row or 2 planes");

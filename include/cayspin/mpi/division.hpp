@@ -51,26 +51,28 @@ inline std::string to_text(Depth const& depth) {
   return std::to_string(depth.y) + row + " or " + std::to_string(depth.z) + plane;
 }
 
-/// Returns the division into this many parts that repeats the least work on ghosts, estimated as if
-/// the depths along y and z were equal; of equally good ones, the one with the most parts along z.
-/// Throws std::invalid_argument when no division is possible.
+/// Returns the division into this many parts with the fewest ghosts inside the lattice; of equally
+/// good ones, the one with the most parts along z. Throws std::invalid_argument when no division is
+/// possible.
 inline Division divide(Lattice const& lattice, Depth const& depth, int parts) {
+  auto const in_cells = in_whole_cells(depth, lattice);
   Division best{0, 0};
   double least = 0;
   for (int y = 1; y <= parts; ++y) {
     Division const division{y, parts / y};
     if (parts % y != 0 || !can_divide(lattice, depth, division)) continue;
-    double const repeated =
-        static_cast<double>(y - 1) / static_cast<double>(lattice.shape[1]) +
-        static_cast<double>(division.z - 1) / static_cast<double>(lattice.shape[2]);
-    if (best.y == 0 || repeated < least) best = division, least = repeated;
+    auto const share = [](int needed, int along, std::int64_t extent) {
+      return static_cast<double>(needed) * (along - 1) / static_cast<double>(extent);
+    };
+    double const ghosts = share(in_cells.y, division.y, lattice.shape[1]) +
+                          share(in_cells.z, division.z, lattice.shape[2]);
+    if (best.y == 0 || ghosts < least) best = division, least = ghosts;
   }
   if (best.y == 0)
     throw std::invalid_argument(
         "cayspin::mpi::divide: a lattice of " + std::to_string(lattice.shape[0]) + " x " +
         std::to_string(lattice.shape[1]) + " x " + std::to_string(lattice.shape[2]) +
-        " sites has no " + std::to_string(parts) + " parts of at least " +
-        to_text(in_whole_cells(depth, lattice)));
+        " sites has no " + std::to_string(parts) + " parts of at least " + to_text(in_cells));
   return best;
 }
 
