@@ -81,9 +81,11 @@ io::Scene typed_scene(RunOptions const& options, Ranks& ranks) {
 // run it, or the one that the first rank chooses for all. Returns any other scene unchanged.
 io::Scene with_method(io::Scene const& typed, EarlierRun const* left, RunOptions const& options,
                       std::string const& space, Ranks& ranks) {
-  auto const as_before =
-      left ? trade::with_method_of(typed, left->scene_text(), left->resolved_scene(), ranks.many())
-           : std::nullopt;
+  auto const as_before = ranks.together([&] {
+    return left ? trade::with_method_of(typed, left->scene_text(), left->resolved_scene(),
+                                        ranks.many())
+                : std::nullopt;
+  });
   if (as_before) return *as_before;
   if (!typed.integrator.method->automatic) return typed;
   bool const silent = options.listener != Listener::user;
