@@ -292,7 +292,8 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
            "a file with its checkpoint, or initial.file in place of a restart: a run that starts "
            "from the last frame");
   if (uses_checkpoint_ && alike && !from_.at_begin) memory_ = from_.checkpoint.get();
-  if (ran && ran->lattice.follow && scene.lattice.follow) {
+  auto const& follow = scene.lattice.follow;
+  if (ran && ran->lattice.follow && follow && ran->lattice.follow->axis == follow->axis) {
     double shift = 0;
     if (uses_checkpoint_)
       from_.checkpoint->number("follow.shift", shift);

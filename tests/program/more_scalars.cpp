@@ -200,6 +200,12 @@ TEST_F(MoreInFiles, TheShiftIsInTheFileAndGoesOnAfterARestart) {
   auto const in_other_field = joined({"--restart", "first.h5"}, set("field.applied=[0,0,0.015]"));
   EXPECT_EQ(run_into("second.h5", wall, in_other_field).status, 0);
   EXPECT_EQ(of("second.h5", "shift").front(), of("first.h5", "shift").back());
+  // A shift along another axis starts at 0.
+  auto const along_y =
+      joined(joined({"--restart", "first.h5"}, set("lattice.follow={axis='y',quantity='mz'}")),
+             set("integrator.steps=1001"));
+  EXPECT_EQ(run_into("along_y.h5", wall, along_y).status, 0);
+  EXPECT_EQ(of("along_y.h5", "shift").front(), 0);
   // A run without `follow` has no shift, so a run that continues it starts with the shift 0.
   write("wall.toml", wall.substr(0, wall.find("follow")) + wall.substr(wall.find("[field]")));
   output_of(
