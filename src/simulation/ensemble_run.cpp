@@ -29,6 +29,14 @@ void require_memory_of_all(io::Scene const& scene, io::Scene const& replica, Pre
   require_memory(scene, plan, static_cast<int>(replicas), available);
 }
 
+// Returns the noise of the hottest replica; that of the scene itself if no temperature is varied.
+std::optional<io::Thermal> hottest_noise(io::Scene const& scene) {
+  for (auto const& [key, values] : scene.ensemble.vary)
+    if (key == "thermal.temperature")
+      return io::replica_of(scene, std::ranges::max_element(values) - values.begin()).thermal;
+  return scene.thermal;
+}
+
 }  // namespace
 
 EnsembleRun::EnsembleRun(io::Scene const& scene, RunSettings const& settings, bool relaxes,
@@ -91,6 +99,7 @@ std::optional<std::string> EnsembleRun::continue_from(std::filesystem::path cons
   auto scene = scene_;
   scene.units = of_first.units;
   scene.integrator.dt = of_first.integrator.dt;
+  scene.thermal = hottest_noise(scene_);
   Restart const restart({file, info}, scene, plan, settings_.precision, end);
   steps_ = restart.step();
   at_rest_.assign(replicas(), false);

@@ -125,6 +125,17 @@ TEST_F(EnsembleRestarts, NameWhatDiffers) {
             "warning: --restart part.h5: these keys differ from its scene: system.damping\n");
 }
 
+// Noise depends on the numbers of the steps, which another dt would change.
+TEST_F(EnsembleRestarts, WithNoiseInAnyReplicaNeedTheSameDt) {
+  write("all.toml", chain_scene() + ensemble(2, "\"thermal.temperature\" = [0, 0.1]\n"));
+  ASSERT_EQ(run({"--output", "part.h5", "--set", "integrator.steps=4"}).status, 0);
+  Arguments const restart{"run",     "all.toml",  "--quiet", "--output",
+                          "rest.h5", "--restart", "part.h5"};
+  expect_refused(joined(restart, {"--set", "integrator.dt=0.01"}),
+                 "accepted: the dt it was run with\n");
+  EXPECT_EQ(start(restart).status, 0);
+}
+
 TEST_F(EnsembleRestarts, AreRefusedInOneLine) {
   write("one.toml", chain_scene());
   write("all.toml", chain_scene() + ensemble(3));
