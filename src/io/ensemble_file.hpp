@@ -75,6 +75,9 @@ struct ReplicaRange {
 bool is_ensemble(std::filesystem::path const& path);
 /// Throws std::runtime_error with one line.
 EnsembleInfo read_ensemble_info(std::filesystem::path const& path);
+/// Reads a file that another process is writing, as read_info_while_written() does. Returns nothing
+/// if it is not the file of an ensemble.
+std::optional<EnsembleInfo> read_ensemble_info_while_written(std::filesystem::path const& path);
 /// Reads the spins of these replicas in the last frame, one replica after the other, each packed as
 /// (nz, ny, nx, 3) in the order of TrajectoryHeader::shape. Numbers are not rounded. Throws
 /// std::runtime_error with one line.

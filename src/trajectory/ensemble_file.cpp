@@ -14,12 +14,23 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 #include <span>
 #include <stdexcept>
 #include <utility>
 
 namespace cayspin::inline v0_2::io {
+namespace {
+
+// Returns properties of a dataset in which numbers that never reached the disk are read as
+// `missing`.
+PropertyHandle filled_with(double missing, std::filesystem::path const& path) {
+  PropertyHandle properties(H5Pcreate(H5P_DATASET_CREATE));
+  check(H5Pset_fill_value(properties.get(), H5T_NATIVE_DOUBLE, &missing), path,
+        "cannot create a dataset");
+  return properties;
+}
+
+}  // namespace
 
 /// The datasets time, step, energy, norm_defect and magnetization of one group. The first two have
 /// one entry per sample, the others one per sample and replica.
@@ -31,18 +42,19 @@ class ReplicaSeries {
     ReplicaSeries series;
     series.replicas_ = replicas;
     auto const samples = std::max<hsize_t>(1, numbers_per_chunk / replicas);
-    auto const make = [&](char const* name, hid_t type, Extents const& chunk) {
-      return create_growing_dataset(group, name, type, chunk, PropertyHandle(), path);
+    auto const make = [&](char const* name, Extents const& chunk) {
+      return create_growing_dataset(group, name, H5T_IEEE_F64LE, chunk,
+                                    filled_with(missing_number, path), path);
     };
-    series.time_ = make("time", H5T_IEEE_F64LE, {numbers_per_chunk});
-    series.step_ = make("step", H5T_STD_I64LE, {numbers_per_chunk});
-    series.energy_ = make("energy", H5T_IEEE_F64LE, {samples, replicas});
-    series.norm_defect_ = make("norm_defect", H5T_IEEE_F64LE, {samples, replicas});
-    series.magnetization_ = make("magnetization", H5T_IEEE_F64LE, {samples, replicas, 3});
+    series.time_ = make("time", {numbers_per_chunk});
+    series.step_ = create_growing_dataset(group, "step", H5T_STD_I64LE, Extents{numbers_per_chunk},
+                                          filled_with(missing_step, path), path);
+    series.energy_ = make("energy", {samples, replicas});
+    series.norm_defect_ = make("norm_defect", {samples, replicas});
+    series.magnetization_ = make("magnetization", {samples, replicas, 3});
     return series;
   }
 
-  // Readers count the samples by `energy`, which therefore grows last.
   void append(std::int64_t step, double time, std::vector<Scalars> const& scalars,
               std::filesystem::path const& path) {
     std::vector<double> energies, defects, means;
@@ -138,10 +150,8 @@ DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header, hsize_t r
     chunk[0] = static_cast<hsize_t>(
         frames_of_chunk(of_chunk, storage.frames * static_cast<std::int64_t>(chunks)));
   }
-  PropertyHandle properties(H5Pcreate(H5P_DATASET_CREATE));
-  auto const missing = std::numeric_limits<double>::quiet_NaN();
+  auto properties = filled_with(missing_number, path);
   constexpr char const* action = "cannot create dataset spins";
-  check(H5Pset_fill_value(properties.get(), H5T_NATIVE_DOUBLE, &missing), path, action);
   if (storage.compression > 0) {
     check(H5Pset_shuffle(properties.get()), path, action);
     check(H5Pset_deflate(properties.get(), static_cast<unsigned>(storage.compression)), path,
@@ -210,7 +220,7 @@ class EnsembleFile::Implementation {
     release();
   }
 
-  // Readers count a frame once its scalars are there, so the scalars reach the file after the
+  // Readers count a frame once all its scalars are there, so the scalars reach the file after the
   // spins.
   void write_frame(std::int64_t step, double time, std::vector<Scalars> const& scalars,
                    std::vector<std::byte> const& spins) {

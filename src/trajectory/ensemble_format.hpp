@@ -2,11 +2,16 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 namespace cayspin::inline v0_2::io {
 
 /// The attribute that identifies the file of an ensemble, and its value.
 inline constexpr char const* ensemble_format = "ensemble_format";
 inline constexpr std::int64_t ensemble_format_version = 1;
+
+/// What is read in place of a number or of a step that never reached the disk.
+inline constexpr double missing_number = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double missing_step = -1;
 
 }  // namespace cayspin::inline v0_2::io

@@ -9,6 +9,10 @@
 #include "site_order.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
 
 namespace cayspin::inline v0_2::io {
 namespace {
@@ -27,6 +31,33 @@ hsize_t length_of(hid_t group, char const* name, std::filesystem::path const& pa
   return extents.empty() ? 0 : extents[0];
 }
 
+constexpr char const* series[] = {"time", "step", "energy", "norm_defect", "magnetization"};
+
+// Returns true if a row of all datasets of a group reached the disk.
+bool is_on_disk(hid_t group, hsize_t row, hsize_t replicas, std::filesystem::path const& path) {
+  auto const has = [&](char const* name, Extents const& of_row) {
+    Extents begin(of_row.size() + 1), extents(of_row);
+    begin[0] = row;
+    extents.insert(extents.begin(), 1);
+    return std::ranges::none_of(read_row(group, name, begin, extents, path),
+                                [](double number) { return std::isnan(number); });
+  };
+  return read_row(group, "step", {row}, {1}, path)[0] != missing_step && has("time", {}) &&
+         has("energy", {replicas}) && has("norm_defect", {replicas}) &&
+         has("magnetization", {replicas, 3});
+}
+
+// Returns the number of whole rows in a group, at most `most`. A process that was killed while it
+// added a row, or is adding one, may leave the row in only some of the datasets, or without its
+// numbers.
+std::int64_t whole_rows(hid_t group, hsize_t replicas, hsize_t most,
+                        std::filesystem::path const& path) {
+  auto rows = most;
+  for (auto const* const name : series) rows = std::min(rows, length_of(group, name, path));
+  if (rows > 0 && !is_on_disk(group, rows - 1, replicas, path)) --rows;
+  return static_cast<std::int64_t>(rows);
+}
+
 void read_spins_extents(hid_t file, EnsembleInfo& info, std::filesystem::path const& path) {
   auto const dataset = open_dataset(file, "spins", path);
   auto const extents = dataset_extents(dataset.get(), path);
@@ -43,8 +74,8 @@ void read_spins_extents(hid_t file, EnsembleInfo& info, std::filesystem::path co
   info.frames = static_cast<std::int64_t>(extents[0]);
 }
 
-EnsembleInfo read_whole_info(std::filesystem::path const& path) {
-  auto const file = open_file(path);
+EnsembleInfo read_whole_ensemble(std::filesystem::path const& path, Locking locking) {
+  auto const file = open_file(path, locking);
   RootAttributes const attributes(file.get(), path);
   attributes.require_version(ensemble_format, ensemble_format_version, "cannot read the ensemble");
   EnsembleInfo info;
@@ -65,11 +96,10 @@ EnsembleInfo read_whole_info(std::filesystem::path const& path) {
                attributes.read_real("step_seconds")};
   info.complete = attributes.read_integer("complete") == 1;
   read_spins_extents(file.get(), info, path);
-  info.frames =
-      std::min(info.frames, static_cast<std::int64_t>(length_of(file.get(), "energy", path)));
-  info.samples = static_cast<std::int64_t>(
-      length_of(open_group(file.get(), "scalars", path).get(), "energy", path));
   auto const replicas = static_cast<hsize_t>(info.ensemble.replicas);
+  info.frames = whole_rows(file.get(), replicas, static_cast<hsize_t>(info.frames), path);
+  info.samples = whole_rows(open_group(file.get(), "scalars", path).get(), replicas,
+                            std::numeric_limits<std::int64_t>::max(), path);
   auto const vary = open_group(file.get(), "vary", path);
   if (H5Aexists(vary.get(), "keys") > 0)
     for (auto const& key : read_names(vary.get(), "keys", path))
@@ -120,7 +150,15 @@ bool is_ensemble(std::filesystem::path const& path) {
 }
 
 EnsembleInfo read_ensemble_info(std::filesystem::path const& path) {
-  return read_guarded(path, [&] { return read_whole_info(path); });
+  return read_guarded(path, [&] { return read_whole_ensemble(path, Locking::on); });
+}
+
+std::optional<EnsembleInfo> read_ensemble_info_while_written(std::filesystem::path const& path) {
+  return read_guarded(path, [&]() -> std::optional<EnsembleInfo> {
+    if (!RootAttributes(open_file(path, Locking::off).get(), path).has(ensemble_format))
+      return std::nullopt;
+    return read_whole_ensemble(path, Locking::off);
+  });
 }
 
 std::vector<double> read_ensemble_spins(std::filesystem::path const& path, EnsembleInfo const& info,
