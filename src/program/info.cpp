@@ -124,7 +124,9 @@ void print_text(InfoFile const& file) {
       print_trajectory(info, file.being_written);
     }
     void operator()(io::SweepInfo const& sweep) const { print_sweep(file.path, sweep); }
-    void operator()(io::EnsembleInfo const& info) const { print_ensemble(file.path, info); }
+    void operator()(io::EnsembleInfo const& info) const {
+      print_ensemble(file.path, info, file.being_written == true);
+    }
     void operator()(io::Path const& path) const { print_path(file.path, path); }
     void operator()(io::BandsContents const& found) const { print_modes(file.path, found); }
   };

@@ -22,12 +22,16 @@ void print_range(std::string const& name, std::vector<double> const& values) {
 
 }  // namespace
 
-void print_ensemble(std::filesystem::path const& file, io::EnsembleInfo const& info) {
+void print_ensemble(std::filesystem::path const& file, io::EnsembleInfo const& info,
+                    bool is_running) {
   auto const& header = info.header;
   auto const* const joule = header.units.si ? " J" : "";
   fmt::print("{:<12} {}, an ensemble of {}\n", "file", file.string(),
              counted(info.ensemble.replicas, "replica"));
-  fmt::print("{:<12} {}\n", "complete", info.complete ? "yes" : "no");
+  fmt::print("{:<12} {}\n", "complete",
+             info.complete ? "yes"
+             : is_running  ? "no: still running"
+                           : "no");
   fmt::print("{:<12} {} in each replica, {} precision\n", "lattice",
              sites_text(header.shape, header.cell_sites), header.precision);
   fmt::print("{:<12} {}\n{:<12} {}\n", "frames", info.frames, "samples", info.samples);

@@ -7,7 +7,8 @@
 
 namespace cayspin::program {
 
-/// Summarises the file of an ensemble.
-void print_ensemble(std::filesystem::path const& file, io::EnsembleInfo const& info);
+/// Summarises the file of an ensemble. `is_running`: a process is writing it.
+void print_ensemble(std::filesystem::path const& file, io::EnsembleInfo const& info,
+                    bool is_running);
 
 }  // namespace cayspin::program

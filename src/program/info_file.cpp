@@ -4,15 +4,18 @@
 #include <chrono>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 namespace cayspin::program {
 namespace {
 
 // Retries for about a second, because a half-written part may soon be complete.
-io::TrajectoryInfo read_beside_writer(std::filesystem::path const& file) {
+InfoFile read_beside_writer(std::filesystem::path const& path, std::optional<bool> being_written) {
   for (int tries = 20;; --tries) {
     try {
-      return io::read_info_while_written(file);
+      if (auto ensemble = io::read_ensemble_info_while_written(path))
+        return {path, being_written, std::move(*ensemble)};
+      return {path, being_written, io::read_info_while_written(path)};
     } catch (std::runtime_error const&) {
       if (tries == 1) throw;
     }
@@ -30,8 +33,8 @@ InfoFile read_info_file(std::filesystem::path const& path) {
     if (io::is_path(path)) return {path, being_written, io::read_path(path)};
     if (io::is_modes(path)) return {path, being_written, io::read_modes(path)};
   }
-  return {path, being_written,
-          being_written == false ? io::read_info(path) : read_beside_writer(path)};
+  if (being_written == false) return {path, being_written, io::read_info(path)};
+  return read_beside_writer(path, being_written);
 }
 
 }  // namespace cayspin::program

@@ -22,8 +22,8 @@ struct InfoFile {
       contents;
 };
 
-/// Reads a file that cayspin wrote, of any kind. A trajectory can be read while a run writes it.
-/// Throws std::runtime_error with a one-line message.
+/// Reads a file that cayspin wrote, of any kind. Those of runs and ensembles can be read while
+/// they are written. Throws std::runtime_error with a one-line message.
 InfoFile read_info_file(std::filesystem::path const& path);
 
 /// Returns the contents as one object. Values that are in the file have the names of their

@@ -52,6 +52,19 @@ TEST_F(Info, SaysThatARunFailed) {
                            {"complete     no: interrupted or failed", " of 25 (", "\ncost "}));
 }
 
+TEST_F(Info, ReadsAnEnsembleWhileItIsWritten) {
+  auto const process =
+      begin(joined({"run", "chain.toml", "--quiet", "--threads", "1", "--output", "all.h5"},
+                   set("ensemble.replicas=2", "integrator.steps=1000000000", "output.every=1000000",
+                       "output.scalars_every=1000000")));
+  EXPECT_TRUE(eventually([&] { return exists("all.h5"); }));
+  EXPECT_TRUE(contains_all(output_of({"info", "all.h5"}),
+                           {"an ensemble of 2 replicas", "complete     no: still running\n"}));
+  EXPECT_EQ(end(process, SIGKILL), 128 + SIGKILL);
+  EXPECT_TRUE(contains_all(output_of({"info", "all.h5"}),
+                           {"an ensemble of 2 replicas", "complete     no\n"}));
+}
+
 TEST_F(Info, SaysHowFarARunIs) {
   auto const process = begin_run("1000000000");
   ASSERT_TRUE(eventually([&] { return has_begun(); }));
