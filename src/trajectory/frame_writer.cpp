@@ -144,9 +144,11 @@ FrameWriter::FrameWriter(hid_t file, TrajectoryHeader const& header,
 }
 
 std::uint64_t FrameWriter::frame_bytes() const {
-  auto const of_chunk = static_cast<std::int64_t>(chunk_[1]);
-  auto const planes = (planes_of_site() + of_chunk - 1) / of_chunk * of_chunk * cell_sites_;
-  return plane_bytes_ * static_cast<std::uint64_t>(planes) * chunk_[0];
+  auto const in_chunks = [](std::int64_t extent, hsize_t of_chunk) {
+    return (static_cast<hsize_t>(extent) + of_chunk - 1) / of_chunk * of_chunk;
+  };
+  return 3 * number_bytes_ * in_chunks(shape_[0], chunk_[3]) * in_chunks(shape_[1], chunk_[2]) *
+         in_chunks(planes_of_site(), chunk_[1]) * static_cast<hsize_t>(cell_sites_) * chunk_[0];
 }
 
 void FrameWriter::begin(std::int64_t frame) {

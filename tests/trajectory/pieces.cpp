@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Frames and fields too large for memory are written plane by plane, and read by boxes.
+#include "hdf5/handle.hpp"
 #include "io/checkpoint.hpp"
 #include "io/run_output.hpp"
 #include "trajectory/fletcher32.hpp"
+#include "trajectory/frame_writer.hpp"
 #include "trajectory_test.hpp"
 
 #include <algorithm>
@@ -96,6 +98,15 @@ TEST_F(TrajectoryTest, PiecesAreWholeChunks) {
   EXPECT_EQ(last_is_short.copied, 2 * 7 * 2 * plane_bytes);
   EXPECT_EQ(frame_pieces({64, 32, 7}, 8, {}).copied, 0U);
   EXPECT_EQ(frame_pieces(odd_shape, 8, {.compression = 1, .chunk = 2}).copied, 2 * 2 * plane_bytes);
+}
+
+// A plane of more than 256 MiB is cut along y, here into three chunks of 11 rows.
+TEST_F(TrajectoryTest, SpaceIsReservedForWholeChunksOfACutPlane) {
+  auto header = small_header();
+  header.shape = {1'000'000, 31, 1};
+  auto const path = folder_ / "a.h5";
+  FileHandle const file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+  EXPECT_GE(FrameWriter(file.get(), header, {}, path).frame_bytes(), 3 * 11 * 24'000'000U);
 }
 
 TEST_F(TrajectoryTest, PiecesOutOfOrderAreRefused) {
