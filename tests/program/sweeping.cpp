@@ -226,6 +226,19 @@ TEST_F(Sweeping, TooManyJobsDestroyNothing) {
   EXPECT_FALSE(exists("none.h5"));
 }
 
+TEST_F(Sweeping, RunsStayIfTheFileOfTheirSweepIsGone) {
+  auto const all =
+      sweep_into("moved.h5", {"--jobs", "1", "--over", "integrator.steps=10,1000000000"});
+  auto const run = io::swept_run_file(in_folder("moved.h5"), 0);
+  auto const next = io::swept_run_file(in_folder("moved.h5"), 1);
+  expect_status(130, all, {.interrupt_after = 0.1, .interrupt_when = next});
+  auto const before = io::read_info(run).cost.wall_seconds;
+  fs::rename(in_folder("moved.h5"), in_folder("kept.h5"));
+  expect_refused(all, "moved.h5.runs has the runs of a sweep whose file is not there");
+  EXPECT_EQ(io::read_info(run).cost.wall_seconds, before);
+  EXPECT_FALSE(exists("moved.h5"));
+}
+
 TEST_F(Sweeping, AnInterruptSaysHowToContinue) {
   auto const all = sweep_into(
       "again.h5", {"--jobs", "1", "--overwrite", "--over", "integrator.steps=10,1000000000"});

@@ -60,6 +60,7 @@ Session::Session(fs::path file, Grid const& grid, bool overwrite)
   if (exists && overwrite) require_replaceable();
   lock_folder();
   try {
+    if (!exists && !overwrite) require_no_runs();
     open(!exists || overwrite);
   } catch (...) {
     release();
@@ -115,6 +116,16 @@ void Session::require_replaceable() const {
     throw UsageError(fmt::format("--output {}: {}", file_.string(), std::strerror(errno)));
   if (io::is_being_written(file_) == true)
     throw UsageError(fmt::format("--output {}: another program is writing it", file_.string()));
+}
+
+// A new sweep would remove the runs of an earlier one whose file was moved or deleted.
+void Session::require_no_runs() const {
+  for (auto const& entry : fs::directory_iterator(folder_))
+    if (entry.path().extension() == ".h5")
+      throw UsageError(fmt::format(
+          "--output {}: {} has the runs of a sweep whose file is not there; accepted: "
+          "that file in its place, another file, or --overwrite, which deletes the runs",
+          file_.string(), folder_.string()));
 }
 
 Session::~Session() { release(); }

@@ -50,6 +50,7 @@ class Session {
   bool is_finished() const;
   void require_same_sweep() const;
   void require_replaceable() const;
+  void require_no_runs() const;
   void lock_folder();
   void remove_folder();
 
