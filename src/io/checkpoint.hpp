@@ -32,7 +32,8 @@ struct CheckpointHeader {
   StageBegin stage = {};  ///< start of the current stage
 };
 
-/// Returns the name of a trajectory's checkpoint: "run.checkpoint.h5" for "run.h5".
+/// Returns the name of a trajectory's checkpoint: "run.checkpoint.h5" for "run.h5", and
+/// "run_0.5.checkpoint.h5" for "run_0.5".
 std::filesystem::path checkpoint_beside(std::filesystem::path trajectory);
 
 /// Writer of PATH.partial, which commit() renames to PATH.

@@ -75,7 +75,9 @@ struct CheckpointContents {
 };
 
 std::filesystem::path checkpoint_beside(std::filesystem::path trajectory) {
-  return trajectory.replace_extension(".checkpoint.h5");
+  // Any other ending may tell runs apart, as in film_0.5 and film_0.6.
+  if (trajectory.extension() == ".h5") trajectory.replace_extension();
+  return trajectory += ".checkpoint.h5";
 }
 
 class CheckpointWriter::Implementation {

@@ -244,6 +244,14 @@ TEST_F(Restarting, CheckpointsAreStoredWhereTheyAreNeeded) {
   expect_refused({}, "second.checkpoint.h5: cannot write the file: it exists");
 }
 
+TEST_F(Restarting, CheckpointsOfTrajectoriesWithOtherEndingsAreSeparate) {
+  auto const ab2 = set("integrator.method='ab2'");
+  run_to("12", "film_0.5", ab2);
+  run_to("5", "film_0.6", ab2);
+  EXPECT_EQ(io::CheckpointReader(in_folder("film_0.5.checkpoint.h5")).header().step, 12);
+  EXPECT_EQ(io::CheckpointReader(in_folder("film_0.6.checkpoint.h5")).header().step, 5);
+}
+
 // The run is killed by SIGKILL, far from its end.
 TEST_F(Restarting, GoesOnFromTheCheckpointOfAKilledRun) {
   for (std::string const method : {"rkmk4", "ab2", "dp5"}) {
