@@ -6,6 +6,7 @@
 #include "hdf5/error.hpp"
 #include "hdf5/guarded_reading.hpp"
 #include "io/ensemble_file.hpp"
+#include "require.hpp"
 #include "site_order.hpp"
 
 #include <algorithm>
@@ -31,7 +32,8 @@ hsize_t length_of(hid_t group, char const* name, std::filesystem::path const& pa
   return extents.empty() ? 0 : extents[0];
 }
 
-constexpr char const* series[] = {"time", "step", "energy", "norm_defect", "magnetization"};
+constexpr char const* names_of_series[] = {"time", "step", "energy", "norm_defect",
+                                           "magnetization"};
 
 // Returns true if a row of all datasets of a group reached the disk.
 bool is_on_disk(hid_t group, hsize_t row, hsize_t replicas, std::filesystem::path const& path) {
@@ -53,7 +55,8 @@ bool is_on_disk(hid_t group, hsize_t row, hsize_t replicas, std::filesystem::pat
 std::int64_t whole_rows(hid_t group, hsize_t replicas, hsize_t most,
                         std::filesystem::path const& path) {
   auto rows = most;
-  for (auto const* const name : series) rows = std::min(rows, length_of(group, name, path));
+  for (auto const* const name : names_of_series)
+    rows = std::min(rows, length_of(group, name, path));
   if (rows > 0 && !is_on_disk(group, rows - 1, replicas, path)) --rows;
   return static_cast<std::int64_t>(rows);
 }
@@ -62,7 +65,7 @@ void read_spins_extents(hid_t file, EnsembleInfo& info, std::filesystem::path co
   auto const dataset = open_dataset(file, "spins", path);
   auto const extents = dataset_extents(dataset.get(), path);
   bool const has_sites = extents.size() == 7;
-  bool const fits = (extents.size() == 6 || has_sites) && extents.back() == 3 &&
+  bool const fits = (extents.size() == 6 || has_sites) && extents.back() == 3 && extents[1] > 0 &&
                     extents[1] == static_cast<hsize_t>(info.ensemble.replicas);
   if (!fits)
     throw_failure(path, "cannot read dataset spins", "its extents are not those of the replicas");
@@ -70,6 +73,7 @@ void read_spins_extents(hid_t file, EnsembleInfo& info, std::filesystem::path co
   header.cell_sites = has_sites ? static_cast<std::int64_t>(extents[2]) : 1;
   for (std::size_t axis = 0; axis < 3; ++axis)
     header.shape[axis] = static_cast<std::int64_t>(extents[extents.size() - 2 - axis]);
+  require_lattice_of_file(header.shape, header.cell_sites, path);
   header.shape[2] *= header.cell_sites;
   info.frames = static_cast<std::int64_t>(extents[0]);
 }

@@ -7,6 +7,7 @@
 #include "hdf5/guarded_reading.hpp"
 #include "io/modes.hpp"
 #include "io/path.hpp"
+#include "require.hpp"
 #include "units_of_file.hpp"
 
 #include <algorithm>
@@ -59,6 +60,7 @@ void read_lattice(hid_t file, std::size_t before, std::array<std::int64_t, 3>& s
   if (extents.size() != 4) throw_failure(path, "cannot read dataset spins", "its rank is wrong");
   for (std::size_t axis = 0; axis < 3; ++axis)
     shape[axis] = static_cast<std::int64_t>(extents[2 - axis]);
+  require_lattice_of_file(shape, cell_sites, path);
   shape[2] *= cell_sites;
 }
 

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "format.hpp"
+#include "hdf5/error.hpp"
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -27,6 +29,17 @@ inline void require_shape(std::array<std::int64_t, 3> const& shape) {
     room /= extent;
   }
   if (room == 0) throw std::invalid_argument("the lattice has more sites than a file can hold");
+}
+
+/// Throws std::runtime_error unless these extents and this number of sites per cell, read from the
+/// extents of /spins in a file, are those of a lattice that require_shape accepts.
+inline void require_lattice_of_file(std::array<std::int64_t, 3> const& cells,
+                                    std::int64_t cell_sites, std::filesystem::path const& path) {
+  std::int64_t room = std::numeric_limits<std::int64_t>::max() / 64;
+  for (auto const extent : {cells[0], cells[1], cells[2], cell_sites})
+    room = extent < 1 ? 0 : room / extent;
+  if (room == 0)
+    throw_failure(path, "cannot read dataset spins", "its extents are not those of a lattice");
 }
 
 /// Returns the implementation of a writer. Throws std::logic_error if the writer was moved from.

@@ -9,6 +9,7 @@
 #include "hdf5/guarded_reading.hpp"
 #include "hdf5/handle.hpp"
 #include "io/trajectory.hpp"
+#include "require.hpp"
 #include "scalar_series.hpp"
 #include "sweep_format.hpp"
 #include "units_of_file.hpp"
@@ -21,7 +22,6 @@
 #include <bit>
 #include <cerrno>
 #include <cstdlib>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -56,9 +56,7 @@ void read_extents(hid_t file, TrajectoryInfo& info, std::filesystem::path const&
   }
   for (int axis = 0; axis < 3; ++axis)
     header.shape[axis] = static_cast<std::int64_t>(extents[3 - axis]);
-  if (header.cell_sites < 1 ||
-      header.shape[2] > std::numeric_limits<std::int64_t>::max() / header.cell_sites)
-    throw_failure(path, "cannot read dataset spins", "its second extent is no number of sites");
+  require_lattice_of_file(header.shape, header.cell_sites, path);
   header.shape[2] *= header.cell_sites;
 }
 

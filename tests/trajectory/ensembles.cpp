@@ -19,7 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int replicas = 3;
-constexpr char const* series[] = {"time", "step", "energy", "norm_defect", "magnetization"};
+constexpr char const* names_of_series[] = {"time", "step", "energy", "norm_defect",
+                                           "magnetization"};
 
 EnsembleFile write_ensemble(fs::path const& path, int frames) {
   Ensemble ensemble;
@@ -48,7 +49,7 @@ void set_rows(fs::path const& path, std::string const& name, hsize_t rows) {
 
 TEST_F(TrajectoryTest, AFrameOfAnEnsembleCountsOnceAllDatasetsHaveIt) {
   auto const path = folder_ / "all.h5";
-  for (std::string const name : series) {
+  for (std::string const name : names_of_series) {
     SCOPED_TRACE(name);
     write_ensemble(path, 3).finish({});
     EXPECT_EQ(read_ensemble_info(path).frames, 3);
@@ -68,7 +69,7 @@ TEST_F(TrajectoryTest, AFrameOfAnEnsembleWithoutItsNumbersDoesNotCount) {
   auto const path = folder_ / "all.h5";
   write_ensemble(path, 3).finish({});
   set_rows(path, "spins", 4);
-  for (std::string const name : series) {
+  for (std::string const name : names_of_series) {
     set_rows(path, name, 4);
     set_rows(path, "scalars/" + name, 4);
   }
