@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "column.hpp"
+#include "files/durable.hpp"
 #include "hdf5/attribute.hpp"
 #include "hdf5/error.hpp"
 #include "hdf5/guarded_reading.hpp"
@@ -13,6 +14,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <functional>
@@ -224,8 +226,14 @@ bool write_sweep(fs::path const& path, SweepInfo const& sweep, std::function<boo
   runs.close();
   check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), path, "cannot write the file");
   space.trim();
+  // The runs' own files are removed once they are copied, so the copies must be on the disk.
+  auto const require_on_disk = [&](int error) {
+    if (error != 0) throw_failure(path, "cannot write the file", std::strerror(error));
+  };
+  if (sweep.one_file) require_on_disk(space.sync());
   auto handle = file.commit();
   check(handle.close(), path, "cannot close the file");
+  if (sweep.one_file) require_on_disk(sync_folder_of(path));
   return true;
 }
 

@@ -7,7 +7,22 @@
 #include "support/reads_in_child.hpp"
 #include "trajectory/trajectory_test.hpp"
 
+#include <sys/syscall.h>
+
+#include <cerrno>
 #include <iostream>
+
+namespace {
+
+int error_of_sync = 0;  // what syncing a file returns; 0: it is synced
+
+}  // namespace
+
+extern "C" int fdatasync(int file) {
+  if (error_of_sync == 0) return static_cast<int>(::syscall(SYS_fdatasync, file));
+  errno = error_of_sync;
+  return -1;
+}
 
 namespace cayspin::inline v0_2::io {
 namespace {
@@ -73,6 +88,20 @@ TEST_F(DamagedSweeps, TakeInAWholeRunOrRefuseIt) {
   std::cout << taken << " taken in as they were, " << refused << " refused\n";
   EXPECT_GT(taken, 0);
   EXPECT_GT(refused, 0);
+}
+
+// The runs' own files are removed after they are copied.
+TEST_F(DamagedSweeps, KeepTheOldFileIfTheDiskRefusesTheCopies) {
+  sweep_.complete = sweep_.one_file = false;
+  ASSERT_TRUE(write_sweep(path_, sweep_));
+  auto const before = read_bytes(path_);
+  sweep_.complete = sweep_.one_file = true;
+  error_of_sync = ENOSPC;
+  EXPECT_TRUE(contains(error_line(path_, [&] { write_sweep(path_, sweep_); }),
+                       "cannot write the file: No space left on device"));
+  error_of_sync = 0;
+  EXPECT_EQ(read_bytes(path_), before);
+  EXPECT_FALSE(fs::exists(path_.string() + ".partial"));
 }
 
 }  // namespace
