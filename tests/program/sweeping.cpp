@@ -102,6 +102,7 @@ TEST_F(Sweeping, GoesOnAfterAKill) {
   EXPECT_GT(early, 0);
   expect_refused(all("killed.h5.runs/none/killed.h5"), "does not exist");
 
+  std::ofstream(io::swept_run_file(file, 0).string() + ".trial") << "left by a kill";
   // The sweep continues even if a reader has the file open.
   hid_t const reader = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   auto const output = output_of(all("killed.h5"));

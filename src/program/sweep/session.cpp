@@ -79,7 +79,8 @@ void Session::open(bool is_new) {
   }
   if (is_new)
     for (auto const& entry : fs::directory_iterator(folder_))
-      if (auto const kind = entry.path().extension(); kind == ".h5" || kind == ".partial")
+      if (auto const kind = entry.path().extension();
+          kind == ".h5" || kind == ".partial" || kind == ".trial")
         fs::remove(entry.path());
   for (std::int64_t number = 0; number < info_.header.runs(); ++number) {
     auto& run = info_.runs[index(number)];
@@ -243,6 +244,7 @@ void Session::remove_folder() {
       fs::remove(written, ignored);
       fs::remove(written.string() + ".partial", ignored);
     }
+    fs::remove(file.string() + ".trial", ignored);  // left by a kill while the run was copied
   }
   release();
 }
