@@ -226,7 +226,7 @@ class Trajectory:
 
     def __len__(self) -> int:
         """The number of complete frames; a killed run may have written part of another one."""
-        names = (*self._names, "sublattice_magnetization", "shift", "stage")
+        names = (*self._names, "sublattice_magnetization", "shift", "stage", "checksum")
         with reading(self.file, self.path):
             return builtins.min(len(self.file[name]) for name in names if name in self.file)
 

@@ -284,6 +284,11 @@ class Files(PackageTest):
             killed["energy"].resize(4, 0)
         with cayspin.open(output) as run:
             self.assertEqual(len(run), 4)
+        with h5py.File(output, "r+") as killed:
+            killed["checksum"].resize(3, 0)
+        with cayspin.open(output) as run:
+            self.assertEqual(len(run), 3)
+            self.assert_refused(cayspin.CayspinError, "frame 3; accepted: -3 to 2", run.plot, 3)
         self.assert_refused(cayspin.CayspinError, "cannot be opened", cayspin.open,
                             self.folder / "missing.h5")
         cayspin.Simulation(scene(output={"every": 10, "sync": True})).run(output=output,

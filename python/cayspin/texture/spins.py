@@ -124,7 +124,9 @@ def time_text(time: float, si: bool) -> str:
 def frame_number(file: Any, frame: int) -> int:
     """The number of a frame of an open trajectory file, counted from 0. Negative numbers count from
     the end."""
-    count = min(len(file["spins"]), len(file["time"]))
+    # A kill may leave the last row in only some of these.
+    rows = ("spins", "time", "energy", "norm_defect", "magnetization", "checksum")
+    count = min(len(file[name]) for name in rows if name in file)
     if not -count <= frame < count:
         accepted = f"{-count} to {count - 1}" if count else "a file that holds frames"
         raise ValueError(f"frame {frame}; accepted: {accepted}")

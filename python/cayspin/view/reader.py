@@ -83,7 +83,8 @@ class Reader:
             self._seen, self._identity, self._kept = (0, 0), status.st_ino, (None, None)
         complete = bool(file.attrs["complete"])
         scalars = file["scalars"]
-        counts = (min(len(file[name]) for name in OF_FRAMES),
+        rows = (*OF_FRAMES, "checksum") if "checksum" in file else OF_FRAMES
+        counts = (min(len(file[name]) for name in rows),
                   min(len(scalars[name]) for name in OF_SAMPLES))
         self.frames, self.samples = counts if complete else map(min, counts, self._seen)
         self._seen = counts
