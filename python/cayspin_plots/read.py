@@ -88,6 +88,8 @@ def read_trajectory(path):
         rank = 6 if np.ndim(file["spins"]) == 6 else 5
         spins = _dataset(file, "spins", rank, (3,))
         count = min(len(spins), len(frames.time))
+        if "checksum" in file:
+            count = min(count, len(file["checksum"]))  # a kill may leave it shorter
         if count == 0:
             raise SystemExit(f"{path}: it holds no frame")
         samples = _series(file, "scalars/")

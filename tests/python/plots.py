@@ -382,8 +382,9 @@ class CorruptFile(ScriptTest):
                 self.assert_file_refused()
 
     def test_no_frame(self):
-        self.change(lambda file: file["time"].resize(0, axis=0))
-        self.assert_file_refused("it holds no frame")
+        for name in ("checksum", "time"):
+            self.change(lambda file: file[name].resize(0, axis=0))
+            self.assert_file_refused("it holds no frame")
 
     def test_wrong_extents(self):
         for name, values in (("spins", np.zeros((20, 15))), ("spins", np.float64(1)),
