@@ -37,7 +37,8 @@ class EnsembleFile {
   /// precision of the header, and the scalars of each replica. Then flushes.
   void write_frame(std::int64_t step, double time, std::vector<Scalars> const& scalars,
                    std::vector<std::byte> const& spins);
-  /// Appends a sample to /scalars; it reaches the file with the next frame.
+  /// Appends a sample to /scalars, and flushes if the last flush was a second ago. Otherwise the
+  /// sample reaches the file with a later one, or with the next frame.
   void write_scalars(std::int64_t step, double time, std::vector<Scalars> const& scalars);
 
   void write_relaxed(std::vector<RelaxedReplica> const& replicas);

@@ -13,6 +13,7 @@
 #include "site_order.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <span>
 #include <stdexcept>
@@ -186,6 +187,9 @@ std::vector<Real> in_file_order(std::vector<std::byte> const& bytes,
 }  // namespace
 
 class EnsembleFile::Implementation {
+  using Clock = std::chrono::steady_clock;
+  static constexpr auto longest_wait = std::chrono::seconds(1);
+
  public:
   Implementation(std::filesystem::path path, TrajectoryHeader const& header,
                  Ensemble const& ensemble, RunOutputOptions const& options)
@@ -248,6 +252,7 @@ class EnsembleFile::Implementation {
     require_replicas(scalars.size());
     space_.reserve(overhead + 64 * replicas_, path_);
     samples_.append(step, time, scalars, path_);
+    if (Clock::now() - flushed_ >= longest_wait) flush();
   }
 
   void write_relaxed(std::vector<RelaxedReplica> const& replicas) {
@@ -294,7 +299,10 @@ class EnsembleFile::Implementation {
       throw std::logic_error(path_.string() + ": numbers of " + std::to_string(count) +
                              " replicas; accepted: " + std::to_string(replicas_));
   }
-  void flush() { check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), path_, "cannot write the file"); }
+  void flush() {
+    check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), path_, "cannot write the file");
+    flushed_ = Clock::now();
+  }
   herr_t release() {
     if (file_.get() >= 0) space_.trim();
     spins_.close();
@@ -315,6 +323,7 @@ class EnsembleFile::Implementation {
   ReplicaSeries frames_, samples_;
   OpenFileSpace space_;
   std::int64_t written_ = 0;
+  Clock::time_point flushed_ = Clock::now();
 };
 
 EnsembleFile::EnsembleFile(std::filesystem::path path, TrajectoryHeader const& header,

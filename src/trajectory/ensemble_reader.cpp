@@ -35,7 +35,8 @@ hsize_t length_of(hid_t group, char const* name, std::filesystem::path const& pa
 constexpr char const* names_of_series[] = {"time", "step", "energy", "norm_defect",
                                            "magnetization"};
 
-// Returns true if a row of all datasets of a group reached the disk.
+// Returns true if a row of a group reached the disk. The energy is not examined, because that of a
+// program's own field may be NaN.
 bool is_on_disk(hid_t group, hsize_t row, hsize_t replicas, std::filesystem::path const& path) {
   auto const has = [&](char const* name, Extents const& of_row) {
     Extents begin(of_row.size() + 1), extents(of_row);
@@ -45,19 +46,18 @@ bool is_on_disk(hid_t group, hsize_t row, hsize_t replicas, std::filesystem::pat
                                 [](double number) { return std::isnan(number); });
   };
   return read_row(group, "step", {row}, {1}, path)[0] != missing_step && has("time", {}) &&
-         has("energy", {replicas}) && has("norm_defect", {replicas}) &&
-         has("magnetization", {replicas, 3});
+         has("norm_defect", {replicas}) && has("magnetization", {replicas, 3});
 }
 
 // Returns the number of whole rows in a group, at most `most`. A process that was killed while it
-// added a row, or is adding one, may leave the row in only some of the datasets, or without its
-// numbers.
+// added rows, or is adding some, may leave the last ones in only some of the datasets, or without
+// their numbers.
 std::int64_t whole_rows(hid_t group, hsize_t replicas, hsize_t most,
                         std::filesystem::path const& path) {
   auto rows = most;
   for (auto const* const name : names_of_series)
     rows = std::min(rows, length_of(group, name, path));
-  if (rows > 0 && !is_on_disk(group, rows - 1, replicas, path)) --rows;
+  while (rows > 0 && !is_on_disk(group, rows - 1, replicas, path)) --rows;
   return static_cast<std::int64_t>(rows);
 }
 

@@ -9,9 +9,12 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <cstddef>
 #include <iterator>
 #include <span>
+#include <thread>
 
 namespace cayspin::inline v0_2::io {
 namespace {
@@ -78,6 +81,23 @@ TEST_F(TrajectoryTest, AFrameOfAnEnsembleWithoutItsNumbersDoesNotCount) {
   EXPECT_EQ(info.samples, 3);
   EXPECT_EQ(info.step, 20);
   EXPECT_EQ(read_ensemble_spins(path, info, {0, 1}), numbered_spins<double>(small_header(), 20));
+}
+
+TEST_F(TrajectoryTest, SamplesOfAKilledEnsembleAreInTheFile) {
+  auto const path = folder_ / "all.h5";
+  auto const writer = ::fork();
+  if (writer == 0) {
+    Ensemble ensemble;
+    ensemble.replicas = replicas;
+    EnsembleFile file(path, small_header(), ensemble, {});
+    for (int sample = 0; sample < 150; ++sample) {
+      file.write_scalars(sample, sample, std::vector<Scalars>(replicas, numbered_scalars(sample)));
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ::raise(SIGKILL);
+  }
+  ::waitpid(writer, nullptr, 0);
+  EXPECT_GT(read_ensemble_info(path).samples, 1);
 }
 
 TEST_F(TrajectoryTest, AnEnsembleIsReadWhileAnotherProcessWritesIt) {
