@@ -125,8 +125,8 @@ SceneError scene_error(Scene const& scene, std::string_view key, std::string_vie
 std::int64_t sites(Scene const& scene);
 
 /// Opens every file that the scene reads, and checks the types and shapes of datasets. Checks
-/// values only in a unit-cell file, and where they decide which sites have a spin: a lattice
-/// without any spin is refused. Throws SceneError.
+/// values only in a unit-cell file, of regions, and where they decide which sites have a spin: a
+/// lattice without any spin is refused. Throws SceneError.
 void check_files(Scene const& scene);
 
 /// Returns the initial spins on the host, sites x 3, normalised in double: component c of site (i,

@@ -63,7 +63,9 @@ std::optional<std::string> detail::inertia_fault(InertiaTensor const& tensor, do
   return std::nullopt;
 }
 
-void check_files(Scene const& scene) {
+namespace {
+
+void check_files_of_one(Scene const& scene) {
   if (auto const* const start = std::get_if<FileStart>(&scene.initial))
     detail::for_key(scene, "initial.file",
                     [&] { detail::check_start_file(start->path, scene.lattice); });
@@ -75,7 +77,16 @@ void check_files(Scene const& scene) {
     detail::for_key(scene, "system.inertia.file", [&] {
       try_reading(file->path, [&] { open_inertia(file->path, sites(scene)); });
     });
-  for (auto const& stage : scene.stages) check_files(stage.scene);
+}
+
+}  // namespace
+
+void check_files(Scene const& scene) {
+  check_files_of_one(scene);
+  // Refuses numbers that are not regions, even if no term of this scene depends on regions: those
+  // of a later stage may. All stages have the same regions.
+  if (scene.lattice.regions.there()) region_count(scene);
+  for (auto const& stage : scene.stages) check_files_of_one(stage.scene);
 }
 
 std::vector<InertiaTensor> inertia(Scene const& scene) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "io/scene.hpp"
 #include "sections.hpp"
+#include "site_expression.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <tuple>
@@ -24,12 +26,26 @@ std::vector<unsigned char> sites_where(Scene const& scene, SiteNumbers const& nu
 }  // namespace
 
 namespace detail {
+namespace {
+
+// Reads the region of each site, which cannot itself be a number for each region.
+void read_regions(Item const& item, Scene& scene) {
+  auto const accepted = fmt::format(
+      "an expression in {}, {{ file = \"NAME.h5\" }} or {{ image = \"NAME.png\", levels = [..] }}",
+      fmt::join(site_variables(scene.lattice), ", "));
+  auto const* const table = item.node->as_table();
+  if (table != nullptr && table->contains("regions"))
+    item.fail("says which region each site belongs to, and cannot depend on the region", accepted);
+  if (!read_site_numbers(item, scene, scene.lattice.regions)) item.wrong_type(accepted);
+}
+
+}  // namespace
 
 void read_occupied(Table const& root, Scene& scene) {
   auto const lattice = root.table("lattice", "a table [lattice]");
-  for (auto const& [name, member] : {std::pair{"regions", &Lattice::regions},
-                                     {"occupied", &Lattice::occupied},
-                                     {"frozen", &Lattice::frozen}})
+  if (auto const item = lattice.find("regions")) read_regions(*item, scene);
+  for (auto const& [name, member] :
+       {std::pair{"occupied", &Lattice::occupied}, {"frozen", &Lattice::frozen}})
     if (auto const item = lattice.find(name);
         item && !read_site_numbers(*item, scene, scene.lattice.*member))
       item->wrong_type(accepted_site_numbers(scene.lattice));

@@ -190,6 +190,19 @@ sources = [ { profile = [0, 0, "0.1*i"], time = "sin(1e9*t)" } ]
   EXPECT_EQ(noise_of_sites(scene, box), (std::vector{100.0, 400.0, 300.0, 800.0}));
 }
 
+// Those of a later stage may be the first terms that depend on regions.
+TEST(Regions, AreCheckedEvenIfNoTermDependsOnThem) {
+  for (auto const& [typed, says] :
+       {std::pair{"'k-1'", "lattice.regions: is -1 at site (0, 0, 0); accepted: whole numbers"},
+        {"'k/2'", "lattice.regions: is 0.5 at site (0, 0, 1); accepted: whole numbers"},
+        {"'65536*k'", "lattice.regions: is 65536 at site (0, 0, 1); accepted: whole numbers"},
+        {"'1/(i-1)'", "lattice.regions: expression \"1/(i-1)\" is not finite at x = "}}) {
+    auto const scene = layers_with({std::string("lattice.regions=") + typed});
+    expect_holds(refusal([&] { check_files(scene); }), says);
+  }
+  EXPECT_EQ(refusal([] { check_files(layers_with({"lattice.regions='65535*k'"})); }), "accepted");
+}
+
 TEST(Regions, SayWhatIsWrongInOneLine) {
   struct Wrong {
     std::string key, value, says;
@@ -197,7 +210,12 @@ TEST(Regions, SayWhatIsWrongInOneLine) {
   for (auto const& [key, value, says] : std::vector<Wrong>{
            {"lattice.regions", "'i-0.5'", "lattice.regions: is -0.5 at site (0, 0, 0); accepted: "},
            {"lattice.regions", "'0.5'", "accepted: whole numbers from 0"},
-           {"lattice.regions", "3", "is an integer"},
+           {"lattice.regions", "3",
+            "lattice.regions: 3 is an integer; accepted: an expression in x, y, z, i, j, k, "
+            "{ file = \"NAME.h5\" } or { image = "},
+           {"lattice.regions", "{regions=[0,1]}",
+            "lattice.regions: says which region each site belongs to, and cannot depend on the "
+            "region; accepted: an expression in x"},
            {"field.exchange", "{regions=[1,2]}",
             "field.exchange: has no number for region 2, to which"},
            {"field.exchange", "{regions=[]}", "has 0 entries"},
