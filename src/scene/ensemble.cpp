@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <set>
 #include <utility>
 #include <variant>
 
@@ -29,6 +30,15 @@ constexpr std::array fixed_keys{"material.Ms", "material.mu_s", "material.dampin
 bool may_vary(std::string_view key) {
   auto const begins = [&](std::string_view table) { return key.starts_with(table); };
   return std::ranges::any_of(varied_tables, begins) && std::ranges::none_of(fixed_keys, begins);
+}
+
+// Returns true for a path that lacks its quotes, as in vary.field.applied.2 = [..]: TOML makes
+// tables of it.
+bool is_table_of_keys(toml::node const& node) {
+  auto const* const table = node.as_table();
+  return table != nullptr && std::ranges::any_of(*table, [](auto const& entry) {
+           return entry.second.is_table() || entry.second.is_array();
+         });
 }
 
 std::vector<double> read_values(Item const& item, Scene& scene, std::int64_t replicas) {
@@ -109,6 +119,17 @@ void refuse_options(Scene const& scene) {
     if (is_set) refuse(scene, key, what, accepted);
 }
 
+// Returns the first and the last replica, and those with the least and the largest value of each
+// varied key. Most limits of a key are bounds, so other values are then in order, too.
+std::set<std::int64_t> replicas_to_check(Ensemble const& ensemble) {
+  std::set<std::int64_t> replicas{0, ensemble.replicas - 1};
+  for (auto const& [key, values] : ensemble.vary) {
+    auto const [least, largest] = std::ranges::minmax_element(values);
+    replicas.insert({least - values.begin(), largest - values.begin()});
+  }
+  return replicas;
+}
+
 // The seeds of replicas count up from the scene's seed, and must not overflow.
 void require_seeds(Scene const& scene) {
   auto const most = std::numeric_limits<std::int64_t>::max() - (scene.ensemble.replicas - 1);
@@ -141,6 +162,9 @@ Ensemble read_ensemble(Table const& root) {
   for (auto const& [name, node] : *vary->node->as_table()) {
     std::string const key(name.str());
     auto const item = *keys.find(key);
+    if (is_table_of_keys(node))
+      item.fail("is a table of other keys",
+                "the whole path of a key in quotes, as in vary.\"field.applied.2\" = [..]");
     if (!may_vary(key))
       item.fail("must be the same in all replicas",
                 "a number of [field], [torque] or [material], thermal.temperature, "
@@ -153,7 +177,7 @@ Ensemble read_ensemble(Table const& root) {
 void check_ensemble(Scene const& scene, bool relaxes) {
   refuse_options(scene);
   require_seeds(scene);
-  for (auto const replica : {std::int64_t{0}, scene.ensemble.replicas - 1})
+  for (auto const replica : replicas_to_check(scene.ensemble))
     relaxes ? replica_to_relax(scene, replica) : replica_of(scene, replica);
 }
 

@@ -81,7 +81,7 @@ void check_pairs(Scene const& scene);
 void check_thermal(Scene const& scene);
 Ensemble read_ensemble(Table const& root);
 /// Refuses keys that do not go with an ensemble, and varied values that are wrong in the first or
-/// the last replica.
+/// the last replica, or in one with the least or the largest value of a key.
 void check_ensemble(Scene const& scene, bool relaxes);
 /// `integrator`: as typed, in the units of the scene.
 Output read_output(Table const& root, Integrator const& integrator);
