@@ -19,7 +19,7 @@ RealDataset::RealDataset(std::filesystem::path path, std::string name)
       check(H5Dget_type(dataset_.get()), path_, "cannot read dataset " + name_));
   auto const bytes = H5Tget_size(type.get());
   if (H5Tget_class(type.get()) != H5T_FLOAT || (bytes != sizeof(float) && bytes != sizeof(double)))
-    refuse("its type is neither float nor double");
+    refuse("its type is neither float nor double; accepted: float, double");
   epsilon_ = bytes == sizeof(float) ? static_cast<double>(std::numeric_limits<float>::epsilon())
                                     : std::numeric_limits<double>::epsilon();
   extents_ = dataset_extents(dataset_.get(), path_);

@@ -88,6 +88,8 @@ void check_image(std::filesystem::path const& path) { PngFile const file(path); 
 Image read_image(std::filesystem::path const& path) { return PngFile(path).read(); }
 
 void read_image_keys(Table const& table, SiteNumbers& numbers) {
+  for (auto const* const other : {"file", "regions"})
+    if (auto const item = table.find(other)) item->fail("stands beside image", "one of the two");
   table.accept_only({"image", "levels"});
   numbers.image = input_file(table, "image", "the name of a PNG file");
   if (auto const levels = table.find("levels"))

@@ -86,7 +86,8 @@ void read_tolerance(Table const& table, Integrator& integrator) {
     bool const takes_max_dt = integrator.method->automatic;  // for the method that it chooses
     for (std::string_view const key : {"tolerance", "min_dt", "max_dt"})
       if (auto const item = table.find(key); item && !(key == "max_dt" && takes_max_dt))
-        item->fail(fmt::format("method \"{}\" takes steps of dt", integrator.method->word),
+        item->fail(fmt::format("method \"{}\" {}", integrator.method->word,
+                               integrator.method->automatic ? "chooses it" : "takes steps of dt"),
                    "no such key");
     return;
   }

@@ -205,8 +205,10 @@ AppliedComponent component_in_time(Item const& item) {
   try {
     double const start = 0;
     Expression(text, {"t"})(&start);
-  } catch (std::exception const& error) {
+  } catch (std::invalid_argument const& error) {
     item.fail(error.what());
+  } catch (std::runtime_error const& error) {
+    item.fail(error.what(), "a formula that is finite from t = 0 on");
   }
   return text;
 }

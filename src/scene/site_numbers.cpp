@@ -143,6 +143,8 @@ bool are_numbers_of_sites(Item const& item) {
 bool read_site_numbers(Item const& item, Scene& scene, SiteNumbers& numbers) {
   if (item.node->is_table()) {
     Table const table(item, scene);
+    if (item.node->as_table()->empty())
+      item.fail("has 0 keys", accepted_site_numbers(scene.lattice));
     if (table.contains("image")) {
       read_image_keys(table, numbers);
       return true;

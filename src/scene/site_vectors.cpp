@@ -114,7 +114,8 @@ SiteVectors read_site_vectors(Item const& item, Scene& scene) {
   if (item.node->is_table()) {
     Table const table(item, scene);
     table.accept_only({"file", "regions"});
-    if (item.node->as_table()->size() != 1) item.fail("is not one of the two", accepted);
+    if (auto const count = item.node->as_table()->size(); count != 1)
+      item.fail(fmt::format("has {} keys", count), accepted);
     if (auto const regions = table.find("regions")) {
       if (!scene.lattice.regions.there())
         regions->fail("stands without lattice.regions, which says the region of each site",

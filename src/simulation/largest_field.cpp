@@ -9,6 +9,8 @@
 #include <cayspin/demagnetization/dipolar_bound.hpp>
 #include <cayspin/field/bonds_of_sites.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -36,7 +38,10 @@ double largest(AppliedField const& vector, std::string_view key, io::Scene const
       auto const h = vector(t);
       largest = std::max(largest, std::hypot(h.x, h.y, h.z));
     } catch (NumbersFailed const&) {
-      throw io::scene_error(scene, key, "is not finite at t = " + time_text(scene.units, t));
+      throw io::scene_error(scene, key,
+                            fmt::format("is not finite at t = {}; accepted: finite numbers for all "
+                                        "of the run",
+                                        time_text(scene.units, t)));
     }
   }
   for (auto const& [of, length] : features.largest)
@@ -111,7 +116,8 @@ double largest_exchange(io::Scene const& scene) {
   if (range.least < 0 && range.largest > 0)
     throw io::scene_error(scene, numbers.key_or(key),
                           "the constants must all have the same sign, as the harmonic mean of a "
-                          "positive and a negative one is no bond");
+                          "positive and a negative one is no bond; accepted: all numbers >= 0, or "
+                          "all <= 0");
   double factor = 1;
   for (auto const& between : scene.field.exchange_between)
     factor = std::max(factor, std::abs(between.factor));

@@ -122,6 +122,7 @@ TEST_F(SiScene, MessagesHaveSeconds) {
                            "field.applied=['t > 1e-9 ? 1/0 : 0.1',0,0]"});
   EXPECT_EQ(pole.status, 2);
   EXPECT_TRUE(contains(pole.errors, "field.applied: is not finite at t = 1.00"));
+  EXPECT_TRUE(contains(pole.errors, " s; accepted: finite numbers for all of the run"));
 }
 
 TEST_F(SiScene, ProgressOfARunHasUnits) {

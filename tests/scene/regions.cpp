@@ -275,7 +275,7 @@ TEST(Regions, SayWhatIsWrongInOneLine) {
            {"field.sources", "[{profile=[1,2]}]", "has 2 entries"},
            {"field.sources", "[{profile=[1,2,'q']}]", "profile[2]: "},
            {"field.sources", "[{profile={file='a.h5',regions=[[1,0,0]]}}]",
-            "is not one of the two"},
+            "profile: has 2 keys; accepted: three components"},
            {"thermal.temperature", "-1", "thermal.temperature: "},
            {"thermal.temperature", "{profile=-1,time='t'}", "is negative"},
            {"thermal.temperature", "{profile=1}", "time: is missing"}}) {

@@ -109,6 +109,7 @@ TEST(SiteNumbers, ThatAreWrongAreRefusedInOneLine) {
         {"exchange = '1/i'", ": field.exchange: expression \"1/i\" is not finite at x = "},
         {"exchange = true", ": field.exchange: true is a boolean"},
         {"exchange = { fil = 'a.h5' }", ": field.exchange.fil: unknown key"},
+        {"exchange = {}", ": field.exchange: has 0 keys; accepted: an expression in x, y, z, i"},
         {"exchange = { given = true }",
          ":13: field.exchange.given: stands for numbers that a program gives, and none did"},
         {"exchange = { given = false }",

@@ -38,6 +38,7 @@ integrator.method = 'red_black4'; lattice.boundary = 'open';
  field.slab_demag = {normal=[1,0,0],where='host'} | : | a field of the neighbours only
 integrator.method = 'red_black2'; integrator.generator = 'orthogonal' | : | accepted: "default"
 integrator.tolerance = 1e-6 | : | takes steps of dt
+integrator = {method='auto',error=1e-3,end=1.0,min_dt=0.1} | .min_dt: | "auto" chooses it
 integrator.method = 'tsit5'; integrator.tolerance = 2.0 | : | a number > 0, at most 1
 integrator = {method='projected_dp5',end=1.0} | .tolerance: | is missing
 integrator.method = 'bs3'; integrator.tolerance = 1e-3; integrator.min_dt = -0.1

@@ -202,7 +202,6 @@ torque.slonczewski = { damping_like = [1], polarization = [1, 0, 0] } | .damping
   | an expression in t
 torque.slonczewski = { damping_like = '1/t', polarization = [1, 0, 0] }
   | .damping_like: expression "1/t" | not finite at t = 0
-  | nothing is accepted
 torque.slonczewski = { damping_like = 1, polarization = [1, 0, 0] };
  integrator.energy_control = true | : | accepted:
 torque.slonczewski = { damping_like = 1, polarization = [1, 0, 0] }; integrator.until_torque = 1 | :

@@ -84,7 +84,7 @@ field.anisotropy = [] | : has 0 entries
 field.applied = [0.05, 0] | : has 2 entries | three
 field.applied = [0.05, '0.1*cos(x)', 0] | [1] | accepted: a formula in t
 field.applied = [0.05, '0.1*cos(', 0] | [1] | expression "0.1*cos("
-field.applied = [0.05, '1/t', 0] | [1] | not finite at t = 0 | nothing is accepted
+field.applied = [0.05, '1/t', 0] | [1] | not finite at t = 0; accepted: a formula that is finite
 field.applied = [inf, 0, 0] | [0]: inf is not finite | a finite number
 field.applied = [0.05, true, 0] | [1]: true | a string with an expression in t
 field.slab_demag = { normal = [0, 0, 0], strength = 2 } | .normal: is a zero vector

@@ -164,6 +164,17 @@ TEST_F(NumbersOrExpressions, RelaxedSpinsHaveTheTorqueThatWasAskedFor) {
   }
 }
 
+TEST_F(NumbersOrExpressions, ExchangeOfBothSignsIsRefused) {
+  expect_refused(
+      [] {
+        return scene_of(
+            "system = { kind = 'llg', damping = 0.5 }\nlattice = { shape = [4] }\n"
+            "field = { exchange = 'i-1' }\ninitial = { uniform = [0, 0, 1] }\n"
+            "integrator = { method = 'rkmk4', dt = 0.02, steps = 10 }\n");
+      },
+      "field.exchange: the constants must all have the same sign");
+}
+
 // Only spins move along the axis of `follow`. Values that differ along this axis would not move
 // with the spins.
 TEST_F(NumbersOrExpressions, NoneMayDifferAlongAnAxisThatFollows) {
