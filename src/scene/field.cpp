@@ -68,9 +68,8 @@ void read_lattice_terms(Table const& table, Field& field) {
     if (!item) return;
     if (std::is_same_v<Term, InterfacialDmi>) return read_dmi(*item, table.scene(), field);
     if (std::is_same_v<Term, BulkDmi>) return;  // read_dmi has read it
-    if (std::is_same_v<Term, Exchange> &&
-        read_site_numbers(*item, table.scene(), field.exchange_factors)) {
-      field.exchange = {1};
+    if (std::is_same_v<Term, Exchange>) {
+      field.exchange = {number_of_sites(*item, table.scene(), field.exchange_factors)};
       return;
     }
     term = read_lattice_term<Term>(*item, table.scene());

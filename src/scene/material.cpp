@@ -92,11 +92,11 @@ Triple direction_with(Table const& table, std::string_view name, std::string_vie
 
 void read_damping(Table const& table, Material& material) {
   constexpr Word<bool> forms[] = {{"gilbert", true}, {"landau_lifshitz", false}};
-  auto const alpha = table.required("alpha", "a number >= 0");
+  auto const alpha = table.required("alpha", not_negative_or_of_sites.accepted);
   if (read_site_numbers(alpha, table.scene(), material.alpha_factors))
     material.alpha_factors.key = alpha.key;
   else
-    material.alpha = number(alpha, not_negative);
+    material.alpha = number(alpha, not_negative_or_of_sites);
   auto const form = table.find("damping_form");
   if (!form) {
     if (material.alpha > 0 || material.alpha_factors.there())
@@ -111,7 +111,7 @@ void read_damping(Table const& table, Material& material) {
 // Reads gamma. If it is site-dependent, the value of the free electron counts as 1.
 void read_gamma(Item const& item, Scene& scene, Material& material) {
   if (!read_site_numbers(item, scene, material.gamma_factors)) {
-    material.gamma = positive_number(item);
+    material.gamma = number(item, positive_or_of_sites);
     return;
   }
   material.gamma_factors.key = item.key;
@@ -141,7 +141,7 @@ void read_material(Table const& root, Scene& scene) {
   if (material.atomistic)
     read_moments(moment, scene, material);
   else if (!read_moments_of_sites(moment, scene, material))
-    material.moment = positive_number(moment);
+    material.moment = number(moment, positive_or_of_sites);
   material.exchange = constant(keys.exchange, material.exchange_factors);
   material.anisotropy = constant(keys.anisotropy, material.anisotropy_factors);
   material.anisotropy2 = constant(keys.anisotropy2, material.anisotropy2_factors);

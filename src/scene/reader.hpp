@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -76,6 +77,10 @@ class Table {
 double value_of(toml::node const& number);
 double number(Item const& item, Limits const& limits = {});
 inline double positive_number(Item const& item) { return number(item, positive); }
+/// Limits of a number in place of which there may be site-dependent numbers.
+inline constexpr Limits not_negative_or_of_sites{"a number >= 0, or values per site", 0};
+inline constexpr Limits positive_or_of_sites{"a number > 0, or values per site", 0,
+                                             std::numeric_limits<double>::infinity(), true};
 std::int64_t integer(Item const& item, Limits const& limits);
 bool boolean(Item const& item);
 std::string string(Item const& item, std::string_view accepted);

@@ -85,7 +85,7 @@ std::vector<double> typed_numbers(Scene const& scene, SiteNumbers const& numbers
       detail::refuse(scene, key, fmt::format("{} numbers were given", numbers.given->size()),
                      fmt::format("{}, one for each site", sites(scene)));
     if (!are_finite(*numbers.given))
-      throw scene_error(scene, key, "a number that was given is not finite");
+      detail::refuse(scene, key, "a number that was given is not finite", "finite numbers");
     return numbers_in(box, scene.lattice.shape, 1, *numbers.given);
   }
   if (!numbers.per_region.empty()) return numbers_of_regions(scene, numbers.per_region, key, box);
@@ -99,7 +99,8 @@ std::vector<double> typed_numbers(Scene const& scene, SiteNumbers const& numbers
       return detail::sites_with_spins(numbers.file, scene.lattice, box);
     auto values = values_of_file(numbers.file, scene.lattice, box);
     if (!are_finite(values))
-      throw std::runtime_error(numbers.file.string() + ": a value is not finite");
+      throw std::runtime_error(numbers.file.string() +
+                               ": a value is not finite; accepted: finite numbers");
     return values;
   });
 }

@@ -34,7 +34,7 @@ std::vector<double> vectors_of_file(std::filesystem::path const& path, Lattice c
                      ? detail::read_ovf_of_sites(path, lattice, 3, box)
                      : read_guarded(path, [&] { return open_vectors(path, lattice).in(box); });
   if (!std::ranges::all_of(vectors, [](double number) { return std::isfinite(number); }))
-    throw std::runtime_error(path.string() + ": a value is not finite");
+    throw std::runtime_error(path.string() + ": a value is not finite; accepted: finite numbers");
   return vectors;
 }
 

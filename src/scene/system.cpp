@@ -59,9 +59,9 @@ System read_system(Table const& root) {
   if (system.kind == SystemKind::llg) {
     refuse_key(table, "inertia", "llg");
     if (!table.scene().units.si) {
-      auto const item = table.required("damping", "a number >= 0");
+      auto const item = table.required("damping", not_negative_or_of_sites.accepted);
       if (!item.node->is_string() && !item.node->is_table())
-        system.damping = number(item, not_negative);
+        system.damping = number(item, not_negative_or_of_sites);
     } else if (auto const item = table.find("damping")) {
       item->fail("belongs to reduced units", "material.alpha with material.damping_form");
     }

@@ -85,7 +85,7 @@ TEST(OvfOfSites, ThatIsWrongIsRefusedInOneLine) {
        {std::pair{"none.ovf", "cannot open the file: No such file or directory"},
         {"shape.ovf", "its mesh has 3 x 4 x 2 nodes; accepted: 4 x 3 x 2, the lattice's"},
         {"short.ovf", "it is truncated: its header says 4 x 3 x 2 nodes of one value"},
-        {"nan.ovf", "a value is not finite"},
+        {"nan.ovf", "a value is not finite; accepted: finite numbers"},
         {"spins.ovf", "valuedim is \"3\"; accepted: 1"},
         {"old.ovf", "OVF 1.0 has three values in a node; accepted: OVF 2.0 with valuedim 1"}}) {
     SCOPED_TRACE(file);

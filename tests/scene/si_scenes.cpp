@@ -234,7 +234,7 @@ TEST(WrongSiScene, OfMaterial) {
   expect_refused(si_film, R"(
 material.Ms = | : is missing | mu_s (J/T)
 material.mu_s = 1e-23 | : stands beside material.Ms | exactly one
-material.Ms = -8e5 | : -800000 is not positive | > 0
+material.Ms = -8e5 | : -800000 is not positive | > 0, or values per site
 material.Ms = 8e-300 | material: a unit of the reduced
 material.A =; material.J = 1.3e-11 | : does not go with material.Ms | material.A
 material.A = { meV = 1 } | .meV: unknown key | file
@@ -242,10 +242,10 @@ material.axis = | : is missing | three numbers
 material.Ku = | material.axis: stands without material.Ku | both or neither
 material.D = | material.normal: stands without material.D | both or neither
 material.alpha = | : is missing | >= 0
-material.alpha = -0.5 | : -0.5 is negative | >= 0
+material.alpha = -0.5 | : -0.5 is negative | >= 0, or values per site
 material.damping_form = | : is missing: the two forms | "gilbert", "landau_lifshitz"
 material.damping_form = 'Gilbert' | : "Gilbert" is not known | did you mean
-material.gamma = 0 | : 0 is not positive | > 0
+material.gamma = 0 | : 0 is not positive | > 0, or values per site
 material.alpha =; material.alfa = 0.5 | : unknown key | did you mean "alpha"?
 )");
 }

@@ -94,7 +94,8 @@ TEST(SiteNumbers, SayWhereSpinsAre) {
   mask[23] = std::numeric_limits<double>::quiet_NaN();
   given.numbers["lattice.occupied"] = std::make_shared<std::vector<double> const>(mask);
   auto const not_a_number = parse_scene(text, "scene.toml", {}, given);
-  EXPECT_THROW(occupied(not_a_number, part), SceneError);
+  expect_holds(refusal([&] { occupied(not_a_number, part); }),
+               "lattice.occupied: a number that was given is not finite; accepted: finite numbers");
 }
 
 TEST(SiteNumbers, ThatAreWrongAreRefusedInOneLine) {
@@ -107,7 +108,8 @@ TEST(SiteNumbers, ThatAreWrongAreRefusedInOneLine) {
        {std::pair{"exchange = '1 +'", ": field.exchange: "},
         {"exchange = 'q'", ": field.exchange: "},
         {"exchange = '1/i'", ": field.exchange: expression \"1/i\" is not finite at x = "},
-        {"exchange = true", ": field.exchange: true is a boolean"},
+        {"exchange = true",
+         ": field.exchange: true is a boolean; accepted: a finite number, an expression in x"},
         {"exchange = { fil = 'a.h5' }", ": field.exchange.fil: unknown key"},
         {"exchange = {}", ": field.exchange: has 0 keys; accepted: an expression in x, y, z, i"},
         {"exchange = { given = true }",
@@ -118,7 +120,7 @@ TEST(SiteNumbers, ThatAreWrongAreRefusedInOneLine) {
         {"exchange = { file = 'none.h5' }", "none.h5"},
         {"exchange = { file = 'short.h5' }", "its extents are (3, 4); accepted: (2, 3, 4)"},
         {"exchange = { file = 'other.h5' }", "/values"},
-        {"exchange = { file = 'nan.h5' }", "a value is not finite"},
+        {"exchange = { file = 'nan.h5' }", "a value is not finite; accepted: finite numbers"},
         {"dmi = { bulk = 'z+' }", ": field.dmi.bulk: "},
         {"dmi = { interfacial = 'x' }", ": field.dmi.normal: is missing"},
         {"anisotropy = { constant = 'y*', axis = [0, 0, 1] }", ": field.anisotropy.constant: "}}) {

@@ -39,8 +39,8 @@ TEST(WrongScene, OfSystem) {
 system.kind = | : is missing | "llg", "rigid_body"
 system.kind = 'll' | : "ll" is not known | did you mean "llg"?
 system.kind = 3 | : 3 is an integer | "llg"
-system.damping = | : is missing | >= 0
-system.damping = -0.05 | : -0.05 is negative | a number >= 0
+system.damping = | : is missing | >= 0, or values per site
+system.damping = -0.05 | : -0.05 is negative | a number >= 0, or values per site
 system.damping = nan | : nan is not finite
 system.damping = inf | : inf is not finite
 system.damping = true | : true is a boolean | a number >= 0
