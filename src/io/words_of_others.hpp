@@ -18,7 +18,7 @@ std::string hint_for_value_of_others(std::string_view value);
 std::string hint_for_other_table(std::string_view key);
 
 /// Names a key, of any table, that differs from `key` only in case, '_' and '-': integrator.min_dt
-/// for MinDt. Empty if there is none.
+/// for MinDt. Empty if there is none, and for a single letter.
 std::string hint_for_other_case(std::string_view key);
 
 /// Returns a word in lower case, without '_' and '-'.

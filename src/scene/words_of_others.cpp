@@ -213,11 +213,13 @@ std::string here_it_is(std::string_view here) {
   return here.empty() ? std::string() : fmt::format(", here it is {}", here);
 }
 
+// Scenes in reduced units have no [material], so the hint says to which units its keys belong.
 std::string did_you_mean_key(auto const& is_meant) {
   auto const all = own_keys();
   auto const found = std::ranges::find_if(all, is_meant);
-  return found == all.end() ? std::string()
-                            : fmt::format(", did you mean \"{}.{}\"?", found->table, found->name);
+  if (found == all.end()) return {};
+  return fmt::format(", did you mean \"{}.{}\"{}?", found->table, found->name,
+                     found->table == "material" ? " of units = \"SI\"" : "");
 }
 
 }  // namespace
@@ -233,6 +235,7 @@ std::string hint_for_other_table(std::string_view key) {
 }
 
 std::string hint_for_other_case(std::string_view key) {
+  if (key.size() < 2) return {};  // a letter such as "a" is rarely meant as material.A
   return did_you_mean_key(
       [plain = without_case(key)](OwnKey const& own) { return without_case(own.name) == plain; });
 }

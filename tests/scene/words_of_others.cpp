@@ -116,28 +116,28 @@ TEST(WordsOfOthers, AsValuesAreMethodsOrTheSimpleCubicLattice) {
 }
 
 TEST(OwnWords, AreFoundInTheirTable) {
-  for (auto const& [override, meant] :
-       std::to_array<std::array<std::string, 2>>({{"shape=[3]", "lattice.shape"},
-                                                  {"field.dt=0.1", "integrator.dt"},
-                                                  {"mu0=1.0", "field.mu0"},
-                                                  {"gamma=1.0", "material.gamma"},
-                                                  {"lattice.Ms=8e5", "material.Ms"},
-                                                  {"A=1e-11", "material.A"},
-                                                  {"field.Ku=1e4", "material.Ku"},
-                                                  {"D=1e-3", "material.D"},
-                                                  {"J=1e-21", "material.J"},
-                                                  {"K=1e-23", "material.K"},
-                                                  {"lattice.mu_s=1e-23", "material.mu_s"},
-                                                  {"cell=[1]", "lattice.cell"},
-                                                  {"regions='i'", "lattice.regions"},
-                                                  {"MinDt=1e-3", "integrator.min_dt"},
-                                                  {"thermal.MaxDt=1e-3", "integrator.max_dt"},
-                                                  {"Seed=1", "thermal.seed"},
-                                                  {"Dmi=1.0", "field.dmi"},
-                                                  {"integrator.MinDt=1e-3", "min_dt"},
-                                                  {"integrator.maxDT=1e-3", "max_dt"},
-                                                  {"field.Dmi=1.0", "dmi"},
-                                                  {"lattice.occupid='i'", "occupied"}})) {
+  for (auto const& [override, meant] : std::to_array<std::array<std::string, 2>>(
+           {{"shape=[3]", "lattice.shape"},
+            {"field.dt=0.1", "integrator.dt"},
+            {"mu0=1.0", "field.mu0"},
+            {"gamma=1.0", "material.gamma\" of units = \"SI"},
+            {"lattice.Ms=8e5", "material.Ms\" of units = \"SI"},
+            {"A=1e-11", "material.A\" of units = \"SI"},
+            {"field.Ku=1e4", "material.Ku\" of units = \"SI"},
+            {"D=1e-3", "material.D\" of units = \"SI"},
+            {"J=1e-21", "material.J\" of units = \"SI"},
+            {"K=1e-23", "material.K\" of units = \"SI"},
+            {"lattice.mu_s=1e-23", "material.mu_s\" of units = \"SI"},
+            {"cell=[1]", "lattice.cell"},
+            {"regions='i'", "lattice.regions"},
+            {"MinDt=1e-3", "integrator.min_dt"},
+            {"thermal.MaxDt=1e-3", "integrator.max_dt"},
+            {"Seed=1", "thermal.seed"},
+            {"Dmi=1.0", "field.dmi"},
+            {"integrator.MinDt=1e-3", "min_dt"},
+            {"integrator.maxDT=1e-3", "max_dt"},
+            {"field.Dmi=1.0", "dmi"},
+            {"lattice.occupid='i'", "occupied"}})) {
     auto const key = override.substr(0, override.find('='));
     auto const message = refusal_of(llg_scene, {override});
     auto const expected = key + ": unknown key, did you mean \"" + meant + "\"?";
@@ -145,6 +145,7 @@ TEST(OwnWords, AreFoundInTheirTable) {
   }
   EXPECT_EQ(hint_for_other_table("wibble"), "");
   EXPECT_EQ(hint_for_other_case("wibble"), "");
+  EXPECT_EQ(hint_for_other_case("a"), "");
 }
 
 TEST(WordsOfOthers, AreInMessagesOfScenes) {
