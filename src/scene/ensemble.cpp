@@ -76,8 +76,8 @@ std::vector<std::string> overrides_of(Scene const& scene, std::int64_t replica) 
   return overrides;
 }
 
-// Returns the scene of a replica. `parse`: parse_scene or parse_scene_to_relax. An error in a
-// varied value is reported for the key ensemble.vary.
+// Returns the scene of a replica. `parse`: parse_scene or parse_scene_to_relax. Errors are reported
+// for the key ensemble.vary, because the scene has no errors without the varied values.
 template <class Parse>
 Scene parsed_replica(Scene const& scene, std::int64_t replica, Parse const& parse) {
   auto const& text = scene.ensemble.text_of_replicas;
@@ -89,7 +89,6 @@ Scene parsed_replica(Scene const& scene, std::int64_t replica, Parse const& pars
     return parsed;
   } catch (SceneError const& error) {
     std::string_view const what = error.what();
-    if (!what.starts_with("--set ")) throw;
     throw scene_error(scene, "ensemble.vary",
                       fmt::format("in replica {}: {}", replica, what.substr(what.find(": ") + 2)));
   }

@@ -19,7 +19,8 @@ TEST(EnsembleOfAScene, WrongValuesBetweenTheFirstAndTheLastAreRefused) {
                      ": system.damping: -0.1 is negative; accepted: a number >= 0");
   expect_holds(refusal_of_three("vary.\"field.applied.2\" = [0, 1, 2]\n"
                                 "vary.\"thermal.temperature\" = [0, 1e9, 0]\n"),
-               "integrator.dt: damping times temperature times dt is 1e+06: ");
+               "ensemble.vary: in replica 1: integrator.dt: damping times temperature times dt is "
+               "1e+06: ");
   EXPECT_EQ(refusal_of_three("vary.\"system.damping\" = [0.1, 0, 0.1]\n"), "accepted");
 }
 
