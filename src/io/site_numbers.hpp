@@ -42,10 +42,14 @@ struct SiteVectors {
   std::filesystem::path file;
   std::vector<Triple> per_region;
   double unit = 1;  ///< multiplies each number
+  std::string key;  ///< if set, the key that gives the vectors, for messages
 
   bool there() const {
     return !file.empty() || !per_region.empty() || uniform != Triple{} ||
            std::ranges::any_of(components, &SiteNumbers::there);
+  }
+  std::string_view key_or(std::string_view other) const {
+    return key.empty() ? other : std::string_view(key);
   }
 };
 

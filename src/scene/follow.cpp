@@ -99,7 +99,8 @@ void require_alike_where_followed(Scene const& scene) {
   };
   auto const check_vectors = [&](SiteVectors const& vectors, std::string_view key) {
     if (vectors.there())
-      require(key, [&](SiteBox const& box) { return vectors_of_sites(scene, vectors, key, box); });
+      require(vectors.key_or(key),
+              [&](SiteBox const& box) { return vectors_of_sites(scene, vectors, key, box); });
   };
   detail::for_each_value_of_sites(scene, check, check_vectors);
 }

@@ -81,10 +81,15 @@ void read_moments(Item const& item, Scene& scene, Material& material) {
 }
 
 // Reads the vector `name`, which belongs to the key `other`: the scene must have both or neither.
-// `present`: whether the scene has `other`.
+// `present`: whether the scene has `other`. Site-dependent vectors go to `of_sites`.
 Triple direction_with(Table const& table, std::string_view name, std::string_view other,
-                      bool present) {
-  if (present) return direction(table.required(name, "three numbers"));
+                      bool present, SiteVectors& of_sites) {
+  if (present) {
+    auto const item = table.required(name, "three numbers, or vectors per site");
+    auto const one = axis_of_sites(item, table.scene(), of_sites);
+    of_sites.key = item.key;
+    return one;
+  }
   if (auto const item = table.find(name))
     item->fail(fmt::format("stands without material.{}", other), "both or neither");
   return {};
@@ -145,16 +150,11 @@ void read_material(Table const& root, Scene& scene) {
   material.exchange = constant(keys.exchange, material.exchange_factors);
   material.anisotropy = constant(keys.anisotropy, material.anisotropy_factors);
   material.anisotropy2 = constant(keys.anisotropy2, material.anisotropy2_factors);
-  if (material.anisotropy || material.anisotropy2)
-    material.axis = axis_of_sites(table.required("axis", "three numbers"), scene, material.axes);
-  else
-    direction_with(table, "axis", keys.anisotropy, false);
+  material.axis = direction_with(table, "axis", keys.anisotropy,
+                                 material.anisotropy || material.anisotropy2, material.axes);
   material.dmi = constant("D", material.dmi_factors);
-  if (material.dmi)
-    material.normal =
-        axis_of_sites(table.required("normal", "three numbers"), scene, material.normals);
-  else
-    direction_with(table, "normal", "D", false);
+  material.normal =
+      direction_with(table, "normal", "D", material.dmi.has_value(), material.normals);
   constexpr std::string_view one_dmi = "D with normal, of an interface, D_bulk, or D2d";
   auto const bulk = table.find("D_bulk"), d2d = table.find("D2d");
   if (bulk && material.dmi) bulk->fail("stands beside material.D", one_dmi);

@@ -150,7 +150,7 @@ Triple axis_of_sites(Item const& item, Scene& scene, SiteVectors& axes) {
 
 void check_site_vectors(Scene const& scene, SiteVectors const& vectors, std::string_view key) {
   if (vectors.file.empty()) return;
-  for_key(scene, key, [&] {
+  for_key(scene, vectors.key_or(key), [&] {
     if (is_ovf(vectors.file)) return check_ovf_of_sites(vectors.file, scene.lattice, 3);
     try_reading(vectors.file, [&] { open_vectors(vectors.file, scene.lattice); });
   });
@@ -160,6 +160,7 @@ void check_site_vectors(Scene const& scene, SiteVectors const& vectors, std::str
 
 std::vector<double> vectors_of_sites(Scene const& scene, SiteVectors const& vectors,
                                      std::string_view key, SiteBox const& box) {
+  key = vectors.key_or(key);
   auto const& [nx, ny, nz] = box.extent;
   auto const count = static_cast<std::size_t>(nx * ny * nz);
   std::vector<double> all;
@@ -189,7 +190,7 @@ std::vector<double> directions_of_sites(Scene const& scene, SiteVectors const& v
     if (auto const unit = normalise({v[0], v[1], v[2]}))
       std::ranges::copy(*unit, v);
     else if (there.empty() || there[site])
-      throw scene_error(scene, key,
+      throw scene_error(scene, vectors.key_or(key),
                         fmt::format("has no direction at {}; accepted: vectors that are not zero",
                                     detail::site_text(box, site)));
   }

@@ -190,6 +190,33 @@ sources = [ { profile = [0, 0, "0.1*i"], time = "sin(1e9*t)" } ]
   EXPECT_EQ(noise_of_sites(scene, box), (std::vector{100.0, 400.0, 300.0, 800.0}));
 }
 
+TEST(Regions, ErrorsInVectorsOfAMaterialNameItsKeys) {
+  for (auto const& [typed, says] :
+       {std::pair{"Ku = 1e4\naxis = ['i', 0, 0]",
+                  "material.axis: has no direction at site (0, 0, 0)"},
+        {"Ku = 1e4\naxis = { file = 'none.h5' }", "material.axis: none.h5: cannot open the file"},
+        {"D = 1e-3\nnormal = ['i', 0, 0]", "material.normal: has no direction at site (0, 0, 0)"},
+        {"D = 1e-3\nnormal = ['1/i', 0, 0]",
+         "material.normal: expression \"1/i\" is not finite"}}) {
+    auto const text = std::string(R"toml(units = "SI"
+system = { kind = "llg" }
+lattice = { shape = [4], spacing = 2e-9 }
+initial = { uniform = [0, 0, 1] }
+integrator = { method = "heun", dt = 1e-14, steps = 1 }
+[material]
+Ms = 8e5
+A = 1e-11
+alpha = 0
+)toml") + typed + '\n';
+    auto const message = refusal([&] {
+      auto const scene = scene_of(text);
+      check_files(scene);
+      require_directions(scene);
+    });
+    EXPECT_TRUE(message.starts_with("scene.toml:11: " + std::string(says))) << message;
+  }
+}
+
 // Those of a later stage may be the first terms that depend on regions.
 TEST(Regions, AreCheckedEvenIfNoTermDependsOnThem) {
   for (auto const& [typed, says] :
