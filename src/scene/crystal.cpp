@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 
+#include "io/counted.hpp"
 #include "sections.hpp"
 #include "unit_cell_file.hpp"
 
@@ -56,7 +57,8 @@ std::vector<double> read_numbers_of_sites(Item const& item, std::size_t sites,
   if (!item.node->is_array()) return std::vector<double>(sites, number(item, limits));
   std::vector<double> numbers;
   constexpr std::string_view one = "a number";
-  auto const accepted = fmt::format("{} numbers{}, one for each site of the cell", sites,
+  auto const accepted = fmt::format("{}{}, one for each site of the cell",
+                                    counted(static_cast<std::int64_t>(sites), "number"),
                                     limits.accepted.substr(one.size()));
   for (auto const& entry : entries(item, sites, sites, accepted))
     numbers.push_back(number(entry, limits));

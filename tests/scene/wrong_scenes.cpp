@@ -70,6 +70,7 @@ lattice.boundary = ['open', 'periodc'] | [1]
 lattice.boundary = true | : true | "periodic", or a list with one per axis of lattice.shape (2)
 lattice.boundary = ['open', true] | [1]: true | ; accepted: "open", "periodic"
 lattice.spacing = true | : true is a boolean | or a list with one per axis of lattice.shape (2)
+lattice.moments = [1, 2] | : has 2 entries | 1 number >= 0, one for each site of the cell
 )");
 }
 
