@@ -141,10 +141,10 @@ std::string vectors_text(io::SiteVectors const& vectors) {
 
 std::string source_text(io::Scene const& scene, io::Source const& source) {
   auto const& [profile, time] = source;
-  return fmt::format("H = {}{}{}{}",
-                     scene.field.mu0 == 1 ? "" : fmt::format("{:.6g} ", scene.field.mu0),
-                     vectors_text(profile), scene.units.si ? " T" : "",
-                     time == io::AppliedComponent(1.0) ? "" : " times " + component_text(time));
+  return fmt::format(
+      "H = {}{}{}{}", scene.field.mu0 == 1 ? "" : fmt::format("{:.6g} ", scene.field.mu0),
+      vectors_text(profile), scene.units.si ? " T" : "",
+      time == io::AppliedComponent(1.0) ? "" : " times " + factor_text(scene.units, time));
 }
 
 std::string list_text(io::Scene const& scene) {
@@ -315,7 +315,7 @@ std::string thermal_text(io::Scene const& scene) {
   auto text = fmt::format("{:.6g}", typed_temperature(scene));
   if (scene.units.si) text = fmt::format("{} K ({:.6g})", text, temperature);
   if (of_sites.there()) text += ", times " + text_of(of_sites);
-  if (std::holds_alternative<std::string>(in_time)) text += ", times " + component_text(in_time);
+  if (in_time != io::AppliedComponent(1.0)) text += ", times " + factor_text(scene.units, in_time);
   return fmt::format("{}, seed {}", text, seed);
 }
 
@@ -364,7 +364,7 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
                                        {"anisotropy", field.in_time.anisotropy},
                                        {"dmi", field.in_time.dmi}})
       if (factor != io::AppliedComponent(1.0))
-        lines.emplace_back("in time", fmt::format("{} times {}", name, component_text(factor)));
+        lines.emplace_back("in time", name + (" times " + factor_text(scene.units, factor)));
     if (field.applied) lines.emplace_back("applied", applied_text(scene));
     for (auto const& source : field.sources)
       lines.emplace_back("source", source_text(scene, source));

@@ -16,8 +16,8 @@ namespace {
 // Returns the formula rewritten for t in units of `time` and for a value in units of `field`.
 std::string scaled_expression(std::string const& text, double time, double field) {
   static std::regex const variable(R"(\bt\b)");
-  return fmt::format("({})/{}", std::regex_replace(text, variable, fmt::format("({}*t)", time)),
-                     field);
+  auto const scaled = std::regex_replace(text, variable, fmt::format("({}*t)", time));
+  return field == 1 ? fmt::format("({})", scaled) : fmt::format("({})/{}", scaled, field);
 }
 
 // If alpha is site-dependent, material.alpha is 0, and the unit of time has no factor 1 + alpha^2.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <variant>
 
 namespace cayspin::simulation {
 namespace {
@@ -57,6 +58,13 @@ std::string time_text(io::Units const& units, double time, int digits) {
 
 std::string energy_text(io::Units const& units, double energy, int digits) {
   return fmt::format("{:.{}g}{}", energy * units.energy, digits, units.si ? " J" : "");
+}
+
+std::string factor_text(io::Units const& units, io::AppliedComponent const& factor) {
+  auto const* const expression = std::get_if<std::string>(&factor);
+  if (expression == nullptr) return fmt::format("{:.6g}", std::get<double>(factor));
+  return units.si ? fmt::format("{}, t in units of {:.6g} s", *expression, units.time)
+                  : *expression;
 }
 
 std::string shell_word(std::string const& text) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "io/counted.hpp"
+#include "io/key.hpp"
 #include "io/units.hpp"
 
 #include <array>
@@ -28,6 +29,9 @@ std::string rate_text(double per_second);
 /// ends with the unit.
 std::string time_text(io::Units const& units, double time, int digits = 9);
 std::string energy_text(io::Units const& units, double energy, int digits = 9);
+/// Returns a factor that is a number or an expression in t. In SI, expressions have been converted
+/// to a t in reduced units, which the text says.
+std::string factor_text(io::Units const& units, io::AppliedComponent const& factor);
 /// Returns one word of a command line, quoted if a shell would change it.
 std::string shell_word(std::string const& text);
 /// Returns the text without line breaks at its end, and with spaces in place of other control

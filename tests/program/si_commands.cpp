@@ -72,6 +72,24 @@ TEST_F(SiScene, CheckPrintsCrystalsAndCurrentsInSi) {
              "torque      Slonczewski, damping-like 0, field-like 0.01 (T), p = (0, 0, 1)\n"}));
 }
 
+// The applied field is printed as typed, too; other expressions only with t in reduced units.
+TEST_F(SiScene, CheckPrintsTheUnitOfTInFactors) {
+  auto const scene =
+      write("scene.toml", film("method = \"heun\"\ndt = 1e-13\nsteps = 25", "[0, 0, 0.02]"));
+  auto const said = output_of(
+      joined({"check", scene},
+             set("thermal={temperature='300*exp(-t/1e-12)'}", "field.in_time={exchange='1+t/1e-9'}",
+                 "field.sources=[{profile=[0,0,0.1],time='sin(1e9*t)'}]")));
+  for (std::string const begin :
+       {", times (300*exp(-(", "exchange times (1+(", "H = (0, 0, 0.1) T times (sin(1e9*("}) {
+    auto const at = said.find(begin);
+    ASSERT_NE(at, std::string::npos) << begin << said;
+    auto const line = said.substr(at, said.find('\n', at) - at);
+    EXPECT_TRUE(contains(line, "*t)")) << line;
+    EXPECT_TRUE(contains(line, "), t in units of 6.15747e-12 s")) << line;
+  }
+}
+
 TEST_F(SiScene, RestartComparesTimesInSeconds) {
   auto const scene = [&](char const* steps) {
     return film(std::string("method = \"rkmk4\"\ndt = 1e-13\nsteps = ") + steps,
