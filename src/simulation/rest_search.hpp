@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "ranks.hpp"
 #include "scene_field.hpp"
 #include "scene_minimizer.hpp"
 
@@ -72,29 +73,35 @@ class RestSearch {
     if (spins.lattice().part != nullptr) return false;
     if (!minimizer_) {
       minimizer_.emplace(spins);
+      moments_ = range_of_moments(io::all_moments(scene_, own_sites(spins.lattice())));
       trial_ = Spins("RestSearch::trial", spins.lattice());
     }
-    // With site-dependent moments or gyromagnetic ratios, the search's own measure of the torque
-    // may exceed the bound. The search would then only descend, because it looks for a way off a
-    // saddle only if its torque is below the bound. So the bound is raised until the search looks
-    // for one.
-    double bound = bound_;
+    // The search measures torques and curvatures of the energy, which are those of H times the
+    // moments. With a bound on the torque that is too small it would only descend, because it looks
+    // for a way off a saddle only below that bound. So the bound is that of the largest moment, and
+    // is raised until the search looks. Curvatures are judged by the smallest moment, whatever the
+    // bound on the torque.
+    double bound = bound_ * moments_.largest;
     for (int attempt = 0; attempt < 30; ++attempt, bound *= 4) {
       Kokkos::deep_copy(exec, trial_.allocation(), spins.allocation());
-      auto const found = minimizer_->minimize(
-          exec, scene_, field, trial_,
-          {.torque = bound, .time = time, .observer = [](Minimum const&) { return Next::stop; }});
+      auto const found =
+          minimizer_->minimize(exec, scene_, field, trial_,
+                               {.torque = std::max(bound, Minimizer<Spins>::least_bound),
+                                .time = time,
+                                .least_curvature = bound_ * moments_.least,
+                                .observer = [](Minimum const&) { return Next::stop; }});
       if (found.saddles > 0) return true;
       if (found.end != MinimizeEnd::interrupted) return false;
     }
     return false;
   }
 
-  io::Scene scene_;  // for messages
+  io::Scene scene_;
   double bound_;
   double last_torque_ = std::numeric_limits<double>::infinity();
   std::int64_t next_ = 0, wait_ = 0;  // earliest step of the next search; interval in steps
   std::optional<SceneMinimizer<Real, Space>> minimizer_;
+  MomentRange moments_;
   Spins trial_;
 };
 

@@ -78,6 +78,13 @@ Plan make_plan_to_relax(io::Scene const& scene, Precision precision) {
   return plan;
 }
 
+MomentRange range_of_moments(std::vector<double> moments) {
+  std::erase_if(moments, [](double moment) { return !(moment > 0); });
+  if (moments.empty()) return {};
+  auto const [least, largest] = std::ranges::minmax(moments);
+  return {least, largest};
+}
+
 template <class Real, class Space>
 Minimum SceneMinimizer<Real, Space>::minimize(Space const& exec, io::Scene const& scene,
                                               SceneField<Spins> const& field, Spins& spins,
@@ -95,17 +102,15 @@ Minimum SceneMinimizer<Real, Space>::relax(Space const& exec, io::Scene const& s
                                            SceneField<Spins> const& field, Spins& spins,
                                            MinimizeOptions const& options) {
   auto const moments = io::all_moments(scene, own_sites(spins.lattice()));
-  auto const largest = moments.empty() ? 1 : std::ranges::max(moments);
-  if (moments.empty() || !(largest > 0)) return minimize(exec, scene, field, spins, options);
+  if (moments.empty() || !(std::ranges::max(moments) > 0))
+    return minimize(exec, scene, field, spins, options);
+  auto const [least, largest] = range_of_moments(moments);
   auto closer = options;
   auto const bound = [](double torque) {
     return std::max(torque, Minimizer<SpinField<double>>::least_bound);
   };
   closer.torque = bound(options.torque * largest);
   // The energy of a spin with a small moment has a small curvature.
-  double least = largest;
-  for (double const moment : moments)
-    if (moment > 0) least = std::min(least, moment);
   closer.least_curvature = bound(options.torque * least);
   Minimum all;
   all.iterations = all.evaluations = all.saddles = 0;

@@ -6,6 +6,8 @@
 
 #include <cayspin/minimize.hpp>
 
+#include <vector>
+
 namespace cayspin::simulation {
 
 /// Throws io::SceneError for scenes without equilibria of an energy: rigid bodies, and spins with
@@ -15,6 +17,13 @@ void require_rest(io::Scene const& scene);
 /// Plans a search for the equilibria of a scene: the memory, and one frame for each equilibrium.
 /// Throws like require_rest and make_plan.
 Plan make_plan_to_relax(io::Scene const& scene, Precision precision);
+
+/// The smallest and the largest moment of sites with a spin.
+struct MomentRange {
+  double least = 1, largest = 1;
+};
+/// Takes the moments of io::all_moments. Returns 1 for both if they are empty or all 0.
+MomentRange range_of_moments(std::vector<double> moments);
 
 /// Searches for the equilibria of a scene in its fields, one after another, in the same memory.
 template <class Real, class Space>

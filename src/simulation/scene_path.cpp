@@ -18,21 +18,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace cayspin::simulation {
 namespace {
-
-// Torques of the search are |m x dE/dm|, and those of a scene are |m x H|, where H is -dE/dm
-// divided by the moment. So the former, divided by the least moment, are upper bounds on the
-// latter.
-double least_moment(io::Scene const& scene, Lattice const& lattice) {
-  double least = std::numeric_limits<double>::infinity();
-  for (double const moment : io::all_moments(scene, own_sites(lattice)))
-    if (moment > 0) least = std::min(least, moment);
-  return std::isfinite(least) ? least : 1;
-}
 
 constexpr std::int64_t most_zero_modes = 4;  // of a state with more, fewer modes are climbed
 // Curvatures of zero modes are below this fraction of the field without exchange.
@@ -48,7 +37,7 @@ class PathOfScene {
         options_(options),
         saddle_("path::highest_saddle", lattice),
         field_(field_of<Spins>(scene, lattice, false).made_for(FieldFor::energy)),
-        moment_(least_moment(scene, lattice)) {
+        moment_(range_of_moments(io::all_moments(scene, own_sites(lattice))).least) {
     for (std::int64_t k = 0; k < options.images; ++k) images_.emplace_back("path::image", lattice);
   }
 
@@ -156,6 +145,9 @@ class PathOfScene {
   std::vector<Spins> images_;
   Spins saddle_;
   SceneField<Spins> field_;
+  // Torques of the search are |m x dE/dm|, and those of a scene are |m x H|, where H is -dE/dm
+  // divided by the moment. So the former, divided by the least moment, are upper bounds on the
+  // latter.
   double moment_;
 };
 

@@ -94,6 +94,18 @@ TEST_F(Rests, AreNotSaddles) {
   }
 }
 
+// The second spin leaves its maximum long after the first has come to rest. The energy of the
+// smaller moment has a small curvature.
+TEST_F(Rests, AreNotMaximaOfSmallMoments) {
+  for (std::string const moments : {"i == 0 ? 1 : 1e-3", "i == 0 ? 1000 : 1"})
+    for (std::string const precision : {"double", "single"})
+      expect_minimum(
+          {scene("[lattice]\nshape = [2]\nmoments = \"" + moments +
+                     "\"\n[field]\napplied = [0, 0, 1e-4]",
+                 "expression = [\"i == 0 ? 1 : 1e-9\", \"0\", \"-1\"]", 0.5, "rkmk4", 500),
+           {"--precision", precision}});
+}
+
 TEST_F(Rests, OfAFilmInSi) {
   // A field of .4 T opposite to the spins exceeds the anisotropy field of .25 T, so +z is a
   // maximum.
