@@ -106,9 +106,9 @@ class ModesAt {
     auto const precondition = [&](Spins const& from, Spins const& to) {
       preconditioner.apply(exec_, from, to);
     };
-    double const round_off = hessian.round_off(found.strongest()) / scale;
     ModeSearchOptions const options{.count = options_.count,
-                                    .tolerance = std::max(options_.tolerance, round_off),
+                                    .tolerance = options_.tolerance,
+                                    .round_off = hessian.round_off(found.strongest()) / scale,
                                     .evaluations = options_.evaluations,
                                     .scale = scale,
                                     .shift = 1e-3 * scale * fastest,

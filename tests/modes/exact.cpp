@@ -67,6 +67,30 @@ TYPED_TEST(MacrospinModes, AreThoseOfKittelWithDamping) {
   }
 }
 
+// Spins along the easy axis of an open chain have the curvatures k + 2 * A * (1 - cos(pi * p / n)),
+// each of them twice. If exchange is so strong that products with the Hessian are not accurate
+// enough, the search must not claim to have converged.
+TYPED_TEST(MacrospinModes, OfAStiffChainAreAccurateOrNotConverged) {
+  constexpr std::int64_t n = 64;
+  auto const lattice = Lattice::chain(n);
+  auto const m = this->uniform(lattice, {0, 0, 1});
+  for (double const stiff : {100.0, 1e3, 1e4}) {
+    EffectiveField const field(Exchange(lattice, stiff), UniaxialAnisotropy(1, {0, 0, 1}));
+    auto const found = lowest_curvatures(this->exec, field, m);
+    if (stiff < 1e3 || this->epsilon < 1e-10) {
+      EXPECT_EQ(found.end, ModesEnd::converged) << stiff;
+    }
+    if (found.end != ModesEnd::converged) continue;
+    ASSERT_EQ(found.curvatures.size(), 8) << stiff;
+    for (std::size_t i = 0; i < 8; ++i) {
+      auto const p = static_cast<double>(i / 2);
+      double const exact = 1 + 2 * stiff * (1 - std::cos(std::numbers::pi * p / n));
+      EXPECT_LT(found.curvatures[i].error, 3.5e-3) << stiff << ' ' << i;
+      EXPECT_NEAR(found.curvatures[i].value / exact, 1, 1e-2) << stiff << ' ' << i;
+    }
+  }
+}
+
 // Without precession, each direction has a different decay.
 TYPED_TEST(MacrospinModes, DecayWithoutPrecession) {
   EffectiveField const field(SlabDemag({1, 0, 0}, 0.7), Zeeman{{0, 0, 0.4}});

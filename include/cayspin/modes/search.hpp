@@ -28,6 +28,7 @@ namespace cayspin::inline v0_2::detail {
 struct ModeSearchOptions {
   std::size_t count = 8;
   double tolerance = 1e-9;  // largest error of a vector
+  double round_off = 0;     // of products with the Hessian, relative to scale
   std::int64_t evaluations = 0;
   double scale = 1;  // strength of the field without exchange
   double shift = 0;  // least_shift of slowest_modes
@@ -95,12 +96,24 @@ class ModeSearch {
   }
 
  private:
+  // Errors due to products with the Hessian are mostly below this bound, 10 * sqrt(epsilon).
+  static constexpr double error_of_products = std::is_same_v<Real, double> ? 1.5e-7 : 3.5e-3;
+
   // Called when no residual extends the subspace, or none has helped for long. The errors left may
   // be those of products with the Hessian, which no search can reduce: returns true if all are that
   // small.
   bool is_as_good_as_products() const {
-    constexpr double bound = std::is_same_v<Real, double> ? 1.5e-7 : 3.5e-3;  // 10 * sqrt(epsilon)
-    return std::ranges::all_of(errors_, [](double error) { return error < bound; });
+    for (std::size_t mode = 0; mode < errors_.size(); ++mode)
+      if (!(errors_[mode] < std::max(error_of_products, tolerances_[mode]))) return false;
+    return true;
+  }
+
+  // Returns the error below which a unit vector of this energy has converged. The bound on
+  // round-off is coarse where exchange is strong, and must not let wrong modes pass. The energy of
+  // zero modes is itself round-off, so that their errors may be larger.
+  double tolerance_of(double energy) const {
+    double const soft = std::sqrt(std::max(1.0, 1e-2 * options_.scale / energy));
+    return std::max(options_.tolerance, std::min(options_.round_off, error_of_products * soft));
   }
 
   std::size_t columns_of_mode() const { return options_.is_symmetric ? 1 : 2; }
@@ -138,6 +151,7 @@ class ModeSearch {
     modes_ = options_.is_symmetric ? lowest_modes(pencil_)
                                    : slowest_modes(pencil_, options_.is_undamped, options_.shift);
     errors_.resize(std::max(errors_.size(), count()), std::numeric_limits<double>::infinity());
+    tolerances_.resize(errors_.size(), options_.tolerance);
   }
 
   void restart() {
@@ -218,9 +232,11 @@ class ModeSearch {
     }
     auto const& c = found.coefficients;
     double const energy = std::abs(c.dot(pencil_.hessian.cast<std::complex<double>>() * c));
-    double const least = 1e-4 * options_.scale * c.squaredNorm();
-    errors_[mode] = std::sqrt(std::max(square, 0.0) / std::max(energy, least));
-    if (errors_[mode] < options_.tolerance || added >= most_added()) return false;
+    double const size = c.squaredNorm();
+    double const of_error = std::max(energy, 1e-4 * options_.scale * size);
+    errors_[mode] = std::sqrt(std::max(square, 0.0) / of_error);
+    tolerances_[mode] = tolerance_of(of_error / size);
+    if (errors_[mode] < tolerances_[mode] || added >= most_added()) return false;
     added += parts;
     return true;
   }
@@ -313,7 +329,7 @@ class ModeSearch {
   std::vector<Spins> vectors_, products_, scratch_;
   Pencil pencil_;
   std::vector<RitzMode> modes_;
-  std::vector<double> errors_;
+  std::vector<double> errors_, tolerances_;
   Eigen::MatrixXd before_;
   std::size_t first_ = 0;
 };
