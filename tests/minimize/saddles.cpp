@@ -3,6 +3,8 @@
 #include "films.hpp"
 #include "least_curvature.hpp"
 
+#include <algorithm>
+
 namespace cayspin::test {
 namespace {
 
@@ -63,19 +65,41 @@ TYPED_TEST(Saddles, KeptOnesHaveTheirLowestCurvature) {
 // the start of the search for it.
 TYPED_TEST(Saddles, OnOneSiteOfMany) {
   using Real = typename TypeParam::Real;
-  for (std::int64_t const n : {32, 128}) {
-    auto const lattice = Lattice::square(n, n);
-    std::vector<double> constants(static_cast<std::size_t>(lattice.sites()), 1);
-    constants[static_cast<std::size_t>(n / 2 * (n + 1))] = -1;
+  for (std::int64_t const n : {32, 128})
+    for (double const other : {-1.0, -0.1, -1e-2}) {
+      auto const lattice = Lattice::square(n, n);
+      std::vector<double> constants(static_cast<std::size_t>(lattice.sites()), 1);
+      constants[static_cast<std::size_t>(n / 2 * (n + 1))] = other;
+      ScalarField<Real, typename TypeParam::MemorySpace> const field("constants", lattice);
+      copy_from_host(constants, field);
+      auto spins =
+          spins_of<typename TestFixture::Spins>(lattice, uniform(lattice.sites(), {0, 0, 1}));
+      auto const found =
+          minimize(this->exec, SiteDependentUniaxialAnisotropy(field, {0, 0, 1}), spins);
+      EXPECT_EQ(found.end, MinimizeEnd::converged);
+      EXPECT_EQ(found.saddles, 1) << n << ' ' << other;
+      // The torque is other * z.
+      double const tolerance = std::max(1e-5, -1.1e-6 / other);
+      EXPECT_NEAR(at(numbers_of(spins), n / 2 * (n + 1)).z, 0, tolerance) << n << ' ' << other;
+    }
+}
+
+// A site of the same lattice along a diagonal, where vectors of the start may be nearly along
+// spins.
+TYPED_TEST(Saddles, OnOneSiteAlongADiagonal) {
+  using Real = typename TypeParam::Real;
+  auto const lattice = Lattice::square(16, 16);
+  double const c = std::sqrt(1.0 / 3);
+  for (std::size_t site = 3; site < 256; site += 23) {
+    std::vector<double> constants(256, 1);
+    constants[site] = -1e-2;
     ScalarField<Real, typename TypeParam::MemorySpace> const field("constants", lattice);
     copy_from_host(constants, field);
-    auto spins =
-        spins_of<typename TestFixture::Spins>(lattice, uniform(lattice.sites(), {0, 0, 1}));
+    auto spins = spins_of<typename TestFixture::Spins>(lattice, uniform(256, {c, c, c}));
     auto const found =
-        minimize(this->exec, SiteDependentUniaxialAnisotropy(field, {0, 0, 1}), spins);
-    EXPECT_EQ(found.end, MinimizeEnd::converged);
-    EXPECT_EQ(found.saddles, 1) << n;
-    EXPECT_NEAR(at(numbers_of(spins), n / 2 * (n + 1)).z, 0, 1e-5) << n;
+        minimize(this->exec, SiteDependentUniaxialAnisotropy(field, {c, c, c}), spins);
+    EXPECT_EQ(found.end, MinimizeEnd::converged) << site;
+    EXPECT_GE(found.saddles, 1) << site;
   }
 }
 

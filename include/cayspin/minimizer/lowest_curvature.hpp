@@ -48,6 +48,20 @@ struct LowestOfThree {
   }
 };
 
+/// Functor that finds max |factor * r|^2 / (|x|^2 / 4 + least) over the sites, for r = `residual`
+/// and x = `vectors`.
+template <class Real>
+struct LargestRatio {
+  SiteArray<Real, 3> residual, vectors;
+  double factor, least;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
+    Vec3<Value> const r = Value(factor) * Vec3<Value>(site.load(residual)), x = site.load(vectors);
+    values[0] = dot(r, r) / multiply_add(Value(0.25), dot(x, x), Value(least));
+  }
+};
+
 /// Work memory for a search for the lowest curvature.
 template <class Spins>
 struct CurvatureArrays {
@@ -144,9 +158,15 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
     bool const is_positive =
         found.value > 1e-2 * scale && rest < 0.3 * found.value && decrease < 0.01 * found.value;
     bool const is_exactly_positive = found.value > 10 * tolerance && rest < 1e-3 * found.value;
-    // A descent on a few sites of many adds little to these sums, but much to their own residuals.
+    // A descent on a few sites of many adds little to these sums. But there the residual is at
+    // least the quotient times the vector, however small the curvature of the descent is. Sites
+    // where the vector almost vanishes do not count: it may have nodes.
     auto const is_positive_everywhere = [&] {
-      return largest_length(exec, hw) < found.value * largest_length(exec, x);
+      double const least = std::pow(1e-2 * largest_length(exec, x), 2);
+      auto const ratio = reduce_sites<Maximum, 1>(
+          exec, "cayspin::minimize::largest_ratio", x.layout(),
+          LargestRatio<Real>{hw.array(), x.array(), 1 / found.value, least});
+      return ratio[0] < 1;
     };
     bool const is_clear =
         is_exact ? rest < error
