@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/minimize.hpp>
+#include <cayspin/path/disturbance.hpp>
 #include <cayspin/path/found.hpp>
 #include <cayspin/path/probed_field.hpp>
 #include <cayspin/path/saddle.hpp>
@@ -24,32 +25,6 @@
 namespace cayspin::inline v0_2 {
 
 namespace detail {
-
-template <class Real>
-struct KeepMobile {
-  SiteArray<Real, 3> vectors;
-  SiteArray<Real, 1> is_mobile;
-  OutputArray<Real, 3> output;
-
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
-    using Value = typename Site::value_type;
-    site.store(Value(site.load(is_mobile)) * Vec3<Value>(site.load(vectors)), output);
-  }
-};
-
-/// Writes a smooth pattern of vectors without symmetry to `disturbance`; the longest vector has
-/// length 1. Overwrites `work`.
-template <class Exec, class Spins>
-void make_disturbance(Exec const& exec, Preconditioner<Spins>& preconditioner, Spins const& work,
-                      Spins const& disturbance) {
-  using Real = typename Spins::value_type;
-  auto const& shape = work.lattice().shape;
-  for_each_site<Real>(exec, "cayspin::path::random_signs", work.layout(),
-                      RandomSigns<Real>{shape[0], shape[1], 0, 1, work.output(false)});
-  preconditioner.apply(exec, work, disturbance);
-  combine(exec, 1 / largest_length(exec, disturbance), disturbance, 0, disturbance, disturbance);
-}
 
 /// The search of a single call of minimum_energy_path.
 template <class Exec, class Field, class Spins>
@@ -74,6 +49,7 @@ class PathFinder {
   /// Makes an image that is a saddle a fixed image of the path. Call it before find().
   void fix_saddle(std::size_t image, SaddleFound const& known) {
     string_.fix(image, known.energy);
+    allow_for(known.energy);
     Kokkos::deep_copy(exec_, highest_.allocation(), string_.spins(image).allocation());
     found_.saddles.push_back(
         {known.energy.value, known.curvature, known.next_curvature, known.torque, 0});
@@ -83,6 +59,8 @@ class PathFinder {
     std::size_t const last = string_.size() - 1;
     string_.fix(0, from);
     string_.fix(last, to);
+    allow_for(from);
+    allow_for(to);
     if (distance_between(exec_, string_.spins(0), string_.spins(last)) < 1e-3)
       return ended(PathEnd::same_ends, saddle);
     if (!options_.starts_from_images) make_start();
@@ -153,28 +131,56 @@ class PathFinder {
     return PathEnd::no_saddle;
   }
 
+  void allow_for(Energy const& energy) {
+    auto const sites = static_cast<double>(highest_.lattice().sites());
+    round_off_ = std::max(round_off_, round_off_of_energy<Real>(energy, sites));
+  }
+
+  /// Returns a limit on the sum of |g|^2 over the sites of an image, where g is the gradient across
+  /// the path. This gradient raises the energy by up to about the sum / 2 c, where c is the field
+  /// without exchange. If `bound` is `fine`, that is little compared with the lower barrier.
+  double most_square(double bound) const {
+    constexpr double little = 5e-3;
+    double barrier = span_of(string_.profile());
+    if (!found_.saddles.empty()) {
+      double const higher = std::max(string_.energy(0), string_.energy(string_.size() - 1));
+      barrier = std::clamp(found_.saddle().energy - higher, 1e-2 * barrier, barrier);
+    }
+    double const energy = std::max(little * barrier, round_off_);
+    return 2 * probed_.preconditioner.first_shift() * energy * std::pow(bound / fine, 2);
+  }
+
   /// Relaxes the string until the gradient perpendicular to the path is below `bound` times the
-  /// strongest field: at the highest image if `of_highest`, otherwise at all images. Returns early
-  /// after `most_steps` steps. Also returns early if the gradient stops falling; but unless
-  /// `of_highest`, it first switches from L-BFGS to sweeps (PathString::sweep) and shortens their
-  /// steps whenever the gradient stops falling again. Sets is_settled_ to true if all images
-  /// reached the bound and `of_highest` is false. Returns the reason if the whole search must end,
-  /// otherwise nothing.
+  /// strongest field and below its most_square(): at the highest image if `of_highest`, otherwise
+  /// at all images. Returns early after `most_steps` steps. Also returns early if the gradient
+  /// stops falling; but unless `of_highest`, it first switches from L-BFGS to sweeps
+  /// (PathString::sweep) and shortens their steps whenever the gradient stops falling again. Sets
+  /// is_settled_ to true if all images reached the bound and `of_highest` is false. Returns the
+  /// reason if the whole search must end, otherwise nothing.
   std::optional<PathEnd> relax(double bound, bool of_highest,
                                int most_steps = std::numeric_limits<int>::max()) {
     double share = 1, least = std::numeric_limits<double>::infinity();
     if (of_highest && string_.sweeps()) string_.sweep(0);
-    bound = std::max(bound, 64.0 * std::numeric_limits<Real>::epsilon()) * probed_.strongest;
+    auto const sites = static_cast<double>(highest_.lattice().sites());
+    double const round_off = 64.0 * std::numeric_limits<Real>::epsilon() * probed_.strongest;
+    auto const is_small = [&](double across, double square) {
+      return across < std::max(bound * probed_.strongest, round_off) &&
+             square < std::max(most_square(bound), sites * round_off * round_off);
+    };
     for (int step = 0, since = 0;; ++step, ++since) {
       double const largest = string_.look(exec_, field_, options_.time);
       std::size_t highest = 0;
-      for (std::size_t k = 1; k < string_.size(); ++k)
+      double square = 0;
+      for (std::size_t k = 1; k < string_.size(); ++k) {
         if (string_.energy(k) > string_.energy(highest)) highest = k;
+        square = std::max(square, string_.square(k));
+      }
       found_.across = largest;
       auto const so_far = found_.evaluations + string_.evaluations();
       if (!std::isfinite(largest)) return PathEnd::not_finite;
-      is_settled_ = !of_highest && largest < bound;
-      if (is_settled_ || (of_highest && string_.across(highest) < bound && step >= 5))
+      is_settled_ = !of_highest && is_small(largest, square);
+      if (is_settled_ ||
+          (of_highest && step >= 5 && is_small(string_.across(highest), string_.square(highest))))
         return std::nullopt;
       if (step >= most_steps) return std::nullopt;
       if (so_far >= options_.evaluations) return PathEnd::evaluation_limit;
@@ -205,7 +211,7 @@ class PathFinder {
     // The remaining gradient across the path can cause peaks up to this height.
     double const left =
         is_settled_ ? 2 * found_.across * found_.across / probed_.preconditioner.first_shift() : 0;
-    double const least = std::max(smallest * span_of(points), left);
+    double const least = std::max({smallest * span_of(points), left, round_off_});
     for (auto const& peak : peaks_of(points))
       if (peak.prominence > least) return peak;
     return std::nullopt;
@@ -274,6 +280,7 @@ class PathFinder {
     bend(exec_, string_, saddle_.vector(), image, fraction);
     if (!string_.insert(exec_, saddle_.spins(), climbed.energy, image)) return false;
     is_settled_ = false;
+    allow_for(climbed.energy);
     if (found_.saddles.empty() || climbed.energy.value > found_.saddle().energy)
       Kokkos::deep_copy(exec_, highest_.allocation(), saddle_.spins().allocation());
     found_.saddles.push_back(
@@ -313,6 +320,7 @@ class PathFinder {
   ProbedField<Spins> probed_;
   Spins highest_, peak_;
   bool stopped_ = false, is_settled_ = false;
+  double round_off_ = 0;  // of energies
   MinimumEnergyPath found_;
 };
 

@@ -153,6 +153,30 @@ TYPED_TEST(Paths, LeaveAHardAxis) {
   EXPECT_NEAR(std::abs(at(numbers_of(found.saddle_spins), 0).y), 1, 1e-5);
 }
 
+// Strong exchange must not hide that the path has not yet left the hard axis.
+TYPED_TEST(Paths, OfAStiffChainLeaveAHardAxis) {
+  constexpr std::int64_t length = 16;
+  auto const lattice = Lattice::chain(length);
+  EffectiveField const field(UniaxialAnisotropy(1, {0, 0, 1}), UniaxialAnisotropy(-0.7, {1, 0, 0}),
+                             Exchange(lattice, 400));
+  std::vector<double> from, to;
+  for (std::int64_t site = 0; site < length; ++site) {
+    from.insert(from.end(), up.begin(), up.end());
+    to.insert(to.end(), down.begin(), down.end());
+  }
+  auto const found =
+      this->find(field, lattice, from, to, {.torque = this->is_double ? 1e-6 : 1e-3});
+  ASSERT_EQ(found.end, PathEnd::converged);
+  EXPECT_NEAR(found.barrier_forward(), 0.5 * length, this->is_double ? 1e-8 : 1e-3);
+  EXPECT_LT(found.across, 0.1);
+  for (std::size_t k = 0; k < found.images.size(); ++k) {
+    auto const spins = numbers_of(found.images[k]);
+    double easy = 0;
+    for (std::size_t z = 2; z < spins.size(); z += 3) easy -= 0.5 * spins[z] * spins[z];
+    EXPECT_NEAR(found.energy[k], easy, 0.01 * length) << k;
+  }
+}
+
 // A direction with which the field is measured may be normal to the easy axis.
 TYPED_TEST(Paths, BetweenEasyAxesInAnyDirection) {
   for (Vec3<double> axis : {Vec3<double>{2, -1, 0}, Vec3<double>{1, 1, -1}, Vec3<double>{1, -2, 1},

@@ -52,6 +52,7 @@ class PathString {
   bool is_fixed(std::size_t image) const { return images_[image].is_fixed; }
   double energy(std::size_t image) const { return images_[image].energy.value; }
   double across(std::size_t image) const { return images_[image].largest_across; }
+  double square(std::size_t image) const { return is_fixed(image) ? 0 : images_[image].squares[2]; }
   std::int64_t evaluations() const { return evaluations_; }
 
   void fix(std::size_t image, Energy const& energy) {
@@ -92,13 +93,11 @@ class PathString {
       image.per_square = square > 0 ? 1 / square : 0;
       image.slope = slope * std::sqrt(image.per_square);
       auto const& change = image.changes[count_];
-      auto const sums = reduce_sites<Sum, 3>(
+      image.squares = reduce_sites<Sum, 3>(
           exec, "cayspin::path::gradient_across", image.spins.layout(),
           GradientAcross<Real>{change.array(), image.direction.array(), image.across.array(),
                                image.steps[count_].array(), change.array(),
                                slope * image.per_square});
-      image.step_square = sums[0];
-      image.change_square = sums[1];
       image.largest_across = largest_length(exec, image.across);
       if (!std::isfinite(image.largest_across) || !std::isfinite(image.energy.value))
         return std::numeric_limits<double>::quiet_NaN();
@@ -242,7 +241,8 @@ class PathString {
     bool is_fixed = false;
     double per_square = 0;  // 1 / |direction|^2
     double slope = 0;       // of the energy along the path
-    double largest_across = 0, step_square = 0, change_square = 0;
+    double largest_across = 0;
+    std::array<double, 3> squares{};  // sums over sites: of the step, its change, and g across
     std::array<double, Products::values> products{};
   };
 
@@ -275,8 +275,8 @@ class PathString {
     squares_[count_] = {};
     for (auto const& image : images_) {
       if (image.is_fixed) continue;
-      squares_[count_][0] += image.step_square;
-      squares_[count_][1] += image.change_square;
+      squares_[count_][0] += image.squares[0];
+      squares_[count_][1] += image.squares[1];
     }
     if (count_ < pairs) {
       ++count_;
