@@ -25,19 +25,20 @@ class EscapeSearch {
  public:
   /// `evaluations`: number of evaluations before this search; they count towards the limit.
   EscapeSearch(Exec const& exec, Field const& field, Spins const& state, Energy const& rest,
-               PathOptions const& options, std::int64_t evaluations)
+               PathOptions const& options, ProbedField<Spins> const& probed,
+               std::int64_t evaluations)
       : exec_(exec),
         field_(field),
         state_(state),
         rest_(rest),
         options_(options),
         climber_(state.lattice()),
-        probed_(exec, field, state, climber_.spins(), options.time, options.preconditioned),
+        probed_(probed),
         saddle_("escape::saddle", state.lattice()),
         beyond_("escape::beyond", state.lattice()),
         sides_{Spins("escape::one_side", state.lattice()),
                Spins("escape::other_side", state.lattice())},
-        evaluations_(evaluations + probed_.evaluations) {}
+        evaluations_(evaluations) {}
 
   /// Climbs along the directions, both ways. Returns converged if a saddle leads out of the state.
   PathEnd find(std::vector<Spins> const& directions) {
@@ -181,6 +182,25 @@ class EscapeSearch {
   bool is_stopped_ = false;
 };
 
+/// lowest_escape from a relaxed first image of the energy `rest`. `before`: a search so far, whose
+/// evaluations count towards the limit.
+template <class Exec, class Field, class Spins>
+MinimumEnergyPath escape_from_rest(Exec const& exec, Field const& field, Energy const& rest,
+                                   std::vector<Spins> const& directions, std::vector<Spins>& images,
+                                   Spins& saddle, PathOptions const& options,
+                                   ProbedField<Spins> const& probed, MinimumEnergyPath before) {
+  EscapeSearch search(exec, field, images.front(), rest, options, probed, before.evaluations);
+  before.end = search.find(directions);
+  before.evaluations = search.evaluations();
+  if (before.end != PathEnd::converged) return before;
+  auto const top = search.write(images);
+  auto between = options;
+  between.starts_from_images = true;
+  PathFinder path(exec, field, images, between, probed, before.evaluations);
+  path.fix_saddle(top, search.lowest());
+  return path.find(saddle, rest, search.energy_beyond());
+}
+
 }  // namespace detail
 
 /// Number of fields of three numbers per site that lowest_escape allocates in addition to what
@@ -217,16 +237,10 @@ MinimumEnergyPath lowest_escape(Exec const& exec, Field const& field,
   MinimumEnergyPath unfinished;
   auto const rest = detail::relax_end(exec, field, state, options, unfinished);
   if (rest.end != MinimizeEnd::converged) return unfinished;
-  detail::EscapeSearch search(exec, field, state, rest.energy, options, unfinished.evaluations);
-  unfinished.end = search.find(directions);
-  unfinished.evaluations = search.evaluations();
-  if (unfinished.end != PathEnd::converged) return unfinished;
-  auto const top = search.write(images);
-  auto between = options;
-  between.starts_from_images = true;
-  detail::PathFinder path(exec, field, images, between, unfinished.evaluations);
-  path.fix_saddle(top, search.lowest());
-  return path.find(saddle, rest.energy, search.energy_beyond());
+  detail::ProbedField<Spins> const probed(exec, field, state, options.time, options.preconditioned);
+  unfinished.evaluations += probed.evaluations;
+  return detail::escape_from_rest(exec, field, rest.energy, directions, images, saddle, options,
+                                  probed, unfinished);
 }
 
 }  // namespace cayspin::inline v0_2

@@ -34,16 +34,16 @@ class PathFinder {
  public:
   /// `evaluations`: number of evaluations before this search; they count towards the limit.
   PathFinder(Exec const& exec, Field const& field, std::vector<Spins> const& images,
-             PathOptions const& options, std::int64_t evaluations)
+             PathOptions const& options, ProbedField<Spins> const& probed, std::int64_t evaluations)
       : exec_(exec),
         field_(field),
         options_(options),
         string_(images),
         saddle_(images.front().lattice()),
-        probed_(exec, field, images.front(), saddle_.spins(), options.time, options.preconditioned),
+        probed_(probed),
         highest_("path::highest", images.front().lattice()),
         peak_("path::peak", images.front().lattice()) {
-    found_.evaluations = evaluations + probed_.evaluations;
+    found_.evaluations = evaluations;
   }
 
   /// Makes an image that is a saddle a fixed image of the path. Call it before find().
@@ -388,7 +388,10 @@ MinimumEnergyPath minimum_energy_path(Exec const& exec, Field const& field,
     ends[i] = detail::relax_end(exec, field, end, options, unfinished);
     if (ends[i].end != MinimizeEnd::converged) return unfinished;
   }
-  return detail::PathFinder(exec, field, images, options, unfinished.evaluations)
+  detail::ProbedField<Spins> const probed(exec, field, images.front(), options.time,
+                                          options.preconditioned);
+  return detail::PathFinder(exec, field, images, options, probed,
+                            unfinished.evaluations + probed.evaluations)
       .find(saddle, ends[0].energy, ends[1].energy);
 }
 

@@ -83,13 +83,13 @@ class PathOfScene {
   }
 
   // Relaxes the only known end, and climbs from it along its modes of lowest curvature.
-  MinimumEnergyPath escape(PathOptions options) {
+  MinimumEnergyPath escape(PathOptions const& options) {
     auto& state = images_.front();
     MinimumEnergyPath unfinished;
     auto const rest = cayspin::detail::relax_end(exec_, field_, state, options, unfinished);
     if (rest.end != MinimizeEnd::converged) return unfinished;
     // Exchange says nothing about modes in which all spins turn together.
-    cayspin::detail::ProbedField<Spins> const probed(exec_, field_, state, saddle_, options.time,
+    cayspin::detail::ProbedField<Spins> const probed(exec_, field_, state, options.time,
                                                      options.preconditioned);
     unfinished.evaluations += probed.evaluations;
     auto const before = unfinished.evaluations;
@@ -109,10 +109,8 @@ class PathOfScene {
       if (is_zero || std::ssize(directions) == *options_.modes) continue;
       copy_from_host(modes.vectors[i], directions.emplace_back("path::mode", state.lattice()));
     }
-    options.evaluations = std::max<std::int64_t>(1, options.evaluations - unfinished.evaluations);
-    auto path = lowest_escape(exec_, field_, directions, images_, saddle_, options);
-    path.evaluations += unfinished.evaluations;
-    return path;
+    return cayspin::detail::escape_from_rest(exec_, field_, rest.energy, directions, images_,
+                                             saddle_, options, probed, unfinished);
   }
 
   io::Path in_scene_units(MinimumEnergyPath const& found) const {

@@ -11,16 +11,18 @@
 
 namespace cayspin::inline v0_2::detail {
 
-/// Measurements of a field that searches for saddles need, from a few evaluations.
+/// Measurements of a field that searches for saddles need, from a few evaluations. Copies share the
+/// memory.
 template <class Spins>
 struct ProbedField {
   using Real = typename Spins::value_type;
 
-  /// `spins`: tells which sites are occupied. Overwrites `work`.
+  /// `spins`: tells which sites are occupied.
   template <class Exec, class Field>
-  ProbedField(Exec const& exec, Field const& field, Spins const& spins, Spins const& work,
-              double time, bool preconditioned)
+  ProbedField(Exec const& exec, Field const& field, Spins const& spins, double time,
+              bool preconditioned)
       : is_mobile("path::is_mobile", spins.lattice()) {
+    Spins const work("path::pattern", spins.lattice());
     Kokkos::deep_copy(exec, is_mobile.allocation(), Real(0));
     auto const found = probe(exec, field, time, spins, work, is_mobile);
     evaluations = found.evaluations;
