@@ -138,7 +138,8 @@ class PathFinder {
 
   /// Returns a limit on the sum of |g|^2 over the sites of an image, where g is the gradient across
   /// the path. This gradient raises the energy by up to about the sum / 2 c, where c is the field
-  /// without exchange. If `bound` is `fine`, that is little compared with the lower barrier.
+  /// without exchange. If `bound` is `fine`, that is little compared with the lower barrier, unless
+  /// there is hardly any barrier.
   double most_square(double bound) const {
     constexpr double little = 5e-3;
     double barrier = span_of(string_.profile());
@@ -146,8 +147,9 @@ class PathFinder {
       double const higher = std::max(string_.energy(0), string_.energy(string_.size() - 1));
       barrier = std::clamp(found_.saddle().energy - higher, 1e-2 * barrier, barrier);
     }
-    double const energy = std::max(little * barrier, round_off_);
-    return 2 * probed_.preconditioner.first_shift() * energy * std::pow(bound / fine, 2);
+    double const field = probed_.preconditioner.first_shift();
+    double const energy = std::max({little * barrier, round_off_, 0.5 * fine * fine * field});
+    return 2 * field * energy * std::pow(bound / fine, 2);
   }
 
   /// Relaxes the string until the gradient perpendicular to the path is below `bound` times the
