@@ -130,6 +130,7 @@ std::unique_ptr<SceneRun> SceneRun::open(io::Scene const& typed, RunSettings con
             own, plan, settings.precision, space,
             restart ? restart->spins(own) : normalised<io::SceneError>(own, "initial"));
       });
+  if (run->threads() > 1 || !is_on_host(space)) Turn::end_at_fork();
   run->typed_own_ = scene.field.own;
   if (!restart) return run;
   run->number_ = restart->step();

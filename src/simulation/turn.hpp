@@ -3,6 +3,8 @@
 
 #include "failure.hpp"
 
+#include <pthread.h>
+
 #include <mutex>
 
 namespace cayspin::simulation {
@@ -42,6 +44,13 @@ class Turn {
     bool before_;
   };
 
+  /// Makes every turn in a process that is forked from now on throw UsageError. Call it for runs on
+  /// several threads or on a device: a forked process has neither, and would wait for them forever.
+  static void end_at_fork() {
+    [[maybe_unused]] static int const registered =
+        ::pthread_atfork(nullptr, nullptr, [] { is_forked_ = true; });
+  }
+
  private:
   static void require_free(bool taken = taken_) {
     if (taken)
@@ -50,9 +59,15 @@ class Turn {
   }
   static std::recursive_mutex& mutex_of_others() {
     static std::recursive_mutex one;
+    // Another thread may have held the mutex at the fork, so this comes before the lock.
+    if (is_forked_)
+      throw UsageError(
+          "this process was forked from one with runs on several threads or on a device; accepted: "
+          "a new process, as multiprocessing starts with the method \"spawn\"");
     require_free(works_);
     return one;
   }
+  static inline bool is_forked_ = false;
   static inline bool taken_ = false;
   static inline thread_local bool works_ = false;
   std::lock_guard<std::recursive_mutex> lock_;
