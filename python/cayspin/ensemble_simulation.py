@@ -66,16 +66,19 @@ class EnsembleSimulation:
         without a source, SceneError for a dt that integrator.refuse_unstable refuses, CayspinError
         without an integrator or beyond the last possible step.
         """
-        self._advance(arguments.whole(n, "step"), False)
+        n = arguments.whole(n, "step")
+        self._require_integrator("step")
+        self._advance(n, False)
 
     def run(self, until: float | None = None) -> None:
         """Steps to time `until`, in s in SI, or to the scene's end. A replica ends early when its
         torque falls below the scene's until_torque.
 
         Raises NumbersFailed and SceneError as step() does. Raises CayspinError for a time that has
-        passed or is not a whole number of steps, and for a scene without end.
+        passed or is not a whole number of steps, and for a scene without end or integrator.
         """
-        if self._scene._scene.has_integrator and until is None and self._scene.steps == 0:
+        self._require_integrator("run")
+        if until is None and self._scene.steps == 0:
             raise _cayspin.CayspinError("run: the scene has no end; accepted: run(until=t), or "
                                         "integrator.end in the scene")
         if until is not None:
@@ -103,10 +106,11 @@ class EnsembleSimulation:
         return [Minimum(*(getattr(one, field.name) for field in dataclasses.fields(Minimum)))
                 for one in found]
 
-    def _advance(self, count, until_torque):
+    def _require_integrator(self, name):
         if not self._scene._scene.has_integrator:
-            name = "run" if until_torque else "step"
             raise _cayspin.CayspinError(f"{name}: the scene has no integrator; accepted: relax()")
+
+    def _advance(self, count, until_torque):
         self._run.require_reachable(count)
         if not self._dt_is_checked:
             warning = self._run.warning()

@@ -204,6 +204,10 @@ class EnsembleSimulations(unittest.TestCase):
                            (lambda: self.together("half"), "double"),
                            (lambda: self.together().step(-1), "step"),
                            (lambda: self.together().run(until=0.013), "whole number of steps"),
+                           (lambda: self.together(integrator=None).run(until=0.5),
+                            "^run: the scene has no integrator; accepted: relax"),
+                           (lambda: self.together(integrator=None).step(),
+                            "^step: the scene has no integrator; accepted: relax"),
                            (lambda: self.together().relax(torque=-1), "torque")):
             with self.assertRaisesRegex(cayspin.CayspinError, part) as caught:
                 call()
