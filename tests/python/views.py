@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """cayspin.view: the page of a file in a notebook."""
 
+import os
 import pathlib
+import signal
 import subprocess
 import sys
+import threading
 import time
 import unittest
 import urllib.request
+from unittest import mock
 
 import cayspin
 from package_test import PackageTest, scene
@@ -64,6 +68,23 @@ class Views(PackageTest):
                 self.assertLess(time.monotonic(), end, error)
                 time.sleep(0.1)
         self.assertRaises(OSError, answer, kernel.stdout.strip())
+
+    def test_an_interrupt_before_the_page_starts_ends_the_run(self):
+        started, program = self.folder / "started", self.folder / "program"
+        program.write_text(f"#!/bin/sh\necho $$ > '{started}.new'\nmv '{started}.new' '{started}'\n"
+                           "exec sleep 60\n")
+        program.chmod(0o755)
+
+        def interrupt():
+            while not started.exists():
+                time.sleep(0.05)
+            os.kill(os.getpid(), signal.SIGINT)
+
+        threading.Thread(target=interrupt, daemon=True).start()
+        file = self.written(scene(output={"file": str(self.folder / "never.h5")}))
+        with mock.patch.dict(os.environ, CAYSPIN_PROGRAM=str(program)):
+            self.assertRaises(KeyboardInterrupt, cayspin.view, file)
+        self.assertRaises(ProcessLookupError, os.kill, int(started.read_text()), 0)
 
     def test_the_package_has_the_page(self):
         folder = pathlib.Path(cayspin.__file__).parent / "view" / "page"

@@ -6,6 +6,7 @@ from __future__ import annotations
 import atexit
 import os
 import select
+import signal
 import subprocess
 import sys
 import tempfile
@@ -33,15 +34,19 @@ class View:
                 command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=messages, text=True,
                 env=environment(CAYSPIN_PROGRAM=program()), start_new_session=True)
             self.address: str = ""  #: for any browser on this machine
-            if select.select([self._server.stdout], [], [], LONGEST_START)[0]:
+            try:
+                if not select.select([self._server.stdout], [], [], LONGEST_START)[0]:
+                    raise CayspinError(f"view: the page did not start within {LONGEST_START} s")
                 self.address = self._server.stdout.readline().strip()
+            except BaseException:  # also that of Ctrl-C
+                # While the server waits for its run, it does not look whether its input is closed.
+                self._server.send_signal(signal.SIGINT)
+                self.close()
+                raise
             if not self.address:
-                late = self._server.poll() is None
                 self.close()
                 messages.seek(0)
-                message = messages.read().strip().rpartition("\n")[2]
-                raise CayspinError(message if message or not late else
-                                   f"view: the page did not start within {LONGEST_START} s")
+                raise CayspinError(messages.read().strip().rpartition("\n")[2])
         atexit.register(self.close)
 
     def close(self) -> None:
