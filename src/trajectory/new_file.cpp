@@ -36,14 +36,17 @@ void require_folder(fs::path const& path) {
 
 bool is_locked(int file) { return ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; }
 
-// Opens the old file for writing and tests its lock: a file that is protected, or open in another
-// program, must not be replaced.
+// Opens the old file for writing and tests its lock: a file that is protected, or open in this
+// program or another one, must not be replaced.
 void require_replaceable(fs::path const& path) {
   int const file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (file < 0) throw_failure(path, action, std::strerror(errno));
   bool const locked = is_locked(file);
   ::close(file);
-  if (locked) throw_failure(path, action, "another program has it open");
+  if (locked)
+    throw_failure(
+        path, action,
+        "this program or another one has it open; accepted: a closed file, or another name");
 }
 
 // Creates a file with disk space for its header, so that HDF5 does not find the disk full.

@@ -116,6 +116,15 @@ class WrongFiles(FilesTest):
             self.assert_refused(cayspin.CayspinError, "the file is closed", call)
         self.assertEqual(repr(run), f"<cayspin.Trajectory {file}: closed>")
 
+    def test_an_open_file_is_not_replaced(self):
+        file = self.run_of()
+        sim = cayspin.Simulation(scene(**FILM))
+        with cayspin.open(file) as run:
+            self.assert_refused(cayspin.CayspinError, "this program or another one has it open; "
+                                "accepted: a closed file", sim.run, output=file, overwrite=True)
+            self.assertEqual((sim.steps, len(run.spins[:])), (0, len(run)))
+        sim.run(output=file, overwrite=True)
+
     def test_restarts_of_ensembles(self):
         of = scene(**FILM, ensemble={"replicas": 2})
         text = self.folder / "text.h5"
