@@ -177,8 +177,8 @@ class Trajectory:
             raise CayspinError(f"{self.path}: {error}") from None
 
     def to_xarray(self) -> Any:
-        """An xarray.Dataset of the frames, whose variables are read when they are used. Raises
-        ImportError without xarray."""
+        """An xarray.Dataset of the frames, whose variables are read when they are used, so keep the
+        file open. Raises ImportError without xarray."""
         import xarray
         from xarray.backends import BackendArray
         from xarray.core import indexing
@@ -198,13 +198,13 @@ class Trajectory:
                     first = slice(*first.indices(self.shape[0]))
                 return self.dataset[(first, *others)]
 
-        of_cell = ("site",) if self.file["spins"].ndim == 6 else ()
+        frames, variables = len(self), {}
+        of_cell = ("site",) if self.spins.ndim == 6 else ()
         axes = (*of_cell, "z", "y", "x", "component")
         dimensions = {"spins": ("frame", *axes), "magnetization": ("frame", "component"),
                       "sublattice_magnetization": ("frame", "site", "component"),
                       "positions": axes}
         names = (*self._names, *(name for name in self._of_some if name in self.file))
-        frames, variables = len(self), {}
         for name in names:
             dataset, axes_of = self.file[name], dimensions.get(name, ("frame",))
             length = frames if axes_of[0] == "frame" else len(dataset)

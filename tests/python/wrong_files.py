@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Wrong and damaged files, and wrong options of pictures: each raises CayspinError with one line."""
 
+import importlib.util
 import math
 import os
 import subprocess
@@ -110,9 +111,10 @@ class WrongFiles(FilesTest):
         run, ensemble = cayspin.open(file), self.ensemble()
         run.close()
         ensemble.close()
+        to_xarray = [run.to_xarray] if importlib.util.find_spec("xarray") else []
         for call in (run.plot, run.topological_charge, run.structure_factor, lambda: run.spins,
                      lambda: len(run), lambda: run.scene, ensemble.plot, lambda: ensemble.spins,
-                     ensemble.structure_factor, lambda: ensemble.complete):
+                     ensemble.structure_factor, lambda: ensemble.complete, *to_xarray):
             self.assert_refused(cayspin.CayspinError, "the file is closed", call)
         self.assertEqual(repr(run), f"<cayspin.Trajectory {file}: closed>")
 
