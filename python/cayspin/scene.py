@@ -16,6 +16,14 @@ _OWN = ("applied", "nonlocal")
 _VECTORS = re.compile(r".*(sources\[\d+\]\.profile|axis|axes\[\d+\]|in_plane|normal|polarization)")
 
 
+def _numbers(array, key):
+    """Returns arguments.numbers(), but raises SceneError."""
+    try:
+        return arguments.numbers(array, key)
+    except _cayspin.CayspinError as error:
+        raise _cayspin.SceneError(str(error)) from None
+
+
 def _without_arrays(thing, key, arrays):
     """Returns a value of a scene without its arrays of values per site, which are moved into
     `arrays` by their keys and replaced by toml_text.ARRAY."""
@@ -23,7 +31,7 @@ def _without_arrays(thing, key, arrays):
             and _VECTORS.fullmatch(key):
         thing = [thing[..., component] for component in range(3)]
     if isinstance(thing, np.ndarray) and thing.ndim in (3, 4):
-        arrays[key] = arguments.numbers(thing, key)
+        arrays[key] = _numbers(thing, key)
         return toml_text.ARRAY
     if isinstance(thing, dict):
         return {name: _without_arrays(one, f"{key}.{name}", arrays) for name, one in thing.items()}
@@ -39,7 +47,7 @@ def _split(tables):
     spins, own = None, {}
     initial = tables.get("initial")
     if initial is not None and not isinstance(initial, dict):
-        spins = arguments.numbers(initial, "initial")
+        spins = _numbers(initial, "initial")
         if spins.ndim not in (4, 5) or spins.shape[-1] != 3:
             raise _cayspin.SceneError(f"initial: an array of shape {spins.shape}; accepted: "
                                       "(nz, ny, nx, 3), of a crystal (site, nz, ny, nx, 3)")

@@ -42,7 +42,11 @@ class Arrays(PackageTest):
         before = sim.spins.copy()
         for part, wrong in self.WRONG.items():
             self.assert_refused(cayspin.CayspinError, part, setattr, sim, "spins", wrong)
-            self.assert_refused(cayspin.CayspinError, part, scene, initial=wrong)
+            self.assert_refused(cayspin.SceneError, part, scene, initial=wrong)
+        for call in (lambda: scene(system={"damping": UP[..., 0] * 1j}),
+                     lambda: sim.set("system.damping", UP[..., 0] * 1j)):
+            self.assert_refused(cayspin.SceneError, "system.damping: an array of complex128; "
+                                "accepted: one of real numbers", call)
         for shape in self.OTHER_SHAPES:
             part = f"an array of shape {shape}; accepted: "
             self.assert_refused(cayspin.CayspinError, part, setattr, sim, "spins", np.ones(shape))
