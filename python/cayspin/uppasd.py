@@ -190,6 +190,14 @@ def _moments(momfile, cell):
     return [moments[site] for site in sorted(moments)]
 
 
+def _one_of(accepted, number, name):
+    number = arguments.whole(number, f"read_uppasd: {name}")
+    if number not in accepted:
+        words = ", ".join(str(one) for one in accepted)
+        raise CayspinError(f"read_uppasd: {name} {number}; accepted: {words}")
+    return number
+
+
 def read_uppasd(jfile: str | os.PathLike, *, posfile: str | os.PathLike | None = None,
                 momfile: str | os.PathLike | None = None, dmfile: str | os.PathLike | None = None,
                 cell: Sequence[Sequence[float]] | None = None, posfiletype: str = "C",
@@ -232,11 +240,8 @@ def read_uppasd(jfile: str | os.PathLike, *, posfile: str | os.PathLike | None =
     posfiletype = arguments.word(posfiletype, "read_uppasd: posfiletype")
     if posfiletype not in ("C", "D"):
         raise CayspinError(f'read_uppasd: posfiletype {posfiletype!r}; accepted: "C" or "D"')
-    for name, value, accepted in (("maptype", maptype, (1, 2)), ("sym", sym, (0, 1, 2, 3)),
-                                  ("dm_sign", dm_sign, (-1, 1))):
-        if arguments.whole(value, f"read_uppasd: {name}") not in accepted:
-            words = ", ".join(str(one) for one in accepted)
-            raise CayspinError(f"read_uppasd: {name} {value}; accepted: {words}")
+    maptype, sym, dm_sign = (_one_of(accepted, value, name) for name, value, accepted in (
+        ("maptype", maptype, (1, 2)), ("sym", sym, (0, 1, 2, 3)), ("dm_sign", dm_sign, (-1, 1))))
     unit = unit_of(unit, "read_uppasd: unit")
     atoms = _Cell(posfile, cell, posfiletype)
     file = File(jfile, "read_uppasd: jfile", "#!")

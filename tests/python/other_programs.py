@@ -126,6 +126,8 @@ class UppasdFiles(Files):
         self.assertEqual(len(found), 24)
         self.assertEqual(found | {tuple(-np.array(one)) for one in found}, expected)
         self.assertEqual({pair["J"] for pair in cubic}, {1.0})
+        numpy = {"sym": np.array(1), "maptype": np.uint8(1), "dm_sign": np.array(-1)}
+        self.assertEqual(self.pairs("1 1 1 2 3 0.5\n", unit=np.float32(1), **numpy), cubic)
         plane = self.pairs("1 1 1 2 3 0.5\n1 1 -1 -2 -3 0.5\n", sym=2)
         self.assertEqual(len(plane), 8)
         self.assertEqual({abs(pair["offset"][2]) for pair in plane}, {3})
