@@ -73,7 +73,7 @@ io::HostVectors vectors_of(NumbersIn const& array) {
   if (!is_double && array.dtype() != nb::dtype<float>())
     throw UsageError("an array of another type; accepted: float64 or float32");
   if (array.shape(3) != 3)
-    throw UsageError("the last extent is not 3; accepted: an array (nz, ny, nx, 3)");
+    throw UsageError("an array whose last extent is not 3; accepted: an array (nz, ny, nx, 3)");
   io::HostVectors vectors{const_cast<void*>(array.data()), is_double, {}, {}};
   for (std::size_t axis = 0; axis < 4; ++axis) {
     if (axis < 3) vectors.shape[axis] = static_cast<std::int64_t>(array.shape(axis));
@@ -149,7 +149,13 @@ io::OwnField own_field(nb::object uniform, nb::object nonlocal) {
         throw UsageError(
             "field.nonlocal: the function returned no array; accepted: float64 or "
             "float32 of shape (nz, ny, nx, 3)");
-      auto const vectors = vectors_of(array);
+      auto const vectors = [&] {
+        try {
+          return vectors_of(array);
+        } catch (UsageError const& error) {
+          throw UsageError(std::string("field.nonlocal: the function returned ") + error.what());
+        }
+      }();
       if (vectors.shape != field.shape)
         throw UsageError(
             "field.nonlocal: the function returned an array of another shape; "

@@ -80,15 +80,15 @@ class Functions(PackageTest):
 
     def test_nonlocal_fields(self):
         for part, function in {
-                "returned no array": lambda m, t: m[0],
-                "returned no array;": lambda m, t: None,
-                "returned no array; ": lambda m, t: m.tolist(),
+                "no array": lambda m, t: m[0],
+                "no array;": lambda m, t: None,
+                "no array; ": lambda m, t: m.tolist(),
                 "an array of another type": lambda m, t: m.astype(int),
                 "an array of another type;": lambda m, t: m.astype(complex),
-                "the last extent is not 3": lambda m, t: m[..., :2],
-                "returned an array of another shape": lambda m, t: m[:, :, ::2],
-                "not finite": lambda m, t: m * math.inf}.items():
-            self.refused(part, **{"nonlocal": function})
+                "an array whose last extent is not 3": lambda m, t: m[..., :2],
+                "an array of another shape": lambda m, t: m[:, :, ::2]}.items():
+            self.refused(f"field.nonlocal: the function returned {part}", **{"nonlocal": function})
+        self.refused("not finite", **{"nonlocal": lambda m, t: m * math.inf})
 
     def test_nonlocal_fields_of_any_layout(self):
         def steps_with(layout):
