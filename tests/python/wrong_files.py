@@ -4,6 +4,7 @@
 import importlib.util
 import math
 import os
+import pathlib
 import subprocess
 import sys
 import unittest
@@ -105,6 +106,20 @@ class WrongFiles(FilesTest):
         with cayspin.open(file) as run:
             self.assertEqual(run.topological_charge().shape, (0, 1))
             self.assert_refused(cayspin.CayspinError, "a file that holds frames", run.plot)
+
+    def test_a_frame_that_a_kill_left_unfinished_does_not_count(self):
+        for name in ("energy", "magnetization", "checksum"):
+            file = self.run_of(f"{name}.h5")
+            with h5py.File(file, "r+") as killed:
+                killed[name].resize(4, axis=0)
+            with cayspin.open(file) as run:
+                self.assertEqual(len(run), 4)
+                self.assertEqual(run.plot().get_title(loc="left"), "frame 3, t = 1.5")
+                self.assert_refused(cayspin.CayspinError, "frame 4; accepted: -4 to 3", run.plot, 4)
+        script = pathlib.Path(__file__).resolve().parents[2] / "python/plot_texture.py"
+        plot = subprocess.run([sys.executable, "-B", script, self.folder / "energy.h5"], text=True,
+                              capture_output=True)
+        self.assertEqual((plot.returncode, plot.stderr), (0, ""))
 
     def test_closed_files(self):
         file = self.run_of()

@@ -5,8 +5,8 @@
 """
 
 from .pictures import OPTIONS, draw, largest
-from .spins import (Texture, frame_number, lattice_of, of_file, plane_of, require_rectangular,
-                    require_trajectory, time_text)
+from .spins import (Texture, frame_number, frames_in, lattice_of, of_file, plane_of,
+                    require_rectangular, require_trajectory, time_text)
 
-__all__ = ["OPTIONS", "Texture", "draw", "frame_number", "largest", "lattice_of", "of_file", "plane_of",
-           "require_rectangular", "require_trajectory", "time_text"]
+__all__ = ["OPTIONS", "Texture", "draw", "frame_number", "frames_in", "largest", "lattice_of",
+           "of_file", "plane_of", "require_rectangular", "require_trajectory", "time_text"]

@@ -12,6 +12,8 @@ import numpy as np
 from . import toml
 
 AXES = "xyz"
+OF_FRAMES = ("spins", "time", "step", "energy", "norm_defect", "magnetization", "checksum",
+             "sublattice_magnetization", "shift", "stage")
 
 
 @dataclasses.dataclass
@@ -121,12 +123,16 @@ def time_text(time: float, si: bool) -> str:
     return f"t = {EngFormatter('s')(float(f'{time:.6g}'))}"
 
 
+def frames_in(file: Any) -> int:
+    """The number of complete frames of an open trajectory file. A killed run may have written some
+    numbers of another frame."""
+    return min(len(file[name]) for name in OF_FRAMES if name in file)
+
+
 def frame_number(file: Any, frame: int) -> int:
-    """The number of a frame of an open trajectory file, counted from 0. Negative numbers count from
-    the end."""
-    # A kill may leave the last row in only some of these.
-    rows = ("spins", "time", "energy", "norm_defect", "magnetization", "checksum")
-    count = min(len(file[name]) for name in rows if name in file)
+    """The number of a complete frame of an open trajectory file, counted from 0. Negative numbers
+    count from the end."""
+    count = frames_in(file)
     if not -count <= frame < count:
         accepted = f"{-count} to {count - 1}" if count else "a file that holds frames"
         raise ValueError(f"frame {frame}; accepted: {accepted}")
