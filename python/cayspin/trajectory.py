@@ -49,6 +49,9 @@ class Trajectory:
         complete_file(self.path)
         try:
             self.file: Any = h5py.File(self.path, "r")  #: the open h5py.File
+        except BlockingIOError:
+            raise CayspinError(f"{self.path}: a program is writing it; accepted: the file of a run "
+                               "that has ended, or view() while it runs") from None
         except (OSError, ValueError) as error:
             reason = " ".join(str(error).split())
             raise CayspinError(f"{self.path}: cannot be opened: {reason}") from None
@@ -240,7 +243,8 @@ class Trajectory:
 def open(path: str | os.PathLike) -> Trajectory | Ensemble:
     """Opens the file `path` of a run, or of an ensemble. Needs h5py.
 
-    Raises CayspinError for a file that cannot be opened, or is neither.
+    Raises CayspinError for a file that cannot be opened, such as that of a run under way, or is
+    neither.
     """
     import h5py
 

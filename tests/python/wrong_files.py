@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Wrong and damaged files, and wrong options of pictures: each raises CayspinError with one line."""
 
+import fcntl
 import importlib.util
 import math
 import os
@@ -141,6 +142,17 @@ class WrongFiles(FilesTest):
                                 "accepted: a closed file", sim.run, output=file, overwrite=True)
             self.assertEqual((sim.steps, len(run.spins[:])), (0, len(run)))
         sim.run(output=file, overwrite=True)
+
+    def test_a_file_that_is_being_written(self):
+        ensemble = self.run_program(scene(**FILM, ensemble={"replicas": 2}))
+        of_ensemble = ensemble.filename
+        ensemble.close()
+        for file in (self.run_of(), of_ensemble):
+            with open(file, "rb") as written:
+                fcntl.flock(written, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                self.assert_refused(cayspin.CayspinError, f"{file}: a program is writing it; "
+                                    "accepted: the file of a run that has ended", cayspin.open, file)
+            cayspin.open(file).close()
 
     def test_restarts_of_ensembles(self):
         of = scene(**FILM, ensemble={"replicas": 2})
