@@ -132,12 +132,11 @@ def _draw_modes(file):
 
 def _draw_bands(file):
     si = file.attrs["units"] == "SI"
-    waves, frequency = file["wave_vector"][:], file["frequency"][:]
+    waves, frequency = file["wave_vector"][:], (1e-9 if si else 1) * file["frequency"][:]
     steps = np.linalg.norm(np.diff(waves, axis=0), axis=1)
     along = np.concatenate([[0], np.cumsum(steps)])
     figure, axis = style.plt.subplots(figsize=(7, 4.5), constrained_layout=True)
-    axis.plot(along, (1e-9 if si else 1) * frequency, color=style.BLUE,
-              marker="" if len(along) > 1 else "o")
+    axis.plot(along, frequency, color=style.BLUE, marker="" if len(along) > 1 else "o")
     turns = [0, len(waves) - 1]
     if len(waves) > 2:
         bends = np.linalg.norm(np.diff(waves, 2, axis=0), axis=1)

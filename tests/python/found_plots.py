@@ -121,6 +121,15 @@ class PlotModes(PlotFound):
         places = np.array([[1.0, 3.0], [1.001, 3.0], [5.0, 3.0], [1.0, 2.0], [1.0, 3.001]])
         self.assertEqual(modes.together(places, np.array([10.0, 2.0])), [[0, 1, 4], [2], [3]])
 
+    def test_bands_of_negative_frequency_fill_the_picture(self):
+        from cayspin_plots import modes
+
+        waves = self.modes("waves.h5", waves=True)
+        with h5py.File(waves, "r+") as data:
+            data["frequency"][:] = [[-1e9], [2e9]]  # -1 GHz and 2 GHz
+            axis, = modes.draw(data).axes
+        self.assertTrue(-1.5 < axis.get_ylim()[0] <= -1, axis.get_ylim())
+
     def test_a_mode_that_moves(self):
         self.assert_movie(self.file, 40, "--frame", 1)
         from cayspin_plots import modes
