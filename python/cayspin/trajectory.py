@@ -57,7 +57,7 @@ class Trajectory:
             raise CayspinError(f"{self.path}: cannot be opened: {reason}") from None
         #: time, step, energy, norm_defect and magnetization at the samples; where the scene asks
         #: for them, also region_magnetization, (sample, region, 3), region_energy,
-        #: (sample, region), and term_energy, (sample, term)
+        #: (sample, region), term_energy, (sample, term), and shift, (sample)
         self.scalars: dict[str, Any] = {}
         try:
             with reading(self.file, self.path):
