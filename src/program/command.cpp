@@ -2,6 +2,7 @@
 #include "command.hpp"
 
 #include "io/checkpoint.hpp"
+#include "simulation/threads_of_rank.hpp"
 
 #include <fmt/format.h>
 
@@ -49,6 +50,26 @@ void require_divisible(io::Scene const& scene, std::optional<std::string> const&
     throw UsageError(
         "--ranks takes no ensemble, whose lattices are not divided: each rank runs "
         "some of the replicas; accepted: no --ranks");
+}
+
+void require_alike(io::Scene const& scene, DeviceOptions const& options, std::string const& more,
+                   Ranks& ranks) {
+  auto given = scene.text;
+  for (auto const& option :
+       {std::string(to_string(options.precision)), options.output.value_or("").string(),
+        options.space.value_or(""), more})
+    given += '\n' + option;
+  bool const alike = ranks.same(given);
+  ranks.together([&] {
+    if (!alike && ranks.is_first())
+      throw UsageError("the ranks were given different scenes or options; accepted: the same");
+  });
+}
+
+std::optional<int> threads_for(DeviceOptions const& options, std::string const& space,
+                               Ranks const& ranks) {
+  if (options.threads || !ranks.many()) return options.threads;
+  return threads_of_rank(space, cores_for_threads(), ranks.on_these_cores());
 }
 
 void require_name(fs::path const& output) {

@@ -110,6 +110,16 @@ void add_ranks_option(CLI::App& command, std::optional<std::string>& ranks, char
 /// Throws UsageError if --ranks is given for an ensemble.
 void require_divisible(io::Scene const& scene, std::optional<std::string> const& ranks);
 
+/// Throws UsageError on all ranks if they were given different scenes, different values of
+/// --precision, --output or --space, or different `more`: the text of a command's own options.
+void require_alike(io::Scene const& scene, DeviceOptions const& options, std::string const& more,
+                   Ranks& ranks);
+
+/// Returns the value of --threads. If it is not given, returns the number of threads of one of
+/// several ranks, or nothing if Kokkos decides.
+std::optional<int> threads_for(DeviceOptions const& options, std::string const& space,
+                               Ranks const& ranks);
+
 /// Throws UsageError if the name of the output file is empty.
 void require_name(std::filesystem::path const& output);
 

@@ -38,13 +38,14 @@ std::int64_t memory_for_replicas(io::Scene const& scene, RunSettings const& sett
 
 }  // namespace
 
-EnsembleOnRanks::EnsembleOnRanks(io::Scene const& scene, RunSettings const& settings, Ranks& ranks)
+EnsembleOnRanks::EnsembleOnRanks(io::Scene const& scene, RunSettings const& settings, bool relaxes,
+                                 Ranks& ranks)
     : ranks_(ranks),
       available_(ranks.together([&] { return memory_for_replicas(scene, settings, ranks); })),
       own_(ranks.together([&] {
         auto share = share_of_rank(scene, ranks.rank(), ranks.count(), ranks.on_this_machine());
         if (ranks.many()) share.available = available_;
-        return std::make_unique<EnsembleRun>(scene, settings, false, share);
+        return std::make_unique<EnsembleRun>(scene, settings, relaxes, share);
       })),
       last_step_(ranks.lowest(ranks.is_first() ? own_->last_step() : beyond)) {}
 
@@ -75,6 +76,10 @@ Advanced EnsembleOnRanks::advance(std::int64_t target, Looks const& looks) {
   steps_ = moves ? ranks_.lowest(own_->is_at_rest() ? beyond : own_->steps())
                  : -ranks_.lowest(-own_->steps());
   return interrupted ? Advanced::interrupted : Advanced::at_rest;
+}
+
+std::vector<Minimum> EnsembleOnRanks::relax(RelaxSettings const& settings) {
+  return gathered(ranks_.together([&] { return own_->relax(settings); }), ranks_);
 }
 
 std::vector<io::Scalars> EnsembleOnRanks::scalars() {

@@ -22,7 +22,8 @@ using namespace simulation;
 /// rank, it throws on all, as Ranks::together does.
 class EnsembleOnRanks {
  public:
-  EnsembleOnRanks(io::Scene const& scene, RunSettings const& settings, Ranks& ranks);
+  /// Opens each rank's share as EnsembleRun does.
+  EnsembleOnRanks(io::Scene const& scene, RunSettings const& settings, bool relaxes, Ranks& ranks);
 
   /// Returns this rank's share of the replicas.
   EnsembleRun const& own() const { return *own_; }
@@ -40,6 +41,7 @@ class EnsembleOnRanks {
   Advanced advance(std::int64_t target, Looks const& looks);
 
   /// Return nothing on ranks but the first.
+  std::vector<Minimum> relax(RelaxSettings const& settings);
   std::vector<io::Scalars> scalars();
   std::vector<std::byte> spins();
 

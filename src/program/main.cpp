@@ -143,8 +143,10 @@ int perform(int count, char** given) {
   try {
     ranks->together([&] {
       require_command(app, first);
-      if (ranks->many() && first != "run" && ranks->is_first())
-        throw UsageError(fmt::format("{} runs on one rank; accepted: run", first));
+      // relax() accepts several ranks for an ensemble.
+      if (ranks->many() && first != "run" && first != "relax" && ranks->is_first())
+        throw UsageError(
+            fmt::format("{} runs on one rank; accepted: run, or relax of an ensemble", first));
     });
     start_others_alone();
     for (auto const& other : others)

@@ -166,9 +166,10 @@ class Relaxation {
   Json searches_ = Json::array();
 };
 
-int relax(RelaxOptions const& options) {
-  auto const scene =
-      io::with_shape_of_start(io::read_scene_to_relax(options.scene, options.overrides));
+io::Scene checked_scene(RelaxOptions const& options, bool on_one_rank) {
+  auto scene = io::with_shape_of_start(io::read_scene_to_relax(options.scene, options.overrides));
+  if (!on_one_rank && !scene.ensemble.there())
+    throw UsageError("relax runs on one rank; accepted: run, or a scene with [ensemble]");
   require_rest(scene);
   output_file(scene, options.output);
   io::check_files(scene);
@@ -176,10 +177,16 @@ int relax(RelaxOptions const& options) {
   if (!(options.torque / scene.units.field >= least) || !std::isfinite(options.torque))
     throw UsageError(fmt::format("--torque {}; accepted: a number of at least {}", options.torque,
                                  least * scene.units.field));
+  return scene;
+}
+
+int relax(RelaxOptions const& options, Ranks& ranks) {
+  auto const scene = ranks.together([&] { return checked_scene(options, !ranks.many()); });
   if (scene.ensemble.there())
     return relax_ensemble(
         scene, options,
-        {options.torque, options.evaluations, options.keep_saddles, options.quiet, options.json});
+        {options.torque, options.evaluations, options.keep_saddles, options.quiet, options.json},
+        ranks);
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, options.device);
   auto const plan = make_plan_to_relax(scene, options.precision);
@@ -207,7 +214,7 @@ Command add_relax(CLI::App& program) {
                     "Accept a state without torque even if the energy falls from it");
   command->add_flag("--quiet", options->quiet, "No progress");
   add_json_option(*command, options->json);
-  return {command, [options](Ranks&) { return relax(*options); }};
+  return {command, [options](Ranks& ranks) { return relax(*options, ranks); }};
 }
 
 }  // namespace cayspin::program

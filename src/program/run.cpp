@@ -15,7 +15,6 @@
 #include "simulation/restart.hpp"
 #include "simulation/single_terms.hpp"
 #include "simulation/text.hpp"
-#include "simulation/threads_of_rank.hpp"
 #include "trade/resolved.hpp"
 
 #include <fmt/format.h>
@@ -54,8 +53,7 @@ Restart restart_of(EarlierRun left, io::Stage const& stage, Plan const& plan,
 }
 
 // Reads the scene as typed, which may have the method "auto", and checks its files. Throws
-// UsageError if the ranks were given different scenes, or different values of --precision,
-// --restart, --output, --space or --ranks.
+// UsageError if the ranks were given different scenes or options.
 io::Scene typed_scene(RunOptions const& options, Ranks& ranks) {
   auto typed = ranks.together([&] {
     auto scene = io::with_shape_of_start(io::read_scene(options.scene, options.overrides));
@@ -63,17 +61,8 @@ io::Scene typed_scene(RunOptions const& options, Ranks& ranks) {
     io::check_files(scene);
     return scene;
   });
-  auto given = typed.text;
-  for (auto const& option :
-       {std::string(to_string(options.precision)), options.restart.value_or("").string(),
-        options.output.value_or("").string(), options.space.value_or(""),
-        options.ranks.value_or("")})
-    given += '\n' + option;
-  bool const alike = ranks.same(given);
-  ranks.together([&] {
-    if (!alike && ranks.is_first())
-      throw UsageError("the ranks were given different scenes or options; accepted: the same");
-  });
+  require_alike(typed, options,
+                options.restart.value_or("").string() + '\n' + options.ranks.value_or(""), ranks);
   return typed;
 }
 
@@ -150,24 +139,11 @@ void warn(std::vector<PlannedStage> const& stages) {
   for (auto const& note : notes) print_message("warning: {}\n", note);
 }
 
-std::optional<int> threads_for(RunOptions const& options, std::string const& space,
-                               Ranks const& ranks) {
-  if (options.threads || !ranks.many()) return options.threads;
-  return threads_of_rank(space, cores_for_threads(), ranks.on_these_cores());
-}
-
 int run(RunOptions const& options, Ranks& ranks) {
   auto const typed = typed_scene(options, ranks);
   if (typed.ensemble.there()) {
     ranks.together([&] { require_divisible(typed, options.ranks); });
-    catch_signals();
-    auto const replicas = typed.ensemble.replicas;
-    if (!ranks.keep_first(replicas, "the ensemble has " + counted(replicas, "replica")))
-      return Status::done;
-    auto on_rank = options;
-    on_rank.threads =
-        threads_for(options, ranks.together([&] { return chosen_space(options.space); }), ranks);
-    return run_ensemble(typed, on_rank, ranks);
+    return run_ensemble(typed, options, ranks);
   }
   auto const space = ranks.together([&] { return chosen_space(options.space); });
   auto const kokkos = ranks.together([&] {

@@ -24,13 +24,36 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cayspin::program {
 namespace {
 
-RunSettings settings_of(DeviceOptions const& options, std::string const& space) {
-  return {.precision = options.precision, .space = space, .threads = options.threads};
+/// Kokkos, and how a rank with replicas uses it.
+struct BegunEnsemble {
+  RunSettings settings;
+  std::unique_ptr<KokkosOfCommand> kokkos;
+};
+
+/// Prepares a command. Returns nothing on a rank without replicas.
+std::optional<BegunEnsemble> begin_ensemble(io::Scene const& scene, DeviceOptions const& options,
+                                            Ranks& ranks) {
+  // Ranks without replicas must survive an interrupt, too: a launcher ends all ranks if one dies.
+  catch_signals();
+  auto const replicas = scene.ensemble.replicas;
+  if (!ranks.keep_first(replicas, "the ensemble has " + counted(replicas, "replica")))
+    return std::nullopt;
+  auto const space = ranks.together([&] { return chosen_space(options.space); });
+  auto const threads = threads_for(options, space, ranks);
+  auto kokkos = ranks.together(
+      [&] { return std::make_unique<KokkosOfCommand>(space, threads, options.device); });
+  if (ranks.is_first()) warn_of_notes(scene);
+  ranks.together([&] {
+    if (ranks.is_first()) io::require_free(output_file(scene, options.output), options.overwrite);
+  });
+  return BegunEnsemble{{.precision = options.precision, .space = space, .threads = threads},
+                       std::move(kokkos)};
 }
 
 /// `first`: the run of the first replica.
@@ -46,11 +69,11 @@ io::EnsembleFile open_file(io::Scene const& scene, DeviceOptions const& options,
 /// Runs an ensemble. The first rank writes the frames and samples of all ranks into a file.
 class RecordedEnsemble {
  public:
-  RecordedEnsemble(io::Scene const& scene, RunOptions const& options, std::string const& space,
+  RecordedEnsemble(io::Scene const& scene, RunOptions const& options, RunSettings const& settings,
                    Ranks& ranks)
       : scene_(scene),
         ranks_(ranks),
-        run_(scene, settings_of(options, space), ranks),
+        run_(scene, settings, false, ranks),
         looks_(run_.own().looks(true, interrupt_requested)),
         progress_(io::sites(scene) * scene.ensemble.replicas,
                   ranks.is_first() ? options.listener : Listener::nobody),
@@ -153,61 +176,68 @@ class RecordedEnsemble {
 }  // namespace
 
 int run_ensemble(io::Scene const& scene, RunOptions const& options, Ranks& ranks) {
-  auto const space = ranks.together([&] { return chosen_space(options.space); });
-  auto const kokkos = ranks.together(
-      [&] { return std::make_unique<KokkosOfCommand>(space, options.threads, options.device); });
-  if (ranks.is_first()) warn_of_notes(scene);
-  ranks.together([&] {
-    if (ranks.is_first()) io::require_free(output_file(scene, options.output), options.overwrite);
-  });
-  return RecordedEnsemble(scene, options, space, ranks).run();
+  auto const begun = begin_ensemble(scene, options, ranks);
+  if (!begun) return Status::done;
+  return RecordedEnsemble(scene, options, begun->settings, ranks).run();
 }
 
 int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
-                   RelaxEnsembleOptions const& search) {
-  auto const space = chosen_space(options.space);
-  KokkosOfCommand const kokkos(space, options.threads, options.device);
-  warn_of_notes(scene);
-  io::require_free(output_file(scene, options.output), options.overwrite);
-  catch_signals();
+                   RelaxEnsembleOptions const& search, Ranks& ranks) {
+  require_alike(scene, options,
+                fmt::format("{} {} {}", search.torque, search.evaluations, search.keep_saddles),
+                ranks);
+  auto const begun = begin_ensemble(scene, options, ranks);
+  if (!begun) return Status::done;
   Kokkos::Timer const clock;
-  EnsembleRun run(scene, settings_of(options, space), true);
-  auto file = open_file(scene, options, run.first());
-  std::vector<io::RelaxedReplica> found;
-  io::RunCost cost;
+  EnsembleOnRanks run(scene, begun->settings, true, ranks);
+  std::optional<io::EnsembleFile> file;
+  ranks.together([&] {
+    if (ranks.is_first()) file.emplace(open_file(scene, options, run.own().first()));
+  });
   auto const minima = run.relax({.torque = search.torque,
                                  .evaluations = search.evaluations,
                                  .keep_saddles = search.keep_saddles,
                                  .interrupted = interrupt_requested});
+  std::vector<io::RelaxedReplica> found;
+  io::RunCost cost;
   for (auto const& minimum : minima) {
     if (minimum.end == MinimizeEnd::interrupted) continue;
     cost.evaluations += minimum.evaluations;
     found.push_back({minimum.torque, minimum.end == MinimizeEnd::converged, minimum.evaluations});
   }
+  auto const searches = std::ssize(found);
+  auto const failures = std::ranges::count(found, false, &io::RelaxedReplica::converged);
   cost.wall_seconds = cost.step_seconds = clock.seconds();
-  if (found.size() < run.replicas()) {
-    file.close(cost);
-    print_message("{}: interrupted after {} of {} replicas; no frame was written\n",
-                  scene.path.string(), found.size(), run.replicas());
+  auto const [is_interrupted, fails] = ranks.any({searches < std::ssize(minima), failures > 0});
+  if (is_interrupted) {
+    ranks.together([&] {
+      if (!file) return;
+      file->close(cost);
+      print_message("{}: interrupted after {} of {} replicas; no frame was written\n",
+                 scene.path.string(), searches, scene.ensemble.replicas);
+    });
     return Status::interrupted;
   }
   auto const scalars = run.scalars();
-  file.write_scalars(0, 0, scalars);
-  file.write_frame(0, 0, scalars, run.spins());
-  file.write_relaxed(found);
-  file.finish(cost);
-  auto const failures = std::ranges::count(found, false, &io::RelaxedReplica::converged);
-  if (search.json)
-    print_json(as_json(read_info_file(output_file(scene, options.output))));
-  else if (!search.quiet)
-    fmt::print("{}: {} of {} converged after {} in {}\n",
-               output_file(scene, options.output).string(), std::ssize(found) - failures,
-               counted(std::ssize(found), "replica"), counted(cost.evaluations, "evaluation"),
-               duration_text(cost.wall_seconds));
-  if (failures == 0) return Status::done;
-  print_message("{}: {} of {} did not converge\n", scene.path.string(), failures,
-                counted(std::ssize(found), "replica"));
-  return Status::numbers_failed;
+  auto const spins = run.spins();
+  ranks.together([&] {
+    if (!file) return;
+    file->write_scalars(0, 0, scalars);
+    file->write_frame(0, 0, scalars, spins);
+    file->write_relaxed(found);
+    file->finish(cost);
+    auto const path = output_file(scene, options.output);
+    if (search.json)
+      print_json(as_json(read_info_file(path)));
+    else if (!search.quiet)
+      fmt::print("{}: {} of {} converged after {} in {}\n", path.string(), searches - failures,
+                 counted(searches, "replica"), counted(cost.evaluations, "evaluation"),
+                 duration_text(cost.wall_seconds));
+    if (failures > 0)
+      print_message("{}: {} of {} did not converge\n", scene.path.string(), failures,
+                 counted(searches, "replica"));
+  });
+  return fails ? Status::numbers_failed : Status::done;
 }
 
 }  // namespace cayspin::program

@@ -6,8 +6,8 @@
 
 namespace cayspin::program {
 
-/// Performs `cayspin run` for a scene with [ensemble], on ranks that each have at least one
-/// replica. Returns the exit status.
+/// Performs `cayspin run` for a scene with [ensemble], whose replicas are divided among the ranks.
+/// Returns the exit status.
 int run_ensemble(io::Scene const& scene, RunOptions const& options, Ranks& ranks);
 
 /// How `cayspin relax` searches for the equilibrium of each replica.
@@ -17,9 +17,9 @@ struct RelaxEnsembleOptions {
   bool keep_saddles = false, quiet = false, json = false;
 };
 
-/// Performs `cayspin relax` for a scene with [ensemble]: moves each replica to its own equilibrium.
-/// Returns the exit status.
+/// Performs `cayspin relax` for a scene with [ensemble], whose replicas are divided among the
+/// ranks: moves each replica to its own equilibrium. Returns the exit status.
 int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
-                   RelaxEnsembleOptions const& search);
+                   RelaxEnsembleOptions const& search, Ranks& ranks);
 
 }  // namespace cayspin::program

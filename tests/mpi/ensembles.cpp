@@ -239,6 +239,36 @@ TEST_F(EnsemblesOnRanks, EndTogetherWhenInterrupted) {
   }
 }
 
+TEST_F(EnsemblesOnRanks, RelaxToTheFileOfOneRank) {
+  Arguments const vacancies =
+      set("lattice={shape=[5,4],occupied='i!=j'}", "field.slab_demag.normal=[0,0,1]");
+  auto const fields = [](std::string const& values) {
+    return ensemble(5, "'field.applied.2' = [" + values + "]\n");
+  };
+  for (auto const& [table, more, status, part] :
+       {std::tuple{fields("0.1, 0.2, 0.3, 0.4, 0.5"), Arguments{}, 0, ""},
+        {fields("0.5, 0.2, -0.3, 0.4, 0.1"), joined(vacancies, {"--torque", "1e-8"}), 0, ""},
+        {ensemble(3), {"--precision", "single", "--torque", "1e-4"}, 0, ""},
+        {fields("0.1, 0.2, 0.3, 0.4, 0.5"), {"--evaluations", "3"}, 3, "did not converge"},
+        {fields("0.1, 0.2, 1e300, 0.4, 1e300"), {}, 3, "replica 2: "}}) {
+    SCOPED_TRACE(table + testing::PrintToString(more));
+    write("all.toml", chain_scene() + table);
+    auto const into_file = [&](std::string const& file) {
+      return joined({"relax", "all.toml", "--quiet", "--overwrite", "--output", file}, more);
+    };
+    auto const alone = start(into_file("one.h5"));
+    ASSERT_EQ(alone.status, status) << alone.errors;
+    EXPECT_TRUE(contains(alone.errors, part));
+    for (int const ranks : {2, 3}) {
+      auto const outcome = start_on(ranks, into_file("other.h5"));
+      EXPECT_EQ(outcome.status, status);
+      EXPECT_EQ(outcome.output, "");
+      EXPECT_EQ(outcome.errors, alone.errors);
+      expect_same_contents("one.h5", "other.h5");
+    }
+  }
+}
+
 TEST_F(EnsemblesOnRanks, SpeakOnce) {
   write("all.toml", chain_scene() + ensemble(4, "'field.exchange' = [1, 1, 100, 100]\n"));
   for (int const ranks : {1, 2, 3}) {

@@ -56,7 +56,8 @@ TEST_F(OnRanks, AreRefusedInOneLine) {
   expect_refused(start(run_of(scene, "out.h5", {"--ranks", "1,2"})),
                  "--ranks 1,2: the run has one");
   expect_refused(start_on(2, {"check", scene}), "check runs on one rank; accepted: run");
-  expect_refused(start_on(2, {"relax", scene}), "relax runs on one rank; accepted: run");
+  expect_refused(start_on(2, {"relax", scene, "--set", "field.applied=[0,0,1]"}),
+                 "relax runs on one rank; accepted: run");
 
   auto const other = write("other.toml", film("[7, 9, 13]", "method = \"heun\""));
   Treatment launcher;
