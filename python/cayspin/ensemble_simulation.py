@@ -25,9 +25,9 @@ class EnsembleSimulation:
 
     `precision` is "double" or "single", `space` an execution space that was compiled in (default:
     that of Kokkos), `threads` the number of threads of the space; the first simulation of a process
-    sets it for all later ones. `restart` names the file of an ensemble, from whose last frame the
-    simulation continues. The file is refused if the method needs more than the spins to continue
-    exactly.
+    sets it for all later ones. `restart` names the file of an ensemble, from whose last frame or
+    checkpoint the simulation continues. The file is refused if the method needs more than the spins
+    to continue exactly, and there is no checkpoint.
 
     Ctrl-C stops the simulation between two steps with KeyboardInterrupt; some replicas may then be
     further than others. Lengths, times, fields and energies are in the units of the scene: reduced

@@ -8,6 +8,7 @@
 #include <limits>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 namespace cayspin::program {
 namespace {
@@ -47,6 +48,7 @@ EnsembleOnRanks::EnsembleOnRanks(io::Scene const& scene, RunSettings const& sett
         if (ranks.many()) share.available = available_;
         return std::make_unique<EnsembleRun>(scene, settings, relaxes, share);
       })),
+      replicas_(scene.ensemble.replicas),
       last_step_(ranks.lowest(ranks.is_first() ? own_->last_step() : beyond)) {}
 
 std::optional<std::string> EnsembleOnRanks::continue_from(std::filesystem::path const& file) {
@@ -76,6 +78,38 @@ Advanced EnsembleOnRanks::advance(std::int64_t target, Looks const& looks) {
   steps_ = moves ? ranks_.lowest(own_->is_at_rest() ? beyond : own_->steps())
                  : -ranks_.lowest(-own_->steps());
   return interrupted ? Advanced::interrupted : Advanced::at_rest;
+}
+
+void EnsembleOnRanks::store(std::filesystem::path const& path, io::CheckpointHeader const& header) {
+  std::optional<io::EnsembleCheckpointWriter> file;
+  ranks_.together([&] {
+    if (ranks_.is_first()) file.emplace(path, header, replicas_);
+  });
+  auto const more = own_->states_at_once();
+  auto const has_left = [&](std::size_t begin) {
+    return ranks_.any({begin < own_->replicas(), false})[0];
+  };
+  for (std::size_t begin = 0; has_left(begin); begin += more) {
+    std::vector<io::PackedReplica> replicas;
+    std::vector<std::byte> bytes;
+    ranks_.together([&] {
+      if (begin >= own_->replicas()) return;
+      auto number = own_->first_number() + static_cast<std::int64_t>(begin);
+      for (auto const& state : own_->states(begin)) {
+        auto const of_state = io::state_bytes(state);
+        replicas.push_back({number++, std::ssize(of_state)});
+        bytes.insert(bytes.end(), of_state.begin(), of_state.end());
+      }
+    });
+    auto const of_all = gathered(replicas, ranks_);
+    auto const states = ranks_.gather(std::move(bytes));
+    ranks_.together([&] {
+      if (file) file->add(of_all, states);
+    });
+  }
+  ranks_.together([&] {
+    if (file) file->commit();
+  });
 }
 
 std::vector<Minimum> EnsembleOnRanks::relax(RelaxSettings const& settings) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/ensemble_checkpoint.hpp"
 #include "io/run_output.hpp"
 #include "simulation/ensemble_run.hpp"
 #include "simulation/ranks.hpp"
@@ -40,6 +41,11 @@ class EnsembleOnRanks {
   /// Advances all replicas to step `target`.
   Advanced advance(std::int64_t target, Looks const& looks);
 
+  bool remembers() const { return own_->remembers(); }
+  /// Stores a checkpoint, which the first rank writes. Replicas that have not ended early must have
+  /// taken equal numbers of steps.
+  void store(std::filesystem::path const& path, io::CheckpointHeader const& header);
+
   /// Return nothing on ranks but the first.
   std::vector<Minimum> relax(RelaxSettings const& settings);
   std::vector<io::Scalars> scalars();
@@ -52,7 +58,7 @@ class EnsembleOnRanks {
   Ranks& ranks_;
   std::int64_t available_;  // memory, in bytes
   std::unique_ptr<EnsembleRun> own_;
-  std::int64_t steps_ = 0, last_step_;
+  std::int64_t replicas_, steps_ = 0, last_step_;
 };
 
 }  // namespace cayspin::program

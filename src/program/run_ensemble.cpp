@@ -6,8 +6,10 @@
 #include "ensemble_on_ranks.hpp"
 #include "files/file_beside.hpp"
 #include "info_file.hpp"
+#include "io/ensemble_checkpoint.hpp"
 #include "io/ensemble_file.hpp"
 #include "kokkos_of_command.hpp"
+#include "simulation/checkpoint_schedule.hpp"
 #include "simulation/ensemble_run.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
@@ -21,6 +23,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -50,20 +53,26 @@ std::optional<BegunEnsemble> begin_ensemble(io::Scene const& scene, DeviceOption
       [&] { return std::make_unique<KokkosOfCommand>(space, threads, options.device); });
   if (ranks.is_first()) warn_of_notes(scene);
   ranks.together([&] {
-    if (ranks.is_first()) io::require_free(output_file(scene, options.output), options.overwrite);
+    if (ranks.is_first())
+      require_free_output(output_file(scene, options.output), options.overwrite);
   });
   return BegunEnsemble{{.precision = options.precision, .space = space, .threads = threads},
                        std::move(kokkos)};
 }
 
-/// `first`: the run of the first replica.
+/// `first`: the run of the first replica. Removes an old checkpoint, which would be taken for this
+/// run's.
 io::EnsembleFile open_file(io::Scene const& scene, DeviceOptions const& options,
                            SceneRun const& first) {
   auto header = run_header(first.scene(), options.precision, first.space(), first.threads(),
                            CAYSPIN_GIT_COMMIT);
   header.scene_text = scene.text;
-  return {output_file(scene, options.output), header, scene.ensemble,
-          run_output_options(first.scene(), options.overwrite)};
+  auto const path = output_file(scene, options.output);
+  require_free_output(path, options.overwrite);
+  io::EnsembleFile file(path, header, scene.ensemble,
+                        run_output_options(first.scene(), options.overwrite));
+  std::filesystem::remove(io::checkpoint_beside(path));
+  return file;
 }
 
 /// Runs an ensemble. The first rank writes the frames and samples of all ranks into a file.
@@ -77,8 +86,10 @@ class RecordedEnsemble {
         looks_(run_.own().looks(true, interrupt_requested)),
         progress_(io::sites(scene) * scene.ensemble.replicas,
                   ranks.is_first() ? options.listener : Listener::nobody),
-        path_(output_file(scene, options.output)) {
+        path_(output_file(scene, options.output)),
+        precision_(options.precision) {
     if (options.restart) continue_from(*options.restart);
+    checkpoints_.emplace(scene.output.checkpoint_every, first_);
     // warning() throws if the scene sets refuse_unstable and the dt of any replica is too large.
     if (auto const warning = run_.warning()) print_message("warning: {}\n", *warning);
     ranks_.together([&] {
@@ -94,12 +105,16 @@ class RecordedEnsemble {
     look(false);
     try {
       while (ending == Advanced::whole && run_.steps() < end) {
-        auto const after = [&](std::int64_t every) { return (run_.steps() / every + 1) * every; };
-        auto const next =
-            std::min({end, after(scene_.output.every), after(scene_.output.scalars_every)});
-        ending = run_.advance(next, looks_);
+        auto const& output = scene_.output;
+        auto const next = std::min({end, after(output.every), after(output.scalars_every)});
+        auto const stop = std::min(next, next_checkpoint());
+        // Only frames and samples look for an equilibrium, so that checkpoints change no results.
+        looks_.at_end = stop == next;
+        ending = run_.advance(stop, looks_);
         if (ending == Advanced::interrupted) break;
-        look(ending == Advanced::at_rest || run_.steps() == end);
+        bool const last = ending == Advanced::at_rest || run_.steps() == end;
+        look(last);
+        if (!last) store_if_due();
       }
     } catch (NumbersFailed const& error) {
       end_file(false);
@@ -110,6 +125,7 @@ class RecordedEnsemble {
     }
     bool const interrupted = ending == Advanced::interrupted;
     auto const cost = end_file(!interrupted);
+    if (!interrupted) end_checkpoints();
     Summary total;
     total.steps = run_.steps() - first_;
     total.step_seconds = cost.step_seconds;
@@ -123,14 +139,58 @@ class RecordedEnsemble {
 
  private:
   void continue_from(std::filesystem::path const& file) {
-    ranks_.together([&] { as_restart([&] { require_not_written(file, path_); }); });
+    ranks_.together([&] {
+      as_restart([&] {
+        for (auto const& read : {file, io::checkpoint_beside(file)})
+          require_not_written(read, path_);
+      });
+    });
     auto const warning = as_restart([&] { return run_.continue_from(file); });
     if (warning) print_message("warning: --restart {}\n", *warning);
     first_ = run_.steps();
   }
 
+  // Returns the next multiple of `every`.
+  std::int64_t after(std::int64_t every) const { return (run_.steps() / every + 1) * every; }
+
+  // Returns the step at which a checkpoint may be due next. With a period in seconds, the time to
+  // that step is about a tenth of the period.
+  std::int64_t next_checkpoint() {
+    constexpr std::int64_t most = 4096;
+    auto const& [seconds, steps] = scene_.output.checkpoint_every;
+    if (steps > 0) return after(steps);
+    if (seconds == 0) return run_.last_step();
+    auto const taken = run_.steps() - first_;
+    auto const fit = static_cast<double>(taken) * seconds / 10 / std::max(1e-9, clock_.seconds());
+    return run_.steps() +
+           ranks_.lowest(static_cast<std::int64_t>(std::clamp(fit, 1.0, double{most})));
+  }
+  void store_if_due() {
+    bool const is_due = checkpoints_->due({run_.steps(), 0, 0, false});
+    if (!ranks_.any({is_due, false})[0]) return;
+    store();
+    checkpoints_->wait();
+  }
+  void store() {
+    auto header = checkpoint_header(run_.own().first().scene(), precision_, run_.steps(),
+                                    ranks_.is_first() ? run_.time() : 0);
+    header.scene_text = scene_.text;
+    run_.store(io::checkpoint_beside(path_), header);
+  }
+  // Leaves a checkpoint only if a restart would need it in addition to the last frame.
+  void end_checkpoints() {
+    if (scene_.output.checkpoint_every.is_never()) return;
+    if (run_.remembers())
+      store();
+    else
+      ranks_.together([&] {
+        if (ranks_.is_first()) std::filesystem::remove(io::checkpoint_beside(path_));
+      });
+  }
+
   void look(bool last) {
     auto const step = run_.steps();
+    if (step == frame_step_) return;  // all replicas of the restart file had ended
     auto const due = [&](std::int64_t every) {
       return last || step == first_ || step % every == 0;
     };
@@ -145,7 +205,9 @@ class RecordedEnsemble {
       if (due(scene_.output.scalars_every)) file_->write_scalars(step, run_.time(), scalars);
       if (has_frame) file_->write_frame(step, run_.time(), scalars, spins);
     });
-    if (has_frame) ++frames_;
+    if (!has_frame) return;
+    ++frames_;
+    frame_step_ = step;
   }
 
   io::RunCost end_file(bool whole) {
@@ -165,10 +227,12 @@ class RecordedEnsemble {
   io::Scene const& scene_;
   Ranks& ranks_;
   EnsembleOnRanks run_;
-  std::int64_t first_ = 0, frames_ = 0;
+  std::int64_t first_ = 0, frames_ = 0, frame_step_ = -1;
   simulation::Looks looks_;
   Progress progress_;
   std::filesystem::path path_;
+  Precision precision_;
+  std::optional<CheckpointSchedule> checkpoints_;
   std::optional<io::EnsembleFile> file_;  // on the first rank
   Kokkos::Timer clock_;
 };

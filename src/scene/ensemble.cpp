@@ -107,14 +107,12 @@ void refuse_options(Scene const& scene) {
            "three numbers or expressions in t");
   if (scene.lattice.follow) refuse(scene, "lattice.follow", what, accepted);
   auto const& output = scene.output;
-  for (auto const& [key, is_set] :
-       {std::pair{"output.regions", output.regions},
-        {"output.terms", output.terms},
-        {"output.xdmf", output.xdmf},
-        {"output.table", output.table},
-        {"output.sync", output.sync},
-        {"output.chunk", output.chunk > 0},
-        {"output.checkpoint_every", scene.places.contains("output.checkpoint_every")}})
+  for (auto const& [key, is_set] : {std::pair{"output.regions", output.regions},
+                                    {"output.terms", output.terms},
+                                    {"output.xdmf", output.xdmf},
+                                    {"output.table", output.table},
+                                    {"output.sync", output.sync},
+                                    {"output.chunk", output.chunk > 0}})
     if (is_set) refuse(scene, key, what, accepted);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "guard.hpp"
+#include "io/ensemble_checkpoint.hpp"
 #include "io/ensemble_file.hpp"
 #include "replica_columns.hpp"
 #include "scene_run.hpp"
@@ -17,6 +18,8 @@
 #include <vector>
 
 namespace cayspin::simulation {
+
+class Restart;
 
 /// The replicas of a scene with [ensemble], or a share of them, which advance together. If possible
 /// they are the columns of a few lattices (ReplicaColumns); otherwise each is a separate run, and
@@ -38,13 +41,25 @@ class EnsembleRun {
   EnsembleRun& operator=(EnsembleRun const&) = delete;
 
   std::size_t replicas() const { return static_cast<std::size_t>(share_.own.count); }
+  /// Returns the number of the first replica in the whole ensemble.
+  std::int64_t first_number() const { return share_.own.first; }
   /// Returns the run of the first replica. If the replicas are columns, this run's spins do not
   /// advance with them.
   SceneRun const& first() const { return *runs_.front(); }
-  /// Continues from the last frame of the whole ensemble's file. If the scene of the file differs
-  /// unexpectedly, returns one line that names the differences. Throws UsageError for a file that
-  /// does not fit the scene, and if the run needs more than the spins to continue exactly.
+  /// Continues from the last frame of the whole ensemble's file, from the checkpoint beside it, or
+  /// from a checkpoint alone. If the scene of the file differs unexpectedly, returns one line that
+  /// names the differences. Throws UsageError for files that do not fit the scene, and if the run
+  /// needs more than the spins to continue exactly and there is no checkpoint.
   std::optional<std::string> continue_from(std::filesystem::path const& file);
+  /// Returns true if the replicas need more than their spins to continue exactly.
+  bool remembers() const { return first().remembers(); }
+
+  /// Returns how many replicas' states to ask for at a time.
+  std::size_t states_at_once() const;
+  /// Returns what the replicas from number `first` on, states_at_once() of them at most, need to
+  /// continue exactly. Replicas that have not ended early must all be at steps(). Throws
+  /// NumbersFailed if the guard refuses a state.
+  std::vector<io::ReplicaState> states(std::size_t first);
 
   /// Returns the first warning of a replica about its steps, with the replica's number. If the
   /// replicas are columns with different temperatures, only the hottest is asked.
@@ -90,6 +105,8 @@ class EnsembleRun {
   }
   /// Returns the scene of the whole ensemble's first replica.
   io::Scene scene_of_first() const;
+  /// Continues from the states of the replicas in a checkpoint.
+  void restore(Restart const& restart, std::vector<io::ReplicaState>& states);
   Advanced advance_runs(std::int64_t target, Looks const& looks);
   Advanced advance_columns(std::int64_t target, Looks const& looks);
   /// Computes the value of steps() from the steps of the runs.

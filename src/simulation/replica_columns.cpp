@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <exception>
+#include <stdexcept>
 #include <utility>
 #include <variant>
 
@@ -114,6 +115,28 @@ void put_column(double const* spins, std::int64_t sites, std::int64_t column, st
     std::copy_n(spins + 3 * site, 3, columns.begin() + 3 * (site * count + column));
 }
 
+// Copies a field of a replica, with any number of components, into one of the columns.
+void put_column(std::vector<double> const& field, std::int64_t sites, std::int64_t column,
+                std::int64_t count, std::vector<double>& columns) {
+  if (field.size() * static_cast<std::size_t>(count) != columns.size())
+    throw std::invalid_argument("the fields of replicas are of different sizes");
+  auto const components = std::ssize(field) / sites;
+  for (std::int64_t site = 0; site < sites; ++site)
+    std::copy_n(field.begin() + components * site, components,
+                columns.begin() + components * (site * count + column));
+}
+
+// Returns one of the `count` columns of a field with any number of components.
+std::vector<double> of_column(std::vector<double> const& columns, std::int64_t sites,
+                              std::int64_t column, std::int64_t count) {
+  auto const components = std::ssize(columns) / (sites * count);
+  std::vector<double> field(static_cast<std::size_t>(components * sites));
+  for (std::int64_t site = 0; site < sites; ++site)
+    std::copy_n(columns.begin() + components * (site * count + column), components,
+                field.begin() + components * site);
+  return field;
+}
+
 // Returns the initial spins of the replicas first .. first + count - 1 as columns.
 std::vector<double> starts_of(io::Scene& one, std::int64_t first, std::int64_t count) {
   std::vector<double> columns(static_cast<std::size_t>(3 * count * io::sites(one)));
@@ -207,6 +230,45 @@ void ReplicaColumns::continue_from(std::int64_t step, std::vector<double> const&
       put_column(spins.data() + 3 * sites * (group.first + column), sites, column, group.count,
                  columns);
     group.columns->continue_from(step, columns);
+  }
+}
+
+std::vector<io::ReplicaState> ReplicaColumns::states() const {
+  std::vector<io::ReplicaState> states;
+  for (auto const& group : groups_) {
+    io::ReplicaState of_all;
+    group.columns->exchange_with(of_all);
+    // The guard of a lattice of columns has seen the energy of all of them.
+    std::erase_if(of_all.numbers,
+                  [](auto const& entry) { return io::ReplicaState::is_of_guard(entry.first); });
+    for (std::int64_t column = 0; column < group.count; ++column) {
+      auto& state = states.emplace_back();
+      state.step = group.columns->steps();
+      state.numbers = of_all.numbers;
+      for (auto const& [name, all] : of_all.fields)
+        state.fields[name] = of_column(all, io::sites(group.one->scene()), column, group.count);
+    }
+  }
+  return states;
+}
+
+void ReplicaColumns::restore(std::vector<io::ReplicaState> const& states) {
+  for (auto const& group : groups_) {
+    auto const first = states.begin() + group.first;
+    io::ReplicaState all;
+    all.numbers = first->numbers;
+    std::erase_if(all.numbers,
+                  [](auto const& entry) { return io::ReplicaState::is_of_guard(entry.first); });
+    auto const sites = io::sites(group.one->scene());
+    for (auto const& [name, of_first] : first->fields) {
+      auto& columns = all.fields[name];
+      columns.resize(of_first.size() * static_cast<std::size_t>(group.count));
+      for (std::int64_t column = 0; column < group.count; ++column)
+        put_column(first[column].fields.at(name), sites, column, group.count, columns);
+    }
+    group.columns->continue_from(first->step, all.fields.at("spins"));
+    all.close();
+    group.columns->exchange_with(all);
   }
 }
 

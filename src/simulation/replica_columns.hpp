@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/ensemble_checkpoint.hpp"
 #include "replica_share.hpp"
 #include "scene_run.hpp"
 
@@ -48,6 +49,11 @@ class ReplicaColumns {
 
   /// Continues after step `step` from `spins`: those of all replicas, one after the other.
   void continue_from(std::int64_t step, std::vector<double> const& spins);
+
+  /// Returns what each replica needs to continue exactly.
+  std::vector<io::ReplicaState> states() const;
+  /// Restores what states(), here or of separate runs, has returned, all after the same step.
+  void restore(std::vector<io::ReplicaState> const& states);
 
   /// Sets a separate run of a replica to the step and the spins that the replica has here.
   void continue_in(SceneRun& run, std::int64_t replica) const;

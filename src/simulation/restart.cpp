@@ -3,6 +3,7 @@
 
 #include "failure.hpp"
 #include "io/changes.hpp"
+#include "io/ensemble_checkpoint.hpp"
 #include "io/relax.hpp"
 #include "multirate_method.hpp"
 #include "text.hpp"
@@ -97,6 +98,15 @@ bool changes_motion(std::string const& key) {
 
 constexpr auto of_this_lattice = "the scene's lattice";
 
+// `of_checkpoint`: the scene of the checkpoint beside the file.
+void require_same_scene(std::filesystem::path const& path, std::string const& of_file,
+                        std::string const& of_checkpoint) {
+  if (of_file != of_checkpoint)
+    throw UsageError(
+        fmt::format("{}: {} is of another scene; accepted: the checkpoint of the same run, or none",
+                    path.string(), io::checkpoint_beside(path).string()));
+}
+
 }  // namespace
 
 bool remembers(io::Scene const& scene, Plan const& plan) { return remembers(scene, plan.variant); }
@@ -106,7 +116,7 @@ EarlierRun::EarlierRun(std::filesystem::path of_run) : path(std::move(of_run)) {
     checkpoint = std::make_unique<io::CheckpointReader>(path);
     return;
   }
-  if (io::is_ensemble(path))
+  if (io::is_ensemble(path) || io::is_ensemble_checkpoint(path))
     throw UsageError(
         fmt::format("{}: it is of an ensemble; accepted: a scene with [ensemble], or "
                     "a trajectory or checkpoint",
@@ -120,28 +130,34 @@ EarlierRun::EarlierRun(std::filesystem::path of_run) : path(std::move(of_run)) {
   std::error_code ignored;
   if (!std::filesystem::exists(beside, ignored)) return;
   checkpoint = std::make_unique<io::CheckpointReader>(beside);
-  if (checkpoint->header().scene_text != trajectory->header.scene_text)
-    throw UsageError(
-        fmt::format("{}: {} is of another scene; accepted: the checkpoint of the same run, or none",
-                    path.string(), beside.string()));
+  require_same_scene(path, trajectory->header.scene_text, checkpoint->header().scene_text);
 }
 
-EarlierRun::EarlierRun(std::filesystem::path of_run, io::EnsembleInfo const& info)
+EarlierRun::EarlierRun(std::filesystem::path of_run, io::EnsembleInfo const* info,
+                       io::CheckpointHeader const* of_checkpoint)
     : path(std::move(of_run)), is_ensemble(true) {
+  if (of_checkpoint) of_ensemble = *of_checkpoint;
+  if (!info) return;
+  if (of_checkpoint) require_same_scene(path, info->header.scene_text, of_checkpoint->scene_text);
   auto& last = trajectory.emplace();
-  last.header = info.header;
-  if (info.frames == 0) return;
+  last.header = info->header;
+  if (info->frames == 0) return;
   last.frames = 1;
-  last.frame_steps = {info.step};
-  last.frame_times = {info.time};
+  last.frame_steps = {info->step};
+  last.frame_times = {info->time};
+}
+
+io::CheckpointHeader const* EarlierRun::checkpoint_header() const {
+  if (checkpoint) return &checkpoint->header();
+  return of_ensemble ? &*of_ensemble : nullptr;
 }
 
 std::string const& EarlierRun::scene_text() const {
-  return trajectory ? trajectory->header.scene_text : checkpoint->header().scene_text;
+  return trajectory ? trajectory->header.scene_text : checkpoint_header()->scene_text;
 }
 
 std::string const& EarlierRun::resolved_scene() const {
-  return trajectory ? trajectory->header.resolved_scene : checkpoint->header().resolved_scene;
+  return trajectory ? trajectory->header.resolved_scene : checkpoint_header()->resolved_scene;
 }
 
 std::string const& EarlierRun::scene_as_run() const {
@@ -227,11 +243,11 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
   auto const refuse = [&](std::string const& wrong, std::string const& accepted) {
     throw UsageError(fmt::format("{}: {}; accepted: {}", from_.path.string(), wrong, accepted));
   };
-  auto const* const checkpoint = from_.checkpoint ? &from_.checkpoint->header() : nullptr;
+  auto const* const checkpoint = from_.checkpoint_header();
   auto const* const trajectory = from_.trajectory ? &*from_.trajectory : nullptr;
   auto const ran = parsed(from_.scene_as_run(), scene);
   auto const before = same_stage(ran, scene.begin);
-  std::vector<std::string> changes;
+  auto& changes = changes_;
   if (before) {
     changes = io::changed_keys(before->text, scene.text);
     std::erase_if(changes, is_of_one_run);
@@ -283,15 +299,15 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
   if (step_ >= end && !from_.at_begin)
     refuse(fmt::format("it ends at step {}, the scene at step {}", step_, end),
            "a scene that ends later");
-  if (needs_memory && from_.is_ensemble)
-    refuse("its method, or a key such as until_torque, needs more than frames to continue exactly",
-           "an ensemble that steps only from its spins, or one that starts anew");
   if (needs_memory && !uses_checkpoint_)
     refuse("the run needs more than its frames to continue exactly, and " +
                io::checkpoint_beside(from_.path).string() + " is not there",
-           "a file with its checkpoint, or initial.file in place of a restart: a run that starts "
-           "from the last frame");
-  if (uses_checkpoint_ && alike && !from_.at_begin) memory_ = from_.checkpoint.get();
+           from_.is_ensemble
+               ? "a file with its checkpoint"
+               : "a file with its checkpoint, or initial.file in place of a restart: a run that "
+                 "starts from the last frame");
+  restores_memory_ = uses_checkpoint_ && alike && !from_.at_begin;
+  if (restores_memory_) memory_ = from_.checkpoint.get();
   auto const& follow = scene.lattice.follow;
   if (ran && ran->lattice.follow && follow && ran->lattice.follow->axis == follow->axis) {
     double shift = 0;
@@ -333,6 +349,10 @@ std::vector<double> Restart::spins(io::Scene const& scene, io::SiteBox const& bo
 
 std::vector<double> Restart::spins(io::Scene const& scene) const {
   return spins(scene, {{0, 0, 0}, scene.lattice.shape});
+}
+
+bool Restart::differs_in(std::string const& key) const {
+  return std::ranges::find(changes_, key) != changes_.end();
 }
 
 std::vector<std::filesystem::path> Restart::files() const {

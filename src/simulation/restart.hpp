@@ -35,8 +35,13 @@ LastFrame last_frame(io::TrajectoryInfo const& trajectory, std::vector<io::Stage
 struct EarlierRun {
   /// Throws UsageError for the file of an ensemble, and if the checkpoint is of another scene.
   explicit EarlierRun(std::filesystem::path path);
-  /// The last frame of an ensemble's file, which has no checkpoint.
-  EarlierRun(std::filesystem::path path, io::EnsembleInfo const& info);
+  /// The file of an ensemble with its last frame, the checkpoint, or both. Null: not there. Throws
+  /// UsageError if they are of different scenes.
+  EarlierRun(std::filesystem::path path, io::EnsembleInfo const* info,
+             io::CheckpointHeader const* of_checkpoint);
+
+  /// Returns the header of the checkpoint; null if there is none.
+  io::CheckpointHeader const* checkpoint_header() const;
 
   /// Returns the scene as it ran, with the chosen method if its own method is "auto".
   std::string const& scene_as_run() const;
@@ -54,6 +59,7 @@ struct EarlierRun {
   std::optional<io::TrajectoryInfo> trajectory;
   std::unique_ptr<io::CheckpointReader> checkpoint;
   bool at_begin = false;  // continues at the start of a stage, where the method has no memory
+  std::optional<io::CheckpointHeader> of_ensemble;  // of the checkpoint of an ensemble
   bool is_ensemble = false;
 };
 
@@ -73,8 +79,14 @@ class Restart {
   /// ensembles.
   std::vector<double> spins(io::Scene const& scene, io::SiteBox const& box) const;
   std::vector<double> spins(io::Scene const& scene) const;
-  /// Returns the checkpoint with the run's memory of earlier steps; null if it is not needed.
+  /// Returns the checkpoint with the run's memory of earlier steps; null if it is not needed, and
+  /// for ensembles.
   io::CheckpointReader* memory() const { return memory_; }
+  /// Return true if the spins, or also the memory of earlier steps, are those of the checkpoint.
+  bool uses_checkpoint() const { return uses_checkpoint_; }
+  bool restores_memory() const { return restores_memory_; }
+  /// Returns true if the file's scene has another value of the key.
+  bool differs_in(std::string const& key) const;
   /// Returns by how many cells the lattice had moved to follow its object.
   std::int64_t shift() const { return shift_; }
   /// Returns one line that names unexpected differences from the scene of the file, or nothing.
@@ -85,7 +97,8 @@ class Restart {
  private:
   EarlierRun from_;
   std::int64_t step_ = 0, shift_ = 0;
-  bool uses_checkpoint_ = false;
+  bool uses_checkpoint_ = false, restores_memory_ = false;
+  std::vector<std::string> changes_;  // keys
   io::CheckpointReader* memory_ = nullptr;
   std::optional<std::string> warning_;
 };

@@ -2,6 +2,7 @@
 #include "run_files.hpp"
 
 #include "files/file_beside.hpp"
+#include "io/ensemble_checkpoint.hpp"
 #include "plan.hpp"
 #include "single_terms.hpp"
 
@@ -24,16 +25,10 @@ bool is_whole_checkpoint(std::filesystem::path const& path) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return false;
   try {
-    return io::is_checkpoint(path);
+    return io::is_checkpoint(path) || io::is_ensemble_checkpoint(path);
   } catch (std::runtime_error const&) {
     return false;
   }
-}
-
-void require_free_output(std::filesystem::path const& path, bool overwrite) {
-  io::require_free(path, overwrite);
-  auto const checkpoint = io::checkpoint_beside(path);
-  io::require_free(checkpoint, overwrite || is_whole_checkpoint(checkpoint));
 }
 
 // Returns the positions in the order of the file: those of the cell's first site in all cells, then
@@ -56,6 +51,12 @@ std::vector<double> positions(io::Lattice const& lattice, io::Triple const& spac
 }
 
 }  // namespace
+
+void require_free_output(std::filesystem::path const& path, bool overwrite) {
+  io::require_free(path, overwrite);
+  auto const checkpoint = io::checkpoint_beside(path);
+  io::require_free(checkpoint, overwrite || is_whole_checkpoint(checkpoint));
+}
 
 bool has_positions(io::Lattice const& lattice) {
   return lattice.basis.size() > 1 || lattice.cell != io::Lattice().cell;

@@ -35,6 +35,10 @@ io::TrajectoryStorage storage_of(io::Scene const& scene);
 
 io::RunOutputOptions run_output_options(io::Scene const& scene, bool overwrite);
 
+/// Throws std::runtime_error if the file `path`, or one with the name of its checkpoint, must not
+/// be replaced.
+void require_free_output(std::filesystem::path const& path, bool overwrite);
+
 /// Opens the trajectory `path` of a new run, and its other files. Throws std::runtime_error if one
 /// of them, or a file with the name of the checkpoint, must not be replaced. Removes an old
 /// checkpoint, which would be taken for this run's.

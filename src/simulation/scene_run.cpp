@@ -147,6 +147,11 @@ void SceneRun::save(std::filesystem::path const& checkpoint) {
   file.commit();
 }
 
+void SceneRun::exchange_with(Checkpoint& checkpoint) {
+  Turn const turn;
+  exchange(checkpoint);
+}
+
 bool SceneRun::remembers() const { return simulation::remembers(scene_, plan()); }
 
 std::optional<std::string> SceneRun::warning() const {

@@ -194,6 +194,10 @@ class SceneRun {
   /// Replaces an existing file; throws std::runtime_error if the file cannot be written.
   void save(std::filesystem::path const& checkpoint);
 
+  /// Stores what save() stores, or restores it; the latter needs a preceding continue_from() with
+  /// the step and the spins that were stored.
+  void exchange_with(Checkpoint& checkpoint);
+
   /// Returns the current energy, norm defect and magnetization.
   Sample sample();
   /// Returns the sample if the guard accepts the current state, otherwise throws NumbersFailed.

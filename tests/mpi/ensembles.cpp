@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // [ensemble] on several ranks: the replicas are divided among them, and the file is that of a run
 // on one rank.
+#include "io/ensemble_checkpoint.hpp"
 #include "io/ensemble_file.hpp"
 #include "on_ranks.hpp"
 #include "stored_contents.hpp"
@@ -45,13 +46,15 @@ class EnsemblesOnRanks : public OnRanks {
     EXPECT_EQ(outcome.output, "");
   }
 
-  /// Interrupts a long run. Expects the ranks to end with these statuses, in any order.
-  Outcome interrupt(int ranks, std::string const& file, std::multiset<int> const& expected) const {
+  /// Interrupts a long run, some time after the file `when` exists. Expects the ranks to end with
+  /// these statuses, in any order.
+  Outcome interrupt(int ranks, std::string const& file, std::multiset<int> const& expected,
+                    Arguments const& more, fs::path const& when, double seconds) const {
     Treatment interrupted;
     interrupted.program = CAYSPIN_MPIEXEC;
-    interrupted.interrupt_after = 0.3;
-    interrupted.interrupt_when = in_folder(file);
-    auto command = launch(ranks, into(file, set("integrator.steps=2000000", "output.every=50")));
+    interrupted.interrupt_after = seconds;
+    interrupted.interrupt_when = when;
+    auto command = launch(ranks, into(file, more));
     // An interrupted launcher may lose the statuses of its ranks, so each rank stores its own.
     command.insert(command.begin() + 2,
                    {"sh", "-c", "trap : INT; \"$@\"; echo $? > status.$$", "sh"});
@@ -220,7 +223,9 @@ TEST_F(EnsemblesOnRanks, EndTogetherWhenInterrupted) {
     SCOPED_TRACE(ranks);
     write("all.toml", chain_scene() + noise + ensemble(replicas));
     fs::remove(in_folder("part.h5"));
-    auto const outcome = interrupt(ranks, "part.h5", statuses);
+    auto const outcome =
+        interrupt(ranks, "part.h5", statuses, set("integrator.steps=2000000", "output.every=50"),
+                  in_folder("part.h5"), 0.3);
     auto const line = outcome.errors.find("interrupted after step ");
     ASSERT_NE(line, std::string::npos) << outcome.errors;
     EXPECT_EQ(outcome.errors.find("interrupted after step ", line + 1), std::string::npos);
@@ -236,6 +241,33 @@ TEST_F(EnsemblesOnRanks, EndTogetherWhenInterrupted) {
     run_on(2, "rest.h5", joined(on, {"--restart", "part.h5"}));
     ASSERT_EQ(start(into("whole.h5", on)).status, 0);
     EXPECT_EQ(last_spins("rest.h5"), last_spins("whole.h5"));
+  }
+}
+
+// The run ends between two checkpoints, far from its end.
+TEST_F(EnsemblesOnRanks, ContinueFromTheCheckpointOfAnInterruptedRun) {
+  // The replicas with equal damping are stepped as the columns of lattices.
+  for (auto const& [method, table] :
+       {std::tuple{"method='dp5',tolerance=1e-6",
+                   ensemble(4, "'system.damping' = { from = 0.1, to = 0.4 }\n")},
+        {"method='ab2'", ensemble(70)}}) {
+    SCOPED_TRACE(method);
+    write("all.toml", chain_scene() + table);
+    auto const same = set(fmt::format("integrator={{{},dt=0.001,steps=40000}}", method),
+                          "output.every=40000", "lattice.shape=[5]");
+    auto const checkpoint = io::checkpoint_beside(in_folder("part.h5"));
+    interrupt(3, "part.h5", {130, 130, 130},
+              joined(same, set("output.checkpoint_every='500 steps'")), checkpoint, 0.02);
+    auto const step = io::read_ensemble_checkpoint(checkpoint).header.step;
+    ASSERT_GT(step, 0);
+    EXPECT_EQ(step % 500, 0);
+    ASSERT_EQ(start(into("whole.h5", same)).status, 0);
+    for (int const ranks : {1, 2}) {
+      run_on(ranks, "rest.h5", joined(same, {"--restart", "part.h5"}));
+      EXPECT_EQ(read_dataset("rest.h5", "/step").values.front(), static_cast<double>(step));
+      EXPECT_EQ(last_spins("rest.h5"), last_spins("whole.h5"));
+    }
+    fs::remove(checkpoint);
   }
 }
 

@@ -371,8 +371,6 @@ TEST_F(Ensembles, AreRefusedInOneLine) {
             set(key + "=9223372036854775806"));
   refused(vary(""), "output.terms: does not go with an ensemble", set("output.terms=true"));
   refused(vary(""), "output.chunk: does not go with an ensemble", set("output.chunk=1"));
-  refused(vary(""), "output.checkpoint_every: does not go with an ensemble",
-          set("output.checkpoint_every=600"));
   refused(vary("") + "[[stage]]\nrelax = true\n", "stage: does not go with an ensemble");
   write("all.toml", chain_scene() + vary(""));
   for (Arguments const& command :
