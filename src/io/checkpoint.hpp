@@ -61,8 +61,8 @@ class CheckpointWriter final : public Checkpoint {
 };
 
 /// Reader of a checkpoint. The constructor verifies each field by the field's checksum, and all
-/// other contents except the shape by the checksum of the file, which files of earlier versions
-/// lack.
+/// other contents by the checksum of the file. Files of earlier versions lack that checksum, or it
+/// does not cover the shape.
 class CheckpointReader final : public Checkpoint {
  public:
   explicit CheckpointReader(std::filesystem::path path);

@@ -25,6 +25,7 @@ constexpr char const* sum_mark = "checksum";  // an attribute of the file, and o
 constexpr std::int64_t checkpoint_version = 1;
 constexpr std::uint64_t checkpoint_overhead_bytes = 64 * 1024;
 constexpr hsize_t most_components = 3;
+constexpr std::array extent_names{"nx", "ny", "nz"};
 
 // Never 0: otherwise zeros in place of a field and its checksum would be valid.
 std::int64_t checksum(Fletcher32 const& sum) { return std::int64_t{1} + sum.value(); }
@@ -103,6 +104,8 @@ class CheckpointWriter::Implementation {
     attributes.create("time", header.time);
     attributes.create("units", std::string(header.si ? si_units : reduced_units));
     numbers_ = create_group(file_.get(), "numbers", path_);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      number(extent_names[axis], static_cast<double>(header.shape[axis]));
     if (header.stage == StageBegin{}) return;
     number("stage", static_cast<double>(header.stage.stage));
     number("stage_step", static_cast<double>(header.stage.step));
@@ -256,6 +259,12 @@ class CheckpointReader::Implementation {
     // Files of earlier versions have no checksum.
     if (attributes.has(sum_mark) && attributes.read_integer(sum_mark) != contents().checksum())
       throw_failure(path_, "cannot read the checkpoint", "its contents are not those written");
+    // The checksums do not cover the extents of fields, but these numbers, which files of earlier
+    // versions lack.
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (RootAttributes(numbers_.get(), path_).has(extent_names[axis]) &&
+          number(extent_names[axis]) != static_cast<double>(header_.shape[axis]))
+        throw_failure(path_, "cannot read dataset spins", "its extents are not those written");
     if (RootAttributes(numbers_.get(), path_).has("stage"))
       header_.stage = {static_cast<std::int64_t>(number("stage")),
                        static_cast<std::int64_t>(number("stage_step")), number("stage_time")};

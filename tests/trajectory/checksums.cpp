@@ -177,6 +177,31 @@ TEST_F(TrajectoryTest, NumberOfACheckpointThatIsNoneIsRefused) {
                        "cannot read attribute a"));
 }
 
+// The numbers and their checksum stay as they are.
+TEST_F(TrajectoryTest, ChangedShapeOfACheckpointIsNoticed) {
+  auto const path = folder_ / "a.checkpoint.h5";
+  std::vector<double> spins(18, 0.5);
+  CheckpointHeader header;
+  header.shape = {3, 2, 1};
+  {
+    CheckpointWriter writer(path, header);
+    writer.field("spins", spins);
+    writer.commit();
+  }
+  EXPECT_EQ(CheckpointReader(path).header().shape, header.shape);
+  {
+    FileHandle const file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+    DatasetHandle const before = open_dataset(file.get(), "spins", path);
+    auto const sum = RootAttributes(before.get(), path).read_integer("checksum");
+    ASSERT_GE(H5Ldelete(file.get(), "spins", H5P_DEFAULT), 0);
+    auto const after = create_dataset(file.get(), "spins", H5T_IEEE_F64LE, {1, 3, 2, 3}, path);
+    write_block(after.get(), H5T_NATIVE_DOUBLE, {0, 0, 0, 0}, {1, 3, 2, 3}, spins.data(), path);
+    RootAttributes(after.get(), path).create("checksum", sum);
+  }
+  EXPECT_TRUE(contains(error_line(path, [&] { CheckpointReader reader(path); }),
+                       "cannot read dataset spins: its extents are not those written"));
+}
+
 class CheckpointContents : public TrajectoryTest {
  protected:
   CheckpointContents() {
