@@ -2,10 +2,8 @@
 #include "ensemble_run.hpp"
 
 #include "failure.hpp"
-#include "io/ensemble_checkpoint.hpp"
 #include "io/notes.hpp"
 #include "plan.hpp"
-#include "restart.hpp"
 #include "run_files.hpp"
 #include "scene_minimizer.hpp"
 #include "text.hpp"
@@ -17,7 +15,6 @@
 #include <exception>
 #include <limits>
 #include <span>
-#include <system_error>
 #include <utility>
 
 namespace cayspin::simulation {
@@ -29,14 +26,6 @@ void require_memory_of_all(io::Scene const& scene, io::Scene const& replica, Pre
   auto const plan =
       relaxes ? make_plan_to_relax(replica, precision) : make_plan(replica, precision);
   require_memory(scene, plan, static_cast<int>(replicas), available);
-}
-
-// Returns the noise of the hottest replica; that of the scene itself if no temperature is varied.
-std::optional<io::Thermal> hottest_noise(io::Scene const& scene) {
-  for (auto const& [key, values] : scene.ensemble.vary)
-    if (key == "thermal.temperature")
-      return io::replica_of(scene, std::ranges::max_element(values) - values.begin()).thermal;
-  return scene.thermal;
 }
 
 }  // namespace
@@ -73,130 +62,6 @@ EnsembleRun::EnsembleRun(io::Scene const& scene, RunSettings const& settings, bo
     of_replica.thermal->temperature = columns_->temperatures()[number];
     guards_[number] = Guard(of_replica, epsilon);
   }
-}
-
-io::Scene EnsembleRun::scene_of_first() const {
-  if (share_.own.first == 0) return first().scene();
-  return io::with_shape_of_start(io::replica_of(scene_, 0));
-}
-
-std::optional<std::string> EnsembleRun::continue_from(std::filesystem::path const& file) {
-  Turn::Reserved const turn;
-  std::optional<io::EnsembleInfo> info;
-  if (io::is_ensemble(file)) info = io::read_ensemble_info(file);
-  auto const checkpoint = info ? io::checkpoint_beside(file) : file;
-  std::error_code ignored;
-  std::optional<io::EnsembleCheckpointInfo> stored;
-  if (info ? std::filesystem::exists(checkpoint, ignored) : io::is_ensemble_checkpoint(file))
-    stored = io::read_ensemble_checkpoint(checkpoint);
-  if (!info && !stored) {
-    auto const kind = io::kind_of_other_file(file);
-    throw UsageError(fmt::format("{}: it is {}; accepted: the file of an ensemble", file.string(),
-                                 kind.empty() ? "of a scene without [ensemble]" : kind));
-  }
-  auto const require_replicas = [&](std::filesystem::path const& of, std::int64_t found) {
-    if (found != scene_.ensemble.replicas)
-      throw UsageError(fmt::format("{}: it has {}, and the scene has {}; accepted: the same number",
-                                   of.string(), counted(found, "replica"),
-                                   scene_.ensemble.replicas));
-  };
-  if (info) require_replicas(file, info->ensemble.replicas);
-  if (stored) require_replicas(checkpoint, stored->replicas());
-  auto const of_first = scene_of_first();
-  auto const plan = make_plan(of_first, settings_.precision);
-  auto const end =
-      scene_.integrator.steps > 0 ? plan.times.steps : std::numeric_limits<std::int64_t>::max();
-  // Times are in the units of the ensemble's first replica, as in the file. These units differ from
-  // those of the ensemble's own scene if, for example, the damping is varied.
-  auto scene = scene_;
-  scene.units = of_first.units;
-  scene.integrator.dt = of_first.integrator.dt;
-  scene.thermal = hottest_noise(scene_);
-  Restart const restart({file, info ? &*info : nullptr, stored ? &stored->header : nullptr}, scene,
-                        plan, settings_.precision, end);
-  if (restart.uses_checkpoint()) {
-    auto states = io::read_replica_states(checkpoint, *stored, share_.own);
-    restore(restart, states);
-    return restart.warning();
-  }
-  steps_ = restart.step();
-  at_rest_.assign(replicas(), false);
-  auto const spins = io::read_ensemble_spins(file, *info, share_.own);
-  if (columns_) columns_->continue_from(steps_, spins);
-  auto const size = static_cast<std::ptrdiff_t>(3 * io::sites(first().scene()));
-  for (std::size_t number = 0; number < runs_.size(); ++number) {
-    auto const begin = spins.begin() + size * static_cast<std::ptrdiff_t>(number);
-    runs_[number]->continue_from(steps_, {begin, begin + size});
-  }
-  return restart.warning();
-}
-
-void EnsembleRun::restore(Restart const& restart, std::vector<io::ReplicaState>& states) {
-  bool const whole = restart.restores_memory();
-  for (auto const& state : states)
-    if (whole && state.has_ended && restart.differs_in("integrator.until_torque"))
-      throw UsageError(
-          fmt::format("{}: some of its replicas have ended early; accepted: the until_torque that "
-                      "it was run with",
-                      restart.files().front().string()));
-  auto const size = static_cast<std::size_t>(3 * io::sites(first().scene()));
-  for (auto const& state : states)
-    if (!state.fields.contains("spins") || state.fields.at("spins").size() != size)
-      throw UsageError(
-          fmt::format("{}: its checkpoint has other spins than those of its lattice; "
-                      "accepted: the checkpoint of the same run, or none",
-                      restart.files().front().string()));
-  steps_ = restart.step();
-  at_rest_.assign(replicas(), false);
-  if (columns_) {
-    std::vector<double> spins;
-    for (auto const& state : states) {
-      auto const& own = state.fields.at("spins");
-      spins.insert(spins.end(), own.begin(), own.end());
-    }
-    columns_->continue_from(steps_, spins);
-    if (whole) columns_->restore(states);
-    samples_.clear();
-  }
-  for (std::size_t number = 0; number < runs_.size(); ++number) {
-    auto& state = states[number];
-    auto& run = *runs_[number];
-    run.continue_from(whole ? state.step : restart.step(), state.fields.at("spins"));
-    if (columns_ || !whole) continue;
-    at_rest_[number] = state.has_ended;
-    run.exchange_with(state);
-  }
-}
-
-std::size_t EnsembleRun::states_at_once() const {
-  constexpr std::int64_t bytes = 64 << 20;
-  if (columns_) return replicas();
-  return static_cast<std::size_t>(
-      std::clamp<std::int64_t>(bytes / (24 * io::sites(first().scene())), 1, share_.own.count));
-}
-
-std::vector<io::ReplicaState> EnsembleRun::states(std::size_t begin) {
-  Turn::Reserved const turn;
-  std::vector<io::ReplicaState> states;
-  if (columns_) {
-    if (begin > 0) return states;
-    check_columns();
-    return columns_->states();
-  }
-  auto const end = std::min(replicas(), begin + states_at_once());
-  for (auto number = begin; number < end; ++number) {
-    auto& run = *runs_[number];
-    try {
-      run.judged_sample();
-    } catch (NumbersFailed const& failure) {
-      throw NumbersFailed(fmt::format("replica {}: {}", number_of(number), failure.what()));
-    }
-    auto& state = states.emplace_back();
-    state.step = run.steps();
-    state.has_ended = at_rest_[number];
-    run.exchange_with(state);
-  }
-  return states;
 }
 
 std::optional<std::string> EnsembleRun::warning() const {

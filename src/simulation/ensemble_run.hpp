@@ -19,8 +19,6 @@
 
 namespace cayspin::simulation {
 
-class Restart;
-
 /// The replicas of a scene with [ensemble], or a share of them, which advance together. If possible
 /// they are the columns of a few lattices (ReplicaColumns); otherwise each is a separate run, and
 /// small ones run side by side on the threads of the host. The results of replica r are bitwise
@@ -105,8 +103,10 @@ class EnsembleRun {
   }
   /// Returns the scene of the whole ensemble's first replica.
   io::Scene scene_of_first() const;
+  /// Throws UsageError if the vacant sites of these replicas, from a file, are not the scene's.
+  void require_vacancies(std::filesystem::path const& file, std::vector<double> const& spins) const;
   /// Continues from the states of the replicas in a checkpoint.
-  void restore(Restart const& restart, std::vector<io::ReplicaState>& states);
+  void restore(std::vector<io::ReplicaState> const& states);
   Advanced advance_runs(std::int64_t target, Looks const& looks);
   Advanced advance_columns(std::int64_t target, Looks const& looks);
   /// Computes the value of steps() from the steps of the runs.

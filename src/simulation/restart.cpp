@@ -237,6 +237,23 @@ io::StageBegin EarlierRun::enter(std::vector<io::Stage> stages) {
   return at().scene.begin;
 }
 
+void require_same_vacancies(std::filesystem::path const& path, io::SiteBox const& box,
+                            std::vector<unsigned char> const& occupied,
+                            std::span<double const> spins) {
+  for (std::size_t site = 0; site < spins.size() / 3; ++site) {
+    auto const* const m = &spins[3 * site];
+    bool const is_vacant = m[0] == 0 && m[1] == 0 && m[2] == 0;
+    if (is_vacant == (!occupied.empty() && !occupied[site])) continue;
+    auto const [nx, ny, nz] = box.extent;
+    auto const number = static_cast<std::int64_t>(site);
+    throw UsageError(fmt::format(
+        "{}: its site ({}, {}, {}) {}, that of the scene's lattice.occupied {}; accepted: {}",
+        path.string(), box.begin[0] + number % nx, box.begin[1] + number / nx % ny,
+        box.begin[2] + number / (nx * ny), is_vacant ? "is vacant" : "holds a spin",
+        is_vacant ? "holds a spin" : "is vacant", of_this_lattice));
+  }
+}
+
 Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Precision precision,
                  std::int64_t end)
     : from_(std::move(from)) {
@@ -330,20 +347,8 @@ std::vector<double> Restart::spins(io::Scene const& scene, io::SiteBox const& bo
   auto spins = uses_checkpoint_ ? from_.checkpoint->field("spins", box)
                                 : io::read_spins(from_.path, from_.trajectory->header.shape, box,
                                                  from_.trajectory->header.cell_sites);
-  if (scene.system.kind != io::SystemKind::llg) return spins;
-  auto const occupied = io::occupied(scene, box);
-  for (std::size_t site = 0; site < spins.size() / 3; ++site) {
-    auto const* const m = &spins[3 * site];
-    bool const is_vacant = m[0] == 0 && m[1] == 0 && m[2] == 0;
-    if (is_vacant == (!occupied.empty() && !occupied[site])) continue;
-    auto const [nx, ny, nz] = box.extent;
-    auto const number = static_cast<std::int64_t>(site);
-    throw UsageError(fmt::format(
-        "{}: its site ({}, {}, {}) {}, that of the scene's lattice.occupied {}; accepted: {}",
-        from_.path.string(), box.begin[0] + number % nx, box.begin[1] + number / nx % ny,
-        box.begin[2] + number / (nx * ny), is_vacant ? "is vacant" : "holds a spin",
-        is_vacant ? "holds a spin" : "is vacant", of_this_lattice));
-  }
+  if (scene.system.kind == io::SystemKind::llg)
+    require_same_vacancies(from_.path, box, io::occupied(scene, box), spins);
   return spins;
 }
 

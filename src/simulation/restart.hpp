@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,12 @@ struct EarlierRun {
   std::optional<io::CheckpointHeader> of_ensemble;  // of the checkpoint of an ensemble
   bool is_ensemble = false;
 };
+
+/// Throws UsageError if the vacant sites of `spins`, which are from the file `path` and of a box of
+/// the lattice, differ from those of the scene. `occupied`: io::occupied() in that box.
+void require_same_vacancies(std::filesystem::path const& path, io::SiteBox const& box,
+                            std::vector<unsigned char> const& occupied,
+                            std::span<double const> spins);
 
 /// The state from which a run of a scene, or of a stage, continues. If the scene has not changed,
 /// the results are bitwise identical to those of an uninterrupted run.

@@ -185,5 +185,29 @@ TEST_F(EnsembleCheckpoints, AreRefusedInOneLine) {
   refused({"--restart", "part.h5"}, "part.checkpoint.h5 is of another scene");
 }
 
+// The scene's text stays the same, but not its file of occupied sites.
+TEST_F(EnsembleCheckpoints, OfOtherVacanciesAreRefused) {
+  auto const occupy = [&](std::string const& values) {
+    write("mask.ovf",
+          "# OOMMF OVF 2.0\n# meshtype: rectangular\n# valuedim: 1\n# xnodes: 4\n# ynodes: 1\n"
+          "# znodes: 1\n# Begin: Data Text\n" +
+              values + "\n# End: Data Text\n");
+  };
+  write("all.toml", chain_scene() + ensemble(3));
+  for (std::string const method : {"rkmk4", "ab2"}) {
+    SCOPED_TRACE(method);
+    auto const same =
+        set("integrator.method='" + method + "'", "lattice={shape=[4],occupied={file='mask.ovf'}}");
+    occupy("1 1 0 1");
+    expect_status(0, run_of("part.h5", same));
+    auto const on = joined(same, {"--set", "integrator.steps=40", "--restart", "part.h5"});
+    expect_status(0, run_of("rest.h5", on));
+    occupy("1 0 1 1");
+    expect_refused(
+        run_of("rest.h5", on),
+        "its site (1, 0, 0) holds a spin, that of the scene's lattice.occupied is vacant");
+  }
+}
+
 }  // namespace
 }  // namespace cayspin::program::test
