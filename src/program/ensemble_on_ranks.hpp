@@ -37,13 +37,13 @@ class EnsembleOnRanks {
   // Like those of EnsembleRun, for the replicas of all ranks.
   std::int64_t steps() const { return steps_; }
   std::int64_t last_step() const { return last_step_; }
+  std::int64_t furthest() const { return -ranks_.lowest(-own_->furthest()); }
   double time() const { return own_->first().time_at(steps_); }  // on the first rank
   /// Advances all replicas to step `target`.
   Advanced advance(std::int64_t target, Looks const& looks);
 
   bool remembers() const { return own_->remembers(); }
-  /// Stores a checkpoint, which the first rank writes. Replicas that have not ended early must have
-  /// taken equal numbers of steps.
+  /// Stores a checkpoint, which the first rank writes.
   void store(std::filesystem::path const& path, io::CheckpointHeader const& header);
 
   /// Return nothing on ranks but the first.

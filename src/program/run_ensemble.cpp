@@ -102,8 +102,15 @@ class RecordedEnsemble {
     auto const equal_steps = scene_.integrator.method->has_equal_steps();
     progress_.begin_stage(first_, end, equal_steps, {});
     auto ending = Advanced::whole;
-    look(false);
     try {
+      // If the earlier run was interrupted, its replicas may be at different steps.
+      if (auto const furthest = run_.furthest(); furthest > first_) {
+        looks_.at_end = furthest == end || furthest % scene_.output.every == 0 ||
+                        furthest % scene_.output.scalars_every == 0;
+        ending = run_.advance(furthest, looks_);
+        first_ = run_.steps();
+      }
+      if (ending != Advanced::interrupted) look(false);
       while (ending == Advanced::whole && run_.steps() < end) {
         auto const& output = scene_.output;
         auto const next = std::min({end, after(output.every), after(output.scalars_every)});
@@ -125,7 +132,7 @@ class RecordedEnsemble {
     }
     bool const interrupted = ending == Advanced::interrupted;
     auto const cost = end_file(!interrupted);
-    if (!interrupted) end_checkpoints();
+    end_checkpoints(interrupted);
     Summary total;
     total.steps = run_.steps() - first_;
     total.step_seconds = cost.step_seconds;
@@ -177,12 +184,12 @@ class RecordedEnsemble {
     header.scene_text = scene_.text;
     run_.store(io::checkpoint_beside(path_), header);
   }
-  // Leaves a checkpoint only if a restart would need it in addition to the last frame.
-  void end_checkpoints() {
+  // Stores a checkpoint if a restart needs it in addition to the last frame.
+  void end_checkpoints(bool interrupted) {
     if (scene_.output.checkpoint_every.is_never()) return;
     if (run_.remembers())
       store();
-    else
+    else if (!interrupted)
       ranks_.together([&] {
         if (ranks_.is_first()) std::filesystem::remove(io::checkpoint_beside(path_));
       });

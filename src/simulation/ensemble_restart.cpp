@@ -88,6 +88,14 @@ std::optional<std::string> EnsembleRun::continue_from(std::filesystem::path cons
         fmt::format("{}: some of its replicas have ended early; accepted: the "
                     "until_torque that it was run with",
                     file.string()));
+  auto const is_ahead = [&](io::ReplicaState const& state) {
+    return !state.has_ended && state.step != stored->header.step;
+  };
+  if (!restart.restores_memory() && std::ranges::any_of(states, is_ahead))
+    throw UsageError(
+        fmt::format("{}: it was interrupted, and the replicas in {} are at different "
+                    "steps; accepted: the scene that it was run with, or no such file",
+                    file.string(), checkpoint.string()));
   auto const spins =
       in_checkpoint ? spins_of(states) : io::read_ensemble_spins(file, *info, share_.own);
   auto const size = static_cast<std::size_t>(3 * io::sites(first().scene()));
@@ -121,17 +129,30 @@ void EnsembleRun::require_vacancies(std::filesystem::path const& file,
 }
 
 void EnsembleRun::restore(std::vector<io::ReplicaState> const& states) {
+  // The replicas of a lattice of columns are at the same step.
+  auto const differs = [&](io::ReplicaState const& state) {
+    return state.step != states.front().step;
+  };
+  if (columns_ && std::ranges::any_of(states, differs)) leave_columns();
   if (columns_) {
     columns_->restore(states);
     return;
   }
   for (std::size_t number = 0; number < runs_.size(); ++number) {
     auto state = states[number];
-    // A replica that has ended early is behind the others.
     runs_[number]->continue_from(state.step, state.fields.at("spins"));
     runs_[number]->exchange_with(state);
     at_rest_[number] = state.has_ended;
   }
+}
+
+std::int64_t EnsembleRun::furthest() const {
+  Turn::Reserved const turn;
+  if (columns_) return std::max(steps(), columns_->furthest());
+  auto most = steps();
+  for (std::size_t number = 0; number < runs_.size(); ++number)
+    if (!at_rest_[number]) most = std::max(most, runs_[number]->steps());
+  return most;
 }
 
 std::size_t EnsembleRun::states_at_once() const {

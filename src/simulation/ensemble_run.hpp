@@ -55,8 +55,7 @@ class EnsembleRun {
   /// Returns how many replicas' states to ask for at a time.
   std::size_t states_at_once() const;
   /// Returns what the replicas from number `first` on, states_at_once() of them at most, need to
-  /// continue exactly. Replicas that have not ended early must all be at steps(). Throws
-  /// NumbersFailed if the guard refuses a state.
+  /// continue exactly. Throws NumbersFailed if the guard refuses a state.
   std::vector<io::ReplicaState> states(std::size_t first);
 
   /// Returns the first warning of a replica about its steps, with the replica's number. If the
@@ -67,6 +66,9 @@ class EnsembleRun {
   /// early. If all ended early, returns the largest number of steps.
   std::int64_t steps() const { return steps_; }
   std::int64_t last_step() const { return first().last_step(); }
+  /// Returns the largest number of steps that a replica has taken, not counting replicas that ended
+  /// early. It is larger than steps() after an interrupt, also in a run that continues from there.
+  std::int64_t furthest() const;
   double time() const { return first().time_at(steps_); }  // at steps()
   std::int64_t evaluations() const;
   double step_seconds() const;

@@ -199,6 +199,12 @@ std::int64_t ReplicaColumns::steps() const {
   return least;
 }
 
+std::int64_t ReplicaColumns::furthest() const {
+  std::int64_t most = 0;
+  for (auto const& group : groups_) most = std::max(most, group.columns->steps());
+  return most;
+}
+
 ReplicaColumns::Ended ReplicaColumns::advance(std::int64_t target, Looks const& looks) {
   std::vector<SceneRun*> runs;
   for (auto const& group : groups_) runs.push_back(group.columns.get());

@@ -34,6 +34,8 @@ class ReplicaColumns {
 
   /// Returns the number of steps that all replicas have taken.
   std::int64_t steps() const;
+  /// Returns the number of steps of the replicas that have taken the most.
+  std::int64_t furthest() const;
   std::int64_t evaluations() const;
   double step_seconds() const;
 

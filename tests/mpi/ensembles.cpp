@@ -244,7 +244,7 @@ TEST_F(EnsemblesOnRanks, EndTogetherWhenInterrupted) {
   }
 }
 
-// The run ends between two checkpoints, far from its end.
+// The replicas of a run that is interrupted are at different steps.
 TEST_F(EnsemblesOnRanks, ContinueFromTheCheckpointOfAnInterruptedRun) {
   // The replicas with equal damping are stepped as the columns of lattices.
   for (auto const& [method, table] :
@@ -258,13 +258,9 @@ TEST_F(EnsemblesOnRanks, ContinueFromTheCheckpointOfAnInterruptedRun) {
     auto const checkpoint = io::checkpoint_beside(in_folder("part.h5"));
     interrupt(3, "part.h5", {130, 130, 130},
               joined(same, set("output.checkpoint_every='500 steps'")), checkpoint, 0.02);
-    auto const step = io::read_ensemble_checkpoint(checkpoint).header.step;
-    ASSERT_GT(step, 0);
-    EXPECT_EQ(step % 500, 0);
     ASSERT_EQ(start(into("whole.h5", same)).status, 0);
     for (int const ranks : {1, 2}) {
       run_on(ranks, "rest.h5", joined(same, {"--restart", "part.h5"}));
-      EXPECT_EQ(read_dataset("rest.h5", "/step").values.front(), static_cast<double>(step));
       EXPECT_EQ(last_spins("rest.h5"), last_spins("whole.h5"));
     }
     fs::remove(checkpoint);

@@ -86,6 +86,30 @@ TEST_F(EnsembleCheckpoints, ContinueAKilledRunWithItsBits) {
   }
 }
 
+// An interrupt leaves replicas at different steps: on one thread, some may not have begun.
+TEST_F(EnsembleCheckpoints, ContinueAnInterruptedRunWithItsBits) {
+  for (auto const& [integrator, replicas, threads] :
+       {std::tuple{"method='dp5',tolerance=1e-6", 4, "1"}, {"method='ab2'", 40, "2"}}) {
+    SCOPED_TRACE(integrator);
+    write("all.toml", chain_scene() + ensemble(replicas));
+    auto const same = set(fmt::format("integrator={{{},dt=0.001,steps=40000}}", integrator),
+                          "output.every=40000", "lattice.shape=[20]");
+    std::filesystem::remove(in_folder("part.h5"));
+    auto const outcome =
+        start(run_of("part.h5", joined(same, {"--threads", threads, "--set",
+                                              "output.checkpoint_every='40000 steps'"})),
+              {.interrupt_after = 0.02, .interrupt_when = in_folder("part.h5")});
+    ASSERT_EQ(outcome.status, 130) << outcome.errors;
+    ASSERT_TRUE(exists("part.checkpoint.h5"));
+    expect_status(0, run_of("rest.h5", joined(same, {"--restart", "part.h5"})));
+    expect_status(0, run_of("whole.h5", same));
+    expect_same_end("rest.h5", "whole.h5");
+    auto const changed = joined(same, set("field.applied=[0,0,0.2]", "initial.random.seed=4"));
+    auto const other = start(run_of("b.h5", joined(changed, {"--restart", "part.h5"})));
+    EXPECT_TRUE(other.status == 0 || contains(other.errors, "it was interrupted")) << other.errors;
+  }
+}
+
 // Replica 0 is at rest long before the others.
 TEST_F(EnsembleCheckpoints, KeepReplicasThatHaveEnded) {
   write("all.toml", macrospin_scene() + ensemble(3, "'system.damping' = [1.0, 0.01, 0.02]\n"));
