@@ -285,7 +285,7 @@ int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
       if (!file) return;
       file->close(cost);
       print_message("{}: interrupted after {} of {} replicas; no frame was written\n",
-                 scene.path.string(), searches, scene.ensemble.replicas);
+                    scene.path.string(), searches, scene.ensemble.replicas);
     });
     return Status::interrupted;
   }
@@ -306,7 +306,7 @@ int relax_ensemble(io::Scene const& scene, DeviceOptions const& options,
                  duration_text(cost.wall_seconds));
     if (failures > 0)
       print_message("{}: {} of {} did not converge\n", scene.path.string(), failures,
-                 counted(searches, "replica"));
+                    counted(searches, "replica"));
   });
   return fails ? Status::numbers_failed : Status::done;
 }
