@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -67,6 +68,32 @@ void require_turning_of(char const* who, Turning<Real, MemorySpace> const& turni
   require_lattice(who, turning.damping.lattice(), spins.lattice());
 }
 
+/// Multiplies a mode, real + i * imaginary, by a complex number such that its longest vector has
+/// length 1 and the largest component of that vector is real and positive. If several vectors or
+/// components are equally large up to round-off, the first of them is taken.
+template <class Exec, class Spins>
+void normalize_mode(Exec const& exec, Spins const& real, Spins const& imaginary) {
+  auto const x = copy_to_host(real), y = copy_to_host(imaginary);
+  auto const square = [&](std::size_t c) { return double(x[c]) * x[c] + double(y[c]) * y[c]; };
+  auto const of_site = [&](std::size_t i) { return square(i) + square(i + 1) + square(i + 2); };
+  constexpr double nearly = 1 - 1e-5;
+  double longest = 0;
+  for (std::size_t i = 0; i + 2 < x.size(); i += 3) longest = std::max(longest, of_site(i));
+  if (!(longest > 0)) return;
+  std::size_t site = 0;
+  while (of_site(site) < nearly * longest) site += 3;
+  double const most = std::max({square(site), square(site + 1), square(site + 2)});
+  std::size_t component = site;
+  while (square(component) < nearly * most) ++component;
+  double const factor = 1 / std::sqrt(square(component) * longest);
+  double const a = factor * x[component], b = -factor * y[component];
+  // Computes (x + i y) * (a + i b), with a copy of x because both parts change.
+  Spins const before("modes::before", real.lattice());
+  combine(exec, 1, real, 0, real, before);
+  combine(exec, a, real, -b, imaginary, real);
+  combine(exec, b, before, a, imaginary, imaginary);
+}
+
 /// Setup that all searches for modes at an equilibrium share.
 template <class Exec, class Field, class Spins>
 class ModesAt {
@@ -90,8 +117,14 @@ class ModesAt {
           ": accepted: a tolerance of 0 or more, and at least one evaluation of the field");
   }
 
-  /// Searches, calls take(search, i) for each mode i found, and returns why the search ended.
-  template <class Take>
+  struct Found {
+    std::complex<double> rate;
+    double error;
+    Spins real, imaginary;
+  };
+  using Take = std::function<void(Found const&)>;
+
+  /// Searches, calls take(mode) for each mode found, and returns why the search ended.
   ModesEnd find(InverseTurning<Real> const& inverse, bool is_undamped, bool is_symmetric,
                 double fastest, Take const& take) {
     auto const named = [&](char const* name) { return Spins(name, spins_.lattice()); };
@@ -119,7 +152,12 @@ class ModesAt {
     using End = typename decltype(search)::End;
     auto const end = search.run();
     evaluations_ = found.evaluations + hessian.evaluations();
-    for (std::size_t i = 0; i < search.count(); ++i) take(search, i);
+    for (std::size_t i = 0; i < search.count(); ++i) {
+      auto const real = named("modes::real"), imaginary = named("modes::imaginary");
+      search.write(i, real, imaginary);
+      normalize_mode(exec_, real, imaginary);
+      take({search.modes()[i].rate, search.error(i), real, imaginary});
+    }
     return end == End::converged          ? ModesEnd::converged
            : end == End::stagnated        ? ModesEnd::stagnated
            : end == End::evaluation_limit ? ModesEnd::evaluation_limit
@@ -135,32 +173,6 @@ class ModesAt {
   ModesOptions const& options_;
   std::int64_t evaluations_ = 0;
 };
-
-/// Multiplies a mode, real + i * imaginary, by a complex number such that its longest vector has
-/// length 1 and the largest component of that vector is real and positive. If several vectors or
-/// components are equally large up to round-off, the first of them is taken.
-template <class Exec, class Spins>
-void normalize_mode(Exec const& exec, Spins const& real, Spins const& imaginary) {
-  auto const x = copy_to_host(real), y = copy_to_host(imaginary);
-  auto const square = [&](std::size_t c) { return double(x[c]) * x[c] + double(y[c]) * y[c]; };
-  auto const of_site = [&](std::size_t i) { return square(i) + square(i + 1) + square(i + 2); };
-  constexpr double nearly = 1 - 1e-5;
-  double longest = 0;
-  for (std::size_t i = 0; i + 2 < x.size(); i += 3) longest = std::max(longest, of_site(i));
-  if (!(longest > 0)) return;
-  std::size_t site = 0;
-  while (of_site(site) < nearly * longest) site += 3;
-  double const most = std::max({square(site), square(site + 1), square(site + 2)});
-  std::size_t component = site;
-  while (square(component) < nearly * most) ++component;
-  double const factor = 1 / std::sqrt(square(component) * longest);
-  double const a = factor * x[component], b = -factor * y[component];
-  // Computes (x + i y) * (a + i b), with a copy of x because both parts change.
-  Spins const before("modes::before", real.lattice());
-  combine(exec, 1, real, 0, real, before);
-  combine(exec, a, real, -b, imaginary, real);
-  combine(exec, b, before, a, imaginary, imaginary);
-}
 
 }  // namespace detail
 
@@ -186,17 +198,11 @@ NormalModes<Spins> normal_modes(
       exec, "cayspin::modes::invert_turning", spins.layout(),
       detail::InvertTurning<Real>{inverse.precession.array(), inverse.damping.array()});
   NormalModes<Spins> found;
-  found.end =
-      at.find({inverse.precession.array(), inverse.damping.array()}, damping == 0, false, fastest,
-              [&](auto const& search, std::size_t i) {
-                auto const rate = search.modes()[i].rate;
-                NormalMode<Spins> mode{std::abs(rate.imag()), 0 - rate.real(), search.error(i),
-                                       Spins("modes::real", spins.lattice()),
-                                       Spins("modes::imaginary", spins.lattice())};
-                search.write(i, mode.real, mode.imaginary);
-                detail::normalize_mode(exec, mode.real, mode.imaginary);
-                found.modes.push_back(mode);
-              });
+  found.end = at.find({inverse.precession.array(), inverse.damping.array()}, damping == 0, false,
+                      fastest, [&](auto const& mode) {
+                        found.modes.push_back({std::abs(mode.rate.imag()), 0 - mode.rate.real(),
+                                               mode.error, mode.real, mode.imaginary});
+                      });
   found.evaluations = at.evaluations();
   return found;
 }
@@ -232,15 +238,9 @@ Curvatures<Spins> lowest_curvatures(Exec const& exec, Field const& field, Spins 
   ScalarField<Real, typename Spins::memory_space> const none("modes::sideways", spins.lattice()),
       minus_one("modes::along", spins.lattice(), Real(-1));
   Curvatures<Spins> found;
-  found.end = at.find({none.array(), minus_one.array()}, false, true, 1,
-                      [&](auto const& search, std::size_t i) {
-                        Curvature<Spins> one{search.modes()[i].rate.real(), search.error(i),
-                                             Spins("modes::vector", spins.lattice())};
-                        Spins const imaginary("modes::imaginary", spins.lattice());
-                        search.write(i, one.vector, imaginary);
-                        detail::normalize_mode(exec, one.vector, imaginary);
-                        found.curvatures.push_back(one);
-                      });
+  found.end = at.find({none.array(), minus_one.array()}, false, true, 1, [&](auto const& mode) {
+    found.curvatures.push_back({mode.rate.real(), mode.error, mode.real});
+  });
   found.evaluations = at.evaluations();
   return found;
 }

@@ -5,6 +5,7 @@
 #include "io/scene.hpp"
 #include "scene_generator.hpp"
 #include "scene_modes.hpp"
+#include "small_matrices_of_modes.hpp"
 #include "space.hpp"
 #include "torque_modes.hpp"
 #include "turning_of_sites.hpp"

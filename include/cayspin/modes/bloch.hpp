@@ -3,10 +3,10 @@
 
 #include <cayspin/minimizer/hessian.hpp>
 #include <cayspin/minimizer/probe.hpp>
+#include <cayspin/modes/pencil.hpp>
 #include <cayspin/spin_field.hpp>
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <array>
@@ -140,9 +140,9 @@ class BlochProblem {
     // Makes the sum Hermitian, as it would be without round-off of the Hessian. Only then are rates
     // without damping imaginary, and rates without precession real.
     sum = (0.5 * (sum + sum.adjoint())).eval();
-    Eigen::ComplexEigenSolver<Eigen::MatrixXcd> const found(turning * sum, false);
+    Eigen::VectorXcd const found = eigenvalues_of_product(turning, sum);
     // For a wave e^(i * (k.r - w * t)), the imaginary part of the rate is -w.
-    std::vector<std::complex<double>> rates(found.eigenvalues().begin(), found.eigenvalues().end());
+    std::vector<std::complex<double>> rates(found.begin(), found.end());
     double largest = 0;
     for (auto const& rate : rates) largest = std::max(largest, std::abs(rate));
     double const round_off = 1e3 * std::numeric_limits<double>::epsilon() * largest;

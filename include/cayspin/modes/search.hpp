@@ -41,6 +41,7 @@ template <class Exec, class Spins, class AnyHessian, class Precondition>
 class ModeSearch {
   using Real = typename Spins::value_type;
   using Memory = typename Spins::memory_space;
+  using Problem = Pencil<double>;
   using Residuals = ResidualsOfModes<Real, VectorTable<Spins>, Kokkos::View<Real*, Memory>>;
   static constexpr std::size_t block = 4;  // modes improved at once
 
@@ -76,13 +77,13 @@ class ModeSearch {
       double const error = errors_[first_];
       if (first_ > converged || error < 0.5 * least) least = error, since = 0;
       if (since > 60) return is_as_good_as_products() ? End::converged : End::stagnated;
-      before_ = columns_of(modes_, kept_, rows());
+      before_ = Problem::columns_of(modes_, kept_, rows());
       if (!extend(added)) return is_as_good_as_products() ? End::converged : End::stagnated;
     }
   }
 
   /// Returns the modes found, the wanted ones first.
-  std::vector<RitzMode> const& modes() const { return modes_; }
+  Problem::Modes const& modes() const { return modes_; }
   std::size_t count() const { return std::min(options_.count, modes_.size()); }
   double error(std::size_t mode) const { return mode < errors_.size() ? errors_[mode] : 0; }
 
@@ -148,20 +149,20 @@ class ModeSearch {
 
   void find_modes() {
     if (size() == 0) return;  // no spin moves
-    modes_ = options_.is_symmetric ? lowest_modes(pencil_)
-                                   : slowest_modes(pencil_, options_.is_undamped, options_.shift);
+    modes_ = options_.is_symmetric ? pencil_.lowest_modes()
+                                   : pencil_.slowest_modes(options_.is_undamped, options_.shift);
     errors_.resize(std::max(errors_.size(), count()), std::numeric_limits<double>::infinity());
     tolerances_.resize(errors_.size(), options_.tolerance);
   }
 
   void restart() {
-    Eigen::MatrixXd const now = columns_of(modes_, kept_, rows());
+    Eigen::MatrixXd const now = Problem::columns_of(modes_, kept_, rows());
     Eigen::MatrixXd const then = before_.leftCols(
         std::min<Eigen::Index>(before_.cols(), static_cast<Eigen::Index>(2 * block)));
     Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows(), now.cols() + then.cols());
     all.leftCols(now.cols()) = now;
     all.rightCols(then.cols()).topRows(then.rows()) = then;
-    Eigen::MatrixXd const q = orthonormal(all);
+    Eigen::MatrixXd const q = Problem::orthonormal(all);
     auto const fewer = static_cast<std::size_t>(q.cols());
     for (auto* const fields : {&vectors_, &products_})
       combine_vectors<Exec, Spins>(exec_, std::span<Spins const>(fields->data(), size()), q,
@@ -308,7 +309,7 @@ class ModeSearch {
         if (round == 0 && left < 1e6 * epsilon) rounds = 3;
         if (!(left > 1e3 * epsilon)) products.row(i).setZero(), products.col(i).setZero();
       }
-      Eigen::MatrixXd const change = orthonormalizing(products, 1e4 * epsilon);
+      Eigen::MatrixXd const change = Problem::orthonormalizing(products, 1e4 * epsilon);
       Eigen::MatrixXd coefficients(across.rows() + products.rows(), change.cols());
       coefficients << -across * change, change;
       added = static_cast<std::size_t>(change.cols());
@@ -327,8 +328,8 @@ class ModeSearch {
   ModeSearchOptions options_;
   std::size_t kept_, capacity_;
   std::vector<Spins> vectors_, products_, scratch_;
-  Pencil pencil_;
-  std::vector<RitzMode> modes_;
+  Problem pencil_;
+  Problem::Modes modes_;
   std::vector<double> errors_, tolerances_;
   Eigen::MatrixXd before_;
   std::size_t first_ = 0;
