@@ -2,6 +2,7 @@
 #pragma once
 
 #include "../support/backends.hpp"
+#include "small_matrices.hpp"
 
 #include <cayspin/cayspin.hpp>
 #include <cayspin/modes.hpp>
