@@ -6,6 +6,7 @@
 #include "io/trajectory.hpp"
 #include "program/progress.hpp"
 #include "simulation/failure.hpp"
+#include "simulation/message.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -15,7 +16,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <utility>
 
@@ -152,8 +152,7 @@ void Session::lock_folder() {
   int const reason = errno;
   if (lock_ >= 0 && reason == EWOULDBLOCK)
     throw UsageError(fmt::format("--output {}: another sweep is writing it", file_.string()));
-  fmt::print(
-      stderr,
+  print_message(
       "warning: {}: the folder cannot be locked ({}); another sweep with this --output would "
       "not be noticed\n",
       folder_.string(), std::strerror(reason));
