@@ -69,7 +69,8 @@ std::string_view kind_of_other(RootAttributes const& attributes) {
        {Kind{ensemble_format, "the file of an ensemble"}, Kind{sweep_format, "the file of a sweep"},
         Kind{"path_format", "the file of a path"},
         Kind{"cayspin_modes_format", "the file of modes"},
-        Kind{"checkpoint_format", "a checkpoint"}})
+        Kind{"checkpoint_format", "a checkpoint"},
+        Kind{"ensemble_checkpoint_format", "the checkpoint of an ensemble"}})
     if (attributes.has(format)) return name;
   return {};
 }

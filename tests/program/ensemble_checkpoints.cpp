@@ -185,6 +185,7 @@ TEST_F(EnsembleCheckpoints, AreRefusedInOneLine) {
   expect_refused(joined({"run", "one.toml", "--output", "rest.h5"}, joined(on, from_checkpoint)),
                  "part.checkpoint.h5: it is of an ensemble");
   expect_refused(run_of("part.h5", joined(on, from_checkpoint)), "would replace it");
+  expect_refused({"info", "part.checkpoint.h5"}, "it is the checkpoint of an ensemble; accepted: ");
 
   // One byte of a spin of the last replica is changed.
   auto const checkpoint = checkpoint_of("part.h5");
