@@ -130,7 +130,7 @@ class Ensemble:
     def __len__(self) -> int:
         """The number of complete frames; a killed run may have written part of another one."""
         with reading(self.file, self.path):
-            return min(len(self.file[name]) for name in self._names)
+            return texture.frames_in(self.file)
 
     def __enter__(self) -> Ensemble:
         return self

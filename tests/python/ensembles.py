@@ -9,6 +9,7 @@ import threading
 import unittest
 
 import cayspin
+import h5py
 import matplotlib
 import numpy as np
 
@@ -78,6 +79,21 @@ class Ensembles(unittest.TestCase):
                     ensemble.plot(wrong)
             with self.assertRaisesRegex(cayspin.CayspinError, "frame 9; accepted"):
                 ensemble.plot(0, 9)
+
+    def test_a_frame_that_a_kill_left_unfinished_does_not_count(self):
+        file = self.run_program("run", scene(ensemble={"replicas": 2}))
+        with h5py.File(file, "r+") as killed:
+            for name in ("spins", "time", "step", "energy", "norm_defect", "magnetization"):
+                killed[name].resize(6, axis=0)
+        with cayspin.open(file) as ensemble:
+            self.assertEqual(len(ensemble), 4)
+            ensemble.plot(1)
+            with self.assertRaisesRegex(cayspin.CayspinError, "frame 4; accepted: -4 to 3"):
+                ensemble.plot(0, 4)
+        with h5py.File(file, "r+") as killed:
+            killed["energy"].resize(3, axis=0)
+        with cayspin.open(file) as ensemble:
+            self.assertEqual(len(ensemble), 3)
 
     def test_searches_have_their_ends(self):
         file = self.run_program("relax", scene(ensemble={

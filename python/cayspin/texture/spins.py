@@ -124,9 +124,19 @@ def time_text(time: float, si: bool) -> str:
 
 
 def frames_in(file: Any) -> int:
-    """The number of complete frames of an open trajectory file. A killed run may have written some
-    numbers of another frame."""
-    return min(len(file[name]) for name in OF_FRAMES if name in file)
+    """The number of complete frames of an open file of a run or an ensemble. A killed run may have
+    written some numbers of another frame."""
+    count = min(len(file[name]) for name in OF_FRAMES if name in file)
+    # Frames of ensembles have no checksums. Numbers that never reached the disk are NaN.
+    while count and "ensemble_format" in file.attrs and _lacks_numbers(file, count - 1):
+        count -= 1
+    return count
+
+
+def _lacks_numbers(file, row):
+    """The energy is not examined, because that of a program's own field may be NaN."""
+    numbers = [file[name][row] for name in ("time", "norm_defect", "magnetization")]
+    return file["step"][row] < 0 or any(np.isnan(one).any() for one in numbers)
 
 
 def frame_number(file: Any, frame: int) -> int:

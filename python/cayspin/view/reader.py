@@ -12,10 +12,9 @@ import h5py
 import numpy as np
 
 from ..command_line import require_file, what_can_be_read
-from ..texture import checksum, lattice_of, plane_of, require_trajectory
+from ..texture import checksum, frames_in, lattice_of, plane_of, require_trajectory
 from ..texture.replica import is_ensemble
 
-OF_FRAMES = ("spins", "time", "step", "energy", "norm_defect", "magnetization")
 OF_SAMPLES = ("time", "energy", "magnetization")
 MOST_ROWS = 20000  # in one answer
 
@@ -83,9 +82,7 @@ class Reader:
             self._seen, self._identity, self._kept = (0, 0), status.st_ino, (None, None)
         complete = bool(file.attrs["complete"])
         scalars = file["scalars"]
-        rows = (*OF_FRAMES, "checksum") if "checksum" in file else OF_FRAMES
-        counts = (min(len(file[name]) for name in rows),
-                  min(len(scalars[name]) for name in OF_SAMPLES))
+        counts = frames_in(file), min(len(scalars[name]) for name in OF_SAMPLES)
         self.frames, self.samples = counts if complete else map(min, counts, self._seen)
         self._seen = counts
         if complete:
