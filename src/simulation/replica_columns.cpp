@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <exception>
+#include <span>
 #include <stdexcept>
 #include <utility>
 #include <variant>
@@ -108,15 +109,9 @@ std::vector<double> temperatures_of(io::Scene const& scene, io::ReplicaRange con
   return temperatures;
 }
 
-// Copies the spins of a replica into one of the `count` columns of `columns`.
-void put_column(double const* spins, std::int64_t sites, std::int64_t column, std::int64_t count,
-                std::vector<double>& columns) {
-  for (std::int64_t site = 0; site < sites; ++site)
-    std::copy_n(spins + 3 * site, 3, columns.begin() + 3 * (site * count + column));
-}
-
-// Copies a field of a replica, with any number of components, into one of the columns.
-void put_column(std::vector<double> const& field, std::int64_t sites, std::int64_t column,
+// Copies a field of a replica, with any number of components, into one of the `count` columns of
+// `columns`.
+void put_column(std::span<double const> field, std::int64_t sites, std::int64_t column,
                 std::int64_t count, std::vector<double>& columns) {
   if (field.size() * static_cast<std::size_t>(count) != columns.size())
     throw std::invalid_argument("the fields of replicas are of different sizes");
@@ -127,10 +122,11 @@ void put_column(std::vector<double> const& field, std::int64_t sites, std::int64
 }
 
 // Returns one of the `count` columns of a field with any number of components.
-std::vector<double> of_column(std::vector<double> const& columns, std::int64_t sites,
-                              std::int64_t column, std::int64_t count) {
+template <class Real>
+std::vector<Real> of_column(std::vector<Real> const& columns, std::int64_t sites,
+                            std::int64_t column, std::int64_t count) {
   auto const components = std::ssize(columns) / (sites * count);
-  std::vector<double> field(static_cast<std::size_t>(components * sites));
+  std::vector<Real> field(static_cast<std::size_t>(components * sites));
   for (std::int64_t site = 0; site < sites; ++site)
     std::copy_n(columns.begin() + components * (site * count + column), components,
                 field.begin() + components * site);
@@ -146,7 +142,7 @@ std::vector<double> starts_of(io::Scene& one, std::int64_t first, std::int64_t c
     if (random) random->seed += first + column;
     if (random || start.empty()) start = io::initial_spins(one);
     if (random) random->seed -= first + column;
-    put_column(start.data(), io::sites(one), column, count, columns);
+    put_column(start, io::sites(one), column, count, columns);
   }
   return columns;
 }
@@ -231,10 +227,12 @@ void ReplicaColumns::continue_in(SceneRun& run, std::int64_t replica) const {
 void ReplicaColumns::continue_from(std::int64_t step, std::vector<double> const& spins) {
   for (auto const& group : groups_) {
     auto const sites = io::sites(group.one->scene());
-    std::vector<double> columns(static_cast<std::size_t>(3 * group.count * sites));
-    for (std::int64_t column = 0; column < group.count; ++column)
-      put_column(spins.data() + 3 * sites * (group.first + column), sites, column, group.count,
-                 columns);
+    auto const size = static_cast<std::size_t>(3 * sites);
+    std::vector<double> columns(size * static_cast<std::size_t>(group.count));
+    for (std::int64_t column = 0; column < group.count; ++column) {
+      auto const begin = size * static_cast<std::size_t>(group.first + column);
+      put_column(std::span(spins).subspan(begin, size), sites, column, group.count, columns);
+    }
     group.columns->continue_from(step, columns);
   }
 }
@@ -293,12 +291,11 @@ std::vector<Real> ReplicaColumns::spins() const {
   std::vector<Real> all;
   for (auto const& group : groups_) {
     auto const of_lattice = packed<Real>(group.columns->spins().vectors);
-    auto const sites = static_cast<std::int64_t>(of_lattice.size()) / 3 / group.count;
-    for (std::int64_t column = 0; column < group.count; ++column)
-      for (std::int64_t site = 0; site < sites; ++site) {
-        auto const from = of_lattice.begin() + 3 * (site * group.count + column);
-        all.insert(all.end(), from, from + 3);
-      }
+    auto const sites = std::ssize(of_lattice) / 3 / group.count;
+    for (std::int64_t column = 0; column < group.count; ++column) {
+      auto const of_replica = of_column(of_lattice, sites, column, group.count);
+      all.insert(all.end(), of_replica.begin(), of_replica.end());
+    }
   }
   return all;
 }
