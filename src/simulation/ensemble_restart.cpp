@@ -16,6 +16,7 @@
 #include <optional>
 #include <span>
 #include <system_error>
+#include <utility>
 
 namespace cayspin::simulation {
 namespace {
@@ -167,7 +168,9 @@ std::vector<io::ReplicaState> EnsembleRun::states(std::size_t begin) {
   std::vector<io::ReplicaState> states;
   if (columns_) {
     if (begin > 0) return states;
+    auto guards = guards_;  // copies, as in SceneRun: a checkpoint must not change later checks
     check_columns();
+    guards_ = std::move(guards);
     return columns_->states();
   }
   auto const end = std::min(replicas(), begin + states_at_once());
