@@ -70,7 +70,7 @@ class Checksums:
 
     def require_undamaged(self, frame, spins):
         """Raises ValueError if the frame with these spins is damaged."""
-        if frame - self.first >= len(self.rows):  # a kill may leave a frame without its checksum
+        if not self.rows:  # a file of an early version
             return
         known, step, numbers, more = self.rows[frame - self.first]
         if of_frame(step, numbers, spins, more) != int(known):
