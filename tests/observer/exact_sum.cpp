@@ -54,6 +54,17 @@ TEST(ExactSum, DoesNotDependOnOrderOrParts) {
   }
 }
 
+// The sums of as many blocks as a reduction may have, each of many rows. The digits of all rows
+// together do not fit into 64 bits.
+TEST(ExactSum, HoldsManyRowsInEachOfManyBlocks) {
+  constexpr int rows = 3 << 20, blocks = 1024;
+  double const number = 0x1p53 - 1;
+  ExactSum block, total;
+  for (int row = 0; row < rows; ++row) block.add(number);
+  for (int i = 0; i < blocks; ++i) total.add_atomically(block);
+  EXPECT_EQ(total.rounded(), number * rows * blocks);
+}
+
 TEST(ExactSum, LosesNothingBetweenLargeAndSmall) {
   EXPECT_EQ(rounded_sum_of({1e300, 1, -1e300}), 1);
   double const least = std::numeric_limits<double>::denorm_min();

@@ -48,8 +48,11 @@ class ExactSum {
     until_carry_ = most_between_carries;
   }
 
-  /// Adds a sum; several threads may do so at once.
-  CAYSPIN_DETAIL_NOINLINE void add_atomically(ExactSum const& other) {
+  /// Adds a sum, which may be carried first; several threads may do so at once. A word can hold the
+  /// digits of 1024 such sums.
+  CAYSPIN_DETAIL_NOINLINE void add_atomically(ExactSum& other) {
+    if (most_between_carries - other.until_carry_ > most_added_uncarried) [[unlikely]]
+      other.carry();
     for (int i = 0; i < words; ++i)
       if (other.word_[i] != 0) Kokkos::atomic_add(word_ + i, other.word_[i]);
   }
@@ -76,6 +79,7 @@ class ExactSum {
   static constexpr int digit_bits = 32;
   static constexpr std::uint64_t digit_mask = 0xffffffff;
   static constexpr std::int32_t most_between_carries = 1 << 29;
+  static constexpr std::int32_t most_added_uncarried = 1 << 20;
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   void add_not_finite(double number) {

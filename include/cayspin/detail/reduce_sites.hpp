@@ -141,8 +141,8 @@ struct Totals {
     for (std::int64_t& maximum : maxima)
       maximum = std::max(maximum, std::bit_cast<std::int64_t>(std::abs(*values++)));
   }
-  void include_atomically(Totals const& other) {
-    auto const* sum_there = other.sums.data();
+  void include_atomically(Totals& other) {
+    auto* sum_there = other.sums.data();
     for (ExactSum& sum : sums) sum.add_atomically(*sum_there++);
     auto const* maximum_there = other.maxima.data();
     for (std::int64_t& maximum : maxima) Kokkos::atomic_max(&maximum, *maximum_there++);
