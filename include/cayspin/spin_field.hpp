@@ -184,6 +184,9 @@ inline void require_lattice(char const* who, Lattice const& lattice, Lattice con
                  std::to_string(spins.replicas)
        : lattice.cell_sites != spins.cell_sites
            ? "with another number of sites in a cell than that of the spins"
+       : lattice.part != spins.part
+           ? "of another mpi::Domain than that of the spins, or of none; accepted: the lattice of "
+             "the spins"
            : "of other spacings or boundaries than that of the spins"));
 }
 

@@ -3,9 +3,15 @@
 
 #include <cayspin/crystal.hpp>
 #include <cayspin/lattice.hpp>
+#include <cayspin/part.hpp>
 #include <cayspin/spin_field.hpp>
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <span>
+#include <string>
 
 namespace cayspin::test {
 namespace {
@@ -70,6 +76,33 @@ TEST(RequireLattice, SaysWhatDiffers) {
             "x: made for a lattice of other spacings or boundaries than that of the spins");
   EXPECT_EQ(difference(Crystal::bcc().lattice({2, 3, 2})),
             "x: made for a lattice with another number of sites in a cell than that of the spins");
+}
+
+// A part on a single rank has the extents, spacings and boundaries of the whole lattice.
+TEST(RequireLattice, TellsAPartFromTheWhole) {
+  class Alone final : public Part {
+   public:
+    Lattice const& whole() const override { return whole_; }
+    std::array<std::int64_t, 3> begin() const override { return {0, 0, 0}; }
+    std::size_t parts() const override { return 1; }
+    std::size_t index() const override { return 0; }
+    void sum(std::span<std::int64_t>) const override {}
+    void maximum(std::span<std::int64_t>) const override {}
+    void update_ghosts(std::span<FieldNumbers const>) const override {}
+    void exchange(std::span<std::span<std::byte const> const>,
+                  std::span<std::span<std::byte> const>) const override {}
+
+   private:
+    Lattice whole_ = Lattice::cubic(2, 3, 4);
+  };
+  Alone const alone;
+  Lattice part = alone.whole();
+  part.part = &alone;
+  std::string const sentence =
+      "x: made for a lattice of another mpi::Domain than that of the spins, or of none; accepted: "
+      "the lattice of the spins";
+  EXPECT_EQ(refusal([&] { require_lattice("x", alone.whole(), part); }), sentence);
+  EXPECT_EQ(refusal([&] { require_lattice("x", part, part); }), "taken");
 }
 
 }  // namespace
