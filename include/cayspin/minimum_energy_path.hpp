@@ -4,6 +4,7 @@
 #include <cayspin/minimize.hpp>
 #include <cayspin/path/disturbance.hpp>
 #include <cayspin/path/found.hpp>
+#include <cayspin/path/images.hpp>
 #include <cayspin/path/probed_field.hpp>
 #include <cayspin/path/saddle.hpp>
 #include <cayspin/path/string.hpp>
@@ -18,8 +19,6 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 namespace cayspin::inline v0_2 {
@@ -326,12 +325,6 @@ class PathFinder {
   MinimumEnergyPath found_;
 };
 
-template <class Spins>
-void require_images(std::string const& who, std::vector<Spins> const& images, Spins const& saddle) {
-  if (images.size() < 3) throw std::invalid_argument(who + ": a path has at least 3 images");
-  for (auto const& image : images) require_lattice(who.c_str(), saddle.lattice(), image.lattice());
-}
-
 /// Relaxes an end of a path. Adds the evaluations to `unfinished`, and sets its end to what it is
 /// if this end does not converge.
 template <class Exec, class Field, class Spins>
@@ -375,8 +368,9 @@ constexpr int path_work_fields(std::size_t images) {
 ///   Spins saddle("saddle", lattice);
 ///   auto const path = cayspin::minimum_energy_path(exec, field, images, saddle);
 ///   double const barrier = path.barrier_forward();
-/// Waits. Throws std::invalid_argument for fewer than three images, images on different lattices,
-/// parts of a lattice, replicas and invalid options, and FieldNotFinite as minimize does.
+/// Waits. Throws std::invalid_argument for fewer than three images, images on different lattices or
+/// in the same memory, as copies of one field are, parts of a lattice, replicas and invalid
+/// options, and FieldNotFinite as minimize does.
 template <class Exec, class Field, class Spins>
 MinimumEnergyPath minimum_energy_path(Exec const& exec, Field const& field,
                                       std::vector<Spins>& images, Spins& saddle,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Minimum energy paths and their saddles: macrospins, walls and the collapse of a skyrmion.
+#include "../support/wrong_call.hpp"
 #include "films.hpp"
 
 #include <cayspin/minimum_energy_path.hpp>
@@ -355,6 +356,23 @@ TYPED_TEST(Paths, EndWhereTheFieldIsNotFinite) {
   EffectiveField const field(HoleAtTheEquator{});
   auto const found = this->find(field, Lattice::chain(1), up, down, this->options(), 5);
   EXPECT_EQ(found.end, PathEnd::not_finite);
+}
+
+// Copies of a field share its memory.
+TYPED_TEST(Paths, NeedMemoryForEachImage) {
+  using Spins = typename TestFixture::Spins;
+  auto const field = macrospin(1, 0.5, {0.1, 0, 0});
+  auto const lattice = Lattice::chain(1);
+  Spins saddle("saddle", lattice);
+  std::vector<Spins> copies(5, Spins("image", lattice)), images;
+  for (int k = 0; k < 5; ++k) images.emplace_back("image", lattice);
+  auto overlapping = images;
+  overlapping[1] = overlapping[3];
+  expect_refused({
+      {"copies", [&] { minimum_energy_path(this->exec, field, copies, saddle); }},
+      {"two images", [&] { minimum_energy_path(this->exec, field, overlapping, saddle); }},
+      {"saddle", [&] { minimum_energy_path(this->exec, field, images, images[2]); }},
+  });
 }
 
 TYPED_TEST(Paths, AreRefused) {
