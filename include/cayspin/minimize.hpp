@@ -63,6 +63,8 @@ class Minimizer {
       throw std::invalid_argument(
           "cayspin::minimize: the bound on the torque must be 1e-150 or "
           "more");
+    if (!(options.least_curvature.value_or(0) >= 0))
+      throw std::invalid_argument("cayspin::minimize: the least curvature must be 0 or more");
     if (options.evaluations < 1)
       throw std::invalid_argument("cayspin::minimize: the evaluations must be at least 1");
     detail::CallersMemory const memory(exec, *this, spins);

@@ -91,6 +91,8 @@ TYPED_TEST(Sites, WrongCalls) {
       {"torque 0", [&] { minimize(this->exec, field, spins, {.torque = 0}); }},
       {"torque 1e-151", [&] { minimize(this->exec, field, spins, {.torque = 1e-151}); }},
       {"torque nan", [&] { minimize(this->exec, field, spins, {.torque = nan}); }},
+      {"least curvature -1", [&] { minimize(this->exec, field, spins, {.least_curvature = -1}); }},
+      {"least curvature nan", [&] { minimize(this->exec, field, spins, {.least_curvature = nan}); }},
       {"evaluations", [&] { minimize(this->exec, field, spins, {.evaluations = 0}); }},
       {"other spins", [&] { minimizer.minimize(this->exec, field, other); }},
       {"other field", [&] { minimize(this->exec, field, other); }},

@@ -63,7 +63,8 @@ struct MinimizeOptions {
   double time = 0;             ///< time at which H is evaluated
   bool preconditioned = true;  ///< by the exchange measured on the field
   bool keep_saddles = false;   ///< accept any state without torque, also a saddle
-  /// Curvatures between -least_curvature and 0 do not make a state a saddle; by default `torque`.
+  /// Curvatures between -least_curvature and 0 do not make a state a saddle; 0 or more, by default
+  /// `torque`.
   std::optional<double> least_curvature = {};
   /// Compute Minimum::curvature to about 1e-6 of the strongest field; otherwise only its sign.
   bool lowest_curvature = false;
