@@ -367,7 +367,7 @@ constexpr int path_work_fields(std::size_t images) {
 ///   std::vector<Spins> images = ...;  // the first and the last are the states
 ///   Spins saddle("saddle", lattice);
 ///   auto const path = cayspin::minimum_energy_path(exec, field, images, saddle);
-///   double const barrier = path.barrier_forward();
+///   if (path.end == cayspin::PathEnd::converged) report(path.barrier_forward());
 /// Waits. Throws std::invalid_argument for fewer than three images, images on different lattices or
 /// in the same memory, as copies of one field are, parts of a lattice, replicas and invalid
 /// options, and FieldNotFinite as minimize does.

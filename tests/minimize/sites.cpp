@@ -5,6 +5,8 @@
 #include "../support/wrong_call.hpp"
 #include "films.hpp"
 
+#include <cayspin/path/found.hpp>
+
 namespace cayspin::test {
 namespace {
 
@@ -92,7 +94,8 @@ TYPED_TEST(Sites, WrongCalls) {
       {"torque 1e-151", [&] { minimize(this->exec, field, spins, {.torque = 1e-151}); }},
       {"torque nan", [&] { minimize(this->exec, field, spins, {.torque = nan}); }},
       {"least curvature -1", [&] { minimize(this->exec, field, spins, {.least_curvature = -1}); }},
-      {"least curvature nan", [&] { minimize(this->exec, field, spins, {.least_curvature = nan}); }},
+      {"least curvature nan",
+       [&] { minimize(this->exec, field, spins, {.least_curvature = nan}); }},
       {"evaluations", [&] { minimize(this->exec, field, spins, {.evaluations = 0}); }},
       {"other spins", [&] { minimizer.minimize(this->exec, field, other); }},
       {"other field", [&] { minimize(this->exec, field, other); }},
@@ -100,6 +103,15 @@ TYPED_TEST(Sites, WrongCalls) {
        [&] {
          minimize(this->exec, Zeeman{{nan, 0, 0}}, spins);
        }},
+  });
+}
+
+TEST(PathsWithoutASaddle, HaveNoBarrier) {
+  MinimumEnergyPath const none;
+  expect_refused<std::logic_error>({
+      {"saddle", [&] { none.saddle(); }},
+      {"forward", [&] { none.barrier_forward(); }},
+      {"backward", [&] { none.barrier_backward(); }},
   });
 }
 

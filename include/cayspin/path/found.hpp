@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
@@ -67,7 +68,13 @@ struct MinimumEnergyPath {
   double across = std::numeric_limits<double>::infinity();
   std::int64_t evaluations = 0;  ///< of the field at all sites
 
-  PathSaddle const& saddle() const { return saddles.front(); }
+  /// Return the highest saddle, and the barriers that it makes. Throw std::logic_error if no saddle
+  /// was found; if `end` is not converged, there may be none.
+  PathSaddle const& saddle() const {
+    if (saddles.empty())
+      throw std::logic_error("cayspin::MinimumEnergyPath: the search found no saddle");
+    return saddles.front();
+  }
   double barrier_forward() const { return saddle().energy - energy.front(); }
   double barrier_backward() const { return saddle().energy - energy.back(); }
 };
