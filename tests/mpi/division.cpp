@@ -53,6 +53,17 @@ TEST(Division, DomainsAreHeldAgainstTheRanks) {
   EXPECT_EQ(alone.local().shape, (std::array<std::int64_t, 3>{8, 8, 8}));
 }
 
+// The ghosts of such a lattice would belong to no rank.
+TEST(Division, PartsAreNotDivided) {
+  int ranks = 0;
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  mpi::Domain const domain(MPI_COMM_WORLD, Lattice::cubic(8, 8, 32), 2, {1, ranks});
+  EXPECT_THROW(mpi::Domain(MPI_COMM_SELF, domain.local(), 2), std::invalid_argument);
+  auto with_ghosts = Lattice::cubic(8, 8, 32);
+  with_ghosts.ghosts[2] = {2, 2};
+  EXPECT_THROW(mpi::Domain(MPI_COMM_SELF, with_ghosts, 2), std::invalid_argument);
+}
+
 // Planes of parts and of their ghosts come in whole cells.
 TEST(Division, PartsOfCrystalsHoldWholeCells) {
   int ranks = 0, rank = 0;

@@ -28,8 +28,8 @@ namespace cayspin::inline v0_2::mpi {
 class Domain final : public Part {
  public:
   /// Collective on `comm`. Throws std::invalid_argument on every rank when the lattices or depths
-  /// of the ranks differ, a depth is below 1, or the lattice is invalid, has replicas or cannot be
-  /// divided.
+  /// of the ranks differ, a depth is below 1, or the lattice is invalid, is a part of another one,
+  /// has replicas or cannot be divided.
   Domain(MPI_Comm comm, Lattice const& lattice, Depth const& depth)
       : Domain(comm, lattice, depth, divide(agreed(comm, lattice, depth), depth, size_of(comm))) {}
 
@@ -96,7 +96,7 @@ class Domain final : public Part {
   /// divisions; otherwise throws std::invalid_argument.
   static Lattice const& agreed(MPI_Comm comm, Lattice const& lattice, Depth const& depth,
                                Division const& division = {}) {
-    constexpr std::size_t count = 15;
+    constexpr std::size_t count = 16;
     // Numbers, then their complements: the maximum of a complement is the complement of the
     // minimum.
     std::array<std::int64_t, 2 * count> given{};
@@ -106,6 +106,7 @@ class Domain final : public Part {
     given[12] = depth.y;
     given[13] = depth.z;
     given[14] = lattice.replicas;
+    given[15] = lattice.part != nullptr || lattice.ghosts != decltype(lattice.ghosts){} ? 1 : 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       given[3 + axis] = lattice.shape[axis];
       given[6 + axis] = std::bit_cast<std::int64_t>(lattice.spacing[axis]);
@@ -120,6 +121,9 @@ class Domain final : public Part {
         throw std::invalid_argument(
             "cayspin::mpi::Domain: the ranks were given different lattices, depths or divisions");
     lattice.validate();
+    if (given[15] != 0)
+      throw std::invalid_argument(
+          "cayspin::mpi::Domain: the lattice is a part of another one; accepted: a whole lattice");
     return lattice;
   }
 
