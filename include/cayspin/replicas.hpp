@@ -38,6 +38,7 @@ void copy_between(Exec const& exec, SiteField<Real, Components, MemorySpace> con
                   std::int64_t replica, SiteField<Real, Components, MemorySpace> const& of_one) {
   check_access<Exec, MemorySpace>();
   auto const& lattice = of_all.lattice();
+  require_sites("cayspin::copy_replica", of_all.sites());
   require_lattice("cayspin::copy_replica", lattice.with_replicas(1), of_one.lattice());
   if (replica < 0 || replica >= lattice.replicas)
     throw std::invalid_argument("cayspin::copy_replica: there is no replica " +

@@ -217,6 +217,8 @@ TYPED_TEST(Replicas, AreCopiedOneByOne) {
               numbers_of_replica(numbers_of(from), r));
   EXPECT_THROW(copy_replica(this->exec, from, replicas, alone), std::invalid_argument);
   EXPECT_THROW(copy_replica(this->exec, from, 0, to), std::invalid_argument);
+  EXPECT_THROW(copy_replica(this->exec, Spins(), 0, Spins()), std::invalid_argument);
+  EXPECT_THROW(copy_to_replica(this->exec, Spins(), Spins(), 0), std::invalid_argument);
 }
 
 TYPED_TEST(Replicas, AreRefusedWhereReplicasWouldSeeEachOther) {
