@@ -183,7 +183,8 @@ class Minimizer {
 };
 
 /// Moves `spins` to a minimum of the energy of `field`, an EffectiveField or a field term, by a
-/// Minimizer that is made for this call. Waits. Throws like Minimizer.
+/// Minimizer that is made for this call. Waits. Lengths of spins are not checked: call
+/// require_unit_spins for your own spins. Throws like Minimizer.
 ///   auto const found = cayspin::minimize(exec, field, spins, {.torque = 1e-6});
 ///   if (found.end != cayspin::MinimizeEnd::converged) ...
 template <class Exec, class Field, class Spins>
