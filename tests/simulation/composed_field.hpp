@@ -6,6 +6,7 @@
 
 #include <cayspin/cayspin.hpp>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -19,6 +20,11 @@ inline auto composed_field(CompositionNumbers const& n) {
   auto per_moment = n.moment_of_sites;
   for (double& number : per_moment) number = number == 0 ? 0 : n.gyromagnetic / number;
   auto const moments = field_of_sites(lattice, n.moment_of_sites, n.moment);
+  auto squares = n.moment_of_sites;  // H of a slab depends on moments only if they differ
+  for (double& number : squares) number *= number;
+  SlabOfSites const slab{
+      field_of_sites(lattice, squares, 1),
+      (1 / std::sqrt(dot(n.normal_of_slab, n.normal_of_slab))) * n.normal_of_slab, n.slab};
   EffectiveField const exchange(
       Exchange(lattice, n.exchange),
       SiteDependentExchange<double, Memory>(field_of_sites(lattice, n.exchange_of_sites, 0)));
@@ -30,7 +36,7 @@ inline auto composed_field(CompositionNumbers const& n) {
       CubicAnisotropy(n.cubic, {1, 0, 0}, {0, 1, 0}), CrystalByPolynomials{n.cubic2, n.hexagonal});
   EffectiveField const inside(
       ChangesInTime{exchange, n.exchange_in_time}, ChangesInTime{dmi, n.dmi_in_time},
-      ChangesInTime{anisotropy, n.anisotropy_in_time},
+      ChangesInTime{anisotropy, n.anisotropy_in_time}, slab,
       SiteDependentApplied{moments, field_of_sites(lattice, n.source_of_sites, 0), n.applied,
                            n.source_along_y});
   EffectiveField const gradient(

@@ -61,6 +61,45 @@ struct SiteDependentApplied {
   }
 };
 
+/// A slab's demagnetising field, H = -strength * (m.n) * n, E = strength * (m.n)^2 / 2, both
+/// multiplied by a number of the site. The normal n is a unit vector.
+struct SlabOfSites {
+  ScalarField<double, Memory> numbers;
+  Vec3<double> normal;
+  double strength;
+
+  struct Now {
+    SiteArray<double, 1> numbers;
+    Vec3<double> normal;
+    double strength;
+
+    template <class Stencil>
+    KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type along(Stencil const& stencil) const {
+      using Value = typename Stencil::value_type;
+      auto const& m = stencil.center();
+      return Value(normal.x) * m.x + Value(normal.y) * m.y + Value(normal.z) * m.z;
+    }
+    template <class Stencil>
+    KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+        Stencil const& stencil) const {
+      using Value = typename Stencil::value_type;
+      Value const part = Value(-strength) * stencil.site().load(numbers) * along(stencil);
+      return {part * Value(normal.x), part * Value(normal.y), part * Value(normal.z)};
+    }
+    template <class Stencil>
+    KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+        Stencil const& stencil) const {
+      using Value = typename Stencil::value_type;
+      Value const part = along(stencil);
+      return Value(0.5 * strength) * stencil.site().load(numbers) * part * part;
+    }
+  };
+  template <class Exec, class Spins>
+  Now prepare(Exec const&, Spins const&, double) const {
+    return {numbers.array(), normal, strength};
+  }
+};
+
 /// Slonczewski's field with a damping-like strength that is a site-dependent number * cos(2 * t),
 /// a constant field-like strength, and p along (along_x, 0.6, 0.8).
 struct SiteDependentSlonczewski {

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -14,6 +15,7 @@
 #include <iterator>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cayspin::simulation::test {
@@ -23,11 +25,11 @@ namespace cayspin::simulation::test {
 struct CompositionNumbers {
   Lattice lattice;
   double exchange = 0, interfacial = 0, bulk = 0, cubic = 0, moment = 1, gyromagnetic = 1;
-  double cubic2 = 0, hexagonal = 0;
+  double cubic2 = 0, hexagonal = 0, slab = 0;
   double exchange_in_time = 0, anisotropy_in_time = 0, dmi_in_time = 0;  // a in 1 + a * sin(5*t)
   double constant[2] = {}, damping_like = 0, field_like = 0, nonadiabaticity = 0, damping = 0;
-  Vec3<double> axis[2] = {{0, 0, 1}, {0, 0, 1}}, axis_of_sites{0, 0, 1}, applied{0, 0, 0},
-               velocity{0, 0, 0};
+  Vec3<double> axis[2] = {{0, 0, 1}, {0, 0, 1}}, axis_of_sites{0, 0, 1}, normal_of_slab{0, 0, 1},
+               applied{0, 0, 0}, velocity{0, 0, 0};
   std::vector<double> exchange_of_sites, constant_of_sites, occupied, frozen, damping_of_sites;
   std::vector<double> moment_of_sites, source_of_sites;  // source along x
   double source_along_y = 0, largest_moment = 1;
@@ -46,6 +48,7 @@ class Composition {
     choose_lattice(seed);
     choose_bonds();
     choose_anisotropies();
+    choose_slab(seed);
     choose_applied();
     choose_torques();
     choose_damping();
@@ -222,6 +225,22 @@ class Composition {
     }
     if (!axes.empty()) field_ += "anisotropy = [" + axes + "]\n";
     choose_factors(!axes.empty());
+  }
+
+  /// Draws from an engine of its own, on which the other terms do not depend.
+  void choose_slab(unsigned seed) {
+    auto const engine_of_others = std::exchange(engine_, std::mt19937(seed + 1'000'000));
+    if (chance(0.3)) {
+      numbers.slab = number(0.1, 0.8);
+      numbers.normal_of_slab = chance(0.5) ? Vec3<double>{0, 0, 1} : vector(1);
+      // H is proportional to the moments if they differ. choose_applied divides by one of them.
+      auto const& moments = numbers.moment_of_sites;
+      double const most = moments.empty() ? 1 : *std::ranges::max_element(moments) * numbers.moment;
+      numbers.scale += numbers.slab * most;
+      field_ += fmt::format("slab_demag = {{ normal = {}, strength = {:.4f} }}\n",
+                            text_of(numbers.normal_of_slab), numbers.slab);
+    }
+    engine_ = engine_of_others;
   }
 
   void choose_applied() {
