@@ -4,8 +4,10 @@
 #include <cayspin/cayspin.h>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -52,6 +54,12 @@ inline Ensemble open_ensemble(std::string const& text,
             CAYSPIN_OK)
       << cayspin_last_error();
   return Ensemble(ensemble);
+}
+
+/// Returns a path among the temporary files that no other process that runs these tests has.
+inline std::filesystem::path temporary(std::string const& name) {
+  return std::filesystem::temp_directory_path() /
+         ("cayspin_c_interface_" + std::to_string(::getpid()) + "_" + name);
 }
 
 /// Returns the numbers of an array; components vary fastest, then x, y and z.

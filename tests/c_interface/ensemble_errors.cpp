@@ -62,12 +62,11 @@ TEST(CInterfaceEnsembleErrors, NullPointers) {
 TEST(CInterfaceEnsembleErrors, ScenesOfTheOtherKind) {
   auto const one = scene_text(), all = scene_text(three);
   auto const file = [](char const* name, std::string const& text) {
-    auto const path = std::filesystem::temp_directory_path() / name;
+    auto const path = temporary(name);
     std::ofstream(path) << text;
     return path.string();
   };
-  auto const one_file = file("cayspin_c_interface_one.toml", one),
-             all_file = file("cayspin_c_interface_all.toml", all);
+  auto const one_file = file("one.toml", one), all_file = file("all.toml", all);
   cayspin_simulation* simulation = nullptr;
   expect_failure(cayspin_open_text(all.c_str(), "mine.toml", CAYSPIN_DOUBLE, space, &simulation),
                  CAYSPIN_WRONG_SCENE,

@@ -199,11 +199,11 @@ TEST(CInterfaceEnsembles, StepAndLendInSeveralThreads) {
   auto const expect = [&](bool holds) { failures += holds ? 0 : 1; };
   auto const until_done = [&](auto const& call) {
     return std::thread([&done, call] {
-      while (!done) {
+      do {
         call();
         // A mutex is not fair: without a pause, the thread that steps might wait for long.
         std::this_thread::sleep_for(std::chrono::microseconds(50));
-      }
+      } while (!done);
     });
   };
   std::vector<std::thread> others;

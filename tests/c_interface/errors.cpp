@@ -8,6 +8,7 @@
 #include <fstream>
 #include <string>
 #include <thread>
+#include <utility>
 
 using namespace cayspin::test;
 
@@ -184,7 +185,7 @@ TEST(CInterfaceErrors, Equilibria) {
 }
 
 TEST(CInterfaceErrors, RunsAndFiles) {
-  auto const folder = std::filesystem::temp_directory_path() / "cayspin_c_interface";
+  auto const folder = temporary("runs");
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   auto const file = (folder / "run.h5").string();
@@ -192,8 +193,11 @@ TEST(CInterfaceErrors, RunsAndFiles) {
   expect_failure(cayspin_run(simulation.get(), nullptr, 0), CAYSPIN_WRONG_USAGE, "output.file");
   std::ofstream(file) << "mine";
   expect_failure(cayspin_run(simulation.get(), file.c_str(), 0), CAYSPIN_FAILED, "run.h5");
-  for (auto const& wrong : {std::string(), folder.string(), (folder / "run.txt" / "").string()})
-    expect_failure(cayspin_run(simulation.get(), wrong.c_str(), 1), CAYSPIN_FAILED, "");
+  for (auto const& [wrong, words] :
+       {std::pair{std::string(), "cannot create the file: No such file or directory"},
+        {folder.string(), "it exists and is not a regular file"},
+        {(folder / "run.txt" / "").string(), "run.txt does not exist"}})
+    expect_failure(cayspin_run(simulation.get(), wrong.c_str(), 1), CAYSPIN_FAILED, words);
   EXPECT_EQ(cayspin_run(simulation.get(), file.c_str(), 1), CAYSPIN_OK) << cayspin_last_error();
   auto from_file = scene_text();
   from_file.replace(from_file.find("uniform = [1.0, 0.0, 0.0]"), 25, "file = '" + file + "'");
@@ -244,7 +248,7 @@ TEST(CInterfaceErrors, NumbersThatFailInTheLastFrame) {
   text.replace(text.find("rkmk4"), 5, "classical_euler");
   text.replace(text.find("dt = 0.01"), 9, "dt = 1e300");
   auto const simulation = open(text);
-  auto const file = std::filesystem::temp_directory_path() / "cayspin_c_interface_failing.h5";
+  auto const file = temporary("failing.h5");
   expect_failure(cayspin_run(simulation.get(), file.c_str(), 1), CAYSPIN_NUMBERS_FAILED,
                  "not finite");
   std::filesystem::remove(file);
@@ -255,7 +259,7 @@ TEST(CInterfaceErrors, RefusedSteps) {
   auto unstable = text;
   unstable.replace(unstable.find("dt = 0.01"), 9, "dt = 1000.0");
   auto const simulation = open(unstable);
-  auto const file = std::filesystem::temp_directory_path() / "cayspin_c_interface_refused.h5";
+  auto const file = temporary("refused.h5");
   std::filesystem::remove(file);
   expect_failure(cayspin_step(simulation.get(), 1), CAYSPIN_WRONG_SCENE, "integrator.dt: 1000");
   expect_failure(cayspin_run(simulation.get(), file.c_str(), 0), CAYSPIN_WRONG_SCENE, "dt: 1000");

@@ -32,7 +32,8 @@ TEST_F(Threads, StepBorrowSetAndLook) {
   auto const expect = [&](bool holds) { failures += holds ? 0 : 1; };
   auto const until_done = [&](auto const& call) {
     return std::thread([&done, call] {
-      while (!done) call();
+      do call();
+      while (!done);
     });
   };
   std::vector<std::thread> others;
@@ -71,11 +72,13 @@ TEST_F(Threads, NoCallInTheMiddleOfARun) {
   auto const alone = open(text), disturbed = open(text);
   ASSERT_EQ(cayspin_run(alone.get(), in_folder("alone.h5").c_str(), 0), CAYSPIN_OK)
       << cayspin_last_error();
+  std::atomic<bool> ended = false;
   std::thread run([&] {
     EXPECT_EQ(cayspin_run(disturbed.get(), in_folder("disturbed.h5").c_str(), 0), CAYSPIN_OK)
         << cayspin_last_error();
+    ended = true;
   });
-  while (steps_of(disturbed.get()) == 0) std::this_thread::yield();
+  while (steps_of(disturbed.get()) == 0 && !ended) std::this_thread::yield();
   double const up[6] = {0, 0, 1, 0, 0, 1};
   cayspin_array const start{up, CAYSPIN_DOUBLE, {1, 1, 2, 3}, {6, 6, 3, 1}};
   EXPECT_EQ(cayspin_set_spins(disturbed.get(), &start), CAYSPIN_OK);
