@@ -29,8 +29,10 @@ template <class Stepper, class Choose>
 void expect_same_on_both_paths(Choose const& choose,
                                std::vector<Lattice> const& lattices = swept_lattices()) {
   using Field = typename Stepper::spins_type;
+  int swept = 0;
   for (Lattice const& lattice : lattices) {
     if (!can_sweep(lattice, Stepper::evaluations)) continue;
+    ++swept;
     auto const generator = choose(every_term(lattice));
     auto const start = random_spins<Field>(lattice, 13);
     auto const passed = numbers_after_steps<Threaded, Stepper>(Path::pass, generator, start);
@@ -41,6 +43,7 @@ void expect_same_on_both_paths(Choose const& choose,
                       numbers_after_steps<Kokkos::Serial, Stepper>(Path::sweep, generator, start),
                       name_of(lattice) + "on Serial");
   }
+  EXPECT_GT(swept, 0);
 }
 
 TYPED_TEST(Sweep, LieHeun) {

@@ -100,11 +100,14 @@ class RandomKills : public testing::Test {
     new (reported_) Reported{};
     pid_t const child = ::fork();
     if (child == 0) perform(path, course, *reported_);
-    while (!reported_->begun) std::this_thread::yield();
+    int status = 0;
+    while (!reported_->begun) {
+      ASSERT_EQ(::waitpid(child, &status, WNOHANG), 0) << "it has ended by itself: " << status;
+      std::this_thread::yield();
+    }
     auto const longest = one_of<std::size_t>({500, 2'000, 8'000});
     std::this_thread::sleep_for(std::chrono::microseconds(chance_.below(longest)));
     ::kill(child, SIGKILL);
-    int status = 0;
     ::waitpid(child, &status, 0);
     ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) << status;
   }
@@ -163,6 +166,11 @@ TEST_F(RandomKills, LoseNoFrame) {
   }
   expect_h5py_opens_all();
   EXPECT_EQ(lost_ + wrong_, 0);
+  if (kills >= 100) {
+    EXPECT_GT(counts_["cut short"], 0);
+    EXPECT_GT(counts_["restarts"], 0);
+    EXPECT_GT(frames_, 0);
+  }
   std::cout << "SIGKILL, " << kills << " at random: " << lost_ << " lost, " << wrong_ << " wrong; "
             << frames_ << " frames";
   for (auto const& [what, count] : counts_) std::cout << ", " << count << ' ' << what;

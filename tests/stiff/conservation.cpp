@@ -65,10 +65,12 @@ TYPED_TEST(Conservation, OfRandomScenes) {
   using Field = typename TypeParam::spins_type;
   double const epsilon = std::numeric_limits<typename Field::value_type>::epsilon();
   constexpr int steps = 20;
+  int moved = 0;
   for (int seed = 1; seed <= scenes(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     RandomScene scene(static_cast<unsigned>(seed));
-    Field spins = scene.template start<Field>();
+    Field const start = scene.template start<Field>();
+    Field spins = copy_of(start);
     auto const generator = scene.slab.natural();
     Space const exec;
     auto const sum = [&] { return magnetization(exec, spins); };
@@ -86,7 +88,9 @@ TYPED_TEST(Conservation, OfRandomScenes) {
       EXPECT_LT(length(sum() - spin), rounding);
     }
     EXPECT_LT(norm_defect(exec, spins), 4 * epsilon * steps * TypeParam::stages);
+    moved += largest_distance(spins, start) > 0.01;
   }
+  EXPECT_GT(2 * moved, scenes());
 }
 
 }  // namespace
