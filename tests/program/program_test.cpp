@@ -75,7 +75,8 @@ Outcome ProgramTest::start(Arguments const& arguments, Treatment const& treatmen
   pid_t const child = ::fork();
   if (child == 0) become_program(folder_, arguments, treatment);
   if (!treatment.interrupt_when.empty()) {
-    eventually([&] { return fs::exists(treatment.interrupt_when); });
+    EXPECT_TRUE(eventually([&] { return fs::exists(treatment.interrupt_when); }))
+        << treatment.interrupt_when;
     std::this_thread::sleep_for(std::chrono::duration<double>(treatment.interrupt_after));
     ::kill(child, SIGINT);
   }
@@ -182,7 +183,9 @@ Dataset ProgramTest::read_dataset(std::string const& name, std::string const& da
 
 std::vector<double> ProgramTest::last_spins(std::string const& name) const {
   auto const spins = read_dataset(name, "/spins");
-  auto const frame = static_cast<std::ptrdiff_t>(spins.values.size()) / spins.extents.at(0);
+  auto const frames = static_cast<std::ptrdiff_t>(spins.extents.at(0));
+  if (frames == 0) throw std::runtime_error(name + " has no frame");
+  auto const frame = static_cast<std::ptrdiff_t>(spins.values.size()) / frames;
   return {spins.values.end() - frame, spins.values.end()};
 }
 
