@@ -9,7 +9,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <type_traits>
 #include <utility>
 
 namespace cayspin::inline v0_2::io::detail {
@@ -22,18 +21,6 @@ Term read_term(Item const& item, Scene& scene) {
   Term term;
   read_keys(table, term);
   return term;
-}
-
-// Reads a number if the term has only one key, otherwise a table.
-template <class Term>
-Term read_lattice_term(Item const& item, Scene& scene) {
-  if constexpr (Term::keys().size() == 1) {
-    Term term;
-    term.*std::get<double Term::*>(Term::keys()[0].member) = number(item);
-    return term;
-  } else {
-    return read_term<Term>(item, scene);
-  }
 }
 
 // Reads the DMI of an interface, of the bulk of a chiral crystal, or of D2d symmetry. free_boundary
@@ -60,20 +47,6 @@ void read_dmi(Item const& item, Scene& scene, Field& field) {
   double const constant = number_of_sites(interfacial, scene, field.dmi_factors);
   field.dmi = {constant,
                axis_of_sites(table.required("normal", "three numbers"), scene, field.dmi_normals)};
-}
-
-void read_lattice_terms(Table const& table, Field& field) {
-  for_each_lattice_term(field, [&]<class Term>(std::optional<Term>& term) {
-    auto const item = table.find(Term::key);
-    if (!item) return;
-    if (std::is_same_v<Term, InterfacialDmi>) return read_dmi(*item, table.scene(), field);
-    if (std::is_same_v<Term, BulkDmi>) return;  // read_dmi has read it
-    if (std::is_same_v<Term, Exchange>) {
-      field.exchange = {number_of_sites(*item, table.scene(), field.exchange_factors)};
-      return;
-    }
-    term = read_lattice_term<Term>(*item, table.scene());
-  });
 }
 
 std::vector<std::string_view> field_keys() {
@@ -249,7 +222,9 @@ Field read_field(Table const& root, SystemKind kind) {
   auto& scene = root.scene();
   table.accept_only(field_keys());
   if (scene.units.si) refuse_reduced_keys(table);
-  read_lattice_terms(table, field);
+  if (auto const item = table.find("exchange"))
+    field.exchange = {number_of_sites(*item, scene, field.exchange_factors)};
+  if (auto const item = table.find("dmi")) read_dmi(*item, scene, field);
   if (auto const item = table.find("exchange_between")) read_exchange_between(*item, scene, field);
   if (auto const item = table.find("interlayer")) read_interlayers(*item, scene, field);
   if (auto const item = table.find("couplings")) read_couplings(*item, scene, field);
