@@ -119,6 +119,7 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     ++evaluations_done_;
     begin_run(t, std::sqrt(largest_square(exec)), asked);
     begin_time_ = t;
+    has_increments_ = true;  // there is no step yet, so there is none to take again
   }
 
   /// Takes the next internal step. `wanted`: the next time at which spins are needed.
