@@ -87,7 +87,7 @@ def read_trajectory(path):
         frames = _series(file)
         rank = 6 if np.ndim(file["spins"]) == 6 else 5
         spins = _dataset(file, "spins", rank, (3,))
-        count = min(frames_in(file), len(frames.time))
+        count = frames_in(file)
         if count == 0:
             raise SystemExit(f"{path}: it holds no frame")
         samples = _series(file, "scalars/")
