@@ -74,7 +74,7 @@ TEST_F(TrajectoryTest, FileOfAnotherWriterIsKept) {
   ASSERT_EQ(::flock(writer, LOCK_EX), 0);
   auto const message = error_line(path, [&] { create(path, true); });
   ::close(writer);
-  EXPECT_TRUE(contains(message, "another program"));
+  EXPECT_TRUE(contains(message, "this program or another one has it open"));
   EXPECT_EQ(read_bytes(path), "precious");
   EXPECT_EQ(names_in(folder_), std::vector<std::string>{"a.h5"});
 }
