@@ -74,8 +74,10 @@ void FieldInPass<Spins>::Terms::add_bonds_between(io::Scene const& scene, io::Si
     auto biquadratic = sum_of(near, &io::Interlayer::biquadratic, 0);
     for (auto* const constants : {&bilinear, &biquadratic})
       for (double& constant : *constants) constant /= lattice_.spacing[axis];
-    none_.magnitude +=
+    double const strongest =
         largest_of_parts(lattice_, bilinear) + largest_of_parts(lattice_, biquadratic);
+    if (strongest == 0) continue;  // no faces along this axis
+    none_.magnitude += strongest;
     interlayers_[axis] = {scalar_field_of<Real, Memory>("interlayer", lattice_, bilinear),
                           scalar_field_of<Real, Memory>("interlayer", lattice_, biquadratic)};
   }

@@ -36,7 +36,7 @@ struct InterlayerOfSites {
   cayspin::SiteArray<Real, 1> bilinear[3] = {}, biquadratic[3] = {};
   cayspin::SiteArray<Real, 1> exchange = {};  // A; may have no data
   double per_square[3] = {};                  // 2 / spacing^2
-  std::int32_t sweeps = 0;                    // number of sweeps after which s is exact to rounding
+  std::int32_t sweeps = 0;                    // after so many sweeps, s is exact to rounding
   DistantBonds<Real> const* distant = nullptr;
   std::int32_t distant_count = 0;
 
@@ -109,30 +109,35 @@ struct InterlayerOfSites {
     KOKKOS_FORCEINLINE_FUNCTION void add_bond(Value const& J_of_bond, Value const& B_of_bond,
                                               Value const& k, Value const& k_of_other,
                                               Vec3<Value> const& other) {
-      using cayspin::detail::select;
+      using cayspin::detail::holds_everywhere, cayspin::detail::select;
       auto const& m = stencil.center();
       Value const none(0), is_there = dot(other, other);
       Value const J = select<Value>(is_there == none, none, J_of_bond);
       Value const B = select<Value>(is_there == none, none, B_of_bond);
+      auto const has_none = Kokkos::abs(J) + Kokkos::abs(B) == none;
+      if (holds_everywhere(has_none)) return;  // few sites are at faces
       auto s = m, s_of_other = other;
       for (std::int32_t sweep = 0; sweep < bonds.sweeps; ++sweep) {
+        auto const s_before = s, before = s_of_other;
         s = at_face(k, m, J, B, s, s_of_other);
         s_of_other = at_face(k_of_other, other, J, B, s_of_other, s);
+        if (are_equal(s, s_before) && are_equal(s_of_other, before)) break;
       }
       Value const along = dot(s, s_of_other);
       if constexpr (IsField) {
         Value const strength = J + Value(2) * B * along;
         auto const direct = strength * s_of_other, through_cell = k * (s - m);
-        auto const has_none = Kokkos::abs(J) + Kokkos::abs(B) == none;
         field = field + select<Value>(k == none, direct,
                                       select<Value>(has_none, zero<Value>(), through_cell));
       } else {
         Value const bent =
             k * (Value(1) - dot(m, s)) + k_of_other * (Value(1) - dot(other, s_of_other));
-        auto const has_none = Kokkos::abs(J) + Kokkos::abs(B) == none;
         Value const bond = bent - (J + B * along) * along;
         energy = energy + Value(0.5) * select<Value>(has_none, none, bond);
       }
+    }
+    KOKKOS_FORCEINLINE_FUNCTION static bool are_equal(Vec3<Value> const& a, Vec3<Value> const& b) {
+      return cayspin::detail::holds_everywhere(a.x == b.x && a.y == b.y && a.z == b.z);
     }
     /// Returns a better approximation of the s that minimises
     /// k * (1 - m.s) - J * s.s' - B * (s.s')^2; for B = 0 it is exact at the given s'. Without

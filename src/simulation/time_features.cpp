@@ -49,7 +49,8 @@ std::optional<std::vector<Jump>> find_jumps(TimeSamples& samples, std::int64_t m
     if (range == 0) continue;
     for (std::size_t i = 0; i + 1 < samples.count(); ++i) {
       if (samples.evaluations() > most_evaluations) return std::nullopt;
-      if (samples.change(i, c) > 1e-9 * range && samples.changes_unusually(i, c))
+      double const least = std::max(1e-9 * range, samples.round_off(c));
+      if (samples.change(i, c) > least && samples.changes_unusually(i, c))
         if (auto const jump = bisect(samples, c, samples.time(i), samples.time(i + 1)))
           jumps.push_back(*jump);
     }
@@ -159,7 +160,7 @@ class Parts {
     auto const& values = values_[c];
     auto const [least, most] = std::ranges::minmax(values);
     auto const [first, last] = samples_.within(begin, end);
-    double const noise = 1e-12 * samples_.range(c);
+    double const noise = std::max(1e-12 * samples_.range(c), samples_.round_off(c));
     double const middle = 0.5 * (begin + end), half = 0.5 * (end - begin);
     auto const differs = [&](double t, double value) {
       if (value >= least - noise && value <= most + noise && most - least <= noise) return false;

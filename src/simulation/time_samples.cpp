@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 namespace cayspin::simulation {
 
@@ -14,6 +15,7 @@ TimeSamples::TimeSamples(std::span<TimeDependent const> vectors, FeatureSearch c
       apart_((end_ - begin_) / static_cast<double>(search.samples)),
       values_(3 * vectors.size()),
       ranges_(3 * vectors.size()),
+      round_off_(3 * vectors.size()),
       now_(3 * vectors.size()),
       largest_(vectors.size()) {
   std::vector<double> equal(static_cast<std::size_t>(search.samples + 1));
@@ -26,7 +28,9 @@ TimeSamples::TimeSamples(std::span<TimeDependent const> vectors, FeatureSearch c
   for (double const t : times_) add_sample(t);
   for (std::size_t c = 0; c < components(); ++c) {
     auto const [least, most] = std::ranges::minmax(values_[c]);
-    ranges_[c] = most - least;
+    round_off_[c] =
+        32 * std::numeric_limits<double>::epsilon() * std::max(std::abs(least), std::abs(most));
+    ranges_[c] = most - least > round_off_[c] ? most - least : 0;
   }
   later_.clear();
 }
@@ -100,7 +104,7 @@ double TimeSamples::last_change() const {
   double last = 0;
   for (std::size_t c = 0; c < components(); ++c)
     for (std::size_t i = count() - 1; i-- > 0;)
-      if (change(i, c) > 1e-12 * range(c)) {
+      if (change(i, c) > std::max(1e-12 * range(c), round_off(c))) {
         last = std::max(last, time(i + 1));
         break;
       }

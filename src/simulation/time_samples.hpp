@@ -23,8 +23,10 @@ class TimeSamples {
   double end() const { return end_; }
   double time(std::size_t i) const { return times_[i]; }
   double sample(std::size_t i, std::size_t component) const { return values_[component][i]; }
-  /// Returns the difference between the largest and the least sample.
+  /// Returns the difference between the largest and the least sample; 0 if it may be round-off.
   double range(std::size_t component) const { return ranges_[component]; }
+  /// Returns the difference between two values up to which it may be round-off.
+  double round_off(std::size_t component) const { return round_off_[component]; }
   /// Returns |sample(i + 1) - sample(i)|.
   double change(std::size_t i, std::size_t component) const;
   /// Returns true if change(i, component) is at least three times as large as most changes nearby.
@@ -64,7 +66,7 @@ class TimeSamples {
   double begin_, end_, apart_;
   std::vector<double> times_;
   std::vector<std::vector<double>> values_;  // [component][sample]
-  std::vector<double> ranges_, now_, largest_;
+  std::vector<double> ranges_, round_off_, now_, largest_;
   std::vector<double> later_;  // records of t and all components
   std::int64_t evaluations_ = 0;
 };

@@ -49,6 +49,18 @@ TEST(Pulses, OfAnySmallPartOfARunAreFound) {
   }
 }
 
+TEST(Pulses, RoundOffIsNone) {
+  for (auto const* const text :
+       {"sin(t)^2+cos(t)^2", "1+1e-10*sin(0.1*t)", "sqrt(sin(9*t)^2+cos(9*t)^2)",
+        "0.001*cos(6e-6*t)", "1e-200*(sin(t)^2+cos(t)^2)"}) {
+    SCOPED_TRACE(text);
+    auto const scene = scene_of(pulse_scene("method = 'tsit5', tolerance = 1e-6, end = 20", text));
+    auto const features = make_plan(scene, Precision::double_precision).features;
+    EXPECT_EQ(features->jumps, 0);
+    EXPECT_LE(features->bounds.size(), 8U);
+  }
+}
+
 // The text holds neither the time of the pulse nor numbers whose sum or difference it is.
 TEST(Pulses, AreFoundWhereTheTextDoesNotNameTheirTimes) {
   for (double const width : {0.02, 0.2})
