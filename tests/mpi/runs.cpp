@@ -206,7 +206,7 @@ every = 5
   auto const checked = start({"check", scene, "--ranks", "1,2"});
   EXPECT_EQ(checked.status, 0) << checked.errors;
   // A restart on several ranks chooses again if the earlier run on one rank chose a method for one.
-  Options const longer{"--set", "integrator.end=0.25"};
+  Arguments const longer{"--set", "integrator.end=0.25"};
   ASSERT_EQ(start(run_of(scene, "whole.h5", longer)).status, 0);
   auto restarted = longer;
   restarted.insert(restarted.end(), {"--restart", "one.h5"});
