@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "io/ensemble.hpp"
 
+#include "io/key_path.hpp"
 #include "io/relax.hpp"
 #include "sections.hpp"
 
@@ -162,11 +163,14 @@ Ensemble read_ensemble(Table const& root) {
     if (is_table_of_keys(node))
       item.fail("is a table of other keys",
                 "the whole path of a key in quotes, as in vary.\"field.applied.2\" = [..]");
-    if (!may_vary(key))
+    auto const path = plain_path(key);
+    if (!may_vary(path))
       item.fail("must be the same in all replicas",
                 "a number of [field], [torque] or [material], thermal.temperature, "
                 "system.damping");
-    ensemble.vary.push_back({key, read_values(item, root.scene(), ensemble.replicas)});
+    if (std::ranges::any_of(ensemble.vary, [&](auto const& one) { return one.key == path; }))
+      item.fail(fmt::format("is the key {}, which varies already", path), "each key once");
+    ensemble.vary.push_back({path, read_values(item, root.scene(), ensemble.replicas)});
   }
   return ensemble;
 }

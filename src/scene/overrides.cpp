@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "io/key_path.hpp"
 #include "io/toml_string.hpp"
 #include "sections.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -158,6 +160,13 @@ void apply_override(toml::table& root, std::string const& assignment) {
 }  // namespace cayspin::inline v0_2::io::detail
 
 namespace cayspin::inline v0_2::io {
+
+std::string plain_path(std::string_view path) {
+  auto keys = detail::split_path(path);
+  for (auto& key : keys)
+    if (auto const index = detail::as_index(key)) key = fmt::to_string(*index);
+  return fmt::format("{}", fmt::join(keys, "."));
+}
 
 std::string toml_string(std::string_view text) {
   std::ostringstream quoted;

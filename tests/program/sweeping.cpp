@@ -336,6 +336,7 @@ TEST_F(Sweeping, WrongUsesAreOneLine) {
              "integrator={method='heun',dt=0.01,steps=1}"},
             "--over integrator.dt has it too"},
            {{"--over", "'system'.damping=0.1", "--set", "system.damping=0.2"}, "--set has it too"},
+           {{"--over", "field.applied.02=0,1", "--set", "field.applied.2=1"}, "--set has it too"},
            {{"--over", "output.file='a.h5','b.h5'"}, "output.file"},
            {{"--over", "\"output\".file='a.h5','b.h5'"}, "all runs go into the file"},
            {{"--over", "system.damping=0.1", "--set", "output.xdmf=true"},

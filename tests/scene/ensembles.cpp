@@ -35,5 +35,21 @@ TEST(EnsembleOfAScene, APathWithoutQuotesIsRefused) {
                      "in vary.\"field.applied.2\" = ");
 }
 
+TEST(EnsembleOfAScene, AKeyThatVariesTwiceIsRefused) {
+  for (std::string const second :
+       {"'field.applied.02'", "'field.\"applied\".2'", "'field . applied . 2'"})
+    expect_holds(
+        refusal_of_three("vary.\"field.applied.2\" = [1, 2, 3]\nvary." + second + " = [7, 8, 9]\n"),
+        "is the key field.applied.2, which varies already; accepted: each key once");
+  EXPECT_EQ(refusal_of_three("vary.\"field.applied.2\" = [1, 2, 3]\n"
+                             "vary.\"field.applied.01\" = [7, 8, 9]\n"),
+            "accepted");
+}
+
+TEST(EnsembleOfAScene, QuotesInAPathDoNotLetAFixedKeyVary) {
+  expect_holds(refusal_of_three("vary.'material.\"Ms\"' = [1, 2, 3]\n"),
+               "must be the same in all replicas; accepted: a number of [field]");
+}
+
 }  // namespace
 }  // namespace cayspin::inline v0_2::io::test

@@ -2,6 +2,7 @@
 #include "grid.hpp"
 
 #include "cayspin_git_commit.hpp"
+#include "io/key_path.hpp"
 #include "io/notes.hpp"
 #include "io/stages.hpp"
 #include "simulation/failure.hpp"
@@ -26,12 +27,10 @@ constexpr double most_runs = 1e5;
 constexpr std::int64_t most_checked = 20'000'000;
 
 // Returns true if two keys are equal, or if one is a table that contains the other. Both may be
-// followed by =VALUE, which is ignored. Parts of keys may have quotes.
+// followed by =VALUE, which is ignored.
 bool overlap(std::string const& a, std::string const& b) {
   auto const path = [](std::string const& assignment) {
-    auto key = assignment.substr(0, assignment.find('='));
-    std::erase_if(key, [](char c) { return c == ' ' || c == '"' || c == '\''; });
-    return key + '.';
+    return io::plain_path(std::string_view(assignment).substr(0, assignment.find('='))) + '.';
   };
   auto const first = path(a), second = path(b);
   return first.starts_with(second) || second.starts_with(first);
