@@ -110,7 +110,7 @@ void read_anisotropies(Item const& item, Scene& scene, Field& field) {
       "{ constant = K, axis = [x, y, z] }, { cubic = Kc, axes = [[..], [..]] }, { hexagonal = K, "
       "axis = [..], in_plane = [..] }, or an array of such tables";
   if (item.node->is_table()) return read_anisotropy(item, scene, field);
-  for (auto const& entry : entries(item, 1, std::numeric_limits<std::size_t>::max(), accepted))
+  for (auto const& entry : entries(item, 0, std::numeric_limits<std::size_t>::max(), accepted))
     read_anisotropy(entry, scene, field);
 }
 

@@ -75,7 +75,7 @@ template <class Between, class Read>
 void read_bonds_between(Item const& item, Scene& scene, std::vector<std::string_view> const& keys,
                         std::vector<Between>& all, Read const& read) {
   constexpr std::string_view accepted = "a list of tables with the key between = [region, region]";
-  for (auto const& entry : entries(item, 1, std::numeric_limits<std::size_t>::max(), accepted)) {
+  for (auto const& entry : entries(item, 0, std::numeric_limits<std::size_t>::max(), accepted)) {
     if (!entry.node->is_table()) entry.wrong_type(accepted);
     Table const table(entry, scene);
     table.accept_only(keys);
@@ -126,7 +126,7 @@ void read_applied(Item const& item, Field& field) {
 void read_sources(Item const& item, Scene& scene, Field& field) {
   constexpr std::string_view accepted =
       "a list of tables { profile = a vector of sites, time = an expression in t }";
-  for (auto const& entry : entries(item, 1, std::numeric_limits<std::size_t>::max(), accepted)) {
+  for (auto const& entry : entries(item, 0, std::numeric_limits<std::size_t>::max(), accepted)) {
     if (!entry.node->is_table()) entry.wrong_type(accepted);
     Table const table(entry, scene);
     table.accept_only({"profile", "time"});

@@ -23,6 +23,30 @@ std::string said(std::string const& text, std::vector<std::string> const& overri
   }
 }
 
+TEST(Stages, EmptyArraysTakeTermsAway) {
+  auto const scene = parse_scene(
+      with_stages(R"toml([field]
+exchange = 1.0
+anisotropy = [{ constant = 1.0, axis = [0, 0, 1] }, { cubic = 1.0, axes = [[1, 0, 0], [0, 1, 0]] }]
+exchange_between = [{ between = [0, 1], factor = 0.5 }]
+interlayer = [{ between = [0, 1], J = 0.1 }]
+sources = [{ profile = [0, 0, "i"] }]
+[[stage]]
+field = { anisotropy = [], exchange_between = [], interlayer = [], sources = [] }
+)toml",
+                  replaced(plain_scene, "shape = [4, 3, 2]", "shape = [4, 3, 2]\nregions = \"k\"")),
+      "scene.toml");
+  EXPECT_EQ(scene.field.anisotropies.size(), 1u);
+  EXPECT_EQ(scene.field.sources.size(), 1u);
+  auto const& after = scene.stages.at(0).scene.field;
+  EXPECT_TRUE(after.exchange);
+  EXPECT_TRUE(after.anisotropies.empty());
+  EXPECT_TRUE(after.crystal_anisotropies.empty());
+  EXPECT_TRUE(after.exchange_between.empty());
+  EXPECT_TRUE(after.interlayers.empty());
+  EXPECT_TRUE(after.sources.empty());
+}
+
 TEST(Stages, ChangeKeysOnTopOfThoseBefore) {
   auto const scene = parse_scene(with_stages(R"toml([field]
 exchange = 2.0

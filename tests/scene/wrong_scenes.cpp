@@ -81,7 +81,7 @@ field.anisotropy = { constant = 1.0, axis = [0, 0, 0] } | .axis: is a zero | thr
 field.anisotropy = { constant = 1.0, axis = [0, 2] } | .axis: has 2
 field.anisotropy = { constant = 1.0 } | .axis: is missing
 field.anisotropy = { konstant = 1.0, axis = [0, 0, 2] } | .konstant | did you mean "constant"?
-field.anisotropy = [] | : has 0 entries
+field.anisotropy = [1] | [0]: 1 is an integer | a table
 field.applied = [0.05, 0] | : has 2 entries | three
 field.applied = [0.05, '0.1*cos(x)', 0] | [1] | accepted: a formula in t
 field.applied = [0.05, '0.1*cos(', 0] | [1] | expression "0.1*cos("
