@@ -21,7 +21,6 @@ CELLS, CELL, TO, HIGHEST = 1000, 4e-9, 4e-9, 30e9  # count, m, s, Hz
 
 def scene(along):
     """Returns a scene with waves along x in a film that is magnetized along `along`."""
-    offset = f"(2*pi*{HIGHEST}*(t - 1.0001e-10))"
     return cayspin.Scene(
         units="SI", system={"kind": "llg"},
         lattice={"shape": [CELLS], "spacing": [CELL, 1e-7, THICKNESS], "boundary": "periodic"},
@@ -29,7 +28,7 @@ def scene(along):
                   "damping_form": "gilbert"},
         field={"demag": {"periodic_images": [20, 500, 0]}, "applied": list(FIELD * along),
                "sources": [{"profile": [0, 0, "exp(-((i - 499.5)/4)^2)"],
-                            "time": f"1e-3*sin({offset})/{offset}"}]},
+                            "time": f"1e-3*sinc(2*pi*{HIGHEST}*(t - 1e-10))"}]},
         initial={"uniform": list(along)},
         integrator={"method": "rkmk4", "dt": 1e-12, "end": TO}, output={"every": 10})
 

@@ -18,7 +18,7 @@ struct ExpressionFunction {
 
 /// A formula typed in a scene, such as "0.3 + 0.2*cos(pi*x)", compiled once and evaluated on the
 /// host. It may use the given variables and functions, the constants pi, _pi and _e, the operators
-/// % (remainder) and ! (not), and muParser's functions and operators except assignment. Not
+/// % (remainder) and ! (not), sinc, and muParser's functions and operators except assignment. Not
 /// thread-safe.
 class Expression {
  public:

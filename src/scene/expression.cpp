@@ -28,6 +28,7 @@ bool assigns(std::string_view text) {
 // Returns a remainder with the sign of the divisor, so that (i - 1) % 2 is 1 for i = 0.
 double remainder_of(double a, double b) { return a - b * std::floor(a / b); }
 double is_zero(double a) { return a == 0 ? 1 : 0; }
+double sinc(double a) { return a == 0 ? 1 : std::sin(a) / a; }
 
 // Joins lines: a formula may have line breaks, a message must not.
 std::string in_one_line(std::string message) {
@@ -74,6 +75,7 @@ Expression::Expression(std::string text, std::vector<std::string> variables,
     parser.DefineConst("pi", std::numbers::pi);
     parser.DefineOprt("%", &remainder_of, mu::prMUL_DIV, mu::oaLEFT, true);
     parser.DefineInfixOprt("!", &is_zero);
+    parser.DefineFun("sinc", &sinc);
     for (std::size_t n = 0; n < compiled_->variables.size(); ++n) {
       parser.DefineVar(compiled_->variables[n], &compiled_->values[n]);
     }

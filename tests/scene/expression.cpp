@@ -34,6 +34,12 @@ TEST(Expression, FollowsTheUsualRules) {
   EXPECT_EQ(value("(x >= y) + (x != y) + (x == x) + (y <= x)", x, y), 4);
 }
 
+TEST(Expression, SincIsOneAtZero) {
+  EXPECT_EQ(value("sinc(x)", 0), 1);
+  EXPECT_EQ(value("sinc(x)", -0.375), std::sin(0.375) / 0.375);
+  EXPECT_NEAR(value("sinc(pi)"), 0, 1e-16);
+}
+
 TEST(Expression, TakesNewValuesInEveryCall) {
   Expression const product("x*y", {"x", "y"});
   for (int n = 1; n <= 4; ++n) {
