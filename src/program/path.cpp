@@ -94,10 +94,11 @@ void require_same_vacancies(PathCommandOptions const& options, std::vector<doubl
 
 /// Returns the spins of the file that --to names.
 std::vector<double> other_end(PathCommandOptions const& options, io::Scene const& scene,
+                              std::filesystem::path const& output,
                               std::vector<double> const& from) {
   EndOption const last{"--to", *options.to};
   auto const other = scene_from(options, last);
-  output_file(other, options.output);  // this file must not be replaced either
+  output_file(other, output);  // this file must not be replaced either
   auto const cells_of = [](io::Lattice const& lattice) {
     return cells_text(lattice.shape, std::ssize(lattice.basis));
   };
@@ -145,9 +146,11 @@ int find_path(PathCommandOptions const& options) {
   } catch (UsageError const& error) {
     throw UsageError(std::string("--") + error.what());
   }
-  auto const output = output_file(scene, options.output);
+  auto output_name = options.output;
+  if (!output_name && !scene.output.file) output_name = "path.h5";
+  auto const output = output_file(scene, output_name);
   auto const from = spins_of(scene, first);
-  auto const to = has_end ? other_end(options, scene, from) : std::vector<double>();
+  auto const to = has_end ? other_end(options, scene, output, from) : std::vector<double>();
   io::require_writable(output, options.overwrite);
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, options.device);
@@ -199,6 +202,8 @@ Command add_path(CLI::App& program) {
   auto* const command = program.add_subcommand(
       "path", "Find the minimum-energy path between two states, and its barrier (HDF5)");
   add_device_options(*command, *options);
+  command->get_option("--output")
+      ->description("The file to write; wins over output.file (default: path.h5)");
   command->add_option("--from", options->from, "The state where it begins: HDF5 or OVF")
       ->required()
       ->type_name("FILE");

@@ -282,6 +282,12 @@ TEST_F(PathCommand, Refuses) {
   expect_status(0, arguments({"--quiet", "--overwrite"}));
 }
 
+TEST_F(PathCommand, WritesPathH5ByDefault) {
+  write_ends(scene);
+  expect_status(0, {"path", in_folder("scene.toml"), "--from", "a.h5", "--to", "b.h5", "--quiet"});
+  EXPECT_NEAR(attribute("barrier_forward"), 3 * 0.5 * 1.3 * std::pow(1 - 0.4 / 1.3, 2), 1e-11);
+}
+
 TEST_F(PathCommand, SaysWhyThereIsNoPath) {
   write_ends(scene);
   auto const same = start(
