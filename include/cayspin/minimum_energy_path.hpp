@@ -5,13 +5,16 @@
 #include <cayspin/path/disturbance.hpp>
 #include <cayspin/path/found.hpp>
 #include <cayspin/path/images.hpp>
+#include <cayspin/path/missed_saddle.hpp>
 #include <cayspin/path/probed_field.hpp>
+#include <cayspin/path/relax_end.hpp>
 #include <cayspin/path/saddle.hpp>
 #include <cayspin/path/string.hpp>
 
 #include <Kokkos_Profiling_ScopedRegion.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -63,7 +66,16 @@ class PathFinder {
     if (distance_between(exec_, string_.spins(0), string_.spins(last)) < 1e-3)
       return ended(PathEnd::same_ends, saddle);
     if (!options_.starts_from_images) make_start();
-    auto const end = search();
+    auto end = search();
+    if (end == PathEnd::converged || end == PathEnd::no_saddle) {
+      found_.needs_images =
+          string_.size() <= few_images && misses_saddle(
+                                              exec_, string_, found_.saddles, saddle_, peak_,
+                                              round_off_, [this] { return climb().is_saddle; },
+                                              [this](Spins& spins) { return relaxed(spins); });
+      if (found_.needs_images) end = PathEnd::unsettled;
+      if (stopped_) end = PathEnd::interrupted;
+    }
     return ended(end, saddle);
   }
 
@@ -71,6 +83,7 @@ class PathFinder {
   static constexpr double disturbance = 0.1;          // rad
   static constexpr double rough = 0.03, fine = 2e-3;  // gradients, relative to the strongest field
   static constexpr double longest_turn = 0.3;         // of a spin in a step, rad
+  static constexpr std::size_t few_images = 8;        // of a path that may hide a saddle
 
   /// Places the images along the great circles of the spins, with a disturbance that is largest in
   /// the middle of the path.
@@ -238,6 +251,13 @@ class PathFinder {
     auto const& [image, fraction] = valley->place;
     auto& spins = saddle_.spins();
     point_between(exec_, string_.spins(image), string_.spins(image + 1), fraction, spins);
+    auto const found = relaxed(spins);
+    if (found.end != MinimizeEnd::converged || is_known(spins)) return false;
+    is_settled_ = false;
+    return string_.insert(exec_, spins, found.energy, image);
+  }
+
+  Minimum relaxed(Spins& spins) {
     auto const so_far = found_.evaluations + string_.evaluations();
     auto const found = minimize(
         exec_, field_, spins,
@@ -251,9 +271,21 @@ class PathFinder {
          }});
     found_.evaluations += found.evaluations;
     stopped_ = found.end == MinimizeEnd::interrupted;
-    if (found.end != MinimizeEnd::converged || is_known(spins)) return false;
-    is_settled_ = false;
-    return string_.insert(exec_, spins, found.energy, image);
+    return found;
+  }
+
+  /// Climbs from the state saddle_.spins(), at first along saddle_.vector().
+  SaddleFound climb() {
+    std::int64_t const so_far = found_.evaluations + string_.evaluations();
+    auto const climbed =
+        saddle_.find(exec_, field_, probed_.is_mobile, probed_.preconditioner,
+                     probed_.climb(options_.time, options_.torque, options_.evaluations - so_far),
+                     [&](SaddleFound const& now) {
+                       return proceeds(so_far + now.evaluations, now.energy.value, now.torque);
+                     });
+    found_.evaluations += climbed.evaluations;
+    stopped_ = climbed.is_stopped;
+    return climbed;
   }
 
   /// Climbs from a maximum of the energy along the path to a saddle, and adds the saddle as a fixed
@@ -264,15 +296,7 @@ class PathFinder {
     point_between(exec_, before, after, fraction, saddle_.spins());
     find_direction(exec_, saddle_.spins(), before, after, saddle_.spins(), 1, 1, saddle_.vector());
     Kokkos::deep_copy(exec_, peak_.allocation(), saddle_.spins().allocation());
-    std::int64_t const so_far = found_.evaluations + string_.evaluations();
-    auto const climbed =
-        saddle_.find(exec_, field_, probed_.is_mobile, probed_.preconditioner,
-                     probed_.climb(options_.time, options_.torque, options_.evaluations - so_far),
-                     [&](SaddleFound const& now) {
-                       return proceeds(so_far + now.evaluations, now.energy.value, now.torque);
-                     });
-    found_.evaluations += climbed.evaluations;
-    stopped_ = climbed.is_stopped;
+    auto const climbed = climb();
     if (!climbed.is_saddle) return false;
     // Rejects saddles far above the path, and those that are already on it.
     if (climbed.energy.value > peak.energy + 0.1 * span_of(string_.profile())) return false;
@@ -324,28 +348,6 @@ class PathFinder {
   double round_off_ = 0;  // of energies
   MinimumEnergyPath found_;
 };
-
-/// Relaxes an end of a path. Adds the evaluations to `unfinished`, and sets its end to what it is
-/// if this end does not converge.
-template <class Exec, class Field, class Spins>
-Minimum relax_end(Exec const& exec, Field const& field, Spins& spins, PathOptions const& options,
-                  MinimumEnergyPath& unfinished) {
-  auto const found = minimize(
-      exec, field, spins,
-      {.torque = options.torque,
-       .evaluations = options.evaluations,
-       .time = options.time,
-       .preconditioned = options.preconditioned,
-       .observer = [&](Minimum const& now) {
-         auto const evaluations = unfinished.evaluations + now.evaluations;
-         return options.observer ? options.observer({evaluations, now.energy.value, now.torque})
-                                 : Next::proceed;
-       }});
-  unfinished.evaluations += found.evaluations;
-  unfinished.end =
-      found.end == MinimizeEnd::interrupted ? PathEnd::interrupted : PathEnd::ends_not_at_rest;
-  return found;
-}
 
 }  // namespace detail
 

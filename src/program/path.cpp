@@ -160,7 +160,7 @@ int find_path(PathCommandOptions const& options) {
   search.observer = [](PathProgress const&) {
     return interrupt_requested() ? Next::stop : Next::proceed;
   };
-  auto [end, path, rates_failed] =
+  auto [end, path, rates_failed, needs_images] =
       find_scene_path(scene, from, to, space, options.precision, search, CAYSPIN_GIT_COMMIT);
   path.from = options.from.string();
   if (has_end) path.to = options.to->string();
@@ -182,6 +182,11 @@ int find_path(PathCommandOptions const& options) {
   if (end == PathEnd::converged)
     print_message("{}: {} has the path, but no {}\n", scene.path.string(), output.string(),
                   rates_failed);
+  else if (needs_images)
+    print_message(
+        "{}: the path needs more images: between neighbouring ones, it misses a saddle; {} has the "
+        "images as they are; accepted: a larger --images\n",
+        scene.path.string(), output.string());
   else if (has_saddles)
     print_message(
         "{}: the saddles are found, but the path between them does not settle within {}; {} has "

@@ -45,7 +45,8 @@ class PathOfScene {
     copy_from_host(from, images_.front());
     if (!options_.modes) copy_from_host(to, images_.back());
     auto const found = search();
-    ScenePath result{found.end, in_scene_units(found)};
+    ScenePath result{
+        .end = found.end, .path = in_scene_units(found), .needs_images = found.needs_images};
     if (options_.rates && found.end == PathEnd::converged) add_rates(found, result);
     result.path.header.threads = threads_of(exec_);
     return result;
@@ -116,7 +117,7 @@ class PathOfScene {
   io::Path in_scene_units(MinimumEnergyPath const& found) const {
     auto const& units = scene_.units;
     io::Path path;
-    path.end = to_string(found.end);
+    path.end = found.needs_images ? "the path needs more images" : to_string(found.end);
     path.converged = found.end == PathEnd::converged;
     path.evaluations = found.evaluations;
     path.across = found.across * units.field / moment_;

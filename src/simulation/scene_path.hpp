@@ -41,6 +41,7 @@ struct ScenePath {
   PathEnd end;
   io::Path path;
   std::string rates_failed = {};  // why a converged path has no rates, or empty
+  bool needs_images = false;      // unsettled because a saddle is missing between its images
 };
 /// Finds a minimum energy path between two states, each given as sites x 3 numbers in the order of
 /// io::initial_spins. If options.modes is set, ignores `to`, and finds the lowest saddle to which

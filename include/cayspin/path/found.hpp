@@ -19,7 +19,7 @@ enum class PathEnd {
   ends_not_at_rest,  ///< one of the two states could not be relaxed
   same_ends,         ///< both states relaxed to the same state
   no_saddle,         ///< a maximum of the energy led to no saddle, or there is no maximum
-  unsettled,         ///< the saddles are found, but the path between them does not converge
+  unsettled,         ///< the path between the saddles does not converge, or needs more images
   not_finite,        ///< the field or its energy is not finite
   evaluation_limit,  ///< the largest number of evaluations was reached
   interrupted        ///< the observer returned Next::stop
@@ -67,6 +67,7 @@ struct MinimumEnergyPath {
   /// Largest |g| of a spin, for the gradient g of the energy without its part along the path.
   double across = std::numeric_limits<double>::infinity();
   std::int64_t evaluations = 0;  ///< of the field at all sites
+  bool needs_images = false;     ///< unsettled because the path has too few images for all saddles
 
   /// Return the highest saddle, and the barriers that it makes. Throw std::logic_error if no saddle
   /// was found; if `end` is not converged, there may be none.
