@@ -19,6 +19,7 @@
 #include "simulation/scene_minimizer.hpp"
 #include "simulation/scene_modes.hpp"
 #include "simulation/space.hpp"
+#include "simulation/text.hpp"
 
 #include <cayspin/version.hpp>
 
@@ -180,9 +181,10 @@ class ModesOfScene {
     if (options_.json)
       print_json(as_json(read_info_file(path)));
     else if (!options_.quiet)
-      report(contents);
+      report(contents, modes.growing);
     if (contents.converged) return Status::done;
-    print_message("{}: the modes did not converge: {}\n", scene_.path.string(),
+    print_message("{}: the {} did not converge: {}\n", scene_.path.string(),
+                  modes.end == ModesEnd::converged ? "curvatures" : "modes",
                   why_ended(to_string(end)));
     return Status::numbers_failed;
   }
@@ -273,7 +275,8 @@ class ModesOfScene {
     return contents;
   }
 
-  void report(io::ModesContents const& found) const {
+  // `growing_of_all`: the growing modes, also those that are not listed, if they are known.
+  void report(io::ModesContents const& found, std::size_t growing_of_all) const {
     bool const si = scene_.units.si;
     double const giga = si ? 1e-9 : 1;
     fmt::print("max |m x H| = {:.3g}{}, {} evaluations\n", found.torque, si ? " T" : "",
@@ -287,10 +290,14 @@ class ModesOfScene {
     for (std::size_t i = 0; i < found.decays.size(); ++i)
       fastest = std::max(fastest, std::hypot(found.frequencies[i], found.decays[i]));
     // Zero modes have decays of either sign, due to round-off.
-    if (auto const growing = std::ranges::count_if(
-            found.decays, [&](double decay) { return decay < -1e-7 * fastest; }))
+    auto const growing = static_cast<std::size_t>(
+        std::ranges::count_if(found.decays, [&](double decay) { return decay < -1e-7 * fastest; }));
+    if (growing > 0)
       fmt::print("{} of these modes {}: the decay is negative\n", growing,
                  growing == 1 ? "grows" : "grow");
+    if (growing_of_all > growing)
+      fmt::print("growing in all: {}; a larger --count lists them\n",
+                 counted(static_cast<std::int64_t>(growing_of_all), "mode"));
     if (!found.curvatures.empty()) fmt::print("{:>4}  curvature{}\n", "", si ? ", J" : "");
     for (std::size_t i = 0; i < found.curvatures.size(); ++i)
       fmt::print("{:>4}  {:.9g}\n", i, found.curvatures[i]);

@@ -3,6 +3,7 @@
 
 #include <cayspin/modes/normal_mode.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace cayspin::simulation {
 struct FoundModes {
   ModesEnd end = ModesEnd::evaluation_limit;
   std::vector<double> frequencies, decays, errors;
+  std::size_t growing = 0;  ///< under [torque]: growing modes of the state, also those left out
   /// sites x 3 x 2: real and imaginary parts, sites in the order of io::initial_spins.
   std::vector<std::vector<double>> shapes;
   std::int64_t evaluations = 0;

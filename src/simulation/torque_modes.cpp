@@ -168,6 +168,9 @@ FoundModes find_modes_with_torques(TorqueMotion const& motion, Vectors const& sp
         "modes: the spins are not at rest: max |dm/dt| is {:.3g} in reduced units, and the slowest "
         "mode has a rate of {:.3g}",
         speed, first->first));
+  modes.growing = static_cast<std::size_t>(std::ranges::count_if(slowest, [&](auto const& mode) {
+    return solver.eigenvalues()[mode.second].real() > std::max(1e-7, 10 * motion.epsilon) * fastest;
+  }));
   slowest.resize(std::min(slowest.size(), count));
   Eigen::MatrixXcd const shapes = solver.eigenvectors();
   for (auto const& [ignored, i] : slowest) {

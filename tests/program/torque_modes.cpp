@@ -63,6 +63,17 @@ TEST_F(TorqueModes, OfAParticleWithAPolarizationAlongItsAxis) {
     }
 }
 
+TEST_F(TorqueModes, CountGrowingModesThatAreNotListed) {
+  auto const text = scene(
+      "shape = [4]\n[field]\nanisotropy = { constant = 1.0, axis = [0, 0, 1] }\n"
+      "applied = [0, 0, 0.3]",
+      "slonczewski = { damping_like = -0.5, polarization = [0, 0, 1] }");
+  EXPECT_TRUE(contains(modes(text, {"--count", "1"}).output,
+                       "1 of these modes grows: the decay is negative\n"
+                       "growing in all: 4 modes; a larger --count lists them\n"));
+  EXPECT_FALSE(contains(modes(text, {"--overwrite"}).output, "growing in all"));
+}
+
 // In a ring with the spins along z, m_x + i * m_y = e^(i * k * j) at site j is a mode, with the
 // eigenvalue
 //   (i - damping) * W - i * u * sin(k) * (1 + damping * xi) + (damping - xi) * u * sin(k),
