@@ -54,12 +54,13 @@ double growth_of_two(Matrix const& hessian, Matrix const& inverse, Vector const&
 }  // namespace
 
 double growth_rate(io::Scene const& scene, StateHessian const& saddle, Matrix const& hessian,
-                   Vector const& unstable) {
+                   Vector const& unstable, std::function<void()> const& poll) {
   Matrix const inverse = inverse_turning(scene, saddle);
   double shift = growth_of_two(hessian, inverse, unstable);
   double const least = 1e-4 * shift;  // smaller rates are those of zero modes
   Vector mode = unstable;
   for (int factors = 0; factors < 12; ++factors) {
+    poll();
     shift *= 1.001;  // at the rate itself the matrix is singular
     Eigen::PartialPivLU<Matrix> const shifted(hessian + shift * inverse);
     double growth = 0;

@@ -52,9 +52,11 @@ Eigen::Vector3d way_between(Eigen::Vector3d const& m, Eigen::Vector3d const& p) 
 
 class State {
  public:
-  /// `unstable`: approximate lowest curvature of a saddle; 0 for minima. Throws NumbersFailed if
+  /// `unstable`: approximate lowest curvature of a saddle; 0 for minima. Calls poll() before each
+  /// factorisation. Throws NumbersFailed if
   /// another curvature is negative, and for zero modes of unknown volume.
-  State(StateHessian const& state, char const* name, double unstable, io::Lattice const& lattice)
+  State(StateHessian const& state, char const* name, double unstable, io::Lattice const& lattice,
+        std::function<void()> const& poll)
       : state_(state),
         name_(name),
         hessian_(Eigen::Map<
@@ -67,12 +69,14 @@ class State {
     double const largest = hessian_.cwiseAbs().rowwise().sum().maxCoeff();
     Matrix rest = hessian_;
     if (unstable < 0) {
+      poll();
       Eigen::PartialPivLU<Matrix> const inverse(hessian_ -
                                                 1.001 * unstable * Matrix::Identity(n, n));
       mode_ = near_vectors(hessian_, inverse, 1).first;
       rest += (largest - mode_.dot(hessian_ * mode_)) * mode_ * mode_.transpose();
     }
     double const bound = zero * largest;
+    poll();
     Eigen::LLT<Matrix> factors(rest + bound * Matrix::Identity(n, n));
     if (factors.info() != Eigen::Success)
       throw NumbersFailed(fmt::format("rates: {} has {} negative curvature", name,
@@ -82,6 +86,7 @@ class State {
     zeros_ = vectors.leftCols(count);
     Vector const soft = values.head(count);
     rest += zeros_ * (largest - soft.array()).matrix().asDiagonal() * zeros_.transpose();
+    poll();
     factors.compute(rest);
     // The modes that are left out have the eigenvalue `largest` in `rest`.
     double const in_place = static_cast<double>(count) + (unstable < 0 ? 1 : 0);
@@ -340,10 +345,10 @@ void StateHessian::add_torque(std::vector<double> const& state, std::vector<doub
 
 io::RatesOfPath rates_between(io::Scene const& scene, StateHessian const& start,
                               StateHessian const& saddle, StateHessian const& end,
-                              double saddle_curvature) {
+                              double saddle_curvature, std::function<void()> const& poll) {
   if (!(saddle_curvature < 0))
     throw NumbersFailed("rates: the energy does not fall from the saddle: it is a plateau");
-  State const of_saddle(saddle, "the saddle", saddle_curvature, scene.lattice);
+  State const of_saddle(saddle, "the saddle", saddle_curvature, scene.lattice, poll);
   // Round-off may make a square of 0 negative.
   double const velocity =
       std::sqrt(std::max(square_of_velocity(of_saddle, mobilities(scene, saddle)), 0.0)) / (2 * pi);
@@ -357,12 +362,12 @@ io::RatesOfPath rates_between(io::Scene const& scene, StateHessian const& start,
   double const alpha = gilbert ? scene.material->alpha : 0;
   double const per_time = (1 + alpha * alpha) / scene.units.time;
   double const thermal = scene.units.si ? boltzmann / scene.units.energy : 1;
-  double const growth = growth_rate(scene, saddle, of_saddle.hessian(), of_saddle.mode());
+  double const growth = growth_rate(scene, saddle, of_saddle.hessian(), of_saddle.mode(), poll);
   double const curvature = of_saddle.mode().dot(of_saddle.hessian() * of_saddle.mode());
   double const langer = growth / (2 * pi * std::sqrt(-curvature) * scene.units.time);
   // Computes the prefactor without the flux.
   auto const factor = [&](StateHessian const& minimum, char const* name, std::size_t place) {
-    State const state(minimum, name, 0, scene.lattice);
+    State const state(minimum, name, 0, scene.lattice, poll);
     auto const modes = rates.zero_modes[place] = state.zero_modes();
     double const volume = rates.volumes[place] = state.zero_volume();
     double const power = 0.5 * static_cast<double>(modes - saddle_modes);

@@ -42,12 +42,13 @@ struct StateHessian : TangentBasis {
 
 /// Returns the prefactors of harmonic transition state theory and of Langer's theory, in the units
 /// of the scene. `saddle_curvature`: the approximate curvature along the unstable mode of the
-/// saddle. Throws NumbersFailed for zero modes that are neither translations nor rotations of all
-/// spins, for a saddle on a plateau, for states with other negative curvatures, and for spins with
-/// neither precession nor damping.
-io::RatesOfPath rates_between(io::Scene const& scene, StateHessian const& start,
-                              StateHessian const& saddle, StateHessian const& end,
-                              double saddle_curvature);
+/// saddle. Calls poll() before each factorisation; it may throw to interrupt the work. Throws
+/// NumbersFailed for zero modes that are neither translations nor rotations of all spins, for a
+/// saddle on a plateau, for states with other negative curvatures, and for spins with neither
+/// precession nor damping.
+io::RatesOfPath rates_between(
+    io::Scene const& scene, StateHessian const& start, StateHessian const& saddle,
+    StateHessian const& end, double saddle_curvature, std::function<void()> const& poll = [] {});
 
 /// Computes the Hessian and the torques of a state. The Hessian is computed one column at a time,
 /// as its product with a vector. Calls poll() before each column; poll() may throw to interrupt the
@@ -104,7 +105,7 @@ io::RatesOfPath rates_of(io::Scene const& scene, Exec const& exec, Field const& 
   auto const frozen = io::frozen(scene, {{0, 0, 0}, scene.lattice.shape});
   return rates_between(scene, hessian_of(exec, field, start, frozen, poll),
                        hessian_of(exec, field, saddle, frozen, poll),
-                       hessian_of(exec, field, end, frozen, poll), saddle_curvature);
+                       hessian_of(exec, field, end, frozen, poll), saddle_curvature, poll);
 }
 
 }  // namespace cayspin::simulation

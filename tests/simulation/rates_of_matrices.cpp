@@ -146,6 +146,12 @@ TEST(RatesOfMatrices, HaveNoFluxByPrecessionWithoutIt) {
   auto const well = state_of({1, 2}), top = state_of({-1, 1});
   EXPECT_GT(rates_between(scene, well, top, well, -1).prefactor_forward, 0.1);
   scene.system.precession = false;
+  // before three factorisations of the saddle, one or more for the growth, and two of each minimum
+  int polls = 0;
+  rates_between(scene, well, top, well, -1, [&] { ++polls; });
+  EXPECT_GE(polls, 8);
+  struct Interrupted {};
+  EXPECT_THROW(rates_between(scene, well, top, well, -1, [] { throw Interrupted(); }), Interrupted);
   auto const overdamped = rates_between(scene, well, top, well, -1);
   EXPECT_EQ(overdamped.prefactor_forward, 0);
   EXPECT_EQ(overdamped.prefactor_backward, 0);
