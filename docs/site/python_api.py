@@ -20,7 +20,7 @@ WIDTH = 100
 
 GROUPS = {
     "Scenes and simulations": ["Scene", "Simulation", "Minimum", "Modes", "Averages", "path",
-                               "MinimumEnergyPath", "EnsembleSimulation"],
+                               "MinimumEnergyPath", "EnsembleSimulation", "sweep"],
     "Choosing a method": ["advise", "Advice", "trade", "Trade"],
     "Files and pictures": ["open", "Trajectory", "Ensemble", "texture.draw", "view", "View"],
     "Numbers from spins": ["topological_charge", "dispersion", "Dispersion", "structure_factor",

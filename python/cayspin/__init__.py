@@ -23,6 +23,7 @@ from cayspin.scene import Scene
 from cayspin.simulation import Simulation
 from cayspin.spectra import StructureFactor, linear_structure_factor, structure_factor
 from cayspin.spirit import read_spirit_pairs
+from cayspin.sweep import sweep
 from cayspin.trade import Advice, Trade, advise, trade
 from cayspin.trajectory import Trajectory, open
 from cayspin.uppasd import read_uppasd
@@ -33,4 +34,4 @@ __all__ = ["Advice", "Average", "Averages", "CayspinError", "Dispersion", "Ensem
            "SceneError", "Simulation", "StructureFactor", "Trade", "Trajectory", "View",
            "__version__", "advise", "average", "dispersion", "linear_structure_factor",
            "occupied_of_mesh", "open", "path", "read_spirit_pairs", "read_uppasd",
-           "structure_factor", "topological_charge", "trade", "view"]
+           "structure_factor", "sweep", "topological_charge", "trade", "view"]
