@@ -68,12 +68,14 @@ bool misses_saddle(Exec const& exec, PathString<Spins> const& path,
     if (!is_saddle(k) || !(is_minimum(k - 1) || is_minimum(k + 1))) continue;
     auto const reached = minima_beside(exec, path, k, search, work, climb, relax);
     if (!reached) return false;
-    for (std::size_t const beside : {k - 1, k + 1}) {
+    auto const leads_to = [&](std::size_t side, std::size_t beside) {
       double const energy = path.energy(beside);
       double const small = std::max(1e-3 * std::abs(path.energy(k) - energy), 2 * round_off);
-      auto const is_reached = [&](double other) { return std::abs(other - energy) <= small; };
-      if (is_minimum(beside) && std::ranges::none_of(*reached, is_reached)) return true;
-    }
+      return !is_minimum(beside) || std::abs((*reached)[side] - energy) <= small;
+    };
+    bool const is_between = leads_to(0, k - 1) && leads_to(1, k + 1);
+    bool const is_between_turned = leads_to(1, k - 1) && leads_to(0, k + 1);
+    if (!is_between && !is_between_turned) return true;
   }
   return false;
 }
