@@ -16,7 +16,7 @@
 /// layout). Errors are those of CheckpointWriter and CheckpointReader.
 namespace cayspin::inline v0_2::io {
 
-/// What a replica needs to continue exactly.
+/// State from which a replica continues exactly.
 class ReplicaState final : public Checkpoint {
  public:
   std::int64_t step = 0;
@@ -71,7 +71,7 @@ class EnsembleCheckpointWriter {
 /// Contents of an ensemble's checkpoint except the states.
 struct EnsembleCheckpointInfo {
   CheckpointHeader header;
-  /// Of each replica: where its state begins and ends in /state, and its checksum.
+  /// Where the state of each replica begins and ends in /state, and its checksum.
   std::vector<std::int64_t> begins, ends, checksums;
 
   std::int64_t replicas() const { return std::ssize(begins); }

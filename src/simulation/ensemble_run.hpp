@@ -45,9 +45,9 @@ class EnsembleRun {
   /// advance with them.
   SceneRun const& first() const { return *runs_.front(); }
   /// Continues from the last frame of the whole ensemble's file, from the checkpoint beside it, or
-  /// from a checkpoint alone. If the scene of the file differs unexpectedly, returns one line that
-  /// names the differences. Throws UsageError for files that do not fit the scene, and if the run
-  /// needs more than the spins to continue exactly and there is no checkpoint.
+  /// from a checkpoint without it. If the scene of the file differs unexpectedly, returns one line
+  /// that names the differences. Throws UsageError for files that do not fit the scene, and if the
+  /// run needs more than the spins to continue exactly and there is no checkpoint.
   std::optional<std::string> continue_from(std::filesystem::path const& file);
   /// Returns true if the replicas need more than their spins to continue exactly.
   bool remembers() const { return first().remembers(); }

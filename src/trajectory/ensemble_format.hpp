@@ -10,7 +10,7 @@ namespace cayspin::inline v0_2::io {
 inline constexpr char const* ensemble_format = "ensemble_format";
 inline constexpr std::int64_t ensemble_format_version = 1;
 
-/// What is read in place of a number or of a step that never reached the disk.
+/// Numbers that are read where a number or a step never reached the disk.
 inline constexpr double missing_number = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double missing_step = -1;
 

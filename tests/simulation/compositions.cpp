@@ -26,7 +26,7 @@ std::vector<double> numbers_of(std::vector<unsigned char> const& flags) {
   return {flags.begin(), flags.end()};
 }
 
-/// What was compared.
+/// Counts of comparisons.
 struct Seen {
   std::map<std::string, int> refused;  // times for each reason
   std::set<std::string_view> methods;

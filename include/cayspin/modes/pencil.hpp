@@ -170,6 +170,7 @@ auto Pencil<Scalar>::orthonormalizing(Matrix const& products, Scalar least) -> M
   return scale.asDiagonal() * found.eigenvectors().rightCols(kept) * roots.asDiagonal();
 }
 
+/// Returns the eigenvalues of a * b, in no order.
 template <class Scalar>
 Eigen::VectorX<std::complex<Scalar>> eigenvalues_of_product(
     Eigen::MatrixX<Scalar> const& a, Eigen::MatrixX<std::complex<Scalar>> const& b) {
