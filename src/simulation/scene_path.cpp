@@ -12,13 +12,21 @@
 #include "transition_rates.hpp"
 
 #include <cayspin/lowest_escape.hpp>
+#include <cayspin/observer/normalize.hpp>
 #include <cayspin/path/probed_field.hpp>
+#include <cayspin/path/saddle.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace cayspin::simulation {
 namespace {
@@ -26,6 +34,57 @@ namespace {
 constexpr std::int64_t most_zero_modes = 4;  // of a state with more, fewer modes are climbed
 // Curvatures of zero modes are below this fraction of the field without exchange.
 constexpr double zero_mode = 1e-4;
+
+struct Interrupted {};
+
+/// Returns unit spins in double precision: a copy of spins in single precision.
+template <class Space, class Given>
+auto in_double(Space const& exec, Given const& given) {
+  SpinField<double, typename Space::memory_space> const spins("path::in_double", given.lattice());
+  copy_from_host(copy_to_host(given), spins);
+  normalize(exec, spins);
+  return spins;
+}
+
+/// Returns the rates for a path in single precision, of which Hessians have errors above the
+/// smallest curvatures: its ends and its saddle are found again in double precision. Throws like
+/// rates_of, and NumbersFailed if a search fails.
+template <class Space, class Given>
+io::RatesOfPath rates_in_double(Space const& exec, io::Scene const& scene, Given const& from,
+                                Given const& saddle, Given const& to,
+                                std::function<void()> const& poll) {
+  using Spins = SpinField<double, typename Space::memory_space>;
+  auto const& lattice = saddle.lattice();
+  auto const field = field_of<Spins>(scene, lattice, false).made_for(FieldFor::energy);
+  auto ends = std::array{in_double(exec, from), in_double(exec, to)};
+  auto const top = in_double(exec, saddle);
+  cayspin::detail::ProbedField<Spins> const probed(exec, field, top, 0, true);
+  double const torque =
+      std::max(1e-9 * probed.strongest, Minimizer<SpinField<double>>::least_bound);
+  auto const proceed = [&](auto const&...) {
+    poll();
+    return Next::proceed;
+  };
+  SceneMinimizer<double, Space> minimizer(top);
+  MinimizeOptions const options{.torque = torque, .observer = proceed};
+  for (auto& end : ends)
+    if (minimizer.minimize(exec, scene, field, end, options).end != MinimizeEnd::converged)
+      throw NumbersFailed("rates: an end of the path was not found again in double precision");
+
+  auto const lowest = find_curvatures<double, Space>(
+      exec, scene, field, top, {.count = 1, .tolerance = 1e-3, .poll = proceed});
+  cayspin::detail::SaddleSearch<Spins> search(lattice);
+  Kokkos::deep_copy(exec, search.spins().allocation(), top.allocation());
+  copy_from_host(lowest.vectors.at(0), search.vector());
+  auto preconditioner = probed.preconditioner;
+  constexpr std::int64_t most_evaluations = 1000000;
+  auto const found = search.find(exec, field, probed.is_mobile, preconditioner,
+                                 probed.climb(0, torque, most_evaluations),
+                                 [&](auto const& now) { return proceed(now) == Next::proceed; });
+  if (!found.is_saddle)
+    throw NumbersFailed("rates: the saddle was not found again in double precision");
+  return rates_of(scene, exec, field, ends[0], search.spins(), ends[1], found.curvature, poll);
+}
 
 template <class Real, class Space>
 class PathOfScene {
@@ -54,14 +113,17 @@ class PathOfScene {
 
  private:
   void add_rates(MinimumEnergyPath const& found, ScenePath& result) const {
-    struct Interrupted {};
     auto const poll = [&] {
       if (options_.observer && options_.observer({found.evaluations}) == Next::stop)
         throw Interrupted();
     };
     try {
-      result.path.rates = rates_of(scene_, exec_, field_, images_.front(), saddle_, images_.back(),
-                                   found.saddle().curvature, poll);
+      if constexpr (std::is_same_v<Real, double>)
+        result.path.rates = rates_of(scene_, exec_, field_, images_.front(), saddle_,
+                                     images_.back(), found.saddle().curvature, poll);
+      else
+        result.path.rates =
+            rates_in_double(exec_, scene_, images_.front(), saddle_, images_.back(), poll);
     } catch (Interrupted const&) {
       result.end = PathEnd::interrupted;
     } catch (NumbersFailed const& error) {

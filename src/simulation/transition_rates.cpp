@@ -35,7 +35,7 @@ constexpr double boltzmann = 1.380649e-23;  // J/K
 constexpr Eigen::Index most_zeros = 8;      // zero modes that are counted
 /// Eigenvalues below this fraction of a bound on the largest one may be those of zero modes.
 constexpr double zero = 1e-5;
-/// Relative errors of torques and of curvatures, in double precision. Demagnetising tensors are
+/// Relative errors of torques and of curvatures. Demagnetising tensors are
 /// accurate to 1e-10, and differences of fields that are not affine to about 1e-9.
 constexpr double error_of_torques = 1e-9, error_of_curvatures = 1e-8;
 
@@ -129,8 +129,7 @@ class State {
     }
     auto const rotated = rotations();
     // If a state is not quite at rest, its Hessian has an error of about its torque.
-    double const error =
-        std::max(error_of_curvatures, 1e3 * state_.epsilon) * largest + 10 * state_.torque;
+    double const error = error_of_curvatures * largest + 10 * state_.torque;
     bool const may_be_stiff = translations.empty() && !drifts;
     if (std::ssize(rotated) != count && !(may_be_stiff && keep_only(rotated, soft, error)))
       throw NumbersFailed(
@@ -253,7 +252,7 @@ class State {
       Eigen::Map<Eigen::Vector3d const> const t(torque.data());
       squares += t * t.transpose();
     }
-    double const none = std::max(error_of_torques, 4 * state_.epsilon) * state_.torque_scale;
+    double const none = error_of_torques * state_.torque_scale;
     if (squares.trace() <= none * none)
       return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(turned.transpose() * turned)
           .eigenvectors();

@@ -13,8 +13,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 namespace cayspin::simulation {
@@ -27,7 +27,6 @@ struct StateHessian : TangentBasis {
   /// axis vanish if turning all mobile spins about this axis does not change the energy.
   std::vector<std::array<double, 3>> torques;
   double torque_scale = 0;  // sum of |m x (-dE/dm)| over all spins of these states
-  double epsilon = std::numeric_limits<double>::epsilon();  // of the numbers' precision
 
   using TangentBasis::TangentBasis;
 
@@ -57,13 +56,13 @@ template <class Exec, class Field, class Spins>
 StateHessian hessian_of(Exec const& exec, Field const& field, Spins const& spins,
                         std::vector<unsigned char> const& frozen,
                         std::function<void()> const& poll) {
-  using Real = typename Spins::value_type;
+  static_assert(std::is_same_v<typename Spins::value_type, double>,
+                "cayspin: rates need Hessians in double precision");
   auto const& lattice = spins.lattice();
   auto const numbers = copy_to_host(spins);
   StateHessian state({numbers.begin(), numbers.end()}, frozen);
-  state.epsilon = std::numeric_limits<Real>::epsilon();
-  ScalarField<Real, typename Spins::memory_space> const is_mobile("rates::is_mobile", lattice,
-                                                                  Real(1));
+  ScalarField<double, typename Spins::memory_space> const is_mobile("rates::is_mobile", lattice,
+                                                                    1.0);
   auto const fields = cayspin::detail::numbered_fields<Spins, 5>("rates", lattice);
   auto const &vector = fields[0], &product = fields[1];
   cayspin::detail::Hessian hessian(
@@ -73,11 +72,11 @@ StateHessian hessian_of(Exec const& exec, Field const& field, Spins const& spins
   state.set_torque({at_rest.begin(), at_rest.end()});
   std::size_t const n = state.size();
   state.numbers.resize(n * n);
-  std::vector<Real> given(numbers.size());
+  std::vector<double> given(numbers.size());
   for (std::size_t column = 0; column < n; ++column) {
     poll();
     auto const at = 3 * state.sites[column / 2];
-    for (std::size_t c = 0; c < 3; ++c) given[at + c] = static_cast<Real>(state.vector(column)[c]);
+    for (std::size_t c = 0; c < 3; ++c) given[at + c] = state.vector(column)[c];
     copy_from_host(given, vector);
     hessian.multiply(vector, product);
     auto const found = copy_to_host(product);
