@@ -135,7 +135,8 @@ class ModesAt {
     Preconditioner<Spins> preconditioner;
     preconditioner.set(spins_.lattice(), found, options_.preconditioned);
     double const scale = preconditioner.first_shift();
-    Hessian hessian(exec_, field_, options_.time, spins_, is_mobile, arrays);
+    Hessian hessian(exec_, field_, options_.time, spins_, is_mobile, arrays,
+                    HessianDifferences::of_four);
     auto const precondition = [&](Spins const& from, Spins const& to) {
       preconditioner.apply(exec_, from, to);
     };
@@ -178,7 +179,7 @@ class ModesAt {
 
 /// Returns the normal modes of the equation of motion (Turning), linearised at an equilibrium,
 /// slowest first. Each product of the Hessian with a vector takes one evaluation of the field if
-/// the field is affine in the spins, otherwise two. Symmetries that the equilibrium breaks give
+/// the field is affine in the spins, otherwise four. Symmetries that the equilibrium breaks give
 /// zero modes, with a rate of about 0. At a saddle some modes grow; their decay is negative. Waits.
 /// Throws std::invalid_argument for invalid options, parts of a lattice and replicas.
 template <class Exec, class Field, class Spins>

@@ -35,8 +35,7 @@ constexpr double boltzmann = 1.380649e-23;  // J/K
 constexpr Eigen::Index most_zeros = 8;      // zero modes that are counted
 /// Eigenvalues below this fraction of a bound on the largest one may be those of zero modes.
 constexpr double zero = 1e-5;
-/// Relative errors of torques and of curvatures. Demagnetising tensors are
-/// accurate to 1e-10, and differences of fields that are not affine to about 1e-9.
+/// Relative errors of torques and of curvatures. Demagnetising tensors are accurate to 1e-10.
 constexpr double error_of_torques = 1e-9, error_of_curvatures = 1e-8;
 
 Eigen::Map<Eigen::Vector3d const> at(Numbers const& spins, std::size_t site) {

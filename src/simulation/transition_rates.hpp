@@ -67,7 +67,8 @@ StateHessian hessian_of(Exec const& exec, Field const& field, Spins const& spins
   auto const &vector = fields[0], &product = fields[1];
   cayspin::detail::Hessian hessian(
       exec, field, 0, spins, is_mobile,
-      cayspin::detail::HessianArrays<Spins>{fields[2], fields[3], fields[4]});
+      cayspin::detail::HessianArrays<Spins>{fields[2], fields[3], fields[4]},
+      cayspin::detail::HessianDifferences::of_four);
   auto const at_rest = copy_to_host(fields[3]);
   state.set_torque({at_rest.begin(), at_rest.end()});
   std::size_t const n = state.size();

@@ -67,6 +67,21 @@ TYPED_TEST(MacrospinModes, AreThoseOfKittelWithDamping) {
   }
 }
 
+// About <111>, the field of a cubic anisotropy is not affine in the spins, and both curvatures are
+// -4/3 of its constant.
+TYPED_TEST(MacrospinModes, OfACubicAnisotropyAreAccurate) {
+  double const part = 1 / std::sqrt(3.0), constant = -0.75;
+  EffectiveField const field(CubicAnisotropy(constant, {1, 0, 0}, {0, 1, 0}));
+  auto const m = this->uniform(Lattice::chain(1), {part, part, part});
+  using Real = typename TestFixture::Real;
+  double const accurate = 64 * std::pow(std::numeric_limits<Real>::epsilon(), 0.8);
+  auto const found = normal_modes(this->exec, LandauLifshitz(field, 0.0), m);
+  ASSERT_EQ(found.modes.size(), 1);
+  EXPECT_NEAR(found.modes[0].frequency, -4 * constant / 3, accurate);
+  for (auto const& one : lowest_curvatures(this->exec, field, m, {.count = 2}).curvatures)
+    EXPECT_NEAR(one.value, -4 * constant / 3, accurate);
+}
+
 // Spins along the easy axis of an open chain have the curvatures k + 2 * A * (1 - cos(pi * p / n)),
 // each of them twice. If exchange is so strong that products with the Hessian are not accurate
 // enough, the search must not claim to have converged.

@@ -80,6 +80,10 @@ double largest_length(Exec const& exec, Spins const& vectors) {
                                LargestSquare<typename Spins::value_type>{vectors.array()})[0]);
 }
 
+/// Differences by which fields are differentiated that are not affine in the spins: of two fields
+/// a product, with an error of the square of the shift, or of four, with its fourth power.
+enum class HessianDifferences { of_two, of_four };
+
 /// Work memory for products with the Hessian.
 template <class Spins>
 struct HessianArrays {
@@ -99,14 +103,16 @@ class Hessian {
   /// Linearises at `spins`, which must not change afterwards. A field that is not affine in the
   /// spins is differentiated by central differences. The constructor evaluates the field once.
   Hessian(Exec const& exec, Field const& field, double time, Spins const& spins,
-          Mobile const& is_mobile, HessianArrays<Spins> const& arrays)
+          Mobile const& is_mobile, HessianArrays<Spins> const& arrays,
+          HessianDifferences differences = HessianDifferences::of_two)
       : exec_(exec),
         field_(field),
         time_(time),
         spins_(spins),
         is_mobile_(is_mobile),
         arrays_(arrays),
-        is_affine_(has_affine_field(field, exec, spins)) {
+        is_affine_(has_affine_field(field, exec, spins)),
+        of_four_(differences == HessianDifferences::of_four) {
     evaluate_field(exec, field, spins, time, arrays.at_rest);
     ++evaluations_;
   }
@@ -116,7 +122,8 @@ class Hessian {
   /// Returns a bound on the round-off of v.hv / v.v, for fields up to `strongest`.
   double round_off(double strongest) const {
     constexpr double epsilon = std::numeric_limits<Real>::epsilon();
-    return (is_affine_ ? 64 : std::max(64.0, 2 / longest_shift())) * epsilon * strongest;
+    double const of_differences = (of_four_ ? 6 : 2) / longest_shift();
+    return (is_affine_ ? 64 : std::max(64.0, of_differences)) * epsilon * strongest;
   }
 
   /// Computes hv, the Hessian times a tangent v.
@@ -125,10 +132,18 @@ class Hessian {
     combine(exec_, 0, v, 0, v, shifted);
     double const shift =
         (is_affine_ ? 0.5 : longest_shift()) / largest_difference(exec_, v, shifted);
+    double inverse_shift = 1 / shift;
     if (!is_affine_) {
-      combine(exec_, -shift, v, 1, spins_, shifted);
-      evaluate_field(exec_, field_, shifted, time_, before);
-      ++evaluations_;
+      inverse_shift = 1 / (2 * shift);
+      evaluate_at(-shift, v, before);
+    }
+    if (!is_affine_ && of_four_) {
+      // (8 H(h) - 8 H(-h) - H(2h) + H(-2h)) / 12h, of which the kernel adds the first term.
+      inverse_shift = 1 / (1.5 * shift);
+      for (double const side : {-0.125, 0.125}) {
+        evaluate_at(16 * side * shift, v, hv);
+        combine(exec_, side, hv, 1, before, before);
+      }
     }
     combine(exec_, shift, v, 1, spins_, shifted);
     auto prepared = prepare_term(field_, exec_, shifted, time_);
@@ -136,9 +151,9 @@ class Hessian {
     auto const& from = is_affine_ ? at_rest : before;
     auto const [along, square] = reduce_sites<Sum, 2>(
         exec_, "cayspin::minimize::hessian_product", spins_.layout(),
-        HessianProduct<decltype(prepared), Real>{
-            std::move(prepared), spins_.array(), v.array(), shifted.array(), from.array(),
-            at_rest.array(), is_mobile_.array(), 1 / (is_affine_ ? shift : 2 * shift), hv.array()});
+        HessianProduct<decltype(prepared), Real>{std::move(prepared), spins_.array(), v.array(),
+                                                 shifted.array(), from.array(), at_rest.array(),
+                                                 is_mobile_.array(), inverse_shift, hv.array()});
     return {along, square};
   }
 
@@ -150,9 +165,19 @@ class Hessian {
   }
 
  private:
-  /// Returns the shift that balances the two errors of a central difference: round-off divided by
-  /// the shift, and the square of the shift.
-  static double longest_shift() { return 4 * std::cbrt(std::numeric_limits<Real>::epsilon()); }
+  /// Computes the field at the spins plus a multiple of v.
+  void evaluate_at(double multiple, Spins const& v, Spins const& to) {
+    combine(exec_, multiple, v, 1, spins_, arrays_.shifted);
+    evaluate_field(exec_, field_, arrays_.shifted, time_, to);
+    ++evaluations_;
+  }
+
+  /// Returns the shift that balances the two errors of a difference: round-off divided by the
+  /// shift, and the square of the shift or its fourth power.
+  double longest_shift() const {
+    constexpr double epsilon = std::numeric_limits<Real>::epsilon();
+    return of_four_ ? std::pow(epsilon, 0.2) : 4 * std::cbrt(epsilon);
+  }
 
   Exec const& exec_;
   Field const& field_;
@@ -160,7 +185,7 @@ class Hessian {
   Spins const& spins_;
   Mobile const& is_mobile_;
   HessianArrays<Spins> arrays_;
-  bool is_affine_;
+  bool is_affine_, of_four_;
   std::int64_t evaluations_ = 0;
 };
 

@@ -251,7 +251,7 @@ BlochProblem bloch_problem(Exec const& exec, Field const& field, double time, Sp
   HessianArrays<Spins> const arrays{named("modes::shifted"), named("modes::at_rest"),
                                     named("modes::before")};
   auto const found = probe(exec, field, time, spins, arrays.shifted, is_mobile);
-  Hessian hessian(exec, field, time, spins, is_mobile, arrays);
+  Hessian hessian(exec, field, time, spins, is_mobile, arrays, HessianDifferences::of_four);
   CellsOfLattice const cells(spins.lattice());
   auto const m = copy_to_host(spins), moves = copy_to_host(is_mobile);
   auto const a = copy_to_host(precession), b = copy_to_host(damping);
