@@ -18,10 +18,10 @@ namespace cayspin::inline v0_2::io::detail {
 class DatasetOfSites {
  public:
   DatasetOfSites(std::filesystem::path const& path, std::string name, Lattice const& lattice,
-                 std::int64_t of_site)
+                 std::int64_t of_site, Accepted accepted = Accepted::reals)
       : sites_(static_cast<std::int64_t>(lattice.basis.size())),
         of_site_(of_site),
-        dataset_(path, std::move(name)),
+        dataset_(path, std::move(name), accepted),
         expected_(extents(
             {sites_, lattice.shape[2] / sites_, lattice.shape[1], lattice.shape[0], of_site})) {}
 

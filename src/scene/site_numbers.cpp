@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t most_regions = 65536;
 
 detail::DatasetOfSites open_values(std::filesystem::path const& path, Lattice const& lattice) {
-  detail::DatasetOfSites values(path, "/values", lattice, 1);
+  detail::DatasetOfSites values(path, "/values", lattice, 1, Accepted::numbers);
   if (!values.fits()) values.refuse_extents(fmt::format("({})", values.expected()));
   return values;
 }

@@ -23,7 +23,7 @@ using detail::normalise;
 namespace {
 
 detail::DatasetOfSites open_vectors(std::filesystem::path const& path, Lattice const& lattice) {
-  detail::DatasetOfSites vectors(path, "/values", lattice, 3);
+  detail::DatasetOfSites vectors(path, "/values", lattice, 3, Accepted::numbers);
   if (!vectors.fits()) vectors.refuse_extents(fmt::format("({})", vectors.expected()));
   return vectors;
 }

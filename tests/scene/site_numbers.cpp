@@ -3,6 +3,7 @@
 #include "hdf5_file.hpp"
 #include "scene_file.hpp"
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 
@@ -98,12 +99,77 @@ TEST(SiteNumbers, SayWhereSpinsAre) {
                "lattice.occupied: a number that was given is not finite; accepted: finite numbers");
 }
 
+TEST(SiteNumbers, OfFilesMayBeIntegersOrBooleans) {
+  Folder const folder;
+  std::vector<double> regions;
+  for (int n = 0; n < 24; ++n) regions.push_back(n % 3);
+  auto const text = replaced(plain_film, "shape = [4, 3, 2]",
+                             "shape = [4, 3, 2]\nregions = { file = 'numbers.h5' }");
+  std::vector<std::int64_t> const expected(regions.begin(), regions.end());
+  for (hid_t const type : {H5T_STD_I8LE, H5T_STD_U8LE, H5T_STD_I16BE, H5T_STD_U16LE, H5T_STD_I32LE,
+                           H5T_STD_U32BE, H5T_STD_I64LE, H5T_STD_U64LE, H5T_IEEE_F32LE}) {
+    write_dataset(folder / "numbers.h5", "/values", {2, 3, 4}, regions, type);
+    auto const scene = read_text(folder, text);
+    check_files(scene);
+    EXPECT_EQ(io::regions(scene, whole(scene)), expected) << type;
+  }
+
+  hid_t const boolean = H5Tenum_create(H5T_STD_I8LE);
+  std::int8_t const no = 0, yes = 1;
+  H5Tenum_insert(boolean, "FALSE", &no);
+  H5Tenum_insert(boolean, "TRUE", &yes);
+  std::vector<std::int8_t> mask;
+  for (int n = 0; n < 24; ++n) mask.push_back(n % 5 == 0 ? 0 : 1);
+  write_dataset_as(folder / "mask.h5", "/values", {2, 3, 4}, mask, boolean, boolean);
+  H5Tclose(boolean);
+  auto const masked = read_text(folder, replaced(plain_film, "shape = [4, 3, 2]",
+                                                 "shape = [4, 3, 2]\n"
+                                                 "occupied = { file = 'mask.h5' }"));
+  check_files(masked);
+  auto const there = occupied(masked, whole(masked));
+  for (std::size_t site = 0; site < 24; ++site) EXPECT_EQ(there[site], mask[site] != 0) << site;
+}
+
+TEST(SiteNumbers, IntegersOfFilesMustBeExactInDouble) {
+  Folder const folder;
+  auto const text = replaced(plain_film, "exchange = 1", "exchange = { file = 'long.h5' }");
+  auto const numbers = [&] {
+    auto const scene = read_text(folder, text);
+    return numbers_of_sites(scene, scene.field.exchange_factors, "field.exchange", whole(scene));
+  };
+  std::vector<std::int64_t> integers(24, 0);
+  integers[0] = std::numeric_limits<std::int64_t>::min();
+  integers[1] = -(std::int64_t{1} << 53) - 2;
+  write_dataset_as(folder / "long.h5", "/values", {2, 3, 4}, integers, H5T_NATIVE_INT64,
+                   H5T_STD_I64LE);
+  EXPECT_EQ(numbers()[0], -0x1p63);
+  EXPECT_EQ(numbers()[1], -0x1p53 - 2);
+  EXPECT_EQ(numbers()[2], 0);
+  ++integers[1];
+  write_dataset_as(folder / "long.h5", "/values", {2, 3, 4}, integers, H5T_NATIVE_INT64,
+                   H5T_STD_I64LE);
+  expect_holds(refusal_in(folder, text),
+               "long.h5: cannot read dataset /values: it contains -9007199254740993; accepted: "
+               "integers that double represents exactly, such as those up to 2^53");
+
+  std::vector<std::uint64_t> positive(24, std::uint64_t{0x1fffffffffffff} << 11);
+  write_dataset_as(folder / "long.h5", "/values", {2, 3, 4}, positive, H5T_NATIVE_UINT64,
+                   H5T_STD_U64BE);
+  EXPECT_EQ(numbers()[23], 0x1.fffffffffffffp63);
+  ++positive[23];
+  write_dataset_as(folder / "long.h5", "/values", {2, 3, 4}, positive, H5T_NATIVE_UINT64,
+                   H5T_STD_U64BE);
+  expect_holds(refusal_in(folder, text), "it contains 18446744073709549569; accepted: ");
+}
+
 TEST(SiteNumbers, ThatAreWrongAreRefusedInOneLine) {
   Folder const folder;
   write_dataset(folder / "short.h5", "/values", {3, 4}, std::vector<double>(12, 1));
   write_dataset(folder / "other.h5", "/exchange", {2, 3, 4}, std::vector<double>(24, 1));
   write_dataset(folder / "nan.h5", "/values", {2, 3, 4},
                 std::vector<double>(24, std::numeric_limits<double>::quiet_NaN()));
+  write_dataset_as(folder / "bits.h5", "/values", {2, 3, 4}, std::vector<std::uint8_t>(24),
+                   H5T_STD_B8LE, H5T_STD_B8LE);
   for (auto const& [typed, what] :
        {std::pair{"exchange = '1 +'", ": field.exchange: "},
         {"exchange = 'q'", ": field.exchange: "},
@@ -120,6 +186,9 @@ TEST(SiteNumbers, ThatAreWrongAreRefusedInOneLine) {
         {"exchange = { file = 'none.h5' }", "none.h5"},
         {"exchange = { file = 'short.h5' }", "its extents are (3, 4); accepted: (2, 3, 4)"},
         {"exchange = { file = 'other.h5' }", "/values"},
+        {"exchange = { file = 'bits.h5' }",
+         "its type is not one of numbers; accepted: float, double, integers of up to 64 bits, "
+         "booleans of h5py"},
         {"exchange = { file = 'nan.h5' }", "a value is not finite; accepted: finite numbers"},
         {"dmi = { bulk = 'z+' }", ": field.dmi.bulk: "},
         {"dmi = { interfacial = 'x' }", ": field.dmi.normal: is missing"},
