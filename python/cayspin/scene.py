@@ -27,8 +27,10 @@ def _numbers(array, key):
 def _without_arrays(thing, key, arrays):
     """Returns a value of a scene without its arrays of values per site, which are moved into
     `arrays` by their keys and replaced by toml_text.ARRAY."""
-    if isinstance(thing, np.ndarray) and thing.ndim in (4, 5) and thing.shape[-1] == 3 \
-            and _VECTORS.fullmatch(key):
+    if key == "field.applied" and _is_array_of_vectors(thing):
+        raise _cayspin.SceneError(f"{key}: an array of vectors, which only Scene(field=..) takes; "
+                                  "accepted: three numbers or expressions, or field.sources")
+    if _is_array_of_vectors(thing) and _VECTORS.fullmatch(key):
         thing = [thing[..., component] for component in range(3)]
     if isinstance(thing, np.ndarray) and thing.ndim in (3, 4):
         arrays[key] = _numbers(thing, key)
@@ -38,6 +40,20 @@ def _without_arrays(thing, key, arrays):
     if isinstance(thing, (list, tuple)):
         return [_without_arrays(one, f"{key}[{n}]", arrays) for n, one in enumerate(thing)]
     return thing
+
+
+def _is_array_of_vectors(value):
+    return isinstance(value, np.ndarray) and value.ndim in (4, 5) and value.shape[-1] == 3
+
+
+def _with_applied_as_source(field):
+    """Returns the table [field] with an array for `applied` as a further entry of `sources`, and
+    this array, or None."""
+    applied = field.get("applied") if isinstance(field, dict) else None
+    if not _is_array_of_vectors(applied):
+        return field, None
+    others = {key: value for key, value in field.items() if key != "applied"}
+    return others | {"sources": [*(field.get("sources") or []), {"profile": applied}]}, applied
 
 
 def _split(tables):
@@ -125,11 +141,15 @@ class Scene:
     field={"sources": [{"profile": array}]}.
 
     `field["applied"]` may be a function of t that returns three numbers: the uniform field, in T in
-    SI. `field["nonlocal"]` may be a function of (spins, t) that returns H of all sites in the shape
-    of the spins, in SI also in T. It is called with a copy of the spins whenever a step or an
-    energy needs the field. H has to be linear in the spins, and with the moments mu the matrix of
-    mu H has to be symmetric, so that the energy of this field is -sum mu m.H / 2. H may depend on
-    t, so the energy guard is off, and the steps of adaptive methods are at most dt.
+    SI. It may also be an array (nz, ny, nx, 3) of a field that differs from site to site and does
+    not depend on t or the spins; its energy is -sum mu m.H. The array becomes an entry of
+    `sources`. `field["nonlocal"]` may be a function of (spins, t) that returns H of all sites in
+    the shape of the spins, in SI also in T. It is called with a copy of the spins whenever a step
+    or an energy needs the field. H has to be linear in the spins, and with the moments mu the
+    matrix of mu H has to be symmetric, so that the energy of this field is -sum mu m.H / 2. A field
+    that does not depend on the spins would thus have half its energy: pass it as `applied` or
+    `sources`. H may depend on t, so the energy guard is off, and the steps of adaptive methods are
+    at most dt.
 
     Raises SceneError with one line that names the key, what is wrong and what is accepted.
     """
@@ -139,11 +159,12 @@ class Scene:
                  output: dict | None = None, **tables: Any):
         if isinstance(integrator, dict) and not {"end", "steps"} & set(integrator):
             integrator = {**integrator, "steps": 0}
+        field, applied = _with_applied_as_source(field)
         typed, spins, own, arrays = _split({**tables, "system": system, "lattice": lattice, "field": field,
                                     "initial": initial, "integrator": integrator, "output": output})
         scene = _cayspin.Scene.parse(toml_text.document(typed), "Scene", [], _as_planes(spins),
                                      _flat(arrays))
-        self._finish(scene, own, None, spins, arrays)
+        self._finish(scene, own, None, spins, arrays, applied)
 
     @classmethod
     def from_file(cls, path: str | os.PathLike, **overrides: Any) -> Scene:
@@ -166,11 +187,14 @@ class Scene:
         self._finish(scene, own, changed, spins, arrays)
         return self
 
-    def _finish(self, scene, own, overrides, spins, arrays):
+    def _finish(self, scene, own, overrides, spins, arrays, applied=None):
         shape = sites.shape_by_site(scene.shape, scene.cell_sites)
         if spins is not None and spins.shape[:-1] != shape:
             raise _cayspin.SceneError(f"initial: an array of shape {spins.shape}; accepted: "
                                       f"{(*shape, 3)}")
+        if applied is not None and applied.shape != (*shape, 3):
+            raise _cayspin.SceneError(f"field.applied: an array of shape {applied.shape}; accepted: "
+                                      f"{(*shape, 3)}, or three numbers or expressions")
         for key, array in arrays.items():
             if array.shape != shape:
                 raise _cayspin.SceneError(f"{key}: an array of shape {array.shape}; accepted: "

@@ -257,6 +257,41 @@ class ConstantFields(PackageTest):
         sims[1].set("field.sources", [{"profile": 2 * array}])
         np.testing.assert_allclose(sims[1].field(), 2 * array, rtol=1e-15)
 
+    def test_an_array_may_be_the_applied_field(self):
+        array = np.random.default_rng(1).normal(size=(*SHAPE, 3))
+        others = {"exchange": 0.4, "mu0": 0.5}
+        sim = cayspin.Simulation(scene({**others, "applied": array}, lattice=MOMENTS))
+        _, j, i = np.indices(SHAPE)
+        moments = np.where(i == 2, 0, 1 + 0.2 * j)[..., None]
+        expected = -0.5 * (moments * sim.spins * array).sum()
+        self.assertAlmostEqual(sim.energies()["sources"], expected, delta=1e-13)
+        # A field that the function of a linear field returns has half this energy.
+        half = cayspin.Simulation(scene({"nonlocal": lambda m, t: 0.5 * array}, lattice=MOMENTS))
+        self.assertAlmostEqual(half.energy(), expected / 2, delta=1e-13)
+        both = cayspin.Simulation(scene({**others, "sources": [{"profile": [0, 0, "x"]},
+                                                               {"profile": array}]}))
+        same = cayspin.Simulation(scene({**others, "sources": [{"profile": [0, 0, "x"]}],
+                                         "applied": array}))
+        for one in (both, same):
+            one.step(20)
+        np.testing.assert_array_equal(both.spins, same.spins)
+        crystal = np.random.default_rng(2).normal(size=(2, *SHAPE, 3))
+        sim = cayspin.Simulation(scene({"applied": crystal}, lattice=CRYSTAL))
+        np.testing.assert_allclose(sim.field(), crystal, rtol=1e-15)
+
+    def test_an_applied_array_that_is_wrong_is_refused_in_one_line(self):
+        array = np.ones((*SHAPE, 3))
+        self.assert_refused(
+            cayspin.SceneError, "field.applied: an array of shape (2, 4, 5, 3); accepted: "
+            "(2, 4, 6, 3), or three numbers or expressions", scene, {"applied": array[:, :, :5]})
+        sim = cayspin.Simulation(scene({"exchange": 1.0}))
+        file = self.written(scene({"exchange": 1.0}))
+        for call in (lambda: sim.set("field.applied", array),
+                     lambda: sim.set({"field": {"applied": array}}),
+                     lambda: cayspin.Scene.from_file(file, field={"applied": array})):
+            self.assert_refused(cayspin.SceneError, "field.applied: an array of vectors, which only ",
+                                call)
+
     def test_axes_are_arrays_too(self):
         axis = np.broadcast_to([0.0, 0.6, 0.8], (*SHAPE, 3)).copy()
         axis[:, :, 3:] = [1, 0, 0]
