@@ -13,6 +13,7 @@ namespace cayspin::inline v0_2::io {
 struct ZhangLi {
   std::array<AppliedComponent, 3> velocity = {};  ///< u
   double nonadiabaticity = 0;                     ///< xi
+  bool per_moment = false;                        ///< u is divided by the moment of each site
 
   static constexpr auto keys() {
     return std::to_array<Key<ZhangLi>>({{"velocity"},
@@ -30,11 +31,13 @@ struct Slonczewski {
   double lambda = 1;                                       ///< L
   SiteNumbers damping_like_of_sites, field_like_of_sites;  ///< if set, multiply a and b
   SiteVectors polarizations;  ///< if set, replace p; normalised when used
+  bool damping_like_per_moment = false,
+       field_like_per_moment = false;  ///< a or b is divided by the moment of each site
 
   /// Returns true if a, b and p are uniform, and c does not depend on the angle between m and p.
   bool is_plain() const {
     return lambda == 1 && !damping_like_of_sites.there() && !field_like_of_sites.there() &&
-           !polarizations.there();
+           !polarizations.there() && !damping_like_per_moment && !field_like_per_moment;
   }
 
   static constexpr auto keys() {

@@ -256,20 +256,27 @@ std::string couplings_text(io::Scene const& scene, std::vector<Coupling> const& 
   return fmt::format("{}, up to {:.6g} J", text, largest * scene.units.energy);
 }
 
+// Returns the division of a strength by the moment of each site, if there is one.
+std::string per_moment_text(io::Scene const& scene, bool per_moment) {
+  return per_moment ? fmt::format(" / (Ms / {:.6g} A/m)", scene.material->moment) : "";
+}
+
 void add_torques(io::Scene const& scene, std::vector<std::pair<std::string, std::string>>& lines) {
   bool const si = scene.units.si;
   auto const& torque = si ? scene.torque_in_si : scene.field.torque;
   if (auto const& of = torque.zhang_li)
-    lines.emplace_back("torque",
-                       fmt::format("Zhang-Li, u = {}{}, xi = {:.6g}", components_text(of->velocity),
-                                   si ? " m/s" : "", of->nonadiabaticity));
+    lines.emplace_back(
+        "torque",
+        fmt::format("Zhang-Li, u = {}{}{}, xi = {:.6g}", components_text(of->velocity),
+                    si ? " m/s" : "", per_moment_text(scene, of->per_moment), of->nonadiabaticity));
   if (auto const& of = torque.slonczewski)
     lines.emplace_back(
         "torque",
-        fmt::format("Slonczewski, damping-like {}{}, field-like {}{}{}, p = {}{}",
+        fmt::format("Slonczewski, damping-like {}{}{}, field-like {}{}{}{}, p = {}{}",
                     component_text(of->damping_like), factors_text(of->damping_like_of_sites),
+                    per_moment_text(scene, of->damping_like_per_moment),
                     component_text(of->field_like), factors_text(of->field_like_of_sites),
-                    si ? " (T)" : "",
+                    per_moment_text(scene, of->field_like_per_moment), si ? " (T)" : "",
                     of->polarizations.there() ? vectors_text(of->polarizations)
                                               : vector_text(of->polarization),
                     of->lambda == 1 ? "" : fmt::format(", Lambda = {:.6g}", of->lambda)));
@@ -380,21 +387,6 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
 
 void warn_of_notes(io::Scene const& scene) {
   for (auto const& note : io::notes(scene)) print_message("warning: {}\n", note);
-}
-
-std::string describe_method(io::Scene const& scene) {
-  auto const& integrator = scene.integrator;
-  std::string text(integrator.method->word);
-  if (integrator.substeps > 1) text += fmt::format(" in {} substeps", integrator.substeps);
-  if (integrator.method->is_baseline()) return text;
-  text += fmt::format(", {} generator, {} rotation", io::to_string(integrator.generator),
-                      io::to_string(integrator.rotation));
-  if (integrator.isotropy == io::Isotropy::constant)
-    text += fmt::format(", sigma = {:.6g}{}", integrator.sigma / scene.units.time,
-                        scene.units.si ? " rad/s" : "");
-  else if (integrator.isotropy != io::Isotropy::zero)
-    text += fmt::format(", sigma by {}", io::to_string(integrator.isotropy));
-  return text;
 }
 
 }  // namespace cayspin::program

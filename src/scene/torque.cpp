@@ -47,7 +47,7 @@ void scale(AppliedComponent& component, SiteNumbers& of_sites, double factor) {
 }
 
 // Returns the key current_density, in A/m^2, if it is typed in place of the key `torque`. It needs
-// a material with one Ms and one gamma. The keys in `with` are refused without it.
+// a material of a continuum, with one gamma. The keys in `with` are refused without it.
 std::optional<Item> find_current(Table const& table, std::string_view torque,
                                  std::vector<std::string_view> const& with) {
   auto const current = table.find("current_density");
@@ -64,8 +64,6 @@ std::optional<Item> find_current(Table const& table, std::string_view torque,
   if (material->atomistic)
     current->fail("needs the magnetization of a continuum",
                   fmt::format("{}, or material.Ms", torque));
-  if (material->moment_factors.there())
-    current->fail("needs one magnetization for all sites", fmt::format("{}, or one Ms", torque));
   if (material->gamma_factors.there())
     current->fail("needs one gamma for all sites", fmt::format("{}, or one gamma", torque));
   return current;
@@ -84,6 +82,7 @@ ZhangLi read_zhang_li(Item const& item, Scene& scene) {
     double const of_unit_current = units::drift_velocity(
         {.density = 1, .polarization = polarization, .Ms = Ms, .gamma = gamma});
     for (auto& component : read.velocity) component = times(component, of_unit_current);
+    read.per_moment = scene.material->moment_factors.there();
   } else {
     auto const velocity = table.required("velocity", three_components);
     read.velocity = three(velocity, three_components, component_in_time);
@@ -108,12 +107,14 @@ void read_current(Item const& current, Table const& table, Slonczewski& read) {
   auto const profile = read.damping_like_of_sites;
   read.damping_like = density;
   scale(read.damping_like, read.damping_like_of_sites, of_unit_current(efficiency));
+  read.damping_like_per_moment = scene.material->moment_factors.there();
   auto const second = table.find("epsilon_prime");
   if (!second) return;
   if (auto const other = table.find("field_like"))
     other->fail("stands beside epsilon_prime", "one of the two");
   read.field_like = density;
   read.field_like_of_sites = profile;
+  read.field_like_per_moment = read.damping_like_per_moment;
   scale(read.field_like, read.field_like_of_sites, of_unit_current(2 * number(*second)));
 }
 

@@ -71,6 +71,7 @@ auto FieldInPass<Spins>::Terms::at(Exec const& exec, SceneFieldNow<Real> const& 
                         .has_usual = has_usual,
                         .has_pairs = has_pairs_,
                         .has_zhang_li = torques_.velocity.has_value(),
+                        .zhang_li_per_moment = torques_.velocity_per_moment,
                         .has_slonczewski = torques_.strengths && !torques_.needs_site_term,
                         .has_slonczewski_of_sites = torques_.needs_site_term,
                         .has_vacancies = has_vacancies_,

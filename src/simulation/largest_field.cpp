@@ -287,12 +287,15 @@ double slonczewski_bound(io::Scene const& scene, io::Slonczewski const& torque, 
     return largest(AppliedField({a, b, 0.0}, key), key, scene, times, features);
   };
   if (torque.is_plain()) return largest_of(torque.damping_like, torque.field_like);
-  auto const of_sites = [&](io::SiteNumbers const& numbers) {
-    return numbers.there() ? range_of_sites(scene, numbers, key).magnitude() : 1;
+  auto const of_sites = [&](io::SiteNumbers const& numbers, bool per_moment) {
+    double const strength = numbers.there() ? range_of_sites(scene, numbers, key).magnitude() : 1;
+    return per_moment ? strength / least_moment(scene) : strength;
   };
-  return torque.lambda * torque.lambda * of_sites(torque.damping_like_of_sites) *
+  return torque.lambda * torque.lambda *
+             of_sites(torque.damping_like_of_sites, torque.damping_like_per_moment) *
              largest_of(torque.damping_like, 0.0) +
-         of_sites(torque.field_like_of_sites) * largest_of(0.0, torque.field_like);
+         of_sites(torque.field_like_of_sites, torque.field_like_per_moment) *
+             largest_of(0.0, torque.field_like);
 }
 
 double torque_bound(io::Scene const& scene, Lattice const& lattice, Times const& times,
@@ -305,6 +308,7 @@ double torque_bound(io::Scene const& scene, Lattice const& lattice, Times const&
     for (int axis = 0; axis < 3; ++axis)
       if (lattice.has_neighbors(axis)) bound += velocity / lattice.spacing[axis];
     bound *= std::hypot(1, of->nonadiabaticity);
+    if (of->per_moment) bound /= least_moment(scene);
   }
   if (auto const& of = torque.slonczewski) {
     // If gamma differs from site to site, strengths in T turn each spin by the gamma of its site.

@@ -193,7 +193,9 @@ struct PassTerms {
   cayspin::SiteArray<Real, 1> per_gyromagnetic;  // for torques: 1 / gyromagnetic ratio; or no data
   cayspin::detail::StoredField<Real> of_all;     // due to all spins; acts like an applied field
   Vec3<double> applied_in_field;  // zero if the kernels of the methods add the applied field
-  bool has_usual, has_pairs, has_zhang_li, has_slonczewski, has_slonczewski_of_sites;
+  bool has_usual, has_pairs, has_zhang_li;
+  bool zhang_li_per_moment;  // multiplied by per_moments, which has data
+  bool has_slonczewski, has_slonczewski_of_sites;
   bool has_vacancies, has_of_all;
   bool is_gradient;  // computes -dE/dm, without gyromagnetic ratios and torques
 
@@ -318,7 +320,11 @@ struct PassTerms {
   template <class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> sum_of_torques(Stencil const& stencil,
                                                          Vec3<Value> h) const {
-    if (has_zhang_li) h = h + zhang_li.field(stencil);
+    if (has_zhang_li) {
+      auto const of_current = zhang_li.field(stencil);
+      h = zhang_li_per_moment ? multiply_add(Value(stencil.site().load(per_moments)), of_current, h)
+                              : h + of_current;
+    }
     if (has_slonczewski) h = h + slonczewski.field(stencil);
     if (has_slonczewski_of_sites) h = h + slonczewski_of_sites.field(stencil);
     return h;

@@ -140,6 +140,7 @@ class FieldInPass<Spins>::Terms {
   struct Torques {
     std::optional<AppliedField> velocity, strengths;  // strengths: damping-like, field-like
     double nonadiabaticity = 0;
+    bool velocity_per_moment = false;
     Vec3<double> polarization{0, 0, 1};
     double lambda = 1;
     bool needs_site_term = false;  // site-dependent, or dependent on the angle

@@ -6,7 +6,9 @@
 #include <cayspin/detail/ghosts.hpp>
 
 #include <array>
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 // The torques of a scene's currents, for FieldInPass. Included by compile_field_in_pass.hpp.
 namespace cayspin::simulation {
@@ -17,6 +19,7 @@ void FieldInPass<Spins>::Terms::add_torques(io::Scene const& scene, io::SiteBox 
   if (zhang_li) {
     torques_.velocity.emplace(zhang_li->velocity, "torque.zhang_li.velocity", scene.units);
     torques_.nonadiabaticity = zhang_li->nonadiabaticity;
+    torques_.velocity_per_moment = zhang_li->per_moment;
   }
   if (!slonczewski) return;
   constexpr char const* key = "torque.slonczewski";
@@ -27,14 +30,22 @@ void FieldInPass<Spins>::Terms::add_torques(io::Scene const& scene, io::SiteBox 
     torques_.polarization = vector(slonczewski->polarization);
   torques_.lambda = slonczewski->lambda;
   torques_.needs_site_term = !slonczewski->is_plain();
-  auto const keep = [&](io::SiteNumbers const& numbers,
+  auto const keep = [&](io::SiteNumbers const& numbers, bool per_moment,
                         std::optional<ScalarField<Real, Memory>>& in) {
-    if (numbers.there())
-      in = scalar_field_of<Real, Memory>("strengths", lattice_,
-                                         io::numbers_of_sites(scene, numbers, key, box));
+    if (!numbers.there() && !per_moment) return;
+    std::vector<double> strengths;
+    if (numbers.there()) strengths = io::numbers_of_sites(scene, numbers, key, box);
+    if (per_moment) {
+      auto const moments = io::moments_of_sites(scene, box);
+      strengths.resize(moments.size(), 1);
+      for (std::size_t site = 0; site < moments.size(); ++site)
+        strengths[site] = moments[site] > 0 ? strengths[site] / moments[site] : 0;
+    }
+    in = scalar_field_of<Real, Memory>("strengths", lattice_, strengths);
   };
-  keep(slonczewski->damping_like_of_sites, torques_.damping_like);
-  keep(slonczewski->field_like_of_sites, torques_.field_like);
+  keep(slonczewski->damping_like_of_sites, slonczewski->damping_like_per_moment,
+       torques_.damping_like);
+  keep(slonczewski->field_like_of_sites, slonczewski->field_like_per_moment, torques_.field_like);
   if (!slonczewski->polarizations.there()) return;
   auto& polarizations = torques_.polarizations.emplace("FieldInPass::polarizations", lattice_);
   copy_from_host(io::directions_of_sites(scene, slonczewski->polarizations,

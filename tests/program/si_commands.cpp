@@ -70,6 +70,10 @@ TEST_F(SiScene, CheckPrintsCrystalsAndCurrentsInSi) {
              "Lap(m), times 1.55425e+11 (1.3e-11*(1+x))\n", " (K = 500 J/m^3)\n",
              " (Kc = 48000 J/m^3)\n", "torque      Zhang-Li, u = (-28.9755, ", ") m/s, xi = 0\n",
              "torque      Slonczewski, damping-like 0, field-like 0.01 (T), p = (0, 0, 1)\n"}));
+  EXPECT_TRUE(contains_all(
+      said("Ms = { regions = [4e5, 8e5] }", "shape = [8, 4], spacing = 4e-9, regions = 'i % 2'",
+           "torque = { zhang_li = { current_density = [1e12, 0, 0], polarization = 0.4 } }"),
+      {"Zhang-Li, u = (-28.9755, ", ") m/s / (Ms / 800000 A/m), xi = 0\n"}));
 }
 
 // The applied field is printed as typed, too; other expressions only with t in reduced units.
