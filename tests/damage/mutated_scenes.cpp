@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Shipped scenes with tokens deleted, swapped or replaced: each is read, or refused with one line.
+// Shipped scenes, and small ones with the keys that these lack, with tokens deleted, swapped or
+// replaced: each is read, or refused with one line.
 // CAYSPIN_MUTATED_SCENES and CAYSPIN_SEED: number of scenes, and the seed.
 #include "damaged_bytes.hpp"
 #include "io/expression.hpp"
@@ -48,13 +49,31 @@ std::string mutated(std::vector<std::string> tokens, Chance& chance) {
   return text;
 }
 
-TEST(MutatedScenes, AreReadOrRefusedWithOneLine) {
-  std::vector<std::vector<std::string>> scenes;
+std::vector<std::filesystem::path> scenes_in(char const* folder) {
   std::vector<std::filesystem::path> paths;
-  for (auto const& entry : std::filesystem::directory_iterator(CAYSPIN_SCENES))
+  for (auto const& entry : std::filesystem::directory_iterator(folder))
     if (entry.path().extension() == ".toml") paths.push_back(entry.path());
   std::ranges::sort(paths);
-  for (auto const& path : paths)
+  return paths;
+}
+
+TEST(MutatedScenes, StartFromScenesThatAreAccepted) {
+  auto const paths = scenes_in(CAYSPIN_SMALL_SCENES);
+  EXPECT_FALSE(paths.empty());
+  for (auto const& path : paths) {
+    SCOPED_TRACE(path);
+    auto const scene = parse_scene(cayspin::test::read_bytes(path), "scene.toml");
+    check_files(scene);
+    EXPECT_LE(sites(scene), 1000);
+    EXPECT_EQ(std::ssize(initial_spins(scene)), 3 * sites(scene));
+  }
+}
+
+TEST(MutatedScenes, AreReadOrRefusedWithOneLine) {
+  std::vector<std::vector<std::string>> scenes;
+  for (auto const& path : scenes_in(CAYSPIN_SMALL_SCENES))
+    scenes.push_back(tokens_of(cayspin::test::read_bytes(path)));
+  for (auto const& path : scenes_in(CAYSPIN_SCENES))
     for (std::string const stages :
          {"",
           "[[stage]]\nname = \"a\"\nrelax = true\nfield.applied = [1, 0, 0]\n[[stage]]\n"
