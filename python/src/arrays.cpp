@@ -130,7 +130,7 @@ io::OwnField own_field(nb::object uniform, nb::object nonlocal) {
       if (nb::len(result) != 3)
         throw UsageError(
             "field.applied: the function returned another number of components; "
-            "accepted: three numbers");
+            "accepted: three numbers; for a field per site use an array or field.sources");
       std::array<double, 3> field{};
       for (std::size_t c = 0; c < 3; ++c)
         if (nb::object const component = result[c];

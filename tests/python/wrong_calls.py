@@ -77,6 +77,8 @@ class Functions(PackageTest):
                          applied=lambda t, wrong=wrong: wrong)
         for wrong in ((), (1, 2), (1, 2, 3, 4), np.zeros(4)):
             self.refused("another number of components", applied=lambda t, wrong=wrong: wrong)
+        self.refused("for a field per site use an array or field.sources",
+                     applied=lambda t: np.zeros(SHAPE))
 
     def test_nonlocal_fields(self):
         for part, function in {
