@@ -56,6 +56,22 @@ class Scenes(PackageTest):
         self.assertIn('"0.1*cos(t)"', of.text)
         self.assertEqual(of.shape, (1, 3, 2))
 
+    def test_files_of_masks_and_numbers(self):
+        mask = np.arange(42).reshape(2, 3, 7) % 5 != 0
+        regions = np.arange(42).reshape(2, 3, 7) % 3
+        stored = {"mask": mask, "numbers": regions, "bytes": regions.astype("u1")}
+        for name, array in stored.items():
+            with h5py.File(self.folder / f"{name}.h5", "w") as file:
+                file["values"] = array
+        by_region = {"regions": [0.5, 1.0, 2.0]}
+        arrays = scene(lattice={"occupied": mask, "regions": regions},
+                       field={"exchange": by_region})
+        for numbers in ("numbers", "bytes"):
+            files = scene(lattice={"occupied": {"file": str(self.folder / "mask.h5")},
+                                   "regions": {"file": str(self.folder / f"{numbers}.h5")}},
+                          field={"exchange": by_region})
+            np.testing.assert_array_equal(stepped(files, 3), stepped(arrays, 3))
+
     def test_messages(self):
         for part, tables in {
                 "field.anisotropy.konstant: unknown key, did you mean \"constant\"?":

@@ -46,6 +46,14 @@ class SiScenes(PackageTest):
         sim.spins = [0.0, 0.6, 0.8]
         np.testing.assert_allclose(sim.field(), np.broadcast_to(FIELD, (1, 5, 6, 3)), atol=1e-13)
 
+    def test_applied_arrays_are_in_tesla(self):
+        array = np.random.default_rng(3).normal(size=(1, 5, 6, 3))
+        sim = cayspin.Simulation(film({"applied": array}))
+        np.testing.assert_allclose(sim.field() - cayspin.Simulation(film({})).field(), array,
+                                   atol=1e-13)
+        expected = -MS * math.prod(CELL) * (sim.spins * array).sum()
+        self.assertAlmostEqual(sim.energies()["sources"] / expected, 1, delta=1e-12)
+
     def test_functions_are_in_the_scenes_units(self):
         typed = cayspin.Simulation(film({"applied": [f"0.1*cos({FREQUENCY!r}*t)", 0.05, 0],
                                          "slab_demag": {"normal": [0, 0, 1]}}))
