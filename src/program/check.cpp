@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "check_ensemble.hpp"
 #include "check_text.hpp"
 #include "command.hpp"
 #include "describe.hpp"
@@ -71,7 +72,7 @@ void add_notes(Json& object, io::Scene const& scene) {
 }
 
 Json run_json(io::Scene const& scene, Plan const& plan, Precision precision,
-              std::optional<double> const& repeated) {
+              std::optional<double> const& repeated, std::optional<ReplicaTotals> const& totals) {
   auto const& units = scene.units;
   // If no limit is known, stable_dt is infinite, which JSON prints as null.
   Json object{{"stable_dt", plan.stable_dt * units.time},
@@ -96,11 +97,13 @@ Json run_json(io::Scene const& scene, Plan const& plan, Precision precision,
     object["jumps"] = plan.features->jumps;
   }
   if (repeated) object["repeated"] = *repeated;
+  if (totals) add_totals(object, *totals);
   add_notes(object, scene);
   return object;
 }
 
-Json relax_json(io::Scene const& scene, Plan const& plan, Precision precision) {
+Json relax_json(io::Scene const& scene, Plan const& plan, Precision precision,
+                std::optional<ReplicaTotals> const& totals) {
   Json object;
   object["stable_dt"] = nullptr;
   add_memory(object, plan);
@@ -109,6 +112,7 @@ Json relax_json(io::Scene const& scene, Plan const& plan, Precision precision) {
   object["file_bytes"] = bytes_json(plan.file_bytes);
   object["precision"] = std::string(to_string(precision));
   add_units(object, scene.units);
+  if (totals) add_totals(object, *totals);
   add_notes(object, scene);
   return object;
 }
@@ -128,11 +132,10 @@ Json staged_json(io::Scene const& scene, std::vector<CheckedStage> const& stages
   return object;
 }
 
-std::string output_text(io::Scene const& scene, Plan const& plan) {
+std::string output_text(io::Scene const& scene, std::int64_t frames, double file_bytes) {
   auto const& output = scene.output;
-  auto text =
-      fmt::format("{}, {}, to {}", counted(plan.frames, "frame"), bytes_text(plan.file_bytes),
-                  output.file ? output.file->string() : "the file that --output names");
+  auto text = fmt::format("{}, {}, to {}", counted(frames, "frame"), bytes_text(file_bytes),
+                          output.file ? output.file->string() : "the file that --output names");
   if (output.compression > 0) text += fmt::format(", compressed at level {}", output.compression);
   if (output.xdmf) text += ", described by an XDMF file";
   if (output.table) text += ", samples also in a text table";
@@ -172,8 +175,10 @@ std::optional<std::string> refusal_of_output(io::Scene const& scene) {
   return output_refusal(scene.output);
 }
 
-void print_output(io::Scene const& scene, Plan const& plan) {
-  print("output", output_text(scene, plan));
+// For an ensemble, `totals` is set, and the file has all replicas.
+void print_output(io::Scene const& scene, Plan const& plan,
+                  std::optional<ReplicaTotals> const& totals) {
+  print("output", output_text(scene, plan.frames, totals ? totals->file_bytes : plan.file_bytes));
   if (auto const refusal = refusal_of_output(scene)) print("", "as it stands: " + *refusal);
 }
 
@@ -191,10 +196,11 @@ void print_memory(Plan const& plan, Precision precision, char const* work) {
 }
 
 void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
-                std::optional<double> const& repeated) {
+                std::optional<double> const& repeated, std::optional<ReplicaTotals> const& totals) {
   for (auto const& [name, text] : describe(scene)) print(name, text);
   print_steps(scene, plan);
   print_memory(plan, precision, "method");
+  if (totals) print_totals(*totals);
   print_notes(scene);
   if (repeated)
     print("ranks",
@@ -202,7 +208,7 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
                       "neighbour",
                       100 * *repeated,
                       mpi::to_text(depth_of_parts(scene, plan.lattice, plan.variant.ghosts))));
-  print_output(scene, plan);
+  print_output(scene, plan, totals);
 }
 
 // Describes the search as far as it is known beforehand. The other choices depend on the field, and
@@ -214,23 +220,26 @@ std::string search_text(io::Scene const& scene) {
       scene.field.applied_in_turn.empty() ? "" : "; each field starts at the state found before");
 }
 
-int check_to_relax(CheckOptions const& options, io::Scene const& scene) {
+// `whole`: the scene with its table [ensemble], if it has one.
+int check_to_relax(CheckOptions const& options, io::Scene const& whole, io::Scene const& scene) {
   if (options.ranks)
     throw UsageError(
         fmt::format("--ranks {}: the scene is for cayspin relax, which runs on one rank; accepted: "
                     "no --ranks",
                     *options.ranks));
   auto const plan = make_plan_to_relax(scene, options.precision);
+  auto const totals = replica_totals(whole, scene, plan, options.precision);
   auto const start = is_start_checked(plan) ? check_start(scene) : std::vector<double>();
   if (options.json) {
-    print_json(relax_json(scene, plan, options.precision));
+    print_json(relax_json(scene, plan, options.precision, totals));
     return Status::done;
   }
   for (auto const& [name, text] : describe(scene)) print(name, text);
   print("relax", search_text(scene));
   print_memory(plan, options.precision, "search");
+  if (totals) print_totals(*totals);
   print_notes(scene);
-  print_output(scene, plan);
+  print_output(scene, plan, totals);
   draw(scene, start);
   return Status::done;
 }
@@ -258,7 +267,7 @@ int check_in_stages(CheckOptions const& options, io::Scene const& scene) {
     whole.frames += stage.scene.begin.stage == 0 ? plan.frames : plan.frames - !stage.relax;
     whole.file_bytes += plan.file_bytes;
   }
-  print_output(scene, whole);
+  print_output(scene, whole, {});
   draw(scene, start);
   return Status::done;
 }
@@ -284,8 +293,9 @@ int check(CheckOptions const& options) {
       io::with_shape_of_start(io::read_scene_to_run_or_relax(options.scene, options.overrides));
   io::check_files(scene);
   require_divisible(scene, options.ranks);
-  if (scene.ensemble.there()) scene = first_replica(options, scene);
-  if (io::is_to_relax(scene)) return check_to_relax(options, scene);
+  auto const whole = scene;
+  if (whole.ensemble.there()) scene = first_replica(options, whole);
+  if (io::is_to_relax(scene)) return check_to_relax(options, whole, scene);
   if (!scene.stages.empty()) return check_in_stages(options, scene);
   if (scene.integrator.method->automatic) {
     auto const space = chosen_space({});
@@ -294,11 +304,12 @@ int check(CheckOptions const& options) {
   }
   auto const plan = make_plan(scene, options.precision);
   auto const repeated = repeated_on(options, scene, plan);
+  auto const totals = replica_totals(whole, scene, plan, options.precision);
   auto const start = is_start_checked(plan) ? check_start(scene) : std::vector<double>();
   if (options.json) {
-    print_json(run_json(scene, plan, options.precision, repeated));
+    print_json(run_json(scene, plan, options.precision, repeated, totals));
   } else {
-    print_text(scene, plan, options.precision, repeated);
+    print_text(scene, plan, options.precision, repeated, totals);
     draw(scene, start);
   }
   return Status::done;

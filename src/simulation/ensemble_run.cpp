@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "ensemble_run.hpp"
 
+#include "ensemble_plan.hpp"
 #include "failure.hpp"
 #include "io/notes.hpp"
-#include "plan.hpp"
 #include "run_files.hpp"
 #include "scene_minimizer.hpp"
 #include "text.hpp"
@@ -25,7 +25,7 @@ void require_memory_of_all(io::Scene const& scene, io::Scene const& replica, Pre
                            std::optional<std::int64_t> available = {}) {
   auto const plan =
       relaxes ? make_plan_to_relax(replica, precision) : make_plan(replica, precision);
-  require_memory(scene, plan, static_cast<int>(replicas), available);
+  require_memory_of_replicas(scene, replica, plan, precision, replicas, available);
 }
 
 }  // namespace
@@ -241,11 +241,13 @@ std::vector<io::Scalars> EnsembleRun::scalars() {
 std::vector<std::byte> EnsembleRun::spins() {
   Turn::Reserved const turn;
   std::vector<std::byte> all;
+  bool const in_double = first().precision() == Precision::double_precision;
+  all.reserve(replicas() * static_cast<std::size_t>(3 * io::sites(first().scene())) *
+              (in_double ? sizeof(double) : sizeof(float)));
   auto const add = [&](auto const& numbers) {
     auto const bytes = std::as_bytes(std::span(numbers));
     all.insert(all.end(), bytes.begin(), bytes.end());
   };
-  bool const in_double = first().precision() == Precision::double_precision;
   if (columns_) {
     in_double ? add(columns_->spins<double>()) : add(columns_->spins<float>());
     return all;

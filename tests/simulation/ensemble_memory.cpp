@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Memory of ensembles of small replicas that are separate runs: the estimate is not below what they
+// take, and an ensemble that does not fit is refused.
+#include "scenes_of_text.hpp"
+#include "simulation/ensemble_plan.hpp"
+#include "simulation/ensemble_run.hpp"
+
+#include <unistd.h>
+
+#include <cstdint>
+#include <fstream>
+#include <string>
+
+namespace cayspin::simulation::test {
+namespace {
+
+// Replicas that differ in a field are not columns of a lattice.
+io::Scene single_spins(int replicas) {
+  return llg_scene("0.1", "rkmk4", 4,
+                   fmt::format(R"([lattice]
+shape = [1]
+[field]
+applied = [0.3, 0, 0.1]
+[initial]
+random = {{ seed = 7 }}
+[ensemble]
+replicas = {}
+vary."field.applied.0" = {{ from = 0, to = 1 }}
+)",
+                               replicas));
+}
+
+double estimate_of(io::Scene const& scene) {
+  auto const replica = io::replica_of(scene, 0);
+  auto const precision = Precision::double_precision;
+  return memory_of_replicas(replica, make_plan(replica, precision), precision,
+                            scene.ensemble.replicas);
+}
+
+TEST(EnsembleMemory, OfSingleSpinsThatDoNotFitIsRefused) {
+  auto const scene = single_spins(500);
+  auto const needed = static_cast<std::int64_t>(estimate_of(scene));
+  auto share = all_replicas(scene);
+  share.available = needed + 1;
+  EXPECT_NO_THROW(EnsembleRun(scene, {}, false, share));
+  share.available = needed - 1;
+  try {
+    EnsembleRun const run(scene, {}, false, share);
+    ADD_FAILURE() << "an ensemble that does not fit";
+  } catch (io::SceneError const& error) {
+    std::string const text = error.what();
+    for (char const* const part : {"ensemble.replicas: the run needs ", " of memory, and ",
+                                   " is available; accepted: fewer replicas"})
+      EXPECT_NE(text.find(part), std::string::npos) << text;
+  }
+}
+
+// Columns need no more than their lattices, which are far below the estimate for separate runs.
+TEST(EnsembleMemory, OfColumnsIsNotThatOfSeparateRuns) {
+  auto const scene = scene_of(single_spins(500).text, {"ensemble.vary={}"});
+  auto share = all_replicas(scene);
+  share.available = static_cast<std::int64_t>(estimate_of(scene)) / 4;
+  EXPECT_NO_THROW(EnsembleRun(scene, {}, false, share));
+}
+
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+double resident_bytes() {
+  std::ifstream file("/proc/self/statm");
+  double all = 0, resident = 0;
+  file >> all >> resident;
+  return resident * static_cast<double>(::sysconf(_SC_PAGESIZE));
+}
+
+TEST(EnsembleMemory, OfSingleSpinsIsNotAboveTheEstimate) {
+  auto const scene = single_spins(1000);
+  EnsembleRun const few(single_spins(20), {}, false);  // starts Kokkos
+  double const before = resident_bytes();
+  EnsembleRun const run(scene, {}, false);
+  EXPECT_LE(resident_bytes() - before, 1.2 * estimate_of(scene));
+}
+#endif
+
+}  // namespace
+}  // namespace cayspin::simulation::test
