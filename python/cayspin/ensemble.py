@@ -22,13 +22,19 @@ class Ensemble:
     - `time`, `step`: (frame)
     - `energy`, summed over the sites of a replica, and `norm_defect`: (frame, replica)
     - `magnetization`: (frame, replica, 3)
+    - `sublattice_magnetization`: (frame, replica, site, 3), for a crystal with several sites in a
+      cell
     - `torque`, `converged`, `evaluations`: (replica), in files of `cayspin relax`
+
+    Arrays come from h5py as they are in the file. Only plot() and structure_factor() compare spins
+    with their checksums, and raise CayspinError for a damaged frame.
 
     Raises AttributeError for an array that the file does not have.
     """
 
     _names = ("spins", "time", "step", "energy", "norm_defect", "magnetization")
-    _of_searches = ("torque", "converged", "evaluations")
+    _of_some = {"sublattice_magnetization": "a file of a crystal with several sites in a cell",
+                **dict.fromkeys(("torque", "converged", "evaluations"), "a file of cayspin relax")}
 
     def __init__(self, path: str | os.PathLike, file: Any):
         self.path: str | os.PathLike = path  #: name of the file
@@ -45,7 +51,7 @@ class Ensemble:
     def _require_arrays(self):
         import h5py
 
-        some = [name for name in self._of_searches if name in self.file]
+        some = [name for name in self._of_some if name in self.file]
         groups = ("scalars", "vary")
         found = found_in(self.file, (*self._names, *some, *groups))
         missing = [name for name, one in found.items()
@@ -60,11 +66,11 @@ class Ensemble:
         if name in self._names:
             with reading(self.file, self.path):
                 return self.file[name]
-        if name in self._of_searches:
+        if name in self._of_some:
             with reading(self.file, self.path):
                 if name in self.file:
                     return self.file[name]
-            raise AttributeError(f"{self.path}: it has no {name}; accepted: a file of cayspin relax")
+            raise AttributeError(f"{self.path}: it has no {name}; accepted: {self._of_some[name]}")
         raise AttributeError(name)
 
     @property

@@ -42,7 +42,7 @@ def texture_of(file: Any, path: Any, frame: int, before: int | None = None,
     with reading(file, path):
         try:
             if replica is not None:
-                return texture.of_file(Replica(file, replica), frame, before)
+                file = Replica(file, replica)
             shown, other = texture.of_file(file, frame, before)
             _require_undamaged(file, frame, shown.spins)
             if before is not None:
@@ -58,7 +58,7 @@ def _require_undamaged(file, frame, spins):
 
 class Frames:
     """Some of the frames of a dataset, each read when it is indexed. With `replica`, the dataset is
-    that of an ensemble, and only this replica is read. Otherwise it is that of a trajectory, and a
+    that of an ensemble, and only this replica is read. Otherwise it is that of a trajectory. A
     damaged frame raises CayspinError."""
 
     def __init__(self, dataset: Any, frames: range, replica: int | None = None):
@@ -69,11 +69,13 @@ class Frames:
     def __getitem__(self, frame: int) -> np.ndarray:
         place = self.frames[frame]
         with reading(self.dataset, self.path):
+            file, spins = self.dataset.file, self.dataset
             if self.replica is not None:
-                return self.dataset[place, self.replica]
+                file = Replica(file, self.replica)
+                spins = file["spins"]
             if self.checksums is None:
-                self.checksums = checksum.Checksums(self.dataset.file, 0, max(self.frames) + 1)
-            spins = self.dataset[place]
+                self.checksums = checksum.Checksums(file, 0, max(self.frames) + 1)
+            spins = spins[place]
             self.checksums.require_undamaged(place, spins)
             return spins
 

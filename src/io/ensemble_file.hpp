@@ -5,6 +5,7 @@
 #include "io/run_output.hpp"
 #include "io/trajectory.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -65,7 +66,10 @@ struct EnsembleInfo {
   std::int64_t step = 0;                 ///< of the last frame
   double time = 0;                       ///< of the last frame
   std::vector<Scalars> last;             ///< of each replica, in the last frame
-  std::vector<RelaxedReplica> relaxed;   ///< each replica's search; empty for a run
+  /// For crystals with several sites per cell, cell_sites entries for each replica in the last
+  /// frame, as TrajectoryInfo::frame_sublattices. Empty for files of earlier versions.
+  std::vector<std::array<double, 3>> last_sublattices;
+  std::vector<RelaxedReplica> relaxed;  ///< each replica's search; empty for a run
 };
 
 /// Consecutive replicas of an ensemble.
@@ -81,7 +85,7 @@ EnsembleInfo read_ensemble_info(std::filesystem::path const& path);
 std::optional<EnsembleInfo> read_ensemble_info_while_written(std::filesystem::path const& path);
 /// Reads the spins of these replicas in the last frame, one replica after the other, each packed as
 /// (nz, ny, nx, 3) in the order of TrajectoryHeader::shape. Numbers are not rounded. Throws
-/// std::runtime_error with one line.
+/// std::runtime_error with one line, also for a replica whose checksum differs.
 std::vector<double> read_ensemble_spins(std::filesystem::path const& path, EnsembleInfo const& info,
                                         ReplicaRange const& replicas);
 

@@ -20,6 +20,16 @@ void print_range(std::string const& name, std::vector<double> const& values) {
   fmt::print("{:<12} {:.9g} to {:.9g}\n", name, least, most);
 }
 
+void print_sublattices(io::EnsembleInfo const& info, std::size_t replica) {
+  if (info.last_sublattices.empty()) return;
+  auto const sites = static_cast<std::size_t>(info.header.cell_sites);
+  for (std::size_t site = 0; site < sites; ++site) {
+    auto const& mean = info.last_sublattices[replica * sites + site];
+    fmt::print("{:<12} site {}: magnetization ({:.6f}, {:.6f}, {:.6f})\n", "", site, mean[0],
+               mean[1], mean[2]);
+  }
+}
+
 }  // namespace
 
 void print_ensemble(std::filesystem::path const& file, io::EnsembleInfo const& info,
@@ -47,6 +57,7 @@ void print_ensemble(std::filesystem::path const& file, io::EnsembleInfo const& i
           "{:<12} energy {:.9g}{}, norm defect {:.3g}, magnetization ({:.6f}, {:.6f}, {:.6f})"
           "\n",
           fmt::format("replica {}", r), energy, joule, defect, m[0], m[1], m[2]);
+      print_sublattices(info, r);
     }
     if (info.last.size() > most_shown)
       fmt::print("{:<12} {} in all\n", "replicas", info.last.size());

@@ -198,6 +198,8 @@ Json last_frame_json(io::EnsembleInfo const& info) {
   if (info.frames == 0) return {};
   Json object{{"step", info.step}, {"time", info.time}};
   add_scalars(object, info.last);
+  object["sublattice_magnetization"] =
+      info.last_sublattices.empty() ? Json() : in_rows(info.last_sublattices, info.last.size());
   auto const of_search = [&](auto member) {
     if (info.relaxed.empty()) return Json();
     auto column = Json::array();

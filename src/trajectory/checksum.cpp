@@ -39,6 +39,11 @@ std::uint32_t spins_checksum(Sample const& sample, std::uint32_t fletcher32) {
   return never_zero(mixed(mixed(0, sum_of(sample)), fletcher32));
 }
 
+std::uint64_t frame_checksum(Sample const& sample, std::uint32_t fletcher32,
+                             std::span<double const> more) {
+  return std::uint64_t{row_checksum(sample, more)} << 32U | spins_checksum(sample, fletcher32);
+}
+
 std::uint64_t text_checksum(TrajectoryHeader const& header) {
   std::uint64_t hash = 0;
   for (auto text : {header.scene_text, header.resolved_scene, header.cayspin_version,

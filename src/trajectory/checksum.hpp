@@ -15,6 +15,11 @@ std::uint32_t row_checksum(Sample const& sample, std::span<double const> more = 
 /// spins.
 std::uint32_t spins_checksum(Sample const& sample, std::uint32_t fletcher32);
 
+/// Returns a number of the dataset checksum: row_checksum in the upper half, spins_checksum in the
+/// lower half.
+std::uint64_t frame_checksum(Sample const& sample, std::uint32_t fletcher32,
+                             std::span<double const> more);
+
 /// Returns a checksum of the texts of a header.
 std::uint64_t text_checksum(TrajectoryHeader const& header);
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "io/ensemble_file.hpp"
 
+#include "checksum.hpp"
 #include "ensemble_format.hpp"
+#include "fletcher32.hpp"
 #include "format.hpp"
 #include "hdf5/attribute.hpp"
 #include "hdf5/dataset.hpp"
@@ -9,8 +11,10 @@
 #include "new_file.hpp"
 #include "open_file_space.hpp"
 #include "positions.hpp"
+#include "replica_series.hpp"
 #include "require.hpp"
 #include "site_order.hpp"
+#include "sublattice_mean.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -20,66 +24,6 @@
 #include <utility>
 
 namespace cayspin::inline v0_2::io {
-namespace {
-
-// Returns properties of a dataset in which numbers that never reached the disk are read as
-// `missing`.
-PropertyHandle filled_with(double missing, std::filesystem::path const& path) {
-  PropertyHandle properties(H5Pcreate(H5P_DATASET_CREATE));
-  check(H5Pset_fill_value(properties.get(), H5T_NATIVE_DOUBLE, &missing), path,
-        "cannot create a dataset");
-  return properties;
-}
-
-}  // namespace
-
-/// The datasets time, step, energy, norm_defect and magnetization of one group. The first two have
-/// one entry per sample, the others one per sample and replica.
-class ReplicaSeries {
- public:
-  static constexpr hsize_t numbers_per_chunk = 4096;
-
-  static ReplicaSeries create(hid_t group, hsize_t replicas, std::filesystem::path const& path) {
-    ReplicaSeries series;
-    series.replicas_ = replicas;
-    auto const samples = std::max<hsize_t>(1, numbers_per_chunk / replicas);
-    auto const make = [&](char const* name, Extents const& chunk) {
-      return create_growing_dataset(group, name, H5T_IEEE_F64LE, chunk,
-                                    filled_with(missing_number, path), path);
-    };
-    series.time_ = make("time", {numbers_per_chunk});
-    series.step_ = create_growing_dataset(group, "step", H5T_STD_I64LE, Extents{numbers_per_chunk},
-                                          filled_with(missing_step, path), path);
-    series.energy_ = make("energy", {samples, replicas});
-    series.norm_defect_ = make("norm_defect", {samples, replicas});
-    series.magnetization_ = make("magnetization", {samples, replicas, 3});
-    return series;
-  }
-
-  void append(std::int64_t step, double time, std::vector<Scalars> const& scalars,
-              std::filesystem::path const& path) {
-    std::vector<double> energies, defects, means;
-    for (auto const& one : scalars) {
-      energies.push_back(one.energy);
-      defects.push_back(one.norm_defect);
-      means.insert(means.end(), one.magnetization.begin(), one.magnetization.end());
-    }
-    append_block(time_.get(), H5T_NATIVE_DOUBLE, {size_}, {1}, &time, path);
-    append_block(step_.get(), H5T_NATIVE_INT64, {size_}, {1}, &step, path);
-    append_block(magnetization_.get(), H5T_NATIVE_DOUBLE, {size_, 0, 0}, {1, replicas_, 3},
-                 means.data(), path);
-    append_block(norm_defect_.get(), H5T_NATIVE_DOUBLE, {size_, 0}, {1, replicas_}, defects.data(),
-                 path);
-    append_block(energy_.get(), H5T_NATIVE_DOUBLE, {size_, 0}, {1, replicas_}, energies.data(),
-                 path);
-    ++size_;
-  }
-
- private:
-  DatasetHandle time_, step_, energy_, norm_defect_, magnetization_;
-  hsize_t replicas_ = 0, size_ = 0;
-};
-
 namespace {
 
 constexpr std::uint64_t overhead = 1 << 20;  // bytes for index nodes and new chunks of scalars
@@ -184,6 +128,38 @@ std::vector<Real> in_file_order(std::vector<std::byte> const& bytes,
   return by_sites(spins, header);
 }
 
+// Appends the mean of each sublattice of a replica. `spins`: those of the replica, in file order.
+template <class Real>
+void add_sublattices(std::span<Real const> spins, TrajectoryHeader const& header,
+                     std::vector<double>& means) {
+  auto const nx = header.shape[0];
+  auto const rows = header.shape[1] * header.shape[2] / header.cell_sites;
+  auto const* row = spins.data();
+  for (std::int64_t site = 0; site < header.cell_sites; ++site) {
+    SublatticeMean mean;
+    for (std::int64_t k = 0; k < rows; ++k, row += 3 * nx) mean.add_row(row, nx);
+    auto const value = mean.value();
+    means.insert(means.end(), value.begin(), value.end());
+  }
+}
+
+// `spins`: those of all replicas, in file order.
+template <class Real>
+ReplicaFrame replica_frame(std::int64_t step, double time, std::vector<Scalars> const& scalars,
+                           std::span<Real const> spins, TrajectoryHeader const& header) {
+  ReplicaFrame frame;
+  auto const size = spins.size() / scalars.size();
+  for (std::size_t replica = 0; replica < scalars.size(); ++replica) {
+    auto const own = spins.subspan(replica * size, size);
+    auto const before = frame.sublattices.size();
+    if (header.cell_sites > 1) add_sublattices(own, header, frame.sublattices);
+    frame.checksums.push_back(
+        frame_checksum({step, time, scalars[replica]}, fletcher32(std::as_bytes(own)),
+                       std::span<double const>(frame.sublattices).subspan(before)));
+  }
+  return frame;
+}
+
 }  // namespace
 
 class EnsembleFile::Implementation {
@@ -213,9 +189,10 @@ class EnsembleFile::Implementation {
     auto const extents = extents_of_frame(header, replicas_);
     bytes_of_chunks_ =
         bytes_of_chunks(spins_.get(), extents, frame_bytes_ / elements(extents), path_);
-    frames_ = ReplicaSeries::create(file.get(), replicas_, path_);
+    frames_ =
+        ReplicaSeries::create_of_frames(file.get(), ensemble.replicas, header.cell_sites, path_);
     scalars_ = create_group(file.get(), "scalars", path_);
-    samples_ = ReplicaSeries::create(scalars_.get(), replicas_, path_);
+    samples_ = ReplicaSeries::create(scalars_.get(), ensemble.replicas, path_);
     check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), path_, "cannot create the file");
     file_ = file.commit();
   }
@@ -231,19 +208,13 @@ class EnsembleFile::Implementation {
     require_replicas(scalars.size());
     if (spins.size() != frame_bytes_)
       throw std::logic_error(path_.string() + ": spins of another lattice or precision");
-    space_.reserve(bytes_of_chunks_ + overhead + 64 * replicas_, path_);
-    Extents begin(extents_of_frame(header_, replicas_).size() + 1);
-    begin[0] = static_cast<hsize_t>(written_);
-    auto extents = extents_of_frame(header_, replicas_);
-    extents.insert(extents.begin(), 1);
-    if (header_.precision == single_precision)
-      append_block(spins_.get(), H5T_NATIVE_FLOAT, begin, extents,
-                   in_file_order<float>(spins, header_).data(), path_);
-    else
-      append_block(spins_.get(), H5T_NATIVE_DOUBLE, begin, extents,
-                   in_file_order<double>(spins, header_).data(), path_);
+    auto const sites = static_cast<std::uint64_t>(header_.cell_sites);
+    space_.reserve(bytes_of_chunks_ + overhead + (72 + 24 * sites) * replicas_, path_);
+    auto const frame = header_.precision == single_precision
+                           ? write_spins<float>(H5T_NATIVE_FLOAT, step, time, scalars, spins)
+                           : write_spins<double>(H5T_NATIVE_DOUBLE, step, time, scalars, spins);
     flush();
-    frames_.append(step, time, scalars, path_);
+    frames_.append(step, time, scalars, frame, path_);
     flush();
     ++written_;
   }
@@ -290,6 +261,18 @@ class EnsembleFile::Implementation {
   std::int64_t frames() const { return written_; }
 
  private:
+  template <class Real>
+  ReplicaFrame write_spins(hid_t memory_type, std::int64_t step, double time,
+                           std::vector<Scalars> const& scalars,
+                           std::vector<std::byte> const& spins) {
+    Extents begin(extents_of_frame(header_, replicas_).size() + 1);
+    begin[0] = static_cast<hsize_t>(written_);
+    auto extents = extents_of_frame(header_, replicas_);
+    extents.insert(extents.begin(), 1);
+    auto const sorted = in_file_order<Real>(spins, header_);
+    append_block(spins_.get(), memory_type, begin, extents, sorted.data(), path_);
+    return replica_frame<Real>(step, time, scalars, sorted, header_);
+  }
   void require_open() const {
     if (file_.get() < 0) throw std::logic_error(path_.string() + ": the trajectory has ended");
   }

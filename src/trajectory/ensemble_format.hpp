@@ -10,6 +10,10 @@ namespace cayspin::inline v0_2::io {
 inline constexpr char const* ensemble_format = "ensemble_format";
 inline constexpr std::int64_t ensemble_format_version = 1;
 
+/// Datasets that frames have in addition to the scalars. Files of earlier versions lack both.
+inline constexpr char const *sublattices_of_replicas = "sublattice_magnetization",
+                            *checksum_of_replicas = "checksum";
+
 /// Numbers that are read where a number or a step never reached the disk.
 inline constexpr double missing_number = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double missing_step = -1;

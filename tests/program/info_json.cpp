@@ -2,6 +2,8 @@
 // cayspin info --json prints the values in the file.
 #include "json_output.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <csignal>
 #include <cstddef>
@@ -157,10 +159,54 @@ TEST_F(JsonOutput, MatchesTheFileOfAnEnsemble) {
   std::vector<double> mean;
   append_numbers(last.at("magnetization"), mean);
   EXPECT_EQ(mean, std::vector(means.end() - 9, means.end()));
-  expect_nulls(last, {"torque", "converged", "evaluations"});
+  expect_nulls(last, {"torque", "converged", "evaluations", "sublattice_magnetization"});
   expect_attributes(found, "all.h5",
                     {"replicas", "evaluations", "wall_seconds", "step_seconds", "complete"},
                     {"scene", "written_by", "space", "precision", "units"});
+}
+
+TEST_F(JsonOutput, HasTheSublatticesOfAnEnsemble) {
+  write("all.toml", R"toml([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [3, 2, 2]
+crystal = "bcc"
+[field]
+couplings = { shells = [-1.0] }
+[initial]
+random = { seed = 3 }
+[integrator]
+method = "rkmk4"
+dt = 0.02
+steps = 5
+[ensemble]
+replicas = 2
+)toml");
+  expect_status(0, {"run", "all.toml", "--quiet", "--output", "all.h5"});
+  auto const [extents, values] = read_dataset("all.h5", "/sublattice_magnetization");
+  EXPECT_EQ(extents, (std::vector<std::int64_t>{2, 2, 2, 3}));
+  auto const found = info("all.h5").at("last_frame").at("sublattice_magnetization");
+  EXPECT_EQ(found.size(), 2U);
+  EXPECT_EQ(found.at(0).size(), 2U);
+  std::vector<double> means;
+  append_numbers(found, means);
+  EXPECT_EQ(means, std::vector(values.end() - 12, values.end()));
+  // Each site of the cells has as many spins.
+  auto const all = read_dataset("all.h5", "/magnetization").values;
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR((means[c] + means[3 + c]) / 2, all[6 + c], 1e-14);
+  auto const text = output_of({"info", "all.h5"});
+  EXPECT_TRUE(contains_all(text, {"\nreplica 1 ", "\n             site 1: magnetization ("}))
+      << text;
+
+  for (int const replica : {0, 1}) {
+    expect_status(0,
+                  joined({"run", "all.toml", "--quiet", "--output", "one.h5", "--overwrite"},
+                         set("ensemble={}", fmt::format("initial.random.seed={}", 3 + replica))));
+    auto const one = read_dataset("one.h5", "/sublattice_magnetization").values;
+    EXPECT_EQ(std::vector(one.end() - 6, one.end()),
+              std::vector(means.begin() + 6 * replica, means.begin() + 6 * replica + 6));
+  }
 }
 
 // The name of a file may have any bytes. In JSON, bytes that are not UTF-8 are replaced.

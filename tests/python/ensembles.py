@@ -64,6 +64,38 @@ class Ensembles(unittest.TestCase):
             with self.assertRaisesRegex(AttributeError, "accepted: a file of cayspin relax"):
                 ensemble.torque
 
+    def test_sublattices_are_those_of_runs(self):
+        tables = {"lattice": {"shape": [3, 2, 2], "crystal": "bcc"},
+                  "field": {"couplings": {"shells": [-1.0]}}}
+        file = self.run_program("run", scene(**tables, ensemble={"replicas": 2}))
+        with cayspin.open(file) as ensemble:
+            self.assertEqual(ensemble.sublattice_magnetization.shape, (4, 2, 2, 3))
+            np.testing.assert_allclose(ensemble.sublattice_magnetization[:],
+                                       ensemble.spins[:].mean(axis=(3, 4, 5)), atol=1e-15)
+        file = self.run_program("run", scene(ensemble={"replicas": 2}))
+        with cayspin.open(file) as ensemble, self.assertRaisesRegex(
+                AttributeError, "accepted: a file of a crystal with several sites in a cell"):
+            ensemble.sublattice_magnetization
+
+    def test_damaged_spins_of_a_replica_are_noticed(self):
+        for tables in ({}, {"lattice": {"shape": [3, 2, 2], "crystal": "bcc"},
+                            "field": {"couplings": {"shells": [-1.0]}}}):
+            file = self.run_program("run", scene(**tables, ensemble={"replicas": 3}))
+            with cayspin.open(file) as ensemble:
+                ensemble.structure_factor()
+                place = (2, 1, *[0] * (ensemble.spins.ndim - 3))
+            with h5py.File(file, "r+") as changed:
+                changed["spins"][place] = [0, 0, 1]
+            with cayspin.open(file) as ensemble:
+                ensemble.plot(replica=0, frame=2)
+                ensemble.plot(replica=1, frame=1)
+                ensemble.structure_factor(replicas=[0, 2])
+                for call in (lambda: ensemble.plot(replica=1, frame=2),
+                             lambda: ensemble.structure_factor(replicas=[1])):
+                    with self.assertRaisesRegex(cayspin.CayspinError,
+                                                "replica 1 of frame 2 is damaged"):
+                        call()
+
     def test_a_replica_is_drawn_as_a_trajectory(self):
         file = self.run_program("run", scene(ensemble={"replicas": 2}))
         with cayspin.open(file) as ensemble:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The checksums of frames in a trajectory file, as docs/reference/file_format.md describes them."""
+"""The checksums of frames in files of runs and ensembles, as docs/reference/file_format.md
+describes them."""
 
 import numpy as np
 
@@ -43,20 +44,22 @@ def of_frame(step, numbers, spins, more=None):
 
 
 def require_undamaged(file, first, spins):
-    """Compares frames of an open trajectory file, from frame `first` on, with their checksums.
-    Raises ValueError for a damaged frame. Files of early versions have no checksums, and pass.
-    `spins`: the spins of these frames."""
+    """Compares frames of an open trajectory file, or of a Replica, from frame `first` on, with
+    their checksums. Raises ValueError for a damaged frame. Files of early versions have no
+    checksums, and pass. `spins`: the spins of these frames."""
     known = Checksums(file, first, len(spins))
     for number, one in enumerate(spins, first):
         known.require_undamaged(number, one)
 
 
 class Checksums:
-    """The checksums of `count` frames of an open trajectory file, from frame `first` on, and the
-    numbers that they cover beside the spins, read once."""
+    """The checksums of `count` frames of an open trajectory file or of a Replica, from frame
+    `first` on, and the numbers that they cover beside the spins, read once."""
 
     def __init__(self, file, first, count):
         self.first, self.rows = first, []
+        number = getattr(file, "number", None)
+        self.of_replica = "" if number is None else f"replica {number} of "
         if "checksum" not in file:
             return
         those = slice(first, first + count)
@@ -74,4 +77,4 @@ class Checksums:
             return
         known, step, numbers, more = self.rows[frame - self.first]
         if of_frame(step, numbers, spins, more) != int(known):
-            raise ValueError(f"frame {frame} is damaged: its checksum differs")
+            raise ValueError(f"{self.of_replica}frame {frame} is damaged: its checksum differs")

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """One replica of an ensemble's file, which is read as a trajectory."""
 
-OF_REPLICAS = ("spins", "energy", "norm_defect", "magnetization")
+OF_REPLICAS = ("spins", "energy", "norm_defect", "magnetization", "sublattice_magnetization",
+               "checksum")
 
 
 def is_ensemble(file):

@@ -127,7 +127,7 @@ def frames_in(file: Any) -> int:
     """The number of complete frames of an open file of a run or an ensemble. A killed run may have
     written some numbers of another frame."""
     count = min(len(file[name]) for name in OF_FRAMES if name in file)
-    # Frames of ensembles have no checksums. Numbers that never reached the disk are NaN.
+    # Numbers of ensembles that never reached the disk are NaN, and their checksums 0.
     while count and "ensemble_format" in file.attrs and _lacks_numbers(file, count - 1):
         count -= 1
     return count
@@ -136,6 +136,8 @@ def frames_in(file: Any) -> int:
 def _lacks_numbers(file, row):
     """The energy is not examined, because that of a program's own field may be NaN."""
     numbers = [file[name][row] for name in ("time", "norm_defect", "magnetization")]
+    if "checksum" in file and not np.all(file["checksum"][row]):
+        return True
     return file["step"][row] < 0 or any(np.isnan(one).any() for one in numbers)
 
 
