@@ -130,9 +130,11 @@ class Scene:
               integrator={"method": "rkmk4", "dt": 0.05, "end": 60})
 
     `system`, `lattice`, `field`, `integrator` and `output` are dicts of the keys of these tables,
-    `tables` are further ones: material, torque, thermal, ensemble, and units="SI". Without `end`
-    and `steps` in `integrator` the scene has no end. Without `integrator` it can be used only for
-    Simulation.relax() and other calls that need no steps.
+    `tables` are further ones: material, torque, thermal, ensemble, and units="SI". A list of
+    numbers may also be a tuple, a range or an array: ensemble={"replicas": 3, "vary":
+    {"thermal.temperature": range(3)}}. Without `end` and `steps` in `integrator` the scene has no
+    end. Without `integrator` it can be used only for Simulation.relax() and other calls that need
+    no steps.
 
     `initial` is a dict, or an array (nz, ny, nx, 3) of vectors, which are copied and normalised.
     Arrays of a crystal with several sites in a cell are (site, nz, ny, nx, 3). Values per site may

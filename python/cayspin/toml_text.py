@@ -36,7 +36,7 @@ def value(thing, key):
         if not arguments.is_unicode(thing):
             raise SceneError(f"{key}: {thing!r} is no Unicode text; accepted: a string")
         return json.dumps(thing, ensure_ascii=False).replace("\x7f", "\\u007f")
-    if isinstance(thing, (list, tuple)):
+    if isinstance(thing, (list, tuple, range)):
         return "[" + ", ".join(value(entry, key) for entry in thing) + "]"
     if isinstance(thing, dict):
         pairs = (f"{_key(name)} = {value(entry, f'{key}.{name}')}" for name, entry in thing.items())

@@ -64,6 +64,21 @@ class Ensembles(unittest.TestCase):
             with self.assertRaisesRegex(AttributeError, "accepted: a file of cayspin relax"):
                 ensemble.torque
 
+    def test_varied_values_may_be_of_any_kind_of_sequence(self):
+        def text_of(values, replicas=3):
+            return scene(ensemble={"replicas": replicas,
+                                   "vary": {"field.applied.0": values}}).text
+
+        expected = text_of([0, 1, 2])
+        for values in ((0, 1, 2), range(3), np.arange(3), list(np.arange(3, dtype=np.int16)),
+                       tuple(np.arange(3, dtype=np.uint8))):
+            self.assertEqual(text_of(values, np.int32(3)), expected)
+        self.assertEqual(text_of(np.arange(3.0)), text_of([0.0, 1.0, 2.0]))
+        self.assertEqual(text_of({"from": np.int64(0), "to": np.float32(0.5)}),
+                         text_of({"from": 0, "to": 0.5}))
+        with self.assertRaisesRegex(cayspin.SceneError, "has 4 entries; accepted: as many numbers"):
+            text_of(range(4))
+
     def test_sublattices_are_those_of_runs(self):
         tables = {"lattice": {"shape": [3, 2, 2], "crystal": "bcc"},
                   "field": {"couplings": {"shells": [-1.0]}}}
