@@ -137,12 +137,14 @@ class ModesAt {
     double const scale = preconditioner.first_shift();
     Hessian hessian(exec_, field_, options_.time, spins_, is_mobile, arrays,
                     HessianDifferences::of_four);
+    round_off_ = hessian.round_off(found.strongest());
+    least_energy_ = least_energy * scale;
     auto const precondition = [&](Spins const& from, Spins const& to) {
       preconditioner.apply(exec_, from, to);
     };
     ModeSearchOptions const options{.count = options_.count,
                                     .tolerance = options_.tolerance,
-                                    .round_off = hessian.round_off(found.strongest()) / scale,
+                                    .round_off = round_off_ / scale,
                                     .evaluations = options_.evaluations,
                                     .scale = scale,
                                     .shift = 1e-3 * scale * fastest,
@@ -167,12 +169,18 @@ class ModesAt {
 
   std::int64_t evaluations() const { return evaluations_; }
 
+  /// Returns an estimate of the error of an eigenvalue of the Hessian. `error`: that of its vector.
+  double error_of_value(double value, double error) const {
+    return round_off_ + error * std::max(std::abs(value), least_energy_);
+  }
+
  private:
   Exec const& exec_;
   Field const& field_;
   Spins const& spins_;
   ModesOptions const& options_;
   std::int64_t evaluations_ = 0;
+  double round_off_ = 0, least_energy_ = 0;
 };
 
 }  // namespace detail
@@ -240,7 +248,9 @@ Curvatures<Spins> lowest_curvatures(Exec const& exec, Field const& field, Spins 
       minus_one("modes::along", spins.lattice(), Real(-1));
   Curvatures<Spins> found;
   found.end = at.find({none.array(), minus_one.array()}, false, true, 1, [&](auto const& mode) {
-    found.curvatures.push_back({mode.rate.real(), mode.error, mode.real});
+    double const value = mode.rate.real();
+    found.curvatures.push_back(
+        {value, at.error_of_value(value, mode.error), mode.error, mode.real});
   });
   found.evaluations = at.evaluations();
   return found;

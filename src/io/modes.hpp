@@ -4,6 +4,7 @@
 #include "io/units.hpp"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -27,8 +28,14 @@ struct ModesContents {
   std::vector<double> frequencies, decays, residuals;  ///< one for each mode
   std::vector<std::vector<double>> shapes;             ///< per mode: sites x 3 x (real, imaginary)
   std::vector<double> curvatures;                      ///< empty if not computed
+  /// Of each curvature: its error, in its unit, and the relative error of its vector. Empty if not
+  /// computed, and for files of earlier versions.
+  std::vector<double> curvature_errors, curvature_residuals;
   std::vector<std::vector<double>> curvature_vectors;  ///< per curvature: sites x 3
 };
+
+/// Returns how many of the curvatures are negative beyond their errors.
+std::size_t negative_curvatures(ModesContents const& contents);
 
 /// Contents with spin waves instead of modes: `frequencies` and `decays` list all branches of the
 /// first wave vector, then those of the next.

@@ -63,6 +63,7 @@ void print_spectrum(io::BandsContents const& found) {
   for (std::size_t i = 0; i < std::min(found.curvatures.size(), most_rows); ++i)
     fmt::print("{:<12} {:.9g}{}\n", i == 0 ? "curvatures" : "", found.curvatures[i],
                si ? " J" : "");
+  if (auto const text = saddle_text(found); !text.empty()) fmt::print("{}\n", text);
 }
 
 void print_bands(io::BandsContents const& found) {
@@ -82,6 +83,16 @@ void print_bands(io::BandsContents const& found) {
 }
 
 }  // namespace
+
+std::string saddle_text(io::ModesContents const& found) {
+  auto const negative = io::negative_curvatures(found), all = found.curvatures.size();
+  if (negative == 0) return {};
+  if (negative < all)
+    return fmt::format("the state is a saddle: {} of these curvatures {} negative", negative,
+                       negative == 1 ? "is" : "are");
+  return fmt::format("the state is a saddle or a maximum: {} negative",
+                     all == 1 ? "this curvature is" : fmt::format("all {} of these curvatures are", all));
+}
 
 std::string unit_of_prefactor(io::Path const& path, bool forward) {
   if (!path.header.units.si) return {};

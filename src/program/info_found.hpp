@@ -15,6 +15,9 @@ namespace cayspin::program {
 /// where the state that is left in this direction has n more zero modes than the saddle.
 std::string unit_of_prefactor(io::Path const& path, bool forward);
 
+/// Returns a line that says how many curvatures are negative beyond their errors; empty if none is.
+std::string saddle_text(io::ModesContents const& found);
+
 /// Print a summary of a file of a path, or of a file of modes or spin waves.
 void print_path(std::filesystem::path const& file, io::Path const& path);
 void print_modes(std::filesystem::path const& file, io::BandsContents const& found);

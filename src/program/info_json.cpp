@@ -299,6 +299,8 @@ void add_contents(Json& object, InfoFile const&, io::BandsContents const& found)
   object["decay"] = by_waves(found.decays);
   object["residual"] = waves > 0 ? Json() : Json(found.residuals);
   object["curvature"] = list_or_null(found.curvatures);
+  object["curvature_error"] = list_or_null(found.curvature_errors);
+  object["curvature_residual"] = list_or_null(found.curvature_residuals);
   object["evaluations"] = found.evaluations;
   object["precision"] = found.precision;
   object["space"] = found.space;

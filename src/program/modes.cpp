@@ -7,6 +7,7 @@
 #include "end_of_search.hpp"
 #include "files/file_beside.hpp"
 #include "info_file.hpp"
+#include "info_found.hpp"
 #include "io/notes.hpp"
 #include "io/path.hpp"
 #include "io/relax.hpp"
@@ -166,6 +167,9 @@ class ModesOfScene {
     curvatures.end = ModesEnd::converged;
     if (options_.hessian)
       curvatures = find_curvatures<Real, Space>(exec_, scene_, field, spins_, options_.search);
+    if (!curvatures.values.empty())
+      add_errors_of_torque<Real, Space>(exec_, scene_, field, spins_, options_.search.time,
+                                        curvatures);
     if (curvatures.end == ModesEnd::interrupted) return interrupted();
     auto const end = modes.end == ModesEnd::converged ? curvatures.end : modes.end;
 
@@ -176,6 +180,8 @@ class ModesOfScene {
     contents.residuals = modes.errors;
     contents.shapes = modes.shapes;
     contents.curvatures = curvatures.values;
+    contents.curvature_errors = curvatures.value_errors;
+    contents.curvature_residuals = curvatures.errors;
     contents.curvature_vectors = curvatures.vectors;
     io::write_modes(path, contents, options_.overwrite);
     if (options_.json)
@@ -301,6 +307,7 @@ class ModesOfScene {
     if (!found.curvatures.empty()) fmt::print("{:>4}  curvature{}\n", "", si ? ", J" : "");
     for (std::size_t i = 0; i < found.curvatures.size(); ++i)
       fmt::print("{:>4}  {:.9g}\n", i, found.curvatures[i]);
+    if (auto const text = saddle_text(found); !text.empty()) fmt::print("{}\n", text);
   }
 
   io::Scene const& scene_;

@@ -13,6 +13,7 @@
 #include <cayspin/evaluate.hpp>
 #include <cayspin/modes.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -159,11 +160,32 @@ FoundCurvatures find_curvatures(
   curvatures.evaluations = found.evaluations;
   for (auto const& one : found.curvatures) {
     curvatures.values.push_back(one.value * scene.units.energy);
+    curvatures.value_errors.push_back(one.value_error * scene.units.energy);
     curvatures.errors.push_back(one.error);
     auto const numbers = copy_to_host(one.vector);
     curvatures.vectors.emplace_back(numbers.begin(), numbers.end());
   }
   return curvatures;
+}
+
+template <class Real, class Space>
+void add_errors_of_torque(Space const& exec, io::Scene const& scene,
+                          SceneField<SpinField<Real, typename Space::memory_space>> const& field,
+                          SpinField<Real, typename Space::memory_space> const& spins, double time,
+                          FoundCurvatures& curvatures) {
+  SpinField<Real, typename Space::memory_space> const at_spins("modes::field", spins.lattice());
+  evaluate_field(exec, field, spins, time, at_spins);
+  ++curvatures.evaluations;
+  auto const m = copy_to_host(spins), h = copy_to_host(at_spins);
+  auto const frozen = io::frozen(scene, {{0, 0, 0}, spins.lattice().shape});
+  double square = 0;  // of the largest slope of the energy
+  for (std::size_t i = 0; i < m.size(); i += 3) {
+    if (!frozen.empty() && frozen[i / 3] != 0) continue;
+    Vec3<double> const spin{m[i], m[i + 1], m[i + 2]}, torque = cross(spin, {h[i], h[i + 1], h[i + 2]});
+    square = std::max(square, dot(torque, torque));
+  }
+  // The same factor as for zero modes of rates.
+  for (auto& error : curvatures.value_errors) error += 10 * std::sqrt(square) * scene.units.energy;
 }
 
 template <class Real, class Space>
@@ -204,6 +226,9 @@ FoundBands find_bands(Space const& exec, io::Scene const& scene,
   template FoundCurvatures find_curvatures(                                                    \
       Space const&, io::Scene const&, SceneField<SpinField<Real, Space::memory_space>> const&, \
       SpinField<Real, Space::memory_space> const&, ModesOptions const&);                       \
+  template void add_errors_of_torque(                                                          \
+      Space const&, io::Scene const&, SceneField<SpinField<Real, Space::memory_space>> const&, \
+      SpinField<Real, Space::memory_space> const&, double, FoundCurvatures&);                  \
   template FoundBands find_bands(                                                              \
       Space const&, io::Scene const&, SceneField<SpinField<Real, Space::memory_space>> const&, \
       SpinField<Real, Space::memory_space> const&, std::vector<std::array<double, 3>> const&,  \

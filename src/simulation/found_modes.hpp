@@ -23,7 +23,8 @@ struct FoundModes {
 /// The lowest eigenvalues of the Hessian of the energy, in units of energy, and their eigenvectors.
 struct FoundCurvatures {
   ModesEnd end = ModesEnd::evaluation_limit;
-  std::vector<double> values, errors;
+  std::vector<double> values, value_errors;
+  std::vector<double> errors;                // relative errors of the vectors, in the energy norm
   std::vector<std::vector<double>> vectors;  // sites x 3
   std::int64_t evaluations = 0;
 };

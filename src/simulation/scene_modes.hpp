@@ -46,6 +46,14 @@ FoundCurvatures find_curvatures(
     SceneField<SpinField<Real, typename Space::memory_space>> const& field,
     SpinField<Real, typename Space::memory_space> const& spins, ModesOptions const& options);
 
+/// Adds to `value_errors` the error that is due to the torque left at the spins, and counts the one
+/// evaluation of the field that this takes.
+template <class Real, class Space>
+void add_errors_of_torque(Space const& exec, io::Scene const& scene,
+                          SceneField<SpinField<Real, typename Space::memory_space>> const& field,
+                          SpinField<Real, typename Space::memory_space> const& spins, double time,
+                          FoundCurvatures& curvatures);
+
 /// Limit for --wave-vector: for larger cells, the eigenvalues take minutes.
 constexpr std::int64_t most_sites_of_a_cell = 1024;
 

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cayspin::inline v0_2::io {
@@ -138,8 +139,14 @@ BandsContents read_whole_modes(fs::path const& path) {
   if (found.decays.size() != found.frequencies.size() ||
       (!has_waves && found.residuals.size() != found.frequencies.size()))
     throw_failure(path, "cannot read the modes", "they do not have a decay each");
-  if (has_dataset(file.get(), "curvature"))
-    found.curvatures = read_reals(file.get(), "curvature", path);
+  for (auto const& [name, numbers] :
+       {std::pair{"curvature", &found.curvatures},
+        {"curvature_error", &found.curvature_errors},
+        {"curvature_residual", &found.curvature_residuals}})
+    if (has_dataset(file.get(), name)) *numbers = read_reals(file.get(), name, path);
+  for (auto const* const numbers : {&found.curvature_errors, &found.curvature_residuals})
+    if (!numbers->empty() && numbers->size() != found.curvatures.size())
+      throw_failure(path, "cannot read the modes", "the curvatures do not have an error each");
   if (!has_waves) return found;
   auto const numbers = read_reals(file.get(), "wave_vector", path, 2);
   for (std::size_t i = 0; i + 2 < numbers.size(); i += 3)
@@ -154,6 +161,14 @@ BandsContents read_whole_modes(fs::path const& path) {
 bool is_path(fs::path const& path) { return has_attribute(path, path_format); }
 Path read_path(fs::path const& path) {
   return read_guarded(path, [&] { return read_whole_path(path); });
+}
+
+std::size_t negative_curvatures(ModesContents const& contents) {
+  auto const& errors = contents.curvature_errors;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    count += contents.curvatures[i] < -errors[i] ? 1 : 0;
+  return count;
 }
 
 bool is_modes(fs::path const& path) { return has_attribute(path, modes_format); }

@@ -48,6 +48,8 @@ class Writer {
     write_vectors("mode", contents_.shapes, {3, 2});
     if (contents_.curvatures.empty()) return;
     write_numbers("curvature", contents_.curvatures);
+    write_numbers("curvature_error", contents_.curvature_errors);
+    write_numbers("curvature_residual", contents_.curvature_residuals);
     write_vectors("curvature_vector", contents_.curvature_vectors, {3});
   }
   void write_bands(std::vector<std::array<double, 3>> const& wave_vectors) const {
@@ -125,7 +127,7 @@ class Writer {
 std::uint64_t room_for(ModesContents const& contents) {
   std::size_t numbers = contents.spins.size() + 5 * contents.frequencies.size();
   for (auto const& shape : contents.shapes) numbers += shape.size() + 3;
-  for (auto const& vector : contents.curvature_vectors) numbers += vector.size() + 1;
+  for (auto const& vector : contents.curvature_vectors) numbers += vector.size() + 3;
   return (1 << 20) + contents.scene_text.size() + numbers * sizeof(double);
 }
 

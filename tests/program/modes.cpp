@@ -104,6 +104,45 @@ TEST_F(Modes, OfAFerrimagnet) {
   ASSERT_EQ(curvature.size(), 4U);
   for (std::size_t i = 0; i < 4; ++i)
     EXPECT_NEAR(curvature[i], i < 2 ? mean - split : mean + split, 1e-9) << i;
+  for (double const residual : numbers("curvature_residual")) EXPECT_LT(residual, 1e-7);
+  EXPECT_FALSE(contains(outcome.output, "saddle"));
+}
+
+// Spins along x, with E = -K * m_z^2 / 2 - h * m_x each, have the lowest curvatures h - K and h. A
+// turn in an easy plane costs no energy: its curvature is 0 up to its error, which is no saddle.
+TEST_F(Modes, CountNegativeCurvaturesBeyondTheirErrors) {
+  auto const at = [&](std::string const& field, Arguments const& more) {
+    auto const scene =
+        "[system]\nkind = \"llg\"\ndamping = 0.1\n[lattice]\nshape = [3]\n[field]\n"
+        "exchange = 5.0\n" +
+        field + "\n[initial]\nuniform = [1, 0, 0]\n";
+    auto const outcome =
+        modes(scene, joined({"--hessian", "--at-rest", "--overwrite"}, more));
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return outcome.output;
+  };
+  std::string const axis = "anisotropy = { constant = 1.0, axis = [0, 0, 1] }\n";
+  std::string const saddle = "the state is a saddle: 1 of these curvatures is negative\n";
+  EXPECT_TRUE(contains(at(axis + "applied = [0.2, 0, 0]", {"--count", "2"}), saddle));
+  auto const curvature = numbers("curvature"), error = numbers("curvature_error");
+  ASSERT_EQ(error.size(), 2U);
+  EXPECT_NEAR(curvature[0], 0.2 - 1.0, 1e-12);
+  EXPECT_NEAR(curvature[1], 0.2, 1e-12);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_GT(error[i], 0) << i;
+    EXPECT_LT(error[i], 1e-8) << i;
+  }
+  EXPECT_TRUE(contains(output_of({"info", "modes.h5"}), "\n" + saddle));
+  EXPECT_TRUE(contains(at(axis + "applied = [0.2, 0, 0]", {"--count", "1"}),
+                       "the state is a saddle or a maximum: this curvature is negative\n"));
+  // The error of curvatures of a state that is not at rest includes its torque.
+  EXPECT_FALSE(contains(at(axis + "applied = [0.2, 0, 0.1]", {}), "saddle"));
+  EXPECT_GE(numbers("curvature_error").at(0), 10 * 0.1);
+  std::string const plane = "anisotropy = { constant = -1.0, axis = [0, 0, 1] }";
+  for (std::string const precision : {"double", "single"}) {
+    EXPECT_FALSE(contains(at(plane, {"--precision", precision}), "saddle")) << precision;
+    EXPECT_LE(std::abs(numbers("curvature").at(0)), numbers("curvature_error").at(0)) << precision;
+  }
 }
 
 // Modes that start from the last frame of a file written by relax equal those of the scene. At a

@@ -55,8 +55,9 @@ struct NormalModes {
 template <class Spins>
 struct Curvature {
   double value = 0;
-  double error = 0;  ///< error of the vector
-  Spins vector;      ///< one tangent vector per site; the longest has length 1
+  double value_error = 0;  ///< estimate for spins that are exactly at rest
+  double error = 0;        ///< relative error of the vector, in the energy norm
+  Spins vector;            ///< one tangent vector per site; the longest has length 1
 };
 
 template <class Spins>

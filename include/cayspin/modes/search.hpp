@@ -25,6 +25,10 @@
 // approximate modes and those of the previous step (Stathopoulos 2007).
 namespace cayspin::inline v0_2::detail {
 
+// Errors of vectors are relative to their energies. Energies below this part of
+// ModeSearchOptions::scale count as this part, since those of zero modes are only round-off.
+constexpr double least_energy = 1e-4;
+
 struct ModeSearchOptions {
   std::size_t count = 8;
   double tolerance = 1e-9;  // largest error of a vector
@@ -234,7 +238,7 @@ class ModeSearch {
     auto const& c = found.coefficients;
     double const energy = std::abs(c.dot(pencil_.hessian.cast<std::complex<double>>() * c));
     double const size = c.squaredNorm();
-    double const of_error = std::max(energy, 1e-4 * options_.scale * size);
+    double const of_error = std::max(energy, least_energy * options_.scale * size);
     errors_[mode] = std::sqrt(std::max(square, 0.0) / of_error);
     tolerances_[mode] = tolerance_of(of_error / size);
     if (errors_[mode] < tolerances_[mode] || added >= most_added()) return false;
