@@ -58,6 +58,10 @@ bool is_path(std::filesystem::path const& path);
 /// Reads the file of a path except its spins. Errors are those of trajectory.hpp.
 Path read_path(std::filesystem::path const& path);
 
+/// Reads the spins of the highest saddle, in the order of the header's shape, from the file of a
+/// path with this header. Throws if the path has no saddle. Errors are those of trajectory.hpp.
+std::vector<double> read_saddle(std::filesystem::path const& path, TrajectoryHeader const& header);
+
 /// Throws the error that write_path, write_modes or write_bands would throw if the file cannot be
 /// written.
 void require_writable(std::filesystem::path const& path, bool overwrite);

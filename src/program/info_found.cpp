@@ -90,8 +90,9 @@ std::string saddle_text(io::ModesContents const& found) {
   if (negative < all)
     return fmt::format("the state is a saddle: {} of these curvatures {} negative", negative,
                        negative == 1 ? "is" : "are");
-  return fmt::format("the state is a saddle or a maximum: {} negative",
-                     all == 1 ? "this curvature is" : fmt::format("all {} of these curvatures are", all));
+  return fmt::format(
+      "the state is a saddle or a maximum: {} negative",
+      all == 1 ? "this curvature is" : fmt::format("all {} of these curvatures are", all));
 }
 
 std::string unit_of_prefactor(io::Path const& path, bool forward) {

@@ -11,8 +11,6 @@
 #include "io/notes.hpp"
 #include "io/path.hpp"
 #include "io/relax.hpp"
-#include "io/toml_string.hpp"
-#include "io/trajectory.hpp"
 #include "progress.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/message.hpp"
@@ -21,6 +19,7 @@
 #include "simulation/scene_modes.hpp"
 #include "simulation/space.hpp"
 #include "simulation/text.hpp"
+#include "start_of_modes.hpp"
 
 #include <cayspin/version.hpp>
 
@@ -32,8 +31,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <fstream>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -45,6 +44,7 @@ namespace {
 struct ModesCommand : DeviceOptions {
   double torque = 1e-6;
   ModesOptions search{.poll = [] { return interrupt_requested() ? Next::stop : Next::proceed; }};
+  std::optional<std::string> frame;  // which state of a file is the start
   bool at_rest = false, hessian = false, quiet = false, json = false;
   std::vector<std::string> corners;  // wave vectors at the corners of a path
   int points = 50;                   // wave vectors from one corner to the next
@@ -83,56 +83,6 @@ std::vector<WaveVector> path_of(ModesCommand const& options) {
     path.push_back(corner);
   }
   return path;
-}
-
-bool is_hdf5(std::filesystem::path const& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::array<char, 8> first{};
-  file.read(first.data(), first.size());
-  return file && std::string_view(first.data(), first.size()) == "\x89HDF\r\n\x1a\n";
-}
-
-std::string as_start(std::filesystem::path const& file) {
-  return fmt::format("initial={{file={}}}",
-                     io::toml_string(std::filesystem::absolute(file).string()));
-}
-
-// Checks the files of a scene. If a trajectory file was given in place of a scene file, errors name
-// it as it was typed.
-void check_files(io::Scene const& scene, std::filesystem::path const& file) {
-  try {
-    io::check_files(scene);
-  } catch (io::SceneError const& error) {
-    std::string_view const text = error.what();
-    auto const place = fmt::format("--set {}: initial.file: {}: ", as_start(file),
-                                   std::filesystem::absolute(file).string());
-    if (!text.starts_with(place)) throw;
-    throw std::runtime_error(fmt::format("{}: {}", file.string(), text.substr(place.size())));
-  }
-}
-
-// Reads the scene from a scene file or a trajectory file. The scene in a trajectory file starts at
-// the last frame. A scene with a list of fields gets the field of that frame.
-io::Scene scene_of(ModesCommand const& options) {
-  if (!is_hdf5(options.scene)) {
-    auto const scene =
-        io::with_shape_of_start(io::read_scene_to_relax(options.scene, options.overrides));
-    if (!scene.field.applied_in_turn.empty())
-      throw io::scene_error(scene, "field.applied",
-                            "a list of fields has one equilibrium for each field; accepted: three "
-                            "numbers, or the file that cayspin relax writes");
-    return scene;
-  }
-  auto const info = io::read_info(options.scene);
-  if (info.frames == 0)
-    throw std::runtime_error(fmt::format("{}: it holds no frame", options.scene.string()));
-  std::vector overrides{as_start(options.scene)};
-  overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
-  auto scene = io::parse_scene_to_relax(info.header.scene_text, options.scene, overrides);
-  auto const fields = io::fields_in_turn(scene);
-  scene.field = fields[std::min(static_cast<std::size_t>(info.frames), fields.size()) - 1];
-  scene.field.applied_in_turn.clear();
-  return scene;
 }
 
 template <class Real, class Space>
@@ -316,8 +266,10 @@ class ModesOfScene {
   Spins spins_;
 };
 
-int find_modes_of_scene(ModesCommand const& options) {
-  auto const scene = scene_of(options);
+int find_modes_of_scene(ModesCommand options) {
+  auto const start = start_of_modes(options.scene, options.overrides, options.frame);
+  auto const& scene = start.scene;
+  options.at_rest = options.at_rest || start.is_saddle;
   require_rest(without_torque(scene));
   if (io::has_torque(scene.field) && (options.hessian || !options.corners.empty()))
     throw io::scene_error(scene, "torque",
@@ -357,7 +309,8 @@ Command add_modes(CLI::App& program) {
       "shapes");
   add_device_options(*command, *options);
   command->get_option("SCENE")->description(
-      "Scene file (TOML), or a trajectory file (HDF5), whose last frame is the start");
+      "Scene file (TOML), a trajectory file (HDF5), whose last frame is the start, or the file of a "
+      "path (HDF5) with --frame");
   command->get_option("--output")->description("The file to write (default: modes.h5)");
   auto* const count =
       command->add_option("--count", options->search.count, "Modes, the slowest first (default: 8)")
@@ -369,6 +322,11 @@ Command add_modes(CLI::App& program) {
       ->add_option("--evaluations", options->search.evaluations,
                    "Largest number of evaluations of the field in each search (default: 100000)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 53U));
+  command
+      ->add_option("--frame", options->frame,
+                   "The start: a frame of a trajectory file, or an image of a path; saddle: its "
+                   "highest saddle, which is not relaxed")
+      ->type_name("N|last|saddle");
   command->add_flag("--at-rest", options->at_rest, "The start is the equilibrium: do not relax");
   auto* const hessian =
       command->add_flag("--hessian", options->hessian,

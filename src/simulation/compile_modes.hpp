@@ -181,7 +181,8 @@ void add_errors_of_torque(Space const& exec, io::Scene const& scene,
   double square = 0;  // of the largest slope of the energy
   for (std::size_t i = 0; i < m.size(); i += 3) {
     if (!frozen.empty() && frozen[i / 3] != 0) continue;
-    Vec3<double> const spin{m[i], m[i + 1], m[i + 2]}, torque = cross(spin, {h[i], h[i + 1], h[i + 2]});
+    Vec3<double> const spin{m[i], m[i + 1], m[i + 2]},
+        torque = cross(spin, {h[i], h[i + 1], h[i + 2]});
     square = std::max(square, dot(torque, torque));
   }
   // The same factor as for zero modes of rates.

@@ -8,10 +8,12 @@
 #include "io/modes.hpp"
 #include "io/path.hpp"
 #include "require.hpp"
+#include "site_order.hpp"
 #include "units_of_file.hpp"
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,6 +47,15 @@ std::vector<Number> read_numbers(hid_t group, char const* name, std::size_t rank
 std::vector<double> read_reals(hid_t group, char const* name, fs::path const& path,
                                std::size_t rank = 1) {
   return read_numbers<double>(group, name, rank, H5T_NATIVE_DOUBLE, path);
+}
+
+std::vector<double> read_whole_saddle(fs::path const& path, TrajectoryHeader const& header) {
+  auto const file = open_file(path);
+  auto const saddle = read_reals(file.get(), "saddle", path, header.cell_sites > 1 ? 5 : 4);
+  auto const& [nx, ny, nz] = header.shape;
+  if (std::ssize(saddle) != 3 * nx * ny * nz)
+    throw_failure(path, "cannot read dataset saddle", "it does not have the shape of the images");
+  return by_planes(saddle, header);
 }
 
 bool has_dataset(hid_t file, char const* name) { return H5Lexists(file, name, H5P_DEFAULT) > 0; }
@@ -139,10 +150,9 @@ BandsContents read_whole_modes(fs::path const& path) {
   if (found.decays.size() != found.frequencies.size() ||
       (!has_waves && found.residuals.size() != found.frequencies.size()))
     throw_failure(path, "cannot read the modes", "they do not have a decay each");
-  for (auto const& [name, numbers] :
-       {std::pair{"curvature", &found.curvatures},
-        {"curvature_error", &found.curvature_errors},
-        {"curvature_residual", &found.curvature_residuals}})
+  for (auto const& [name, numbers] : {std::pair{"curvature", &found.curvatures},
+                                      {"curvature_error", &found.curvature_errors},
+                                      {"curvature_residual", &found.curvature_residuals}})
     if (has_dataset(file.get(), name)) *numbers = read_reals(file.get(), name, path);
   for (auto const* const numbers : {&found.curvature_errors, &found.curvature_residuals})
     if (!numbers->empty() && numbers->size() != found.curvatures.size())
@@ -169,6 +179,10 @@ std::size_t negative_curvatures(ModesContents const& contents) {
   for (std::size_t i = 0; i < errors.size(); ++i)
     count += contents.curvatures[i] < -errors[i] ? 1 : 0;
   return count;
+}
+
+std::vector<double> read_saddle(fs::path const& path, TrajectoryHeader const& header) {
+  return read_guarded(path, [&] { return read_whole_saddle(path, header); });
 }
 
 bool is_modes(fs::path const& path) { return has_attribute(path, modes_format); }

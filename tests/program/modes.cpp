@@ -116,8 +116,7 @@ TEST_F(Modes, CountNegativeCurvaturesBeyondTheirErrors) {
         "[system]\nkind = \"llg\"\ndamping = 0.1\n[lattice]\nshape = [3]\n[field]\n"
         "exchange = 5.0\n" +
         field + "\n[initial]\nuniform = [1, 0, 0]\n";
-    auto const outcome =
-        modes(scene, joined({"--hessian", "--at-rest", "--overwrite"}, more));
+    auto const outcome = modes(scene, joined({"--hessian", "--at-rest", "--overwrite"}, more));
     EXPECT_EQ(outcome.status, 0) << outcome.errors;
     return outcome.output;
   };
@@ -164,6 +163,20 @@ TEST_F(Modes, StartFromFilesAndSaddles) {
             0);
   auto const decay = numbers("decay");
   EXPECT_LT(*std::ranges::min_element(decay), -0.1);
+}
+
+// Along the easy axis x of a film, in the field h, the curvatures are h + 0.1 and h + 1.1.
+TEST_F(Modes, StartFromAnyFrame) {
+  expect_status(0, {"relax", write("scene.toml", film), "--output", "rest.h5", "--quiet", "--set",
+                    "field.applied=[[0.5, 0, 0], [1, 0, 0]]"});
+  for (auto const& [frame, h] : {std::pair{"0", 0.5}, {"-2", 0.5}, {"1", 1.0}, {"last", 1.0}}) {
+    output_of({"modes", "rest.h5", "--overwrite", "--count", "1", "--frame", frame});
+    double const a = h + 0.1, b = h + 1.1, decay = 0.1 * (a + b) / 2;
+    EXPECT_NEAR(numbers("decay").at(0), decay, 1e-8) << frame;
+    EXPECT_NEAR(numbers("frequency").at(0), std::sqrt(1.01 * a * b - decay * decay), 1e-8) << frame;
+  }
+  expect_refused({"modes", "rest.h5", "--overwrite", "--frame", "2"},
+                 "--frame 2: accepted for rest.h5: 0 to 1, -1 to -2 from the end, last");
 }
 
 TEST_F(Modes, InfoHasTheSpectrum) {

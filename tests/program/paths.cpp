@@ -335,6 +335,48 @@ TEST_F(PathCommand, SaysWhyThereIsNoPath) {
   EXPECT_TRUE(limited.errors.ends_with("; path.h5 has the images as they are\n")) << limited.errors;
 }
 
+// Three spins turn together. With E = -1.3 * m_z^2 / 2 + 0.7 * m_y^2 / 2 - 0.4 * m_x each, the
+// curvatures at the saddle +x are 0.4 - 1.3 and 0.4 + 0.7.
+TEST_F(PathCommand, GivesItsStatesToModes) {
+  write_ends(scene);
+  expect_status(0, arguments({"--images", "7", "--quiet"}));
+  ASSERT_EQ(read_dataset("path.h5", "/saddles/image").values, std::vector<double>{3});
+  Arguments const modes{"modes", "path.h5", "--hessian", "--count", "2", "--overwrite"};
+  auto const values = [&](char const* dataset) { return read_dataset("modes.h5", dataset).values; };
+  for (std::string const frame : {"saddle", "3", "-4"}) {
+    auto const printed = output_of(joined(modes, {"--frame", frame}));
+    EXPECT_TRUE(contains(printed, "the state is a saddle: 1 of these curvatures is negative\n"))
+        << frame << printed;
+    EXPECT_NEAR(values("curvature").at(0), 0.4 - 1.3, 1e-5);
+    EXPECT_NEAR(values("curvature").at(1), 0.4 + 0.7, 1e-5);
+    EXPECT_LT(distance(values("spins"), read_dataset("path.h5", "saddle").values), 1e-14);
+  }
+  // The other images are relaxed to the end on their side of the saddle.
+  for (auto const& [frame, z] : {std::pair{"0", 1}, {"1", 1}, {"5", -1}, {"last", -1}}) {
+    EXPECT_FALSE(contains(output_of(joined(modes, {"--frame", frame})), "saddle")) << frame;
+    EXPECT_NEAR(values("spins").at(2), z * std::sqrt(1 - std::pow(0.4 / 1.3, 2)), 1e-5) << frame;
+  }
+  expect_refused(modes,
+                 "path.h5: it is the file of a path; accepted: --frame with an image, 0 to 6, or "
+                 "saddle");
+  for (std::string const frame : {"7", "-8", "first"})
+    expect_refused(
+        joined(modes, {"--frame", frame}),
+        "--frame " + frame + ": accepted for path.h5: 0 to 6, -1 to -7 from the end, last, saddle");
+  expect_refused(joined(modes, {"--frame", "saddle", "--set", "initial={ uniform = [0, 0, 1] }"}),
+                 "--frame: --set changes the start; accepted: one of them");
+  expect_refused(joined(modes, {"--frame", "saddle", "--set", "lattice.shape=[2]"}),
+                 "path.h5: its lattice is 3 x 1 x 1 sites, that of the scene is 2 x 1 x 1 sites; ");
+  expect_refused({"modes", "path.h5", "--frame", "saddle", "--output", "path.h5", "--overwrite"},
+                 "path.h5: the command reads it, and would replace it");
+  expect_refused({"modes", "a.h5", "--frame", "1"}, "--frame 1: accepted for a.h5: 0, last");
+  expect_refused({"modes", "scene.toml", "--frame", "0"}, "--frame: scene.toml is a scene; ");
+  // As the start of a scene, the file is its last image.
+  expect_status(0, {"relax", "scene.toml", "--output", "c.h5", "--quiet", "--set",
+                    "initial={ file = \"path.h5\" }"});
+  EXPECT_LT(last_spins("c.h5").at(2), -0.9);
+}
+
 // With five images a path of a chain of twenty spins misses the highest saddle and does not settle.
 // With sixteen the path finds that saddle.
 TEST_F(PathCommand, PrintsTheSaddlesOfAPathThatDoesNotSettle) {

@@ -100,9 +100,9 @@ TEST_F(JsonOutput, MatchesTheFileOfModes) {
   auto const found = json_of({"modes", "film.toml", "--count", "3", "--hessian"});
   EXPECT_EQ(found, info("modes.h5"));
   EXPECT_EQ(found.at("kind"), "modes");
-  expect_datasets(found, "modes.h5",
-                  {"frequency", "decay", "residual", "curvature", "curvature_error",
-                   "curvature_residual"});
+  expect_datasets(
+      found, "modes.h5",
+      {"frequency", "decay", "residual", "curvature", "curvature_error", "curvature_residual"});
   EXPECT_EQ(found.at("frequency").size(), 3U);
   expect_attributes(found, "modes.h5", {"torque", "evaluations", "converged"},
                     {"scene", "space", "units"});
