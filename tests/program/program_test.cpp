@@ -54,6 +54,21 @@ int status_of(int waited) {
   return WIFEXITED(waited) ? WEXITSTATUS(waited) : 128 + WTERMSIG(waited);
 }
 
+// Returns true if a process has its own action for SIGINT. Linux says so in /proc; elsewhere, this
+// waits for a second.
+bool catches_interrupts(pid_t process) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/status");
+  if (!status) {
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    return true;
+  }
+  std::string line;
+  while (std::getline(status, line))
+    if (line.starts_with("SigCgt:"))
+      return (std::stoull(line.substr(7), nullptr, 16) >> (SIGINT - 1) & 1U) != 0;
+  return false;
+}
+
 }  // namespace
 
 Arguments joined(Arguments first, Arguments const& more) {
@@ -74,9 +89,11 @@ ProgramTest::~ProgramTest() { fs::remove_all(folder_); }
 Outcome ProgramTest::start(Arguments const& arguments, Treatment const& treatment) const {
   pid_t const child = ::fork();
   if (child == 0) become_program(folder_, arguments, treatment);
-  if (!treatment.interrupt_when.empty()) {
-    EXPECT_TRUE(eventually([&] { return fs::exists(treatment.interrupt_when); }))
-        << treatment.interrupt_when;
+  if (treatment.interrupt_when_caught || !treatment.interrupt_when.empty()) {
+    EXPECT_TRUE(eventually([&] {
+      return treatment.interrupt_when_caught ? catches_interrupts(child)
+                                             : fs::exists(treatment.interrupt_when);
+    })) << treatment.interrupt_when;
     std::this_thread::sleep_for(std::chrono::duration<double>(treatment.interrupt_after));
     ::kill(child, SIGINT);
   }

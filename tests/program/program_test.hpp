@@ -69,6 +69,7 @@ struct Treatment {
   long seconds_limit = -1;                    // of processor time
   double interrupt_after = 0;                 // seconds to SIGINT once interrupt_when exists
   std::filesystem::path interrupt_when = {};  // file to wait for; empty: no SIGINT
+  bool interrupt_when_caught = false;         // or wait until the program catches SIGINT
   std::filesystem::path program = CAYSPIN_PROGRAM;
 };
 

@@ -74,7 +74,7 @@ struct ModesOptions {
   std::int64_t evaluations = 100000;  ///< approximate upper limit
   double time = 0;                    ///< time at which H is evaluated
   bool preconditioned = true;         ///< by the exchange measured on the field
-  std::function<Next()> poll = {};    ///< called after each step of the search
+  std::function<Next()> poll = {};    ///< called in each step of the search
 
   static constexpr std::size_t most = 128;
 };

@@ -67,7 +67,7 @@ class ModeSearch {
   }
 
   End run() {
-    start();
+    if (!start()) return End::interrupted;
     double least = std::numeric_limits<double>::infinity();
     for (int since = 0;; ++since) {
       find_modes();
@@ -76,13 +76,15 @@ class ModeSearch {
       std::size_t const converged = first_;
       std::size_t const added = add_residuals();
       if (added == 0) return End::converged;
-      if (options_.poll && options_.poll() == Next::stop) return End::interrupted;
+      if (stops()) return End::interrupted;
       if (hessian_.evaluations() >= options_.evaluations) return End::evaluation_limit;
       double const error = errors_[first_];
       if (first_ > converged || error < 0.5 * least) least = error, since = 0;
       if (since > 60) return is_as_good_as_products() ? End::converged : End::stagnated;
       before_ = Problem::columns_of(modes_, kept_, rows());
-      if (!extend(added)) return is_as_good_as_products() ? End::converged : End::stagnated;
+      if (extend(added)) continue;
+      if (is_stopped_) return End::interrupted;
+      return is_as_good_as_products() ? End::converged : End::stagnated;
     }
   }
 
@@ -103,6 +105,12 @@ class ModeSearch {
  private:
   // Errors due to products with the Hessian are mostly below this bound, 10 * sqrt(epsilon).
   static constexpr double error_of_products = std::is_same_v<Real, double> ? 1.5e-7 : 3.5e-3;
+
+  // Many modes of a large lattice take seconds between two steps of the search, so it polls also
+  // within a step.
+  bool stops() {
+    return is_stopped_ = is_stopped_ || (options_.poll && options_.poll() == Next::stop);
+  }
 
   // Called when no residual extends the subspace, or none has helped for long. The errors left may
   // be those of products with the Hessian, which no search can reduce: returns true if all are that
@@ -136,11 +144,13 @@ class ModeSearch {
     }
   }
 
-  void start() {
+  /// Returns false if it was stopped.
+  bool start() {
     std::size_t const first = columns_of_mode() * kept_;
     make_room(first);
     auto const& shape = spins_.lattice().shape;
     for (std::size_t i = 0; i < first; ++i) {
+      if (stops()) return false;
       for_each_site<Real>(exec_, "cayspin::modes::start", spins_.layout(),
                           RandomSigns<Real>{shape[0], shape[1], static_cast<std::int64_t>(i + 1), 1,
                                             scratch_[0].output(false)});
@@ -149,6 +159,7 @@ class ModeSearch {
       hessian_.keep_tangent(vectors_[i]);
     }
     extend(first);
+    return !is_stopped_;
   }
 
   void find_modes() {
@@ -246,12 +257,14 @@ class ModeSearch {
     return true;
   }
 
-  /// Adds the appended vectors to the subspace. Returns false if all of them are in it already.
+  /// Adds the appended vectors to the subspace. Returns false, and adds nothing, if all of them are
+  /// in it already or if it was stopped.
   bool extend(std::size_t added) {
     std::size_t const old = size();
     std::size_t const fresh = make_orthonormal(added);
     if (fresh == 0) return false;
     for (std::size_t i = old; i < old + fresh; ++i) {
+      if (stops()) return false;
       hessian_.keep_tangent(vectors_[i]);
       hessian_.multiply(vectors_[i], products_[i]);
     }
@@ -337,6 +350,7 @@ class ModeSearch {
   std::vector<double> errors_, tolerances_;
   Eigen::MatrixXd before_;
   std::size_t first_ = 0;
+  bool is_stopped_ = false;
 };
 
 }  // namespace cayspin::inline v0_2::detail
