@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/key.hpp"
+
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +32,13 @@ struct Ensemble {
 /// (simulation/replica_columns.hpp). Reading a scene never sets Scene::columns.
 struct Columns {
   std::vector<double> temperatures;  ///< factors on the temperature, one per column; empty: all 1
+  std::vector<double> dampings;      ///< replace system.damping, one per column; empty: all have it
+  std::vector<Triple> applied;       ///< replace field.applied, one per column; empty: all have it
+
+  /// Returns the columns first .. first + count - 1.
+  Columns part(std::int64_t first, std::int64_t count) const;
+  /// Returns temperatures or, if dampings differ, damping * temperature of each column.
+  std::vector<double> heats() const;
 };
 
 /// Returns the scene of one replica, without [ensemble]: the varied keys have the replica's values,
@@ -36,6 +46,14 @@ struct Columns {
 Scene replica_of(Scene const& scene, std::int64_t replica);
 /// Like replica_of, for a scene of `cayspin relax`.
 Scene replica_to_relax(Scene const& scene, std::int64_t replica);
+/// Returns the values of the varied keys in the replicas first .. first + count - 1: bitwise those
+/// of replica_of, but without reading a scene for each replica. `one`: the scene of any replica.
+/// Temperatures are in reduced units; they are set if temperatures vary, and also if dampings vary
+/// at a temperature. Returns nothing if a key other than thermal.temperature, the damping or a
+/// component of field.applied varies, if the unit of time differs between the replicas, if the
+/// applied field depends on t, or if replica_of might refuse a value.
+std::optional<Columns> values_of_replicas(Scene const& scene, Scene const& one, std::int64_t first,
+                                          std::int64_t count);
 
 /// Throws SceneError for an ensemble. `who`: the command or function that accepts no ensemble, for
 /// the message.

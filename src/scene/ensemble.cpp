@@ -5,12 +5,17 @@
 #include "io/relax.hpp"
 #include "sections.hpp"
 
+#include <cayspin/units.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -128,6 +133,37 @@ std::set<std::int64_t> replicas_to_check(Ensemble const& ensemble) {
   return replicas;
 }
 
+// Returns the component of field.applied that a key names, if it names one.
+std::optional<std::size_t> component_of_applied(std::string_view key) {
+  constexpr std::array keys{"field.applied.0", "field.applied.1", "field.applied.2"};
+  auto const found = std::ranges::find(keys, key);
+  if (found == keys.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - keys.begin());
+}
+
+// Puts the values of a varied key into `columns`, with the arithmetic of read_scene. Returns false
+// for a key without a place there.
+bool put_values(VariedKey const& varied, Scene const& one, std::int64_t first, Columns& columns) {
+  auto const value = [&](std::size_t column) {
+    // A replica's text has -0 as a whole number, which is 0.
+    return varied.values[static_cast<std::size_t>(first) + column] + 0.0;
+  };
+  auto const& units = one.units;
+  auto const component = component_of_applied(varied.key);
+  for (std::size_t column = 0; column < columns.applied.size(); ++column) {
+    if (varied.key == "thermal.temperature")
+      columns.temperatures[column] =
+          units.si ? units::boltzmann * value(column) / units.energy : value(column);
+    else if (component)
+      columns.applied[column][*component] = value(column) / units.field;
+    else if (varied.key == (units.si ? "material.alpha" : "system.damping"))
+      columns.dampings[column] = value(column);
+    else
+      return false;
+  }
+  return true;
+}
+
 // The seeds of replicas count up from the scene's seed, and must not overflow.
 void require_seeds(Scene const& scene) {
   auto const most = std::numeric_limits<std::int64_t>::max() - (scene.ensemble.replicas - 1);
@@ -190,6 +226,63 @@ Scene replica_of(Scene const& scene, std::int64_t replica) {
 
 Scene replica_to_relax(Scene const& scene, std::int64_t replica) {
   return detail::parsed_replica(scene, replica, parse_scene_to_relax);
+}
+
+std::optional<Columns> values_of_replicas(Scene const& scene, Scene const& one, std::int64_t first,
+                                          std::int64_t count) {
+  auto const size = static_cast<std::size_t>(count);
+  auto const varies = [&](auto const& is_key) {
+    return std::ranges::any_of(scene.ensemble.vary,
+                               [&](VariedKey const& varied) { return is_key(varied.key); });
+  };
+  bool const temperatures = varies([](auto const& key) { return key == "thermal.temperature"; });
+  bool const applied =
+      varies([](auto const& key) { return detail::component_of_applied(key).has_value(); });
+  bool const dampings =
+      varies([](auto const& key) { return key == "system.damping" || key == "material.alpha"; });
+  // In Gilbert's form, the unit of time depends on the damping.
+  if (dampings && one.material && one.material->gilbert) return std::nullopt;
+  // The noise multiplies by such a factor between temperature and damping.
+  if (dampings && one.thermal && std::holds_alternative<std::string>(one.thermal->in_time))
+    return std::nullopt;
+  Triple field{};
+  for (std::size_t c = 0; applied && c < 3; ++c) {
+    if (!one.field.applied) return std::nullopt;
+    auto const* const number = std::get_if<double>(&(*one.field.applied)[c]);
+    if (number == nullptr) return std::nullopt;
+    field[c] = *number;
+  }
+  Columns columns{std::vector(size, one.thermal ? one.thermal->temperature : 0),
+                  std::vector(size, one.system.damping), std::vector(size, field)};
+  for (auto const& varied : scene.ensemble.vary)
+    if (!detail::put_values(varied, one, first, columns)) return std::nullopt;
+  for (std::size_t column = 0; column < size; ++column) {
+    auto const& [x, y, z] = columns.applied[column];
+    double const temperature = columns.temperatures[column], damping = columns.dampings[column];
+    if (!std::isfinite(x + y + z) || !(damping >= 0) || !std::isfinite(damping) ||
+        !(temperature >= 0) || !std::isfinite(temperature) || (temperature > 0 && damping == 0))
+      return std::nullopt;
+  }
+  if (!temperatures && !(dampings && one.thermal)) columns.temperatures.clear();
+  if (!dampings) columns.dampings.clear();
+  if (!applied) columns.applied.clear();
+  return columns;
+}
+
+Columns Columns::part(std::int64_t first, std::int64_t count) const {
+  auto const part_of = [&](auto const& all) {
+    if (all.empty()) return all;
+    auto const begin = all.begin() + first;
+    return std::remove_cvref_t<decltype(all)>(begin, begin + count);
+  };
+  return {part_of(temperatures), part_of(dampings), part_of(applied)};
+}
+
+std::vector<double> Columns::heats() const {
+  auto heats = temperatures;
+  if (!dampings.empty())
+    std::ranges::transform(dampings, heats, heats.begin(), std::multiplies<>());
+  return heats;
 }
 
 void require_no_ensemble(Scene const& scene, std::string_view who) {

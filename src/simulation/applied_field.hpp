@@ -8,6 +8,7 @@
 #include <cayspin/vec3.hpp>
 
 #include <array>
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <variant>
@@ -22,6 +23,13 @@ class AppliedField {
   explicit AppliedField(io::Field const& field, io::Units const& units = {});
   AppliedField(std::array<io::AppliedComponent, 3> const& components, std::string key,
                io::Units const& units = {});
+
+  /// Returns the same field with other components, which do not depend on t.
+  AppliedField with(io::Triple const& components) const {
+    auto other = *this;
+    for (std::size_t c = 0; c < 3; ++c) other.components_[c] = components[c];
+    return other;
+  }
 
   bool present() const { return present_; }
   bool depends_on_time() const { return depends_on_time_; }

@@ -12,8 +12,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <exception>
+#include <functional>
 #include <limits>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -26,6 +30,22 @@ void require_memory_of_all(io::Scene const& scene, io::Scene const& replica, Pre
   auto const plan =
       relaxes ? make_plan_to_relax(replica, precision) : make_plan(replica, precision);
   require_memory_of_replicas(scene, replica, plan, precision, replicas, available);
+}
+
+// Returns the columns with the most noise, the least and the largest damping, and the largest
+// applied field, if these values differ between columns.
+std::set<std::ptrdiff_t> extremes_of(io::Columns const& values) {
+  std::set<std::ptrdiff_t> extremes;
+  auto const add_largest = [&](auto const& all, auto const& projection) {
+    if (all.empty()) return;
+    extremes.insert(std::ranges::max_element(all, {}, projection) - all.begin());
+  };
+  auto const heats = values.heats();
+  add_largest(heats, std::identity());
+  add_largest(values.dampings, std::identity());
+  add_largest(values.dampings, std::negate());
+  add_largest(values.applied, [](io::Triple const& h) { return std::hypot(h[0], h[1], h[2]); });
+  return extremes;
 }
 
 }  // namespace
@@ -58,20 +78,24 @@ EnsembleRun::EnsembleRun(io::Scene const& scene, RunSettings const& settings, bo
                            : static_cast<double>(std::numeric_limits<float>::epsilon());
   guards_.assign(replicas, Guard(first().scene(), epsilon));
   auto of_replica = first().scene();
-  for (std::size_t number = 0; number < columns_->temperatures().size(); ++number) {
-    of_replica.thermal->temperature = columns_->temperatures()[number];
+  auto const& [temperatures, dampings, applied] = columns_->values();
+  if (temperatures.empty() && dampings.empty()) return;
+  for (std::size_t number = 0; number < replicas; ++number) {
+    if (!temperatures.empty()) of_replica.thermal->temperature = temperatures[number];
+    if (!dampings.empty()) of_replica.system.damping = dampings[number];
     guards_[number] = Guard(of_replica, epsilon);
   }
 }
 
 std::optional<std::string> EnsembleRun::warning() const {
   Turn::Reserved const turn;
-  if (columns_ && !columns_->temperatures().empty()) {
-    auto const& all = columns_->temperatures();
-    auto const hottest = share_.own.first + (std::ranges::max_element(all) - all.begin());
-    auto const warning = SceneRun::open(io::replica_of(scene_, hottest), settings_)->warning();
-    if (!warning) return std::nullopt;
-    return fmt::format("replica {}: {}", hottest, *warning);
+  if (columns_) {
+    for (auto const extreme : extremes_of(columns_->values())) {
+      auto const number = share_.own.first + extreme;
+      auto const warning = SceneRun::open(io::replica_of(scene_, number), settings_)->warning();
+      if (warning) return fmt::format("replica {}: {}", number, *warning);
+    }
+    if (!extremes_of(columns_->values()).empty()) return std::nullopt;
   }
   for (std::size_t number = 0; number < runs_.size(); ++number)
     if (auto const warning = runs_[number]->warning())

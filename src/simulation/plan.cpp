@@ -58,6 +58,8 @@ std::int64_t memory_of_field(io::Scene const& scene, Lattice const& lattice) {
   std::int64_t const spins = field_bytes<Real>(lattice, 3);
   std::int64_t bytes = 0;
   if (scene.field.own.nonlocal) bytes += spins;
+  if (scene.columns && !scene.columns->applied.empty()) bytes += spins;
+  if (scene.columns && !scene.columns->dampings.empty()) bytes += field_bytes<Real>(lattice, 1);
   if (io::needs_pass(scene)) {
     int const of_bonds = scene.field.exchange_factors.there() ? 4 : 0;
     int const of_vacancies = io::has_vacancies(scene) ? 1 : 0;
@@ -147,8 +149,10 @@ double largest_heat(io::Scene const& scene, Times const& times) {
     }
   }
   if (scene.columns && !scene.columns->temperatures.empty())
-    largest *= std::ranges::max(scene.columns->temperatures);
-  double const damping = scene.system.dampings.there() ? 1 : scene.system.damping;
+    largest *= std::ranges::max(scene.columns->heats());
+  bool const has_damping =
+      scene.system.dampings.there() || (scene.columns && !scene.columns->dampings.empty());
+  double const damping = has_damping ? 1 : scene.system.damping;
   return io::largest_noise(scene) * damping * largest;
 }
 

@@ -49,14 +49,20 @@ bool steps_each_site_alike(io::Integrator const& integrator) {
          integrator.substeps == 1 && !integrator.energy_control && !integrator.until_torque;
 }
 
-bool can_be_columns(io::Scene const& scene, io::Scene const& one, std::int64_t replicas) {
+bool can_be_columns(io::Scene const& one, std::int64_t replicas) {
   return replicas >= least_replicas && io::sites(one) <= most_sites &&
          one.system.kind == io::SystemKind::llg && !one.system.dampings.there() &&
          is_plain(one.lattice) && is_local_but_for_exchange(one.field) &&
-         steps_each_site_alike(one.integrator) && !(one.thermal && one.thermal->of_sites.there()) &&
-         std::ranges::all_of(scene.ensemble.vary, [](io::VariedKey const& varied) {
-           return varied.key == "thermal.temperature";
-         });
+         steps_each_site_alike(one.integrator) && !(one.thermal && one.thermal->of_sites.there());
+}
+
+// Returns true if columns with these values move with the bits of separate runs. Scenes that need a
+// pass add the applied field to other terms in another order, and series use one applied field and
+// one damping for all spins.
+bool can_differ(io::Scene const& one, io::Columns const& values) {
+  if (values.applied.empty() && values.dampings.empty()) return true;
+  return !one.integrator.method->differentiates_field &&
+         (values.applied.empty() || !io::needs_pass(one));
 }
 
 constexpr std::int64_t lanes = 16;  // a register has at most this many
@@ -74,8 +80,9 @@ std::int64_t columns_of_a_lattice(std::int64_t replicas, std::int64_t sites, int
   return std::min(std::max(2 * lanes, std::min(columns_on_a_thread(sites), each)), replicas);
 }
 
-io::Scene scene_of_columns(io::Scene const& one, std::int64_t first, std::int64_t count,
-                           std::vector<double> const& temperatures) {
+// `values`: those of the columns.
+io::Scene scene_of_columns(io::Scene const& one, std::int64_t first, io::Columns values,
+                           std::int64_t count) {
   constexpr double far_apart = 1e200;  // its square is infinite
   auto columns = one;
   auto const& lattice = one.lattice;
@@ -91,22 +98,15 @@ io::Scene scene_of_columns(io::Scene const& one, std::int64_t first, std::int64_
     columns.lattice.boundary[axis + 1] = lattice.boundary[axes[axis]];
   }
   columns.initial = io::UniformStart{{1, 0, 0}};
-  columns.columns.emplace();
-  if (!one.thermal) return columns;
-  columns.thermal->seed += first;
-  if (temperatures.empty()) return columns;
-  auto const begin = temperatures.begin() + first, end = begin + count;
-  columns.columns->temperatures.assign(begin, end);
-  columns.thermal->temperature = std::any_of(begin, end, [](double t) { return t > 0; }) ? 1 : 0;
+  // The guard lets energies rise unless all columns are damped.
+  if (!values.dampings.empty()) columns.system.damping = std::ranges::min(values.dampings);
+  if (one.thermal) {
+    columns.thermal->seed += first;
+    if (auto const heats = values.heats(); !heats.empty())
+      columns.thermal->temperature = std::ranges::max(heats) > 0 ? 1 : 0;
+  }
+  columns.columns = std::move(values);
   return columns;
-}
-
-std::vector<double> temperatures_of(io::Scene const& scene, io::ReplicaRange const& replicas) {
-  std::vector<double> temperatures;
-  if (scene.ensemble.vary.empty()) return temperatures;
-  for (std::int64_t number = 0; number < replicas.count; ++number)
-    temperatures.push_back(io::replica_of(scene, replicas.first + number).thermal->temperature);
-  return temperatures;
 }
 
 // Copies a field of a replica, with any number of components, into one of the `count` columns of
@@ -155,21 +155,27 @@ std::optional<ReplicaColumns> ReplicaColumns::open(io::Scene const& scene, io::S
   std::optional<ReplicaColumns> opened;
   auto one = io::with_shape_of_start(first);
   auto const replicas = share.own.count, sites = io::sites(one);
-  if (!can_be_columns(scene, one, replicas)) return opened;
+  if (!can_be_columns(one, replicas)) return opened;
+  auto const values = io::values_of_replicas(scene, one, share.own.first, replicas);
+  if (!values || !can_differ(one, *values)) return opened;
   auto sample = SceneRun::open(one, settings);
   bool const on_host = is_on_host(sample->space());
   // On several threads, larger replicas are faster as separate runs, one per thread.
   if (on_host && sample->threads() > 1 && columns_on_a_thread(sites) < 2 * lanes) return opened;
   auto const columns =
       on_host ? columns_of_a_lattice(replicas, sites, sample->threads()) : replicas;
-  require_memory(scene, make_plan(scene_of_columns(one, 0, columns, {}), settings.precision),
+  auto const scene_from = [&](std::int64_t begin) {
+    std::int64_t const count = std::min(columns, replicas - begin);
+    return scene_of_columns(one, begin, values->part(begin, count), count);
+  };
+  require_memory(scene, make_plan(scene_from(0), settings.precision),
                  static_cast<int>((share.on_this_machine + columns - 1) / columns),
                  share.available);
   opened.emplace();
-  auto const& temperatures = opened->temperatures_ = temperatures_of(scene, share.own);
+  opened->values_ = *values;
   for (std::int64_t begin = 0; begin < replicas; begin += columns) {
     std::int64_t const count = std::min(columns, replicas - begin);
-    auto run = SceneRun::open(scene_of_columns(one, begin, count, temperatures), settings);
+    auto run = SceneRun::open(scene_from(begin), settings);
     run->continue_from(0, starts_of(one, begin, count));
     auto of_one = sample ? std::move(sample) : SceneRun::open(one, settings);
     opened->groups_.push_back({begin, count, std::move(run), std::move(of_one)});
@@ -278,8 +284,12 @@ void ReplicaColumns::restore(std::vector<io::ReplicaState> const& states) {
 
 std::vector<Sample> ReplicaColumns::samples() const {
   std::vector<SceneRun::ColumnsToSample> all;
-  for (auto const& group : groups_)
-    all.push_back({group.columns.get(), group.one.get(), group.count});
+  for (auto const& [first, count, columns, one] : groups_) {
+    std::span<io::Triple const> applied(values_.applied);
+    if (!applied.empty())
+      applied = applied.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
+    all.push_back({columns.get(), one.get(), count, applied});
+  }
   std::vector<Sample> samples;
   for (auto const& of_lattice : SceneRun::sample_columns(all))
     samples.insert(samples.end(), of_lattice.begin(), of_lattice.end());

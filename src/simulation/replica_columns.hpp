@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/ensemble.hpp"
 #include "io/ensemble_checkpoint.hpp"
 #include "replica_share.hpp"
 #include "scene_run.hpp"
@@ -25,12 +26,12 @@ class ReplicaColumns {
   /// faster, or if columns do not support the scene: for example, if there are few replicas; if the
   /// lattice has three axes, many sites, or moments other than 1; if constants are site-dependent;
   /// if the method or a term other than exchange couples sites; or if the replicas differ in more
-  /// than seeds and temperatures.
+  /// than seeds, temperatures, dampings and constant applied fields.
   static std::optional<ReplicaColumns> open(io::Scene const& scene, io::Scene const& one,
                                             RunSettings const& settings, ReplicaShare const& share);
 
-  /// Returns the temperatures of the replicas in reduced units; empty if all have the scene's.
-  std::vector<double> const& temperatures() const { return temperatures_; }
+  /// Returns the values in which the replicas differ, as io::values_of_replicas does.
+  io::Columns const& values() const { return values_; }
 
   /// Returns the number of steps that all replicas have taken.
   std::int64_t steps() const;
@@ -72,7 +73,7 @@ class ReplicaColumns {
     std::unique_ptr<SceneRun> columns, one;
   };
   std::vector<Group> groups_;
-  std::vector<double> temperatures_;
+  io::Columns values_;
 };
 
 }  // namespace cayspin::simulation

@@ -69,9 +69,9 @@ class RunNoise {
     ThermalNoiseOptions options{.seed = static_cast<std::uint64_t>(scene.thermal->seed)};
     double const damping = scene.system.dampings.there() ? 1 : scene.system.damping;
     if (scene.columns) {
-      options.replicas = scene.columns->temperatures;
+      options.replicas = scene.columns->heats();
       options.columns_are_replicas = true;
-      return {like, damping, options};
+      return {like, scene.columns->dampings.empty() ? damping : 1, options};
     }
     auto const& pass = generator.landau_lifshitz().field().pass();
     if (io::has_noise_of_sites(scene)) {

@@ -50,6 +50,17 @@ class SceneField {
     other.purpose_ = purpose;
     return other;
   }
+  /// Returns a copy of the field with another applied field, which does not depend on t.
+  SceneField with_applied(io::Triple const& applied) const {
+    auto other = *this;
+    other.applied_ = applied_.with(applied);
+    return other;
+  }
+  /// Sets an applied field for each site, which replaces the uniform one and must include mu0. The
+  /// field must not have a pass.
+  void set_applied_of_sites(SiteField<Real, 3, typename Spins::memory_space> const& applied) {
+    applied_of_sites_ = applied;
+  }
   bool is_affine() const { return !pass_ || pass_->is_affine(); }
 
   /// Empty if the kernels of methods evaluate the terms themselves.
@@ -91,6 +102,7 @@ class SceneField {
     auto now = prepare(exec, rates, t);
     now.has_applied = applied_.depends_on_time();
     now.zeeman = {};
+    now.applied_of_sites = {};
     double const seen = pass_ ? pass_->gyromagnetic() : 1;
     if (now.has_applied) now.zeeman = {seen * cayspin::detail::time_derivative(applied_, t, dt)};
     return now;
@@ -102,6 +114,7 @@ class SceneField {
     SceneFieldNow<Real> now{lattice_terms_,     quadratic_,      {}, {},
                             applied_.present(), stored_ || slow_};
     if (now.has_applied) now.zeeman = {applied_(t)};
+    if (applied_of_sites_) now.applied_of_sites = applied_of_sites_->array();
     if (stored_) now.stored = cayspin::detail::prepare_term(*stored_, exec, spins, t);
     if (slow_) now.stored = cayspin::detail::prepare_term(*slow_, exec, spins, t);
     return now;
@@ -133,6 +146,7 @@ class SceneField {
   SceneLatticeTerms lattice_terms_;
   QuadraticTerms quadratic_;
   AppliedField applied_;
+  std::optional<SiteField<Real, 3, typename Spins::memory_space>> applied_of_sites_;
   std::optional<WholeField<Spins>> stored_;
   std::optional<SlowTerm> slow_;
   std::optional<FieldInPass<Spins>> pass_;

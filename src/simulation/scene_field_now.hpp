@@ -113,10 +113,12 @@ struct SceneFieldNow {
   bool has_applied, has_stored;
   cayspin::SiteArray<Real, 1> energies = {};  // of all terms, if one pass computes them
   FieldAlongRows<Real> along_rows = {};
+  // Replaces `zeeman` if it has data. find_row_ends then computes H on whole rows.
+  cayspin::SiteArray<Real, 3> applied_of_sites = {};
 
   // Set by begin_row, for its row.
   cayspin::detail::RowInput<Real> row = {};  // H found so far
-  // Number of sites in neither the first nor the last pack; 0 if along_rows.is_whole.
+  // Number of sites in neither the first nor the last pack; 0 if H of all sites is in `row`.
   std::ptrdiff_t compiled_sites = 0;
   bool adds_row = false, adds_more = false;
 
@@ -125,7 +127,8 @@ struct SceneFieldNow {
                  std::int32_t end, cayspin::detail::RowFields<Real> const& fields) {
     constexpr std::ptrdiff_t lanes = cayspin::detail::host_lanes<Real>;
     std::ptrdiff_t const last = (spins.row.nx - 1) / lanes * lanes;
-    compiled_sites = along_rows.is_whole ? 0 : std::max<std::ptrdiff_t>(last - lanes, 0);
+    bool const is_in_row = along_rows.is_whole || applied_of_sites.data;
+    compiled_sites = is_in_row ? 0 : std::max<std::ptrdiff_t>(last - lanes, 0);
     row = {fields.data - begin, fields.stride};
     adds_row = along_rows.evaluate != nullptr;
     adds_more = has_stored || adds_row;
@@ -143,9 +146,9 @@ struct SceneFieldNow {
     if (!is_compiled(stencil.site().x())) [[unlikely]]
       return add_lacking(stencil, stencil.site().load(row));
     if constexpr (TurningAlone)
-      return add_more(stencil, lattice_terms.add_turning_field(stencil, local_field(stencil)));
+      return add_more(stencil, lattice_terms.add_turning_field(stencil, uniform_part(stencil)));
     else
-      return add_more(stencil, lattice_terms.add_field(stencil, local_field(stencil)));
+      return add_more(stencil, lattice_terms.add_field(stencil, uniform_part(stencil)));
   }
 
   template <class Stencil>
@@ -177,14 +180,15 @@ struct SceneFieldNow {
       cayspin::detail::NeighborField, Stencil const& stencil) const {
     return add_demagnetization(stencil, lattice_terms.neighbor_field(stencil));
   }
+  // Only methods that refuse values per site ask for the local part.
   template <class Spin>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> gather(cayspin::detail::LocalField,
                                                                      Spin const& spin) const {
-    return local_field(spin);
+    return uniform_part(spin);
   }
   template <class Spin>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Spin const& spin) const {
-    return quadratic.add_field(spin.center(), zeeman.field(spin));
+    return quadratic.add_field(spin.center(), applied_field(spin));
   }
   /// Returns dH/dt for spins that change at `rates`. Call it on the result of prepare_rate.
   template <class Value, class Stencil>
@@ -199,7 +203,7 @@ struct SceneFieldNow {
     if (energies.data) return stencil.site().load(energies);
     auto e = lattice_terms.energy_density(stencil);
     if (quadratic.present()) e = e + quadratic.energy(stencil.center());
-    if (has_applied) e = e + zeeman.energy_density(stencil);
+    if (has_applied) e = e + applied_energy(stencil);
     if (has_stored) e = e + stored.energy_density(stencil);
     return e;
   }
@@ -212,12 +216,29 @@ struct SceneFieldNow {
     // lattice_terms.magnitude lacks a program's own field, which `energies` includes.
     if (energies.data) return e + Kokkos::abs(stencil.site().load(energies));
     if (quadratic.present()) e = e + quadratic.magnitude(stencil.center());
-    if (has_applied) e = e + Kokkos::abs(zeeman.energy_density(stencil));
+    if (has_applied) e = e + Kokkos::abs(applied_energy(stencil));
     if (has_stored) e = e + Kokkos::abs(stored.energy_density(stencil));
     return e;
   }
 
  private:
+  template <class Spin>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> applied_field(
+      Spin const& spin) const {
+    if (applied_of_sites.data) [[unlikely]]
+      return spin.site().load(applied_of_sites);
+    return zeeman.field(spin);
+  }
+  template <class Spin>
+  KOKKOS_FORCEINLINE_FUNCTION typename Spin::value_type applied_energy(Spin const& spin) const {
+    using Value = typename Spin::value_type;
+    return Value(-1) * dot(spin.center(), applied_field(spin));
+  }
+  // Like local_field, without a test for applied_of_sites.
+  template <class Spin>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> uniform_part(Spin const& spin) const {
+    return quadratic.add_field(spin.center(), zeeman.field(spin));
+  }
   KOKKOS_FORCEINLINE_FUNCTION bool is_compiled(std::ptrdiff_t x) const {
     constexpr std::ptrdiff_t first = cayspin::detail::host_lanes<Real>;
     return static_cast<std::size_t>(x - first) < static_cast<std::size_t>(compiled_sites);
@@ -250,6 +271,7 @@ template <class Real>
 struct OwnOfSites {
   cayspin::SiteArray<Real, 1> dampings = {}, rates = {};  // may have no data
   bool precession = true;
+  bool rounds_once = false;  // A is rounded as in LandauLifshitz with one damping for all sites
 
   KOKKOS_FORCEINLINE_FUNCTION bool any() const { return rates.data || dampings.data; }
   /// Returns A. `h`: H if `dampings` has data, otherwise A without site-dependent values.
@@ -260,8 +282,12 @@ struct OwnOfSites {
       return h;
     auto a = h;
     if (dampings.data) {
-      auto const turned = site.load(dampings) * cross(m, h);
-      a = precession ? h + turned : turned;
+      Value const damping = site.load(dampings);
+      auto const turned = cross(m, h);
+      if (!precession)
+        a = damping * turned;
+      else
+        a = rounds_once ? multiply_add(damping, turned, h) : h + damping * turned;
     }
     return rates.data ? site.load(rates) * a : a;
   }

@@ -8,9 +8,12 @@
 #include "space.hpp"
 #include "terms_along_row.hpp"
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace cayspin::simulation {
 
@@ -28,6 +31,26 @@ struct StoreField {
     fields.store(h, i);
   }
 };
+
+bool has_dampings_of_columns(io::Scene const& scene) {
+  return scene.columns && !scene.columns->dampings.empty();
+}
+
+// Returns a field whose site (x, y, z) has the numbers `of_columns[x]`, each with `components`
+// numbers, times `factor`.
+template <class Spins, int Components>
+SiteField<typename Spins::value_type, Components, typename Spins::memory_space> field_of_columns(
+    Lattice const& lattice, std::span<double const> of_columns, double factor) {
+  std::vector<double> values;
+  auto const sites = lattice.sites(), columns = lattice.shape[0];
+  values.reserve(static_cast<std::size_t>(Components * sites));
+  for (std::int64_t row = 0; row < sites / columns; ++row)
+    for (double const number : of_columns) values.push_back(factor * number);
+  SiteField<typename Spins::value_type, Components, typename Spins::memory_space> made(
+      "SceneGenerator::columns", lattice);
+  copy_from_host(values, made);
+  return made;
+}
 
 template <class Bodies, class Real>
 struct StoreGenerator {
@@ -49,10 +72,13 @@ void SceneFieldNow<Real>::find_row_ends(cayspin::detail::RowOfSpins<Real> const&
                                         bool turning_alone) const {
   if (along_rows.is_whole) return;
   RowPiece<Real> const piece{spins, begin, end, fields};
+  auto const find = [&](auto const& store) {
+    applied_of_sites.data ? piece.for_each(store) : piece.for_each_at_ends(store);
+  };
   if (turning_alone)
-    piece.for_each_at_ends(StoreField<true, Real>{*this, fields});
+    find(StoreField<true, Real>{*this, fields});
   else
-    piece.for_each_at_ends(StoreField<false, Real>{*this, fields});
+    find(StoreField<false, Real>{*this, fields});
 }
 
 template <class Spins>
@@ -76,7 +102,12 @@ SceneField<Spins> field_of(io::Scene const& scene, Lattice const& lattice, bool 
   if (field.demag && !field.demag->dipoles && std::filesystem::is_regular_file(scene.path, ignored))
     field.demag->cache = std::filesystem::path(scene.path).replace_extension(".demag");
   field = with_joined_own_field<typename Spins::value_type>(scene, std::move(field), lattice);
-  return SceneField<Spins>(field, scene.units, lattice, has_slow, std::move(pass));
+  SceneField<Spins> made(field, scene.units, lattice, has_slow, std::move(pass));
+  if (scene.columns && !scene.columns->applied.empty())
+    made.set_applied_of_sites(field_of_columns<Spins, 3>(
+        lattice, {scene.columns->applied.front().data(), 3 * scene.columns->applied.size()},
+        field.mu0));
+  return made;
 }
 
 template <class Spins>
@@ -88,11 +119,16 @@ SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lat
 template <class Spins>
 SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lattice,
                                       std::vector<SymmetricTensor> const& inverse_inertia)
-    : llg_(field_of<Spins>(scene, lattice, has_slow_field(scene)), scene.system.damping,
-           scene.system.precession || scene.system.dampings.there()),
+    : llg_(field_of<Spins>(scene, lattice, has_slow_field(scene)),
+           has_dampings_of_columns(scene) ? 0 : scene.system.damping,
+           scene.system.precession || scene.system.dampings.there() || has_dampings_of_columns(scene)),
       is_llg_(scene.system.kind == io::SystemKind::llg),
       orthogonal_(scene.integrator.generator == io::Generator::orthogonal),
-      bodies_(inverse_inertia, lattice) {}
+      bodies_(inverse_inertia, lattice) {
+  if (!has_dampings_of_columns(scene)) return;
+  dampings_.emplace(field_of_columns<Spins, 1>(lattice, scene.columns->dampings, 1));
+  precession_ = scene.system.precession;
+}
 
 template <class Spins>
 SceneGenerator<Spins> SceneGenerator<Spins>::precession_alone() const {
@@ -113,8 +149,20 @@ SceneGeneratorNow<Spins> SceneGenerator<Spins>::now(
     field.along_rows.is_whole = true;
     now.llg = LandauLifshitz(field, 0);
   }
-  if (auto const& pass = llg_.field().pass(); pass && !alone_) now.own = pass->own_of_sites();
+  if (alone_) return now;
+  if (auto const& pass = llg_.field().pass()) now.own = pass->own_of_sites();
+  if (dampings_) {
+    now.own.dampings = dampings_->array();
+    now.own.precession = precession_;
+    now.own.rounds_once = true;
+  }
   return now;
+}
+
+template <class Spins>
+void SceneGenerator<Spins>::set_applied(io::Triple const& applied) {
+  // The damping does not matter for energies.
+  llg_ = LandauLifshitz(llg_.field().with_applied(applied), 0, llg_.has_precession());
 }
 
 template <class Spins>

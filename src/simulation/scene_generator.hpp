@@ -12,6 +12,8 @@
 #include <cayspin_paper/series_source.hpp>
 
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 namespace cayspin::inline v0_2::io {
 struct Scene;
@@ -157,6 +159,10 @@ class SceneGenerator {
   /// Returns the generator of undamped precession about the effective field.
   SceneGenerator precession_alone() const;
 
+  /// Replaces the applied field by another one, which does not depend on t, and sets the damping to
+  /// 0. The energy of spins is then that in the other field.
+  void set_applied(io::Triple const& applied);
+
   /// Compiled only in scene_generator.cpp, for the spaces of space.hpp.
   template <class Exec>
   SceneGeneratorNow<Spins> prepare(Exec const& exec, Spins const& spins, double t) const;
@@ -171,6 +177,9 @@ class SceneGenerator {
   bool is_llg_, orthogonal_;
   SceneBodies<Spins> bodies_;
   bool alone_ = false;  // only precession: ignores site-dependent numbers
+  // Dampings of the sites of columns, and whether these precess; llg_ then has no damping.
+  std::optional<ScalarField<typename Spins::value_type, typename Spins::memory_space>> dampings_;
+  bool precession_ = true;
 
   SceneGeneratorNow<Spins> now(
       LandauLifshitz<SceneFieldNow<typename Spins::value_type>> const& llg,

@@ -178,6 +178,10 @@ class SceneRunInSpace final
     begin_again();
   }
 
+  void sample_in(io::Triple const& applied) override {
+    simulation_->generator.set_applied(applied);
+  }
+
   Minimum find_rest(io::Field const& field, MinimizeOptions const& options) override {
     leave_lent_memory(true);
     if (!minimizer_) {

@@ -109,8 +109,9 @@ std::vector<std::vector<Sample>> SceneRun::sample_columns(std::span<ColumnsToSam
   std::vector<SceneRun*> ones;
   for (auto const& columns : all) ones.push_back(columns.one);
   side_by_side(ones, [&](std::size_t number) {
-    auto const& [columns, one, count] = all[number];
+    auto const& [columns, one, count, applied] = all[number];
     for (std::int64_t column = 0; column < count; ++column) {
+      if (!applied.empty()) one->sample_in(applied[static_cast<std::size_t>(column)]);
       one->take_column(*columns, column);
       samples[number].push_back(one->sampled());
     }
