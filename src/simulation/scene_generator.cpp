@@ -121,7 +121,8 @@ SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lat
                                       std::vector<SymmetricTensor> const& inverse_inertia)
     : llg_(field_of<Spins>(scene, lattice, has_slow_field(scene)),
            has_dampings_of_columns(scene) ? 0 : scene.system.damping,
-           scene.system.precession || scene.system.dampings.there() || has_dampings_of_columns(scene)),
+           scene.system.precession || scene.system.dampings.there() ||
+               has_dampings_of_columns(scene)),
       is_llg_(scene.system.kind == io::SystemKind::llg),
       orthogonal_(scene.integrator.generator == io::Generator::orthogonal),
       bodies_(inverse_inertia, lattice) {

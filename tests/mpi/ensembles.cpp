@@ -83,7 +83,7 @@ TEST_F(EnsemblesOnRanks, WriteTheFileOfOneRankForRandomScenes) {
   for (int composition = 0; composition < compositions && !HasFailure(); ++composition) {
     bool const is_crystal = composition % 4 == 3, has_noise = random() % 2 == 0;
     // From 16 replicas on, small lattices without `couplings` are stepped as the columns of one
-    // lattice, unless their replicas differ in more than temperatures.
+    // lattice, unless they differ in more than temperatures, dampings and constant applied fields.
     int const replicas = std::stoi(one_of({"3", "5", "17", "40"}));
     std::vector<std::string> varied{"", "'system.damping' = { from = 0.1, to = 0.4 }\n",
                                     "'field.applied.2' = { from = -1, to = 2 }\n"};

@@ -294,7 +294,21 @@ TEST_F(Ensembles, WarnOfAStepThatIsTooLongForOneReplica) {
   EXPECT_FALSE(exists("b.h5"));
 }
 
-// Small replicas that differ only in temperature are stepped as the columns of one lattice.
+// Small replicas that differ in the applied field or the damping are stepped as the columns of one
+// lattice, and so are those that differ in the temperature.
+TEST_F(Ensembles, WarnOfTheReplicaWithTheLargestFieldOrDamping) {
+  for (std::string const key : {"field.applied.0", "system.damping"}) {
+    write("all.toml",
+          chain_scene() + vary(fmt::format("\"{}\" = {{ from = 0.1, to = 1e4 }}\n", key), 32));
+    auto const outcome = start({"run", "all.toml", "--quiet", "--overwrite", "--output", "all.h5"});
+    EXPECT_TRUE(contains(outcome.errors, "warning: replica 31: ")) << key << outcome.errors;
+    expect_refused({"run", "all.toml", "--quiet", "--output", "b.h5", "--set",
+                    "integrator.refuse_unstable=true"},
+                   "integrator");
+    EXPECT_FALSE(exists("b.h5"));
+  }
+}
+
 TEST_F(Ensembles, WarnOfTheHottestReplica) {
   write("all.toml", chain_scene() + "[thermal]\ntemperature = 0.1\nseed = 3\n" +
                         vary("\"thermal.temperature\" = { from = 0.1, to = 15 }\n", 32));
