@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <ranges>
 
 namespace cayspin::program {
 
@@ -30,7 +31,7 @@ std::string vector_text(io::Triple const& v) {
 std::string text_of(io::SiteNumbers const& numbers) {
   if (numbers.given) return "numbers of the program";
   if (!numbers.per_region.empty())
-    return fmt::format("of regions [{:.6g}]", fmt::join(numbers.per_region, ", "));
+    return fmt::format("[{:.6g}] of regions", fmt::join(numbers.per_region, ", "));
   if (!numbers.image.empty()) return numbers.image.string();
   return numbers.file.empty() ? numbers.expression : numbers.file.string();
 }
@@ -97,13 +98,28 @@ std::string lattice_text(io::Scene const& scene) {
                      counted(io::sites(scene), "site"), more);
 }
 
-// Returns the term's formula with its parameters inserted.
+std::string vectors_text(io::SiteVectors const& vectors) {
+  if (!vectors.file.empty()) return vectors.file.string();
+  if (!vectors.per_region.empty())
+    return fmt::format("[{}] of regions",
+                       fmt::join(vectors.per_region | std::views::transform(vector_text), ", "));
+  auto const component = [&](std::size_t c) {
+    auto const& numbers = vectors.components[c];
+    return numbers.there() ? text_of(numbers) : fmt::format("{:.6g}", vectors.uniform[c]);
+  };
+  return fmt::format("({}, {}, {})", component(0), component(1), component(2));
+}
+
+// Returns the term's formula with its parameters inserted. `of_sites`: if set, the term's vector,
+// which is then site-dependent.
 template <class Term>
-std::string term_text(Term const& term) {
+std::string term_text(Term const& term, io::SiteVectors const& of_sites = {}) {
   fmt::dynamic_format_arg_store<fmt::format_context> numbers;
   for (auto const& key : Term::keys()) {
     if (auto const* const number = std::get_if<double Term::*>(&key.member))
       numbers.push_back(fmt::format("{:.6g}", term.**number));
+    else if (of_sites.there())
+      numbers.push_back(vectors_text(of_sites));
     else
       numbers.push_back(vector_text(term.*std::get<io::Triple Term::*>(key.member)));
   }
@@ -126,17 +142,6 @@ std::string applied_text(io::Scene const& scene) {
                                 components_text(*field.applied));
   if (!scene.applied_in_tesla) return text;
   return fmt::format("{} T, {}", components_text(*scene.applied_in_tesla), text);
-}
-
-std::string vectors_text(io::SiteVectors const& vectors) {
-  if (!vectors.file.empty()) return vectors.file.string();
-  if (!vectors.per_region.empty())
-    return fmt::format("of regions {}", fmt::join(vectors.per_region, ", "));
-  auto const component = [&](std::size_t c) {
-    auto const& numbers = vectors.components[c];
-    return numbers.there() ? text_of(numbers) : fmt::format("{:.6g}", vectors.uniform[c]);
-  };
-  return fmt::format("({}, {}, {})", component(0), component(1), component(2));
 }
 
 std::string source_text(io::Scene const& scene, io::Source const& source) {
@@ -208,12 +213,8 @@ std::string in_si_text(io::Scene const& scene, char const* name, double constant
 }
 
 std::string second_text(io::Anisotropy const& term) {
-  std::string text;
-  if (term.axes.there()) text += ", e = " + vectors_text(term.axes);
-  if (term.constant2 != 0)
-    text +=
-        fmt::format(", and H = {:.6g} (m.e)^3 e{}", term.constant2, factors_text(term.factors2));
-  return text;
+  if (term.constant2 == 0) return {};
+  return fmt::format(", and H = {:.6g} (m.e)^3 e{}", term.constant2, factors_text(term.factors2));
 }
 
 std::string crystal_text(io::Scene const& scene, io::CrystalAnisotropy const& term) {
@@ -237,7 +238,7 @@ void add_anisotropies(io::Scene const& scene,
                       std::vector<std::pair<std::string, std::string>>& lines) {
   for (auto const& term : scene.field.anisotropies)
     lines.emplace_back("anisotropy",
-                       term_text(term) + second_text(term) +
+                       term_text(term, term.axes) + second_text(term) +
                            (term.factors.there() ? factors_text(term.factors)
                                                  : in_si_text(scene, "K", term.constant / 2)) +
                            of_site_text(term.site));
@@ -347,10 +348,9 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
     io::for_each_lattice_term(field, [&]<class Term>(std::optional<Term> const& term) {
       constexpr bool is_exchange = std::is_same_v<Term, io::Exchange>;
       auto const& factors = is_exchange ? field.exchange_factors : field.dmi_factors;
-      auto text = term ? term_text(*term) + factors_text(factors) : std::string();
-      if (std::is_same_v<Term, io::InterfacialDmi> && field.dmi_normals.there())
-        text += ", n = " + vectors_text(field.dmi_normals);
-      if (term) lines.emplace_back(Term::key, text);
+      bool const has_normal = std::is_same_v<Term, io::InterfacialDmi>;
+      auto const normals = has_normal ? field.dmi_normals : io::SiteVectors();
+      if (term) lines.emplace_back(Term::key, term_text(*term, normals) + factors_text(factors));
     });
     if (field.d2d_dmi)
       lines.emplace_back("dmi", term_text(*field.d2d_dmi) + factors_text(field.dmi_factors));

@@ -198,6 +198,43 @@ TEST_F(Checking, TextNamesWhatIsModelled) {
   EXPECT_FALSE(contains(spin, "1 sites"));
 }
 
+TEST_F(Checking, TextNamesValuesOfRegions) {
+  write("regions.toml", R"toml([system]
+kind = "llg"
+damping = { regions = [0.1, 0.2] }
+[lattice]
+shape = [4, 4]
+regions = "i > 1"
+[field]
+dmi = { interfacial = 0.2, normal = { regions = [[0, 0, 1], [0, 0, -1]] } }
+[[field.anisotropy]]
+constant = 0.5
+axis = { regions = [[0, 0, 1], [1, 0, 0]] }
+[[field.anisotropy]]
+cubic = 0.1
+axes = [{ regions = [[0, 0, 1], [1, 0, 0]] }, [0, 1, 0]]
+[[field.sources]]
+profile = { regions = [[0, 1, 0], [0, 2, 0]] }
+[torque]
+slonczewski = { damping_like = 0.01, polarization = { regions = [[0, 1, 0], [0, 0, 1]] } }
+[initial]
+uniform = [0, 0, 1]
+[integrator]
+method = "rkmk4"
+dt = 0.01
+steps = 2
+)toml");
+  auto const text = output_of({"check", "regions.toml"});
+  EXPECT_TRUE(contains_all(
+      text,
+      {"damping [0.1, 0.2] of regions\n", " n = [(0, 0, 1), (0, 0, -1)] of regions, times 0.2\n",
+       "H = 0.5 (m.e) e, e = [(0, 0, 1), (1, 0, 0)] of regions\n",
+       "axes [(0, 0, 1), (1, 0, 0)] of regions and (0, 1, 0)\n",
+       "H = [(0, 1, 0), (0, 2, 0)] of regions\n", "p = [(0, 1, 0), (0, 0, 1)] of regions\n"}))
+      << text;
+  EXPECT_FALSE(contains(text, "(0, 0, 0)")) << text;
+}
+
 TEST_F(Checking, MethodsListsEveryMethodAndNoRowTwice) {
   auto const text = output_of({"methods"});
   std::set<std::string> expected, found;
