@@ -19,10 +19,10 @@ PACKAGE = ROOT / "python/cayspin"
 WIDTH = 100
 
 GROUPS = {
-    "Scenes and simulations": ["Scene", "Simulation", "Minimum", "Modes", "Averages", "path",
+    "Scenes and simulations": ["Scene", "Simulation", "Minimum", "Modes", "Bands", "Averages", "path",
                                "MinimumEnergyPath", "EnsembleSimulation", "sweep"],
     "Choosing a method": ["advise", "Advice", "trade", "Trade"],
-    "Files and pictures": ["open", "Trajectory", "Ensemble", "texture.draw", "view", "View"],
+    "Files and pictures": ["open", "Trajectory", "Ensemble", "read_modes", "texture.draw", "view", "View"],
     "Numbers from spins": ["topological_charge", "dispersion", "Dispersion", "structure_factor",
                            "linear_structure_factor", "StructureFactor", "average", "Average"],
     "Input": ["occupied_of_mesh", "read_uppasd", "read_spirit_pairs"],

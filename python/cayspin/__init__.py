@@ -15,8 +15,9 @@ from cayspin._cayspin import version as __version__
 from cayspin.averages import Averages
 from cayspin.ensemble import Ensemble
 from cayspin.ensemble_simulation import EnsembleSimulation
-from cayspin.equilibrium import Minimum, Modes
+from cayspin.equilibrium import Bands, Minimum, Modes
 from cayspin.mesh import occupied_of_mesh
+from cayspin.modes_file import read_modes
 from cayspin.observables import Average, Dispersion, average, dispersion, topological_charge
 from cayspin.path import MinimumEnergyPath, path
 from cayspin.scene import Scene
@@ -29,9 +30,9 @@ from cayspin.trajectory import Trajectory, open
 from cayspin.uppasd import read_uppasd
 from cayspin.view import View, view
 
-__all__ = ["Advice", "Average", "Averages", "CayspinError", "Dispersion", "Ensemble",
+__all__ = ["Advice", "Average", "Averages", "Bands", "CayspinError", "Dispersion", "Ensemble",
            "EnsembleSimulation", "Minimum", "MinimumEnergyPath", "Modes", "NumbersFailed", "Scene",
            "SceneError", "Simulation", "StructureFactor", "Trade", "Trajectory", "View",
            "__version__", "advise", "average", "dispersion", "linear_structure_factor",
-           "occupied_of_mesh", "open", "path", "read_spirit_pairs", "read_uppasd",
+           "occupied_of_mesh", "open", "path", "read_modes", "read_spirit_pairs", "read_uppasd",
            "structure_factor", "sweep", "topological_charge", "trade", "view"]

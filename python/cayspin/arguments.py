@@ -59,6 +59,14 @@ def real(number: Any, name: str) -> float:
     raise CayspinError(f"{name}: {shown(number)}; accepted: a number")
 
 
+def three(values: Any, name: str) -> tuple[float, float, float]:
+    """Returns three numbers."""
+    array = numbers(values, name)
+    if array.shape != (3,):
+        raise CayspinError(f"{name} of shape {array.shape}; accepted: three numbers")
+    return (float(array[0]), float(array[1]), float(array[2]))
+
+
 def flag(truth: Any, name: str) -> bool:
     """Returns True or False, which may be given as 1 or 0."""
     value = _one(truth)

@@ -44,3 +44,31 @@ class Modes:
     under_current: bool = False  #: whether the state is under a current, [torque]
     #: mu / g of each site, (nz, ny, nx) or (site, ..), as linear_structure_factor() takes them
     moments: np.ndarray | None = None
+    #: with `hessian`: (mode,), the lowest eigenvalues of the Hessian of the energy, in energy / rad^2
+    curvature: np.ndarray | None = None
+    #: (mode,), estimates of the errors of `curvature`, in its unit
+    curvature_error: np.ndarray | None = None
+    curvature_residual: np.ndarray | None = None  #: (mode,), relative errors of the eigenvectors
+    #: the eigenvectors, (mode, nz, ny, nx, 3) or (mode, site, ..)
+    curvature_vector: np.ndarray | None = None
+    spins: np.ndarray | None = None  #: only from read_modes(): the equilibrium
+
+    @property
+    def negative_curvatures(self) -> int | None:
+        """The number of curvatures that are negative beyond their errors. If it is above 0, the
+        state is a saddle, or a maximum of the energy. None without curvatures."""
+        if self.curvature is None or self.curvature_error is None:
+            return None
+        return int((self.curvature < -self.curvature_error).sum())
+
+
+@dataclasses.dataclass(frozen=True)
+class Bands:
+    """Result of Simulation.bands(): spin waves exp(i (k.r - w t)), the branches of each wave vector
+    in the order of their frequencies."""
+
+    wave_vector: np.ndarray  #: (wave, 3), in cycles per cell
+    frequency: np.ndarray  #: (wave, branch), angular in reduced units; in Hz in SI; may be negative
+    decay: np.ndarray  #: (wave, branch), in 1/s in SI; negative where the motion grows
+    evaluations: int  #: of the field of all sites
+    spins: np.ndarray | None = None  #: only from read_modes(): the equilibrium

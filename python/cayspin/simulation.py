@@ -10,10 +10,10 @@ from typing import Any, Callable, Sequence
 
 import numpy as np
 
-from cayspin import _cayspin, arguments, sites, texture, toml_text
+from cayspin import _cayspin, arguments, mode_search, sites, texture, toml_text
 from cayspin.averages import Averages
-from cayspin.equilibrium import Minimum, Modes
-from cayspin.scene import Scene, moments_over_g
+from cayspin.equilibrium import Bands, Minimum, Modes
+from cayspin.scene import Scene
 from cayspin.simulation_texture import texture_of
 
 _GUARD_PERIOD = 100  # steps between two checks of energy and lengths in step()
@@ -150,18 +150,14 @@ class Simulation:
         temperatures and torques of currents, CayspinError for other arguments.
         """
         if applied is not None:
-            applied = arguments.numbers(applied, "relax: applied")
-            if applied.shape != (3,):
-                raise _cayspin.CayspinError(f"relax: applied of shape {applied.shape}; accepted: "
-                                            "three numbers")
-            applied = tuple(float(component) for component in applied)
+            applied = arguments.three(applied, "relax: applied")
         found = self._run.relax(arguments.real(torque, "relax: torque"),
                                 arguments.whole(evaluations, "relax: evaluations"), applied,
                                 arguments.flag(keep_saddles, "relax: keep_saddles"))
         return Minimum(*(getattr(found, field.name) for field in dataclasses.fields(Minimum)))
 
-    def modes(self, count: int = 8, tolerance: float = 1e-9,
-              evaluations: int = 100000) -> Modes:
+    def modes(self, count: int = 8, tolerance: float = 1e-9, evaluations: int = 100000,
+              hessian: bool = False) -> Modes:
         """Finds the `count` slowest normal modes, at most 128, of motion about the present spins.
         The spins have to be in equilibrium: call relax() first. In a mode, the spins move by the
         real part of shape * exp((i w - decay) * t), where w is the angular frequency: `frequency`
@@ -171,22 +167,25 @@ class Simulation:
         rest under the current. A mode with a negative decay grows.
 
         `tolerance` is the relative error of the shapes; frequencies are more accurate. The search
-        ends after about `evaluations` evaluations of the field of all sites.
+        ends after about `evaluations` evaluations of the field of all sites. `hessian` adds as many
+        of the lowest eigenvalues of the Hessian of the energy, not with [torque].
 
         Raises CayspinError for other arguments, SceneError for rigid bodies, temperatures and spins
         that neither precess nor are damped, NumbersFailed for spins that a current keeps moving.
         """
-        *numbers, shapes, converged, cost = self._run.modes(
-            arguments.whole(count, "modes: count"), arguments.real(tolerance, "modes: tolerance"),
-            arguments.whole(evaluations, "modes: evaluations"))
-        parts = np.array(shapes).reshape((len(shapes), *self._run.spins().shape, 2))
-        scene = self._scene._scene
-        shape = parts[..., 0] + 1j * parts[..., 1]
-        if scene.cell_sites > 1 and len(shapes):
-            shape = np.stack([sites.by_site(one, scene.cell_sites) for one in shape])
-        is_si, time_unit, energy_unit = scene.units
-        return Modes(*(np.array(each) for each in numbers), shape, converged, cost, time_unit,
-                     energy_unit if is_si else None, scene.has_torque, moments_over_g(scene))
+        return mode_search.modes_of(self._run, self._scene, count, tolerance, evaluations, hessian)
+
+    def bands(self, wave_vectors: Any) -> Bands:
+        """Finds the spin waves with these `wave_vectors`, (wave, 3), in cycles per cell, about the
+        present spins, which have to be in equilibrium and equal in all cells along periodic axes.
+
+            sim.bands(np.linspace([0, 0, 0], [0.5, 0, 0], 21)).frequency
+
+        Raises CayspinError for wave vectors along open axes, or that a field which reaches around
+        the lattice does not allow, and for cells that differ. Raises SceneError for [torque], for
+        lattices that are too small or not periodic, and for scenes that modes() refuses.
+        """
+        return mode_search.bands_of(self._run, wave_vectors)
 
     def set(self, keys: str | dict[str, Any], value: Any = None) -> None:
         """Changes keys of the scene. Spins, time and steps are kept. `keys` is one key with its

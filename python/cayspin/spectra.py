@@ -10,10 +10,10 @@ from typing import Any, Sequence
 
 import numpy as np
 
-from cayspin import _cayspin, arguments, frames
+from cayspin import arguments, frames
 from cayspin._cayspin import CayspinError
+from cayspin.modes_file import FileOfModes
 from cayspin.observables import checked_lattice, hann, window_in_space
-from cayspin.scene import moments_over_g
 
 _BOLTZMANN = 1.380649e-23  # J/K
 _PAIRS = tuple(a + b for a in "xyz" for b in "xyz")
@@ -192,70 +192,6 @@ def structure_factor(spins: Any, dt: float, *, components: str | Sequence[str] =
     return StructureFactor(waves.wave_vectors, frequency, intensity, integrated)
 
 
-class _FileOfModes:
-    """Modes from a file of `cayspin modes`, in the units of the file."""
-
-    def __init__(self, name, path, moments):
-        import h5py
-
-        path = arguments.file_name(path, name)
-        try:
-            file = h5py.File(path, "r")
-        except (OSError, ValueError) as error:
-            reason = " ".join(str(error).split())
-            raise CayspinError(f"{path}: cannot be opened: {reason}") from None
-        with file:
-            if "cayspin_modes_format" not in file.attrs:
-                raise CayspinError(f"{path}: no modes; accepted: a file of cayspin modes")
-            if "mode" not in file:
-                raise CayspinError(f"{path}: bands have no shapes; accepted: a file of cayspin "
-                                   "modes without --wave-vector")
-            self.path, self.scene = path, file.attrs["scene"]
-            self.spins = file["spins"][:].astype(np.float64)
-            parts = file["mode"][:]
-            self.shape = parts[..., 0] + 1j * parts[..., 1]
-            self.frequency, self.decay = file["frequency"][:], file["decay"][:]
-            self.converged = bool(file.attrs["converged"])
-            self.time_unit, self.energy_unit = 1.0, None
-            if file.attrs["units"] == "SI":
-                self.time_unit = float(file.attrs["time_unit"])
-                self.energy_unit = float(file.attrs["energy_unit"])
-        read = frames.tables(path, self.scene, "the tables", "Modes with their spins")
-        self.under_current = "torque" in read
-        of_material = ("Ms", "mu_s", "gamma")
-        if read.get("material", {}).get("damping_form") == "gilbert":
-            of_material += ("alpha",)
-        differs = [f"{table}.{key}" for table, names in
-                   (("lattice", ("moments", "gyromagnetic")), ("material", of_material))
-                   for key in names if key in read.get(table, {})
-                   and not _is_number(read[table][key])]
-        if moments is not None:
-            self.moments = moments
-        elif differs:
-            self.moments = self._moments_of_sites(differs[0])
-        else:
-            lattice = read["lattice"]
-            self.moments = lattice.get("moments", 1.0) / lattice.get("gyromagnetic", 1.0) * (
-                self.time_unit * (self.energy_unit or 1.0))
-
-    def _moments_of_sites(self, key):
-        """Returns mu / g of each site. `key`: a key of the scene that may be a file, for the
-        error."""
-        try:
-            return moments_over_g(_cayspin.Scene.parse(self.scene, self.path, [], None, {}))
-        except CayspinError as error:
-            raise CayspinError(f"{self.path}: {key} of its scene cannot be read; accepted: the "
-                               "argument moments, or the scene's files beside this one"
-                               ) from error
-
-
-def _is_number(value):
-    """Whether a value is one number, possibly with a unit, as { bohr_magnetons = 2.0 }."""
-    if isinstance(value, dict) and len(value) == 1:
-        value = next(iter(value.values()))
-    return isinstance(value, (int, float))
-
-
 def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, spins: Any = None,
                             moments: Any = None, width: float = 0.0,
                             components: str | Sequence[str] = ("xx", "yy", "zz"), cell: Any = None,
@@ -265,9 +201,10 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
     normalisation of structure_factor().
 
     `modes`: the file of `cayspin modes`, or the Modes of Simulation.modes() with `spins`, the state
-    (nz, ny, nx, 3) that they belong to. Only these modes contribute: compute all of them if S is to
-    be compared with a run. `temperature` is that of thermal.temperature, in K in SI.
-    `frequency`: the frequencies of S, (w,), angular and rising, as those of structure_factor().
+    (nz, ny, nx, 3) that they belong to. Modes of read_modes() have this state. Only these modes
+    contribute: compute all of them if S is to be compared with a run. `temperature` is that of
+    thermal.temperature, in K in SI. `frequency`: the frequencies of S, (w,), angular and rising, as
+    those of structure_factor().
 
     The mean energy of each mode is k_B T. A deviation Re(c v exp(i w_n t)), where v is the shape of
     mode n and w_n its frequency, has the energy |c|^2 w_n Q / 4, with
@@ -313,7 +250,7 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
         if spins is not None:
             raise CayspinError(f"{name}: spins beside a file that has them; accepted: Modes with "
                                "spins, or a file")
-        modes = _FileOfModes(name, modes, moments)
+        modes = FileOfModes(name, modes, moments)
         source = modes.path
         spins = modes.spins
         given = {key: value for key, value in lattice.items() if value is not None}
@@ -321,7 +258,7 @@ def linear_structure_factor(modes: Any, temperature: float, frequency: Any, *, s
     elif not all(hasattr(modes, part) for part in ("frequency", "decay", "shape")):
         raise CayspinError(f"{name}: a {type(modes).__name__}; accepted: Modes with spins, or the "
                            "name of a file of cayspin modes")
-    elif spins is None:
+    elif spins is None and (spins := getattr(modes, "spins", None)) is None:
         raise CayspinError(f"{name}: Modes without spins; accepted: spins=sim.spins")
     if getattr(modes, "under_current", False):
         raise CayspinError(f"{source}: the scene has a torque, and no thermal equilibrium; "

@@ -244,7 +244,7 @@ def open(path: str | os.PathLike) -> Trajectory | Ensemble:
     """Opens the file `path` of a run, or of an ensemble. Needs h5py.
 
     Raises CayspinError for a file that cannot be opened, such as that of a run under way, or is
-    neither.
+    neither. read_modes() reads files of modes.
     """
     import h5py
 
@@ -259,6 +259,9 @@ def open(path: str | os.PathLike) -> Trajectory | Ensemble:
         with reading(file, name):
             if is_ensemble(file):
                 return Ensemble(name, file)
+            if "cayspin_modes_format" in file.attrs:
+                raise CayspinError(f"{name}: a file of modes; accepted: the file of a run, or "
+                                   "read_modes() for this file")
     except CayspinError:
         file.close()
         raise

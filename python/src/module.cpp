@@ -79,15 +79,21 @@ Minimum relax(SceneRun& run, double torque, std::int64_t evaluations,
   return found;
 }
 
+Next poll() { return interrupted() ? Next::stop : Next::proceed; }
+
+ModesOptions modes_options(std::int64_t count, double tolerance, std::int64_t evaluations) {
+  return {.count = static_cast<std::size_t>(std::max<std::int64_t>(count, 0)),
+          .tolerance = tolerance,
+          .evaluations = evaluations,
+          .poll = poll};
+}
+
 // Returns frequencies, decays, errors, shapes, whether all modes have converged, and evaluations.
 nb::tuple modes(SceneRun& run, std::int64_t count, double tolerance, std::int64_t evaluations) {
   FoundModes found;
   {
     nb::gil_scoped_release const released;
-    found = run.modes({.count = static_cast<std::size_t>(std::max<std::int64_t>(count, 0)),
-                       .tolerance = tolerance,
-                       .evaluations = evaluations,
-                       .poll = [] { return interrupted() ? Next::stop : Next::proceed; }});
+    found = run.modes(modes_options(count, tolerance, evaluations));
   }
   rethrow_interruption();
   auto const& [nx, ny, nz] = run.scene().lattice.shape;
@@ -95,6 +101,34 @@ nb::tuple modes(SceneRun& run, std::int64_t count, double tolerance, std::int64_
   for (auto& shape : found.shapes) shapes.append(array_of(std::move(shape), {nz, ny, 6 * nx}));
   return nb::make_tuple(found.frequencies, found.decays, found.errors, shapes,
                         found.end == ModesEnd::converged, found.evaluations);
+}
+
+// Returns curvatures, their errors, those of the vectors, the vectors, whether all have converged,
+// and evaluations.
+nb::tuple curvatures(SceneRun& run, std::int64_t count, double tolerance,
+                     std::int64_t evaluations) {
+  FoundCurvatures found;
+  {
+    nb::gil_scoped_release const released;
+    found = run.curvatures(modes_options(count, tolerance, evaluations));
+  }
+  rethrow_interruption();
+  auto const& [nx, ny, nz] = run.scene().lattice.shape;
+  nb::list vectors;
+  for (auto& vector : found.vectors) vectors.append(array_of(std::move(vector), {nz, ny, 3 * nx}));
+  return nb::make_tuple(found.values, found.value_errors, found.errors, vectors,
+                        found.end == ModesEnd::converged, found.evaluations);
+}
+
+// Returns the frequencies and decays of each wave vector, and evaluations.
+nb::tuple bands(SceneRun& run, std::vector<std::array<double, 3>> const& wave_vectors) {
+  FoundBands found;
+  {
+    nb::gil_scoped_release const released;
+    found = run.bands(wave_vectors, poll);
+  }
+  rethrow_interruption();
+  return nb::make_tuple(found.frequencies, found.decays, found.evaluations);
 }
 
 // Returns the scene. Refuses a list of applied fields, which needs a search for each of them.
@@ -237,6 +271,8 @@ void define_run(nb::module_& module) {
       .def("advance", advance, "count"_a, "period"_a, "until_torque"_a, "run_end"_a)
       .def("relax", relax, "torque"_a, "evaluations"_a, "applied"_a.none(), "keep_saddles"_a)
       .def("modes", modes, "count"_a, "tolerance"_a, "evaluations"_a)
+      .def("curvatures", curvatures, "count"_a, "tolerance"_a, "evaluations"_a)
+      .def("bands", bands, "wave_vectors"_a)
       .def("path", path, "start"_a, "end"_a.none(), "images"_a, "torque"_a, "evaluations"_a,
            "rates"_a, "modes"_a.none())
       .def("warning", &SceneRun::warning)

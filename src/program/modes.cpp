@@ -191,7 +191,7 @@ class ModesOfScene {
                  io::ModesContents const& state) const {
     io::BandsContents contents{state, path_of(options_)};
     auto const found = find_bands<Real, Space>(exec_, scene_, field, spins_, contents.wave_vectors,
-                                               options_.search.poll);
+                                               options_.search.time, options_.search.poll);
     if (found.is_interrupted) return interrupted();
     contents.converged = true;
     contents.evaluations += found.evaluations;

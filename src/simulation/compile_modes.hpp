@@ -193,14 +193,14 @@ template <class Real, class Space>
 FoundBands find_bands(Space const& exec, io::Scene const& scene,
                       SceneField<SpinField<Real, typename Space::memory_space>> const& field,
                       SpinField<Real, typename Space::memory_space> const& spins,
-                      std::vector<std::array<double, 3>> const& wave_vectors,
+                      std::vector<std::array<double, 3>> const& wave_vectors, double time,
                       std::function<Next()> const& poll) {
   auto const turning = turning_of<Real, typename Space::memory_space>(scene, spins.lattice());
   FoundBands bands;
   double const per_time = 1 / scene.units.time;
   double const cycles = scene.units.si ? 2 * std::numbers::pi : 1;
   try {
-    auto const found = bloch_modes(exec, field, turning, spins, wave_vectors, 0, poll);
+    auto const found = bloch_modes(exec, field, turning, spins, wave_vectors, time, poll);
     bands.is_interrupted = found.bands.size() < wave_vectors.size();
     bands.evaluations = found.evaluations;
     for (auto const& branches : found.bands) {
@@ -233,6 +233,6 @@ FoundBands find_bands(Space const& exec, io::Scene const& scene,
   template FoundBands find_bands(                                                              \
       Space const&, io::Scene const&, SceneField<SpinField<Real, Space::memory_space>> const&, \
       SpinField<Real, Space::memory_space> const&, std::vector<std::array<double, 3>> const&,  \
-      std::function<Next()> const&);
+      double, std::function<Next()> const&);
 
 }  // namespace cayspin::simulation

@@ -73,7 +73,7 @@ template <class Real, class Space>
 FoundBands find_bands(Space const& exec, io::Scene const& scene,
                       SceneField<SpinField<Real, typename Space::memory_space>> const& field,
                       SpinField<Real, typename Space::memory_space> const& spins,
-                      std::vector<std::array<double, 3>> const& wave_vectors,
+                      std::vector<std::array<double, 3>> const& wave_vectors, double time,
                       std::function<Next()> const& poll);
 
 }  // namespace cayspin::simulation

@@ -270,7 +270,9 @@ Minimum SceneRun::relaxed(RelaxSettings const& settings) {
   return found;
 }
 
-FoundModes SceneRun::modes(ModesOptions const& options) {
+namespace {
+
+void require_valid(ModesOptions const& options) {
   if (options.count < 1 || options.count > ModesOptions::most)
     throw UsageError(fmt::format("{} modes; accepted: 1 to {}", options.count, ModesOptions::most));
   if (!(options.tolerance > 0 && options.tolerance < 1))
@@ -279,11 +281,38 @@ FoundModes SceneRun::modes(ModesOptions const& options) {
   if (options.evaluations < 1)
     throw UsageError(
         fmt::format("{} evaluations; accepted: a whole number >= 1", options.evaluations));
+}
+
+}  // namespace
+
+FoundModes SceneRun::modes(ModesOptions const& options) {
+  require_valid(options);
   Turn const turn;
   require_rest(without_torque(scene_));
   auto now = options;
   now.time = reduced_time();
   auto found = modes_of_field(now);
+  evaluations_ += found.evaluations;
+  return found;
+}
+
+FoundCurvatures SceneRun::curvatures(ModesOptions const& options) {
+  require_valid(options);
+  Turn const turn;
+  require_rest(scene_);
+  auto now = options;
+  now.time = reduced_time();
+  auto found = curvatures_of_field(now);
+  evaluations_ += found.evaluations;
+  return found;
+}
+
+FoundBands SceneRun::bands(std::vector<std::array<double, 3>> const& wave_vectors,
+                           std::function<Next()> const& poll) {
+  Turn const turn;
+  require_rest(scene_);
+  require_bands(scene_, wave_vectors);
+  auto found = bands_of_field(wave_vectors, poll);
   evaluations_ += found.evaluations;
   return found;
 }

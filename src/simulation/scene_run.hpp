@@ -178,6 +178,13 @@ class SceneRun {
   /// Throws UsageError for invalid options, io::SceneError also for spins with neither precession
   /// nor damping, and what relax() throws, except that torques are accepted.
   FoundModes modes(ModesOptions const& options = {});
+  /// Returns the lowest eigenvalues of the Hessian at the spins, in the same way. Torques are
+  /// refused.
+  FoundCurvatures curvatures(ModesOptions const& options = {});
+  /// Returns the spin waves with these wave vectors, in cycles per cell, in the same way. Torques
+  /// are refused. Throws also what require_bands and find_bands throw.
+  FoundBands bands(std::vector<std::array<double, 3>> const& wave_vectors,
+                   std::function<Next()> const& poll = {});
 
   /// Returns the spins, on hosts without a copy. If the memory is still lent when the run
   /// continues, it stays unchanged: the run copies the spins to other memory, and goes on there.
@@ -220,6 +227,9 @@ class SceneRun {
   virtual Advanced advance_to(std::int64_t target, Looks const& looks) = 0;
   virtual Minimum find_rest(io::Field const& field, MinimizeOptions const& options) = 0;
   virtual FoundModes modes_of_field(ModesOptions const& options) = 0;
+  virtual FoundCurvatures curvatures_of_field(ModesOptions const& options) = 0;
+  virtual FoundBands bands_of_field(std::vector<std::array<double, 3>> const& wave_vectors,
+                                    std::function<Next()> const& poll) = 0;
   virtual LentVectors lend_spins() = 0;
   /// Rebuilds everything but the spins.
   virtual void rebuild(io::Scene const& scene, Plan const& plan) = 0;

@@ -202,6 +202,27 @@ class SceneRunInSpace final
     return find_modes<Real, Space>(simulation_->exec, scene_, field, simulation_->spins, options);
   }
 
+  FoundCurvatures curvatures_of_field(ModesOptions const& options) override {
+    require_memory(scene_, make_plan_of_modes(scene_, precision(), options, true));
+    auto const field = field_of<Spins>(scene_, plan().lattice, false).made_for(FieldFor::energy);
+    auto const& exec = simulation_->exec;
+    auto const& spins = simulation_->spins;
+    auto found = find_curvatures<Real, Space>(exec, scene_, field, spins, options);
+    if (!found.values.empty())
+      add_errors_of_torque<Real, Space>(exec, scene_, field, spins, options.time, found);
+    return found;
+  }
+
+  FoundBands bands_of_field(std::vector<std::array<double, 3>> const& wave_vectors,
+                            std::function<Next()> const& poll) override {
+    auto needed = make_plan_of_modes(scene_, precision(), {}, false);
+    needed.memory.work += memory_of_bands(scene_);
+    require_memory(scene_, needed);
+    auto const field = field_of<Spins>(scene_, plan().lattice, false).made_for(FieldFor::energy);
+    return find_bands<Real, Space>(simulation_->exec, scene_, field, simulation_->spins,
+                                   wave_vectors, reduced_time(), poll);
+  }
+
   // Call it after the spins were replaced.
   void begin_again() {
     continues_ = false;
