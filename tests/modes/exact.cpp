@@ -102,6 +102,8 @@ TYPED_TEST(MacrospinModes, OfAStiffChainAreAccurateOrNotConverged) {
       double const exact = 1 + 2 * stiff * (1 - std::cos(std::numbers::pi * p / n));
       EXPECT_LT(found.curvatures[i].error, 3.5e-3) << stiff << ' ' << i;
       EXPECT_NEAR(found.curvatures[i].value / exact, 1, 1e-2) << stiff << ' ' << i;
+      EXPECT_NEAR(found.curvatures[i].value, exact, found.curvatures[i].value_error)
+          << stiff << ' ' << i;
     }
   }
 }
@@ -133,6 +135,10 @@ TYPED_TEST(MacrospinModes, GrowAtASaddle) {
   ASSERT_EQ(curvatures.curvatures.size(), 2);
   EXPECT_NEAR(curvatures.curvatures[0].value, h - k, this->accurate);
   EXPECT_NEAR(curvatures.curvatures[1].value, h, this->accurate);
+  for (auto const& one : curvatures.curvatures) {
+    EXPECT_GT(one.value_error, 0);
+    EXPECT_LT(one.value_error, this->accurate);
+  }
 }
 
 // The longest vector of a mode has length 1. Each spin moves on an ellipse; the ratio of the axes
