@@ -3,6 +3,7 @@
 
 #include "io/key.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 
 namespace cayspin::inline v0_2::io {
 
+struct Field;
 struct Scene;
 
 /// A key of the scene with one value for each replica, in the units of the scene.
@@ -34,11 +36,15 @@ struct Columns {
   std::vector<double> temperatures;  ///< factors on the temperature, one per column; empty: all 1
   std::vector<double> dampings;      ///< replace system.damping, one per column; empty: all have it
   std::vector<Triple> applied;       ///< replace field.applied, one per column; empty: all have it
+  /// Replace the constants of field.anisotropies, as many numbers per column; empty: all have them.
+  std::vector<std::vector<double>> constants;
 
   /// Returns the columns first .. first + count - 1.
   Columns part(std::int64_t first, std::int64_t count) const;
   /// Returns temperatures or, if dampings differ, damping * temperature of each column.
   std::vector<double> heats() const;
+  /// Replaces the constants of field.anisotropies by those of a column.
+  void put_constants(std::size_t column, Field& field) const;
 };
 
 /// Returns the scene of one replica, without [ensemble]: the varied keys have the replica's values,
@@ -49,9 +55,10 @@ Scene replica_to_relax(Scene const& scene, std::int64_t replica);
 /// Returns the values of the varied keys in the replicas first .. first + count - 1: bitwise those
 /// of replica_of, but without reading a scene for each replica. `one`: the scene of any replica.
 /// Temperatures are in reduced units; they are set if temperatures vary, and also if dampings vary
-/// at a temperature. Returns nothing if a key other than thermal.temperature, the damping or a
-/// component of field.applied varies, if the unit of time differs between the replicas, if the
-/// applied field depends on t, or if replica_of might refuse a value.
+/// at a temperature. Returns nothing if a key other than thermal.temperature, the damping, a
+/// component of field.applied or, in reduced units, a constant of a uniaxial anisotropy varies, if
+/// the unit of time differs between the replicas, if an applied field that varies depends on t, or
+/// if replica_of might refuse a value.
 std::optional<Columns> values_of_replicas(Scene const& scene, Scene const& one, std::int64_t first,
                                           std::int64_t count);
 

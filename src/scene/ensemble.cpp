@@ -141,6 +141,16 @@ std::optional<std::size_t> component_of_applied(std::string_view key) {
   return static_cast<std::size_t>(found - keys.begin());
 }
 
+// Returns which uniaxial anisotropy has its constant from a key, if one has.
+std::optional<std::size_t> term_of_constant(std::string_view key, Scene const& one) {
+  auto const& terms = one.field.anisotropies;
+  if (one.units.si || !one.field.crystal_anisotropies.empty()) return std::nullopt;
+  if (key == "field.anisotropy.constant" && terms.size() == 1) return 0;
+  for (std::size_t term = 0; term < terms.size(); ++term)
+    if (key == fmt::format("field.anisotropy.{}.constant", term)) return term;
+  return std::nullopt;
+}
+
 // Puts the values of a varied key into `columns`, with the arithmetic of read_scene. Returns false
 // for a key without a place there.
 bool put_values(VariedKey const& varied, Scene const& one, std::int64_t first, Columns& columns) {
@@ -150,12 +160,15 @@ bool put_values(VariedKey const& varied, Scene const& one, std::int64_t first, C
   };
   auto const& units = one.units;
   auto const component = component_of_applied(varied.key);
+  auto const term = term_of_constant(varied.key, one);
   for (std::size_t column = 0; column < columns.applied.size(); ++column) {
     if (varied.key == "thermal.temperature")
       columns.temperatures[column] =
           units.si ? units::boltzmann * value(column) / units.energy : value(column);
     else if (component)
       columns.applied[column][*component] = value(column) / units.field;
+    else if (term)
+      columns.constants[column][*term] = value(column);
     else if (varied.key == (units.si ? "material.alpha" : "system.damping"))
       columns.dampings[column] = value(column);
     else
@@ -238,6 +251,8 @@ std::optional<Columns> values_of_replicas(Scene const& scene, Scene const& one, 
   bool const temperatures = varies([](auto const& key) { return key == "thermal.temperature"; });
   bool const applied =
       varies([](auto const& key) { return detail::component_of_applied(key).has_value(); });
+  bool const constants =
+      varies([&](auto const& key) { return detail::term_of_constant(key, one).has_value(); });
   bool const dampings =
       varies([](auto const& key) { return key == "system.damping" || key == "material.alpha"; });
   // In Gilbert's form, the unit of time depends on the damping.
@@ -252,8 +267,11 @@ std::optional<Columns> values_of_replicas(Scene const& scene, Scene const& one, 
     if (number == nullptr) return std::nullopt;
     field[c] = *number;
   }
+  std::vector<double> of_one;
+  for (auto const& term : one.field.anisotropies) of_one.push_back(term.constant);
   Columns columns{std::vector(size, one.thermal ? one.thermal->temperature : 0),
-                  std::vector(size, one.system.damping), std::vector(size, field)};
+                  std::vector(size, one.system.damping), std::vector(size, field),
+                  std::vector(constants ? size : 0, of_one)};
   for (auto const& varied : scene.ensemble.vary)
     if (!detail::put_values(varied, one, first, columns)) return std::nullopt;
   for (std::size_t column = 0; column < size; ++column) {
@@ -263,6 +281,10 @@ std::optional<Columns> values_of_replicas(Scene const& scene, Scene const& one, 
         !(temperature >= 0) || !std::isfinite(temperature) || (temperature > 0 && damping == 0))
       return std::nullopt;
   }
+  auto const are_finite = [](auto const& numbers) {
+    return std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); });
+  };
+  if (!std::ranges::all_of(columns.constants, are_finite)) return std::nullopt;
   if (!temperatures && !(dampings && one.thermal)) columns.temperatures.clear();
   if (!dampings) columns.dampings.clear();
   if (!applied) columns.applied.clear();
@@ -275,7 +297,12 @@ Columns Columns::part(std::int64_t first, std::int64_t count) const {
     auto const begin = all.begin() + first;
     return std::remove_cvref_t<decltype(all)>(begin, begin + count);
   };
-  return {part_of(temperatures), part_of(dampings), part_of(applied)};
+  return {part_of(temperatures), part_of(dampings), part_of(applied), part_of(constants)};
+}
+
+void Columns::put_constants(std::size_t column, Field& field) const {
+  for (std::size_t term = 0; term < field.anisotropies.size(); ++term)
+    field.anisotropies[term].constant = constants[column][term];
 }
 
 std::vector<double> Columns::heats() const {

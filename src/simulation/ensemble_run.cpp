@@ -32,8 +32,8 @@ void require_memory_of_all(io::Scene const& scene, io::Scene const& replica, Pre
   require_memory_of_replicas(scene, replica, plan, precision, replicas, available);
 }
 
-// Returns the columns with the most noise, the least and the largest damping, and the largest
-// applied field, if these values differ between columns.
+// Returns the columns with the most noise, the least and the largest damping, the largest applied
+// field and the largest sum of constants, if these values differ between columns.
 std::set<std::ptrdiff_t> extremes_of(io::Columns const& values) {
   std::set<std::ptrdiff_t> extremes;
   auto const add_largest = [&](auto const& all, auto const& projection) {
@@ -45,6 +45,11 @@ std::set<std::ptrdiff_t> extremes_of(io::Columns const& values) {
   add_largest(values.dampings, std::identity());
   add_largest(values.dampings, std::negate());
   add_largest(values.applied, [](io::Triple const& h) { return std::hypot(h[0], h[1], h[2]); });
+  add_largest(values.constants, [](std::vector<double> const& constants) {
+    double sum = 0;
+    for (double const constant : constants) sum += std::abs(constant);
+    return sum;
+  });
   return extremes;
 }
 
@@ -78,7 +83,8 @@ EnsembleRun::EnsembleRun(io::Scene const& scene, RunSettings const& settings, bo
                            : static_cast<double>(std::numeric_limits<float>::epsilon());
   guards_.assign(replicas, Guard(first().scene(), epsilon));
   auto of_replica = first().scene();
-  auto const& [temperatures, dampings, applied] = columns_->values();
+  auto const& temperatures = columns_->values().temperatures;
+  auto const& dampings = columns_->values().dampings;
   if (temperatures.empty() && dampings.empty()) return;
   for (std::size_t number = 0; number < replicas; ++number) {
     if (!temperatures.empty()) of_replica.thermal->temperature = temperatures[number];

@@ -60,7 +60,7 @@ class EnsembleRun {
 
   /// Returns the first warning of a replica about its steps, with the replica's number. If the
   /// replicas are columns with different values, only those with the most noise, the least and the
-  /// largest damping and the largest applied field are asked.
+  /// largest damping, the largest applied field and the largest anisotropies are asked.
   std::optional<std::string> warning() const;
 
   /// Returns the number of steps that every replica has taken, not counting replicas that ended

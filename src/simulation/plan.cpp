@@ -59,6 +59,7 @@ std::int64_t memory_of_field(io::Scene const& scene, Lattice const& lattice) {
   std::int64_t bytes = 0;
   if (scene.field.own.nonlocal) bytes += spins;
   if (scene.columns && !scene.columns->applied.empty()) bytes += spins;
+  if (scene.columns && !scene.columns->constants.empty()) bytes += 2 * spins;
   if (scene.columns && !scene.columns->dampings.empty()) bytes += field_bytes<Real>(lattice, 1);
   if (io::needs_pass(scene)) {
     int const of_bonds = scene.field.exchange_factors.there() ? 4 : 0;

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <exception>
 #include <span>
 #include <stdexcept>
@@ -57,12 +58,12 @@ bool can_be_columns(io::Scene const& one, std::int64_t replicas) {
 }
 
 // Returns true if columns with these values move with the bits of separate runs. Scenes that need a
-// pass add the applied field to other terms in another order, and series use one applied field and
-// one damping for all spins.
+// pass add the local field to other terms in another order, and series use one local field and one
+// damping for all spins.
 bool can_differ(io::Scene const& one, io::Columns const& values) {
-  if (values.applied.empty() && values.dampings.empty()) return true;
-  return !one.integrator.method->differentiates_field &&
-         (values.applied.empty() || !io::needs_pass(one));
+  bool const differ_in_field = !values.applied.empty() || !values.constants.empty();
+  if (!differ_in_field && values.dampings.empty()) return true;
+  return !one.integrator.method->differentiates_field && !(differ_in_field && io::needs_pass(one));
 }
 
 constexpr std::int64_t lanes = 16;  // a register has at most this many
@@ -100,6 +101,11 @@ io::Scene scene_of_columns(io::Scene const& one, std::int64_t first, io::Columns
   columns.initial = io::UniformStart{{1, 0, 0}};
   // The guard lets energies rise unless all columns are damped.
   if (!values.dampings.empty()) columns.system.damping = std::ranges::min(values.dampings);
+  // A bound on the energies of all columns, to which round-off is proportional.
+  for (auto const& constants : values.constants)
+    for (std::size_t term = 0; term < constants.size(); ++term)
+      columns.field.anisotropies[term].constant =
+          std::max(columns.field.anisotropies[term].constant, std::abs(constants[term]));
   if (one.thermal) {
     columns.thermal->seed += first;
     if (auto const heats = values.heats(); !heats.empty())
@@ -284,12 +290,8 @@ void ReplicaColumns::restore(std::vector<io::ReplicaState> const& states) {
 
 std::vector<Sample> ReplicaColumns::samples() const {
   std::vector<SceneRun::ColumnsToSample> all;
-  for (auto const& [first, count, columns, one] : groups_) {
-    std::span<io::Triple const> applied(values_.applied);
-    if (!applied.empty())
-      applied = applied.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
-    all.push_back({columns.get(), one.get(), count, applied});
-  }
+  for (auto const& [first, count, columns, one] : groups_)
+    all.push_back({columns.get(), one.get(), first, count, &values_});
   std::vector<Sample> samples;
   for (auto const& of_lattice : SceneRun::sample_columns(all))
     samples.insert(samples.end(), of_lattice.begin(), of_lattice.end());

@@ -3,6 +3,7 @@
 
 #include "applied_field.hpp"
 #include "field_in_pass.hpp"
+#include "io/ensemble.hpp"
 #include "io/field.hpp"
 #include "scene_field_now.hpp"
 #include "whole_field.hpp"
@@ -13,6 +14,7 @@
 
 #include <cayspin_paper/field_rate.hpp>
 
+#include <cstddef>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -23,6 +25,7 @@ namespace cayspin::simulation {
 template <class Spins>
 class SceneField {
   using Real = typename Spins::value_type;
+  using Vectors = SiteField<Real, 3, typename Spins::memory_space>;
 
  public:
   using SlowTerm = SlowField<Spins, WholeField<Spins>>;
@@ -50,16 +53,25 @@ class SceneField {
     other.purpose_ = purpose;
     return other;
   }
-  /// Returns a copy of the field with another applied field, which does not depend on t.
-  SceneField with_applied(io::Triple const& applied) const {
+  /// Returns a copy of the field with the values of one column. `field`: the scene's, which must
+  /// not need a pass.
+  SceneField with_values(io::Field const& field, io::Columns const& values,
+                         std::size_t column) const {
     auto other = *this;
-    other.applied_ = applied_.with(applied);
+    if (!values.applied.empty()) other.applied_ = applied_.with(values.applied[column]);
+    if (!values.constants.empty()) {
+      auto of_column = field;
+      values.put_constants(column, of_column);
+      other.quadratic_ = quadratic_terms_of(of_column);
+    }
     return other;
   }
-  /// Sets an applied field for each site, which replaces the uniform one and must include mu0. The
+  /// Replace the applied field, which includes mu0, and the quadratic terms by values of sites. The
   /// field must not have a pass.
-  void set_applied_of_sites(SiteField<Real, 3, typename Spins::memory_space> const& applied) {
-    applied_of_sites_ = applied;
+  void set_applied(Vectors const& applied) { applied_of_sites_ = applied; }
+  void set_quadratic(Vectors const& diagonal, Vectors const& others) {
+    diagonal_of_sites_ = diagonal;
+    others_of_sites_ = others;
   }
   bool is_affine() const { return !pass_ || pass_->is_affine(); }
 
@@ -115,6 +127,10 @@ class SceneField {
                             applied_.present(), stored_ || slow_};
     if (now.has_applied) now.zeeman = {applied_(t)};
     if (applied_of_sites_) now.applied_of_sites = applied_of_sites_->array();
+    if (diagonal_of_sites_) {
+      now.diagonal_of_sites = diagonal_of_sites_->array();
+      now.others_of_sites = others_of_sites_->array();
+    }
     if (stored_) now.stored = cayspin::detail::prepare_term(*stored_, exec, spins, t);
     if (slow_) now.stored = cayspin::detail::prepare_term(*slow_, exec, spins, t);
     return now;
@@ -146,7 +162,7 @@ class SceneField {
   SceneLatticeTerms lattice_terms_;
   QuadraticTerms quadratic_;
   AppliedField applied_;
-  std::optional<SiteField<Real, 3, typename Spins::memory_space>> applied_of_sites_;
+  std::optional<Vectors> applied_of_sites_, diagonal_of_sites_, others_of_sites_;
   std::optional<WholeField<Spins>> stored_;
   std::optional<SlowTerm> slow_;
   std::optional<FieldInPass<Spins>> pass_;

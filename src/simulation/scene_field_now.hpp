@@ -10,6 +10,7 @@
 #include <cayspin/field/zeeman.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -37,6 +38,11 @@ class QuadraticTerms {
     return both;
   }
 
+  /// Returns xx, yy, zz of the matrix, and xy, xz, yz.
+  std::array<io::Triple, 2> entries() const {
+    return {{{sum_.xx, sum_.yy, sum_.zz}, {sum_.xy, sum_.xz, sum_.yz}}};
+  }
+
   KOKKOS_FORCEINLINE_FUNCTION bool present() const { return form_ != Form::none; }
   bool operator==(QuadraticTerms const&) const = default;
 
@@ -50,6 +56,21 @@ class QuadraticTerms {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Value energy(Vec3<Value> const& m) const {
     return Value(-0.5) * dot(m, field(m));
+  }
+  /// Return what add_field and energy return, for terms with the same axes as these and with the
+  /// matrix that has these entries.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> add_field(Vec3<Value> const& m, Vec3<Value> const& h,
+                                                    Vec3<Value> const& diagonal,
+                                                    Vec3<Value> const& others) const {
+    if (form_ == Form::along_z)
+      return {h.x, h.y, cayspin::detail::multiply_add(diagonal.z, m.z, h.z)};
+    return h + matrix_of(diagonal, others) * m;
+  }
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Value energy(Vec3<Value> const& m, Vec3<Value> const& diagonal,
+                                           Vec3<Value> const& others) const {
+    return Value(-0.5) * dot(m, matrix_of(diagonal, others) * m);
   }
   /// Returns the sum of |energy| over the terms.
   template <class Value>
@@ -83,12 +104,27 @@ class QuadraticTerms {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field(Vec3<Value> const& m) const {
     return sum_.template matrix<Value>() * m;
   }
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static cayspin::detail::SymmetricMatrix<Value> matrix_of(
+      Vec3<Value> const& diagonal, Vec3<Value> const& others) {
+    return {diagonal.x, diagonal.y, diagonal.z, others.x, others.y, others.z};
+  }
 
   enum class Form { none, along_z, any };
 
   Sum sum_, magnitude_;
   Form form_ = Form::none;
 };
+
+/// Returns the quadratic terms of a scene's field.
+inline QuadraticTerms quadratic_terms_of(io::Field const& field) {
+  QuadraticTerms terms;
+  for (auto const& term : field.anisotropies) terms.add(term.constant, term.axis);
+  auto const& slab = field.slab_demag;
+  if (slab && !slab->on_host && !slab->multirate)
+    terms.add(-(field.mu0 * slab->strength), slab->normal);
+  return terms;
+}
 
 /// A function that computes H along a piece of a row, and is compiled once for all methods;
 /// `evaluate` is null if there is none. `is_whole`: the function computes the whole H or, if
@@ -113,8 +149,10 @@ struct SceneFieldNow {
   bool has_applied, has_stored;
   cayspin::SiteArray<Real, 1> energies = {};  // of all terms, if one pass computes them
   FieldAlongRows<Real> along_rows = {};
-  // Replaces `zeeman` if it has data. find_row_ends then computes H on whole rows.
-  cayspin::SiteArray<Real, 3> applied_of_sites = {};
+  // Values of sites; with any of them, find_row_ends computes H on whole rows. The first, if it has
+  // data, replaces `zeeman`. The others, if they have data, are entries of the matrix of quadratic
+  // terms, which replace those of `quadratic`.
+  cayspin::SiteArray<Real, 3> applied_of_sites = {}, diagonal_of_sites = {}, others_of_sites = {};
 
   // Set by begin_row, for its row.
   cayspin::detail::RowInput<Real> row = {};  // H found so far
@@ -127,13 +165,14 @@ struct SceneFieldNow {
                  std::int32_t end, cayspin::detail::RowFields<Real> const& fields) {
     constexpr std::ptrdiff_t lanes = cayspin::detail::host_lanes<Real>;
     std::ptrdiff_t const last = (spins.row.nx - 1) / lanes * lanes;
-    bool const is_in_row = along_rows.is_whole || applied_of_sites.data;
+    bool const is_in_row = along_rows.is_whole || has_values_of_sites();
     compiled_sites = is_in_row ? 0 : std::max<std::ptrdiff_t>(last - lanes, 0);
     row = {fields.data - begin, fields.stride};
     adds_row = along_rows.evaluate != nullptr;
     adds_more = has_stored || adds_row;
     if (adds_row) along_rows.evaluate(along_rows.terms, spins, begin, end, fields);
   }
+  bool has_values_of_sites() const { return applied_of_sites.data || diagonal_of_sites.data; }
   /// Computes H in the packs at the ends of a row, from the results of begin_row.
   void find_row_ends(cayspin::detail::RowOfSpins<Real> const& spins, std::int32_t begin,
                      std::int32_t end, cayspin::detail::RowFields<Real> const& fields,
@@ -172,7 +211,7 @@ struct SceneFieldNow {
       Stencil const& stencil) const {
     auto const none = zero<typename Stencil::value_type>();
     return add_demagnetization(
-        stencil, lattice_terms.add_field(stencil, quadratic.add_field(stencil.center(), none)));
+        stencil, lattice_terms.add_field(stencil, add_quadratic_field(stencil, none)));
   }
   /// Return the part of H due to other spins, and the on-site part.
   template <class Stencil>
@@ -188,7 +227,7 @@ struct SceneFieldNow {
   }
   template <class Spin>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Spin const& spin) const {
-    return quadratic.add_field(spin.center(), applied_field(spin));
+    return add_quadratic_field(spin, applied_field(spin));
   }
   /// Returns dH/dt for spins that change at `rates`. Call it on the result of prepare_rate.
   template <class Value, class Stencil>
@@ -202,7 +241,7 @@ struct SceneFieldNow {
       Stencil const& stencil) const {
     if (energies.data) return stencil.site().load(energies);
     auto e = lattice_terms.energy_density(stencil);
-    if (quadratic.present()) e = e + quadratic.energy(stencil.center());
+    if (quadratic.present()) e = e + quadratic_energy(stencil);
     if (has_applied) e = e + applied_energy(stencil);
     if (has_stored) e = e + stored.energy_density(stencil);
     return e;
@@ -229,12 +268,27 @@ struct SceneFieldNow {
       return spin.site().load(applied_of_sites);
     return zeeman.field(spin);
   }
+  template <class Spin, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector add_quadratic_field(Spin const& spin, Vector const& h) const {
+    if (diagonal_of_sites.data) [[unlikely]]
+      return quadratic.add_field(spin.center(), h, Vector(spin.site().load(diagonal_of_sites)),
+                                 Vector(spin.site().load(others_of_sites)));
+    return quadratic.add_field(spin.center(), h);
+  }
+  template <class Spin>
+  KOKKOS_FORCEINLINE_FUNCTION typename Spin::value_type quadratic_energy(Spin const& spin) const {
+    using Vector = Vec3<typename Spin::value_type>;
+    if (diagonal_of_sites.data) [[unlikely]]
+      return quadratic.energy(spin.center(), Vector(spin.site().load(diagonal_of_sites)),
+                              Vector(spin.site().load(others_of_sites)));
+    return quadratic.energy(spin.center());
+  }
   template <class Spin>
   KOKKOS_FORCEINLINE_FUNCTION typename Spin::value_type applied_energy(Spin const& spin) const {
     using Value = typename Spin::value_type;
     return Value(-1) * dot(spin.center(), applied_field(spin));
   }
-  // Like local_field, without a test for applied_of_sites.
+  // Like local_field, without tests for values of sites.
   template <class Spin>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> uniform_part(Spin const& spin) const {
     return quadratic.add_field(spin.center(), zeeman.field(spin));

@@ -8,9 +8,9 @@
 #include "space.hpp"
 #include "terms_along_row.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <span>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -19,9 +19,11 @@ namespace cayspin::simulation {
 
 namespace {
 
-template <bool TurningAlone, class Real>
+// Terms: SceneFieldNow<Real> or a reference to it. Loops over many packs need a copy, because the
+// compiler must assume that stores of packs change values behind references.
+template <bool TurningAlone, class Real, class Terms = SceneFieldNow<Real> const&>
 struct StoreField {
-  SceneFieldNow<Real> const& terms;
+  Terms terms;
   cayspin::detail::RowFields<Real> fields;
 
   template <class Stencil>
@@ -36,20 +38,40 @@ bool has_dampings_of_columns(io::Scene const& scene) {
   return scene.columns && !scene.columns->dampings.empty();
 }
 
-// Returns a field whose site (x, y, z) has the numbers `of_columns[x]`, each with `components`
-// numbers, times `factor`.
+// Returns a field whose site (x, y, z) has the values of column x.
 template <class Spins, int Components>
 SiteField<typename Spins::value_type, Components, typename Spins::memory_space> field_of_columns(
-    Lattice const& lattice, std::span<double const> of_columns, double factor) {
+    Lattice const& lattice, std::vector<double> const& of_columns) {
   std::vector<double> values;
-  auto const sites = lattice.sites(), columns = lattice.shape[0];
-  values.reserve(static_cast<std::size_t>(Components * sites));
-  for (std::int64_t row = 0; row < sites / columns; ++row)
-    for (double const number : of_columns) values.push_back(factor * number);
+  auto const rows = lattice.sites() / lattice.shape[0];
+  values.reserve(of_columns.size() * static_cast<std::size_t>(rows));
+  for (std::int64_t row = 0; row < rows; ++row)
+    values.insert(values.end(), of_columns.begin(), of_columns.end());
   SiteField<typename Spins::value_type, Components, typename Spins::memory_space> made(
       "SceneGenerator::columns", lattice);
   copy_from_host(values, made);
   return made;
+}
+
+template <class Spins>
+void put_values(io::Columns const& columns, io::Field field, Lattice const& lattice,
+                SceneField<Spins>& made) {
+  if (!columns.applied.empty()) {
+    std::vector<double> applied;
+    for (auto const& of_column : columns.applied)
+      for (double const component : of_column) applied.push_back(field.mu0 * component);
+    made.set_applied(field_of_columns<Spins, 3>(lattice, applied));
+  }
+  if (columns.constants.empty()) return;
+  std::vector<double> diagonal, others;
+  for (std::size_t column = 0; column < columns.constants.size(); ++column) {
+    columns.put_constants(column, field);
+    auto const entries = quadratic_terms_of(field).entries();
+    diagonal.insert(diagonal.end(), entries[0].begin(), entries[0].end());
+    others.insert(others.end(), entries[1].begin(), entries[1].end());
+  }
+  made.set_quadratic(field_of_columns<Spins, 3>(lattice, diagonal),
+                     field_of_columns<Spins, 3>(lattice, others));
 }
 
 template <class Bodies, class Real>
@@ -72,13 +94,13 @@ void SceneFieldNow<Real>::find_row_ends(cayspin::detail::RowOfSpins<Real> const&
                                         bool turning_alone) const {
   if (along_rows.is_whole) return;
   RowPiece<Real> const piece{spins, begin, end, fields};
-  auto const find = [&](auto const& store) {
-    applied_of_sites.data ? piece.for_each(store) : piece.for_each_at_ends(store);
-  };
+  if (has_values_of_sites())
+    return turning_alone ? piece.for_each(StoreField<true, Real, SceneFieldNow>{*this, fields})
+                         : piece.for_each(StoreField<false, Real, SceneFieldNow>{*this, fields});
   if (turning_alone)
-    find(StoreField<true, Real>{*this, fields});
+    piece.for_each_at_ends(StoreField<true, Real>{*this, fields});
   else
-    find(StoreField<false, Real>{*this, fields});
+    piece.for_each_at_ends(StoreField<false, Real>{*this, fields});
 }
 
 template <class Spins>
@@ -103,10 +125,7 @@ SceneField<Spins> field_of(io::Scene const& scene, Lattice const& lattice, bool 
     field.demag->cache = std::filesystem::path(scene.path).replace_extension(".demag");
   field = with_joined_own_field<typename Spins::value_type>(scene, std::move(field), lattice);
   SceneField<Spins> made(field, scene.units, lattice, has_slow, std::move(pass));
-  if (scene.columns && !scene.columns->applied.empty())
-    made.set_applied_of_sites(field_of_columns<Spins, 3>(
-        lattice, {scene.columns->applied.front().data(), 3 * scene.columns->applied.size()},
-        field.mu0));
+  if (scene.columns) put_values(*scene.columns, field, lattice, made);
   return made;
 }
 
@@ -127,7 +146,7 @@ SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lat
       orthogonal_(scene.integrator.generator == io::Generator::orthogonal),
       bodies_(inverse_inertia, lattice) {
   if (!has_dampings_of_columns(scene)) return;
-  dampings_.emplace(field_of_columns<Spins, 1>(lattice, scene.columns->dampings, 1));
+  dampings_.emplace(field_of_columns<Spins, 1>(lattice, scene.columns->dampings));
   precession_ = scene.system.precession;
 }
 
@@ -161,9 +180,9 @@ SceneGeneratorNow<Spins> SceneGenerator<Spins>::now(
 }
 
 template <class Spins>
-void SceneGenerator<Spins>::set_applied(io::Triple const& applied) {
-  // The damping does not matter for energies.
-  llg_ = LandauLifshitz(llg_.field().with_applied(applied), 0, llg_.has_precession());
+void SceneGenerator<Spins>::set_values(io::Field const& field, io::Columns const& values,
+                                       std::size_t column) {
+  llg_ = LandauLifshitz(llg_.field().with_values(field, values, column), 0, llg_.has_precession());
 }
 
 template <class Spins>

@@ -11,6 +11,7 @@
 #include <cayspin_paper/analytic_sigma.hpp>
 #include <cayspin_paper/series_source.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -159,9 +160,9 @@ class SceneGenerator {
   /// Returns the generator of undamped precession about the effective field.
   SceneGenerator precession_alone() const;
 
-  /// Replaces the applied field by another one, which does not depend on t, and sets the damping to
-  /// 0. The energy of spins is then that in the other field.
-  void set_applied(io::Triple const& applied);
+  /// Replaces the field by that of one column, for energies, and sets the damping to 0. `field`:
+  /// the scene's.
+  void set_values(io::Field const& field, io::Columns const& values, std::size_t column);
 
   /// Compiled only in scene_generator.cpp, for the spaces of space.hpp.
   template <class Exec>

@@ -147,13 +147,13 @@ class SceneRun {
   /// Continues from the spins of one column in a run of ReplicaColumns, and from the step of that
   /// run.
   void continue_from_column(SceneRun const& columns, std::int64_t column);
-  /// A run of `count` columns, and a run of a single replica, whose spins and applied field are
-  /// overwritten by sampling. `applied`: field.applied of each column; empty: that of `one`.
+  /// A run of `count` columns, and a run of a single replica, whose spins and field are overwritten
+  /// by sampling. The values of the columns are those from `first` on in `values`.
   struct ColumnsToSample {
     SceneRun const* columns;
     SceneRun* one;
-    std::int64_t count;
-    std::span<io::Triple const> applied = {};
+    std::int64_t first, count;
+    io::Columns const* values;
   };
   /// Returns a sample of each column of these runs. The runs are sampled side by side, as in
   /// advance_all.
@@ -235,8 +235,8 @@ class SceneRun {
   virtual void rebuild(io::Scene const& scene, Plan const& plan) = 0;
   virtual void replace_spins(std::vector<double> const& start) = 0;
   virtual void take_column(SceneRun const& columns, std::int64_t column) = 0;
-  /// Replaces the applied field, for samples only: the run must not advance any more.
-  virtual void sample_in(io::Triple const& applied) = 0;
+  /// Takes over the field of one column, for samples only: the run must not advance any more.
+  virtual void sample_in(io::Columns const& values, std::size_t column) = 0;
   virtual void exchange(Checkpoint& checkpoint) = 0;
   virtual void go_on_from(std::int64_t shift) = 0;
   virtual Sample look() = 0;

@@ -178,8 +178,8 @@ class SceneRunInSpace final
     begin_again();
   }
 
-  void sample_in(io::Triple const& applied) override {
-    simulation_->generator.set_applied(applied);
+  void sample_in(io::Columns const& values, std::size_t column) override {
+    simulation_->generator.set_values(scene_.field, values, column);
   }
 
   Minimum find_rest(io::Field const& field, MinimizeOptions const& options) override {

@@ -109,9 +109,10 @@ std::vector<std::vector<Sample>> SceneRun::sample_columns(std::span<ColumnsToSam
   std::vector<SceneRun*> ones;
   for (auto const& columns : all) ones.push_back(columns.one);
   side_by_side(ones, [&](std::size_t number) {
-    auto const& [columns, one, count, applied] = all[number];
+    auto const& [columns, one, first, count, values] = all[number];
+    bool const differ = !values->applied.empty() || !values->constants.empty();
     for (std::int64_t column = 0; column < count; ++column) {
-      if (!applied.empty()) one->sample_in(applied[static_cast<std::size_t>(column)]);
+      if (differ) one->sample_in(*values, static_cast<std::size_t>(first + column));
       one->take_column(*columns, column);
       samples[number].push_back(one->sampled());
     }

@@ -3,93 +3,15 @@
 // move, are sampled and fail like separate runs; also that ensembles relax.
 // tests/program/ensembles.cpp compares files of ensembles with those of separate runs, bit by bit.
 #include "../support/watchdog.hpp"
-#include "scenes_of_text.hpp"
-#include "simulation/ensemble_run.hpp"
+#include "ensemble_of_chains.hpp"
 #include "simulation/failure.hpp"
 
-#include <fmt/ranges.h>
-
 #include <atomic>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <memory>
 #include <optional>
 #include <string>
-#include <variant>
-#include <vector>
 
 namespace cayspin::simulation::test {
 namespace {
-
-std::string const chains = R"([lattice]
-shape = [6]
-[field]
-exchange = 1.0
-applied = [0.3, "0.1*t", 0]
-[initial]
-random = { seed = 7 }
-[ensemble]
-replicas = 40
-)";
-std::string const noise = "[thermal]\ntemperature = 0.1\nseed = 3\n";
-
-bool are_columns(io::Scene const& scene) {
-  return ReplicaColumns::open(scene, io::replica_of(scene, 0), {}, all_replicas(scene)).has_value();
-}
-
-template <class Real>
-std::vector<double> spins_of_replica(std::vector<std::byte> const& all, std::int64_t replica,
-                                     std::int64_t sites) {
-  std::vector<Real> spins(static_cast<std::size_t>(3 * sites));
-  std::memcpy(spins.data(),
-              all.data() + static_cast<std::size_t>(replica) * spins.size() * sizeof(Real),
-              spins.size() * sizeof(Real));
-  return {spins.begin(), spins.end()};
-}
-
-/// Expects the replicas to have the spins and the energies of separate runs, in both precisions.
-void expect_bits_of_own_runs(io::Scene const& scene, std::vector<std::int64_t> const& replicas) {
-  for (auto const precision : precisions) {
-    EnsembleRun run(scene, {.precision = precision}, false);
-    run.advance(7, run.looks(false, {}));
-    run.advance(2, run.looks(false, {}));
-    auto const all = run.spins();
-    auto const scalars = run.scalars();
-    for (auto const replica : replicas) {
-      auto const own = SceneRun::open(io::replica_of(scene, replica), {.precision = precision});
-      own->advance(9);
-      auto const sites = io::sites(own->scene());
-      EXPECT_EQ(precision == Precision::double_precision
-                    ? spins_of_replica<double>(all, replica, sites)
-                    : spins_of_replica<float>(all, replica, sites),
-                spins_of(*own))
-          << "replica " << replica << " in " << to_string(precision) << " precision";
-      auto const& sampled = scalars[static_cast<std::size_t>(replica)];
-      EXPECT_EQ(sampled.energy, own->sample().energy.value) << "replica " << replica;
-      EXPECT_EQ(sampled.magnetization[2], own->sample().magnetization.z) << "replica " << replica;
-    }
-  }
-}
-
-/// Expects the values of replicas to be bitwise those of their scenes.
-void expect_values_of_replicas(io::Scene const& scene) {
-  constexpr std::int64_t first = 5, count = 11;
-  auto const values = io::values_of_replicas(scene, io::replica_of(scene, 0), first, count);
-  ASSERT_TRUE(values.has_value());
-  for (std::int64_t column = 0; column < count; ++column) {
-    auto const of_one = static_cast<std::size_t>(column);
-    auto const replica = io::replica_of(scene, first + column);
-    if (!values->temperatures.empty()) {
-      EXPECT_EQ(values->temperatures[of_one], replica.thermal->temperature);
-    }
-    if (!values->dampings.empty()) {
-      EXPECT_EQ(values->dampings[of_one], replica.system.damping);
-    }
-    for (std::size_t c = 0; c < 3 && !values->applied.empty(); ++c)
-      EXPECT_EQ(values->applied[of_one][c], std::get<double>((*replica.field.applied)[c]));
-  }
-}
 
 TEST(ReplicaColumns, AreUsedForSmallLatticesOfLocalTermsAndExchange) {
   auto const scene = llg_scene("0.1", "rkmk4", 40, chains);
@@ -104,6 +26,8 @@ TEST(ReplicaColumns, AreUsedForSmallLatticesOfLocalTermsAndExchange) {
       {"ensemble.vary={'system.damping'={from=0,to=1}}",
        "field.anisotropy={cubic=0.4,axes=[[1,0,0],[0,1,0]]}"},
       {"ensemble.vary={'field.applied.0'={from=0,to=1}}", "field.applied=[0.3,0,0]"},
+      {"ensemble.vary={'field.anisotropy.constant'={from=0,to=1}}",
+       "field.anisotropy={constant=0.1,axis=[0,3,4]}"},
       {"field.anisotropy={cubic=0.4,axes=[[1,0,0],[0,1,0]]}"},
       {"field.slab_demag={normal=[0,0,1]}"}};
   for (auto const& changes : can)
@@ -119,6 +43,10 @@ TEST(ReplicaColumns, AreUsedForSmallLatticesOfLocalTermsAndExchange) {
       {"ensemble.vary={'field.applied.0'={from=0,to=1}}"},  // another component depends on t
       {"ensemble.vary={'field.applied.0'={from=0,to=1}}", "field.applied=[0.3,0,0]",
        "field.anisotropy={cubic=0.4,axes=[[1,0,0],[0,1,0]]}"},
+      {"ensemble.vary={'field.anisotropy.0.constant'={from=0,to=1}}",
+       "field.anisotropy=[{constant=0.1,axis=[0,0,1]},{cubic=0.4,axes=[[1,0,0],[0,1,0]]}]"},
+      {"ensemble.vary={'field.anisotropy.constant2'={from=0,to=1}}",
+       "field.anisotropy={constant=0.1,constant2=0.2,axis=[0,0,1]}"},
       {"ensemble.vary={'system.damping'={from=0.1,to=1}}", "thermal={temperature='0.1*t'}"},
       {"ensemble.vary={'system.damping'={from=0,to=1}}", "field.applied=[0.3,0,0]",
        "integrator.method='series4'"},
@@ -132,104 +60,6 @@ TEST(ReplicaColumns, AreUsedForSmallLatticesOfLocalTermsAndExchange) {
       {"integrator.until_torque=1e-3"}};
   for (auto const& changes : cannot)
     EXPECT_FALSE(are_columns(scene_of(scene.text, changes))) << changes[0];
-}
-
-// In Gilbert's form, the unit of time depends on the damping, and so does dt in this unit.
-TEST(ReplicaColumns, HaveOneUnitOfTime) {
-  auto const atoms = [](std::string const& form, std::string const& key) {
-    return scene_of(R"(units = "SI"
-[material]
-mu_s = 2.8e-23
-J = 1e-21
-alpha = 0.1
-damping_form = ")" + form +
-                    R"("
-[system]
-kind = "llg"
-[lattice]
-shape = [3]
-spacing = 3e-10
-[field]
-applied = [0.0, 0.0, 1.0]
-[initial]
-random = { seed = 7 }
-[integrator]
-method = "heun"
-dt = 1e-15
-steps = 9
-[thermal]
-temperature = 5.0
-[ensemble]
-replicas = 40
-[ensemble.vary]
-")" + key + "\" = { from = 0.07, to = 0.9 }\n");
-  };
-  EXPECT_FALSE(are_columns(atoms("gilbert", "material.alpha")));
-  for (std::string const key : {"material.alpha", "field.applied.1", "thermal.temperature"}) {
-    auto const scene = atoms("landau_lifshitz", key);
-    EXPECT_TRUE(are_columns(scene)) << key;
-    expect_values_of_replicas(scene);
-    expect_bits_of_own_runs(scene, {0, 23, 39});
-  }
-  expect_bits_of_own_runs(atoms("gilbert", "material.alpha"), {0, 23});
-}
-
-TEST(ReplicaColumns, WithDifferentFieldsAndDampingsAreRunsOfTheirOwn) {
-  std::string const field = "'field.applied.2'={from=-0.5,to=0.7}",
-                    vector = "'field.applied.0'={from=1,to=-1},'field.applied.1'={from=0,to=0.3}," +
-                             field,
-                    damping = "'system.damping'={from=0,to=1.5}",
-                    damped = "'system.damping'={from=0.01,to=1.5}",
-                    heat = "'thermal.temperature'={from=0,to=0.3}";
-  struct Case {
-    std::vector<std::string> varied, changes;
-  };
-  std::vector<Case> const cases{
-      {{field}, {"lattice.shape=[1]"}},
-      {{field}, {"integrator.method='ab2'"}},
-      {{vector}, {"lattice.shape=[1]", "thermal={temperature=0.1,seed=3}"}},
-      {{vector}, {"lattice.boundary='periodic'", "thermal={temperature=0.1,seed=3}"}},
-      {{vector}, {"field.anisotropy=[{constant=0.4,axis=[0,0,1]},{constant=-0.2,axis=[0,3,4]}]"}},
-      {{vector}, {"field.slab_demag={normal=[0,0,1]}", "integrator.method='projected_rk4'"}},
-      {{vector}, {"lattice.shape=[40]", "integrator.compensated=true"}},
-      {{vector}, {"field.mu0=1.3", "integrator.generator='tangent'"}},
-      {{damping}, {"lattice.shape=[1]"}},
-      {{damping}, {"system.precession=false", "integrator.method='heun'"}},
-      {{damping}, {"field.applied=[0.3,'sin(9*t)',0]", "integrator.generator='orthogonal'"}},
-      {{damping}, {"field.anisotropy={cubic=0.4,axes=[[1,0,0],[0,1,0]]}"}},
-      {{damping}, {"lattice.shape=[4,5]", "integrator.isotropy={constant=0.3}"}},
-      {{damped}, {"lattice.shape=[1]", "thermal={temperature=0.1,seed=3}"}},
-      {{damped, heat}, {"thermal={temperature=0.1,seed=3}", "integrator.method='heun'"}},
-      {{damped, heat, vector}, {"thermal={temperature=0.1,seed=3}"}},
-      {{damping, vector}, {"integrator.method='cf4'"}},
-      {{damping, vector}, {"integrator.method='classical_heun'", "lattice.shape=[8]"}}};
-  // A lattice has at most 256 columns of 8 sites, and 48 of 40.
-  auto const base = scene_of(llg_scene("0.1", "rkmk4", 40, chains).text,
-                             {"lattice.shape=[8]", "field.applied=[0.3,-0.2,0]"});
-  for (auto const& [varied, changes] : cases) {
-    auto all = changes;
-    all.push_back(fmt::format("ensemble={{replicas=300,vary={{{}}}}}", fmt::join(varied, ",")));
-    SCOPED_TRACE(fmt::format("{}", fmt::join(all, " ")));
-    auto const scene = scene_of(base.text, all);
-    EXPECT_TRUE(are_columns(scene));
-    expect_values_of_replicas(scene);
-    expect_bits_of_own_runs(scene, {0, 1, 47, 48, 255, 256, 299});
-  }
-}
-
-// A replica without damping need not lose energy, and Euler's method adds some at each step.
-TEST(ReplicaColumns, LoseEnergyOnlyIfTheyAreDamped) {
-  auto const scene =
-      scene_of(llg_scene("0.1", "euler", 200, chains).text,
-               {"field.applied=[0.3,0.1,0]", "ensemble.vary={'system.damping'={from=0,to=1e-6}}"});
-  EXPECT_TRUE(are_columns(scene));
-  EnsembleRun run(scene, {}, false);
-  run.advance(100, run.looks(false, {}));
-  EXPECT_THROW(run.advance(100, run.looks(false, {})), NumbersFailed);
-  auto const undamped = scene_of(scene.text, {"ensemble.vary={'system.damping'={from=0,to=0}}"});
-  EnsembleRun other(undamped, {}, false);
-  other.advance(100, other.looks(false, {}));
-  EXPECT_EQ(other.advance(100, other.looks(false, {})), Advanced::whole);
 }
 
 TEST(ReplicaColumns, AreSampledAndRelaxedAsRunsOfTheirOwn) {
