@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -75,10 +77,18 @@ std::vector<std::pair<std::string, io::Scene>> single_terms(io::Scene const& sce
     alone.couplings_scale = field.couplings_scale;
     alone.has_couplings_scale = field.has_couplings_scale;
   }
-  if (!field.anisotropies.empty() || !field.crystal_anisotropies.empty()) {
+  auto anisotropies = field.anisotropies;
+  auto const at_free_sides = std::ranges::stable_partition(
+      anisotropies, [](auto const& term) { return !io::is_of_free_sides(term.factors); });
+  if (!at_free_sides.empty()) {
+    auto const dmi = std::ranges::find(terms, "dmi", [](auto const& term) { return term.first; });
+    dmi->second.field.anisotropies.assign(at_free_sides.begin(), at_free_sides.end());
+    keep_numbers_of_free_sides(scene, dmi->second.field.anisotropies);
+  }
+  anisotropies.erase(at_free_sides.begin(), at_free_sides.end());
+  if (!anisotropies.empty() || !field.crystal_anisotropies.empty()) {
     auto& alone = add("anisotropy");
-    alone.anisotropies = field.anisotropies;
-    keep_numbers_of_free_sides(scene, alone.anisotropies);
+    alone.anisotropies = anisotropies;
     alone.crystal_anisotropies = field.crystal_anisotropies;
   }
   if (field.applied) add("applied").applied = field.applied;

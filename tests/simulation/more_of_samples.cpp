@@ -132,6 +132,29 @@ applied = [0.2, 0, 0.4]
   EXPECT_NEAR(more[14], applied, 1e-15);
 }
 
+// At each end, a free boundary adds D^2/(2A) (m.x)^2 to the energy of bulk DMI.
+TEST(MoreOfSamples, TheEnergyOfDmiIncludesItsFreeBoundaries) {
+  auto const scene = scene_of(R"toml(
+system = { kind = "llg", damping = 0.1 }
+[lattice]
+shape = [3]
+spacing = 0.5
+regions = "i"
+[field]
+exchange = 0.5
+dmi = { bulk = 0.4, free_boundary = true }
+)toml" + and_steps);
+  ASSERT_EQ(more_scalars(scene).terms, (std::vector<std::string>{"exchange", "dmi"}));
+  auto const run = SceneRun::open(scene, {});
+  auto const m = spins_of(*run), more = run->more_of_sample();
+  auto const twist = [&](std::size_t a) {  // the x component of the product of neighbours
+    return m[3 * a + 1] * m[3 * a + 5] - m[3 * a + 2] * m[3 * a + 4];
+  };
+  double const ends = 0.16 * (m[0] * m[0] + m[6] * m[6]);
+  EXPECT_NEAR(more[13], ends - 0.8 * (twist(0) + twist(1)), 1e-15);
+  EXPECT_NEAR(sum(more, 12, 2), run->sample().energy.value, 1e-15);
+}
+
 TEST(MoreOfSamples, AreInSI) {
   std::string const reduced = R"toml(
 [lattice]
