@@ -52,8 +52,14 @@ def _with_applied_as_source(field):
     applied = field.get("applied") if isinstance(field, dict) else None
     if not _is_array_of_vectors(applied):
         return field, None
+    if not np.isfinite(_numbers(applied, "field.applied")).all():
+        raise _cayspin.SceneError("field.applied: a number of the array is not finite; accepted: "
+                                  "finite numbers")
     others = {key: value for key, value in field.items() if key != "applied"}
-    return others | {"sources": [*(field.get("sources") or []), {"profile": applied}]}, applied
+    sources = others.get("sources", [])
+    if isinstance(sources, (list, tuple)):  # the scene refuses other types
+        others["sources"] = [*sources, {"profile": applied}]
+    return others, applied
 
 
 def _split(tables):

@@ -284,6 +284,15 @@ class ConstantFields(PackageTest):
         self.assert_refused(
             cayspin.SceneError, "field.applied: an array of shape (2, 4, 5, 3); accepted: "
             "(2, 4, 6, 3), or three numbers or expressions", scene, {"applied": array[:, :, :5]})
+        broken = array.copy()
+        broken[1, 2, 3, 0] = np.nan
+        self.assert_refused(cayspin.SceneError, "field.applied: a number of the array is not finite; "
+                            "accepted: finite numbers", scene, {"applied": broken})
+        self.assert_refused(cayspin.SceneError, "field.applied: an array of complex128; accepted: "
+                            "one of real numbers", scene, {"applied": 1j * array})
+        for sources in ({"profile": [0, 0, 1]}, 3.0, array, None):
+            self.assert_refused(cayspin.SceneError, "field.sources: ", scene,
+                                {"applied": array, "sources": sources})
         sim = cayspin.Simulation(scene({"exchange": 1.0}))
         file = self.written(scene({"exchange": 1.0}))
         for call in (lambda: sim.set("field.applied", array),
