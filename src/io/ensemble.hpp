@@ -56,9 +56,9 @@ Scene replica_to_relax(Scene const& scene, std::int64_t replica);
 /// of replica_of, but without reading a scene for each replica. `one`: the scene of any replica.
 /// Temperatures are in reduced units; they are set if temperatures vary, and also if dampings vary
 /// at a temperature. Returns nothing if a key other than thermal.temperature, the damping, a
-/// component of field.applied or, in reduced units, a constant of a uniaxial anisotropy varies, if
-/// the unit of time differs between the replicas, if an applied field that varies depends on t, or
-/// if replica_of might refuse a value.
+/// component of field.applied or a constant of a uniaxial anisotropy varies, if a unit differs
+/// between the replicas, if an applied field that varies depends on t, or if replica_of might
+/// refuse a value.
 std::optional<Columns> values_of_replicas(Scene const& scene, Scene const& one, std::int64_t first,
                                           std::int64_t count);
 

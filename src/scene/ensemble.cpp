@@ -144,11 +144,26 @@ std::optional<std::size_t> component_of_applied(std::string_view key) {
 // Returns which uniaxial anisotropy has its constant from a key, if one has.
 std::optional<std::size_t> term_of_constant(std::string_view key, Scene const& one) {
   auto const& terms = one.field.anisotropies;
-  if (one.units.si || !one.field.crystal_anisotropies.empty()) return std::nullopt;
+  if (!one.field.crystal_anisotropies.empty()) return std::nullopt;
+  if (one.units.si) {
+    auto const& material = *one.material;
+    if (!material.anisotropy || key != (material.atomistic ? "material.K" : "material.Ku"))
+      return std::nullopt;
+    // Without such a J, K may be the unit of energy.
+    bool const has_unit = material.exchange.value_or(0) != 0 && !material.exchange_factors.there();
+    return !material.atomistic || has_unit ? std::optional<std::size_t>(0) : std::nullopt;
+  }
   if (key == "field.anisotropy.constant" && terms.size() == 1) return 0;
   for (std::size_t term = 0; term < terms.size(); ++term)
     if (key == fmt::format("field.anisotropy.{}.constant", term)) return term;
   return std::nullopt;
+}
+
+// Returns the constant of the anisotropy of [material] in reduced units.
+double reduced_anisotropy(Scene const& one, double typed) {
+  auto const& material = *one.material;
+  if (material.atomistic) return 2 * typed / one.units.energy;
+  return units::Micromagnetic({.Ms = material.moment, .cell = {1, 1, 1}}).anisotropy(typed);
 }
 
 // Puts the values of a varied key into `columns`, with the arithmetic of read_scene. Returns false
@@ -168,7 +183,8 @@ bool put_values(VariedKey const& varied, Scene const& one, std::int64_t first, C
     else if (component)
       columns.applied[column][*component] = value(column) / units.field;
     else if (term)
-      columns.constants[column][*term] = value(column);
+      columns.constants[column][*term] =
+          units.si ? reduced_anisotropy(one, value(column)) : value(column);
     else if (varied.key == (units.si ? "material.alpha" : "system.damping"))
       columns.dampings[column] = value(column);
     else

@@ -95,14 +95,13 @@ EnsembleRun::EnsembleRun(io::Scene const& scene, RunSettings const& settings, bo
 
 std::optional<std::string> EnsembleRun::warning() const {
   Turn::Reserved const turn;
-  if (columns_) {
-    for (auto const extreme : extremes_of(columns_->values())) {
-      auto const number = share_.own.first + extreme;
-      auto const warning = SceneRun::open(io::replica_of(scene_, number), settings_)->warning();
-      if (warning) return fmt::format("replica {}: {}", number, *warning);
-    }
-    if (!extremes_of(columns_->values()).empty()) return std::nullopt;
+  auto const extremes = columns_ ? extremes_of(columns_->values()) : std::set<std::ptrdiff_t>();
+  for (auto const extreme : extremes) {
+    auto const number = share_.own.first + extreme;
+    auto const warning = SceneRun::open(io::replica_of(scene_, number), settings_)->warning();
+    if (warning) return fmt::format("replica {}: {}", number, *warning);
   }
+  if (!extremes.empty()) return std::nullopt;
   for (std::size_t number = 0; number < runs_.size(); ++number)
     if (auto const warning = runs_[number]->warning())
       return fmt::format("replica {}: {}", number_of(number), *warning);

@@ -26,8 +26,8 @@ class ReplicaColumns {
   /// faster, or if columns do not support the scene: for example, if there are few replicas; if the
   /// lattice has three axes, many sites, or moments other than 1; if constants are site-dependent;
   /// if the method or a term other than exchange couples sites; or if the replicas differ in more
-  /// than seeds, temperatures, dampings, constant applied fields and, in reduced units, constants
-  /// of uniaxial anisotropies.
+  /// than seeds, temperatures, dampings, constant applied fields and constants of uniaxial
+  /// anisotropies.
   static std::optional<ReplicaColumns> open(io::Scene const& scene, io::Scene const& one,
                                             RunSettings const& settings, ReplicaShare const& share);
 

@@ -78,11 +78,13 @@ void expect_values_of_replicas(io::Scene const& scene) {
 
 // In Gilbert's form, the unit of time depends on the damping, and so does dt in this unit.
 TEST(ValuesOfColumns, HaveOneUnitOfTime) {
-  auto const atoms = [](std::string const& form, std::string const& key) {
+  auto const atoms = [](std::string const& form, std::string const& key, double unit = 1) {
     return scene_of(R"(units = "SI"
 [material]
 mu_s = 2.8e-23
 J = 1e-21
+K = 2e-22
+axis = [0, 3, 4]
 alpha = 0.1
 damping_form = ")" + form +
                     R"("
@@ -104,7 +106,7 @@ temperature = 5.0
 [ensemble]
 replicas = 40
 [ensemble.vary]
-")" + key + "\" = { from = 0.07, to = 0.9 }\n");
+")" + key + fmt::format("\" = {{ from = {}, to = {} }}\n", 0.07 * unit, 0.9 * unit));
   };
   EXPECT_FALSE(are_columns(atoms("gilbert", "material.alpha")));
   for (std::string const key : {"material.alpha", "field.applied.1", "thermal.temperature"}) {
@@ -114,6 +116,44 @@ replicas = 40
     expect_bits_of_own_runs(scene, {0, 23, 39});
   }
   expect_bits_of_own_runs(atoms("gilbert", "material.alpha"), {0, 23});
+  auto const of_anisotropies = atoms("gilbert", "material.K", 1e-21);
+  EXPECT_TRUE(are_columns(of_anisotropies));
+  expect_values_of_replicas(of_anisotropies);
+  expect_bits_of_own_runs(of_anisotropies, {0, 23});
+  // Without J, K is the unit of energy.
+  EXPECT_FALSE(are_columns(scene_of(of_anisotropies.text, {"material.J=0.0"})));
+}
+
+TEST(ValuesOfColumns, AreThoseOfAMaterial) {
+  auto const scene = scene_of(R"(units = "SI"
+[material]
+Ms = 8e5
+A = 1.3e-11
+Ku = 5e4
+axis = [0, 0, 1]
+alpha = 0.3
+damping_form = "gilbert"
+[system]
+kind = "llg"
+[lattice]
+shape = [5]
+spacing = [4e-9, 5e-9, 3e-9]
+[field]
+applied = [0.0, 0.02, 0.0]
+[initial]
+random = { seed = 7 }
+[integrator]
+method = "rkmk4"
+dt = 1e-14
+steps = 9
+[ensemble]
+replicas = 40
+vary."material.Ku" = { from = 1e4, to = 9e4 }
+vary."field.applied.2" = { from = -0.1, to = 0.1 }
+)");
+  EXPECT_TRUE(are_columns(scene));
+  expect_values_of_replicas(scene);
+  expect_bits_of_own_runs(scene, {0, 23, 39});
 }
 
 TEST(ValuesOfColumns, WithDifferentFieldsAndDampingsAreRunsOfTheirOwn) {
@@ -147,7 +187,7 @@ TEST(ValuesOfColumns, WithDifferentFieldsAndDampingsAreRunsOfTheirOwn) {
       {{damping}, {"system.precession=false", "integrator.method='heun'"}},
       {{damping}, {"field.applied=[0.3,'sin(9*t)',0]", "integrator.generator='orthogonal'"}},
       {{damping}, {"field.anisotropy={cubic=0.4,axes=[[1,0,0],[0,1,0]]}"}},
-      {{damping}, {"lattice.shape=[4,5]", "integrator.isotropy={constant=0.3}"}},
+      {{damping}, {"lattice.shape=[4,5]", "integrator.method='rkmk5'"}},
       {{damped}, {"lattice.shape=[1]", "thermal={temperature=0.1,seed=3}"}},
       {{damped, heat}, {"thermal={temperature=0.1,seed=3}", "integrator.method='heun'"}},
       {{damped, heat, vector}, {"thermal={temperature=0.1,seed=3}"}},
