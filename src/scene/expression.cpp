@@ -9,6 +9,8 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 #include <utility>
 
 namespace cayspin::inline v0_2::io {
@@ -28,6 +30,8 @@ bool assigns(std::string_view text) {
 // Returns a remainder with the sign of the divisor, so that (i - 1) % 2 is 1 for i = 0.
 double remainder_of(double a, double b) { return a - b * std::floor(a / b); }
 double is_zero(double a) { return a == 0 ? 1 : 0; }
+double both(double a, double b) { return a != 0 && b != 0 ? 1 : 0; }
+double either(double a, double b) { return a != 0 || b != 0 ? 1 : 0; }
 double sinc(double a) { return a == 0 ? 1 : std::sin(a) / a; }
 
 // Joins lines: a formula may have line breaks, a message must not.
@@ -35,6 +39,21 @@ std::string in_one_line(std::string message) {
   std::ranges::replace(message, '\n', ' ');
   std::ranges::replace(message, '\r', ' ');
   return message;
+}
+
+// Replaces && and || by operators of our own in a formula that the parser accepts. muParser
+// computes its own for two constants from the whole parts of these, so that 0.5 && 1 would be 0.
+void replace_logic(mu::Parser& parser, std::string const& text) {
+  constexpr std::pair<std::string_view, char const*> operators[] = {{"&&", "&~"}, {"||", "|~"}};
+  auto replaced = text;
+  for (auto const& [sign, name] : operators)
+    for (auto at = replaced.find(sign); at != replaced.npos; at = replaced.find(sign, at))
+      replaced.replace(at, sign.size(), name);
+  if (replaced == text) return;
+  parser.DefineOprt(operators[0].second, &both, mu::prLAND, mu::oaLEFT, true);
+  parser.DefineOprt(operators[1].second, &either, mu::prLOR, mu::oaLEFT, true);
+  parser.SetExpr(replaced);
+  parser.Eval();
 }
 
 }  // namespace
@@ -83,6 +102,7 @@ Expression::Expression(std::string text, std::vector<std::string> variables,
       parser.DefineFunUserData(function.function.name, &Compiled::call, &function, false);
     parser.SetExpr(compiled_->text);
     parser.Eval();
+    replace_logic(parser, compiled_->text);
   } catch (mu::ParserError const& error) {
     throw refuse(error.GetMsg());
   }

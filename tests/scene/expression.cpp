@@ -34,6 +34,29 @@ TEST(Expression, FollowsTheUsualRules) {
   EXPECT_EQ(value("(x >= y) + (x != y) + (x == x) + (y <= x)", x, y), 4);
 }
 
+TEST(Expression, FractionsOtherThanZeroAreTrue) {
+  for (double const x : {0.0, 0.25, -0.5, 1.0, 2.5})
+    for (double const y : {0.0, 0.25, -0.5, 1.0}) {
+      auto const numbers = "(" + std::to_string(x) + ") && (" + std::to_string(y) + ")";
+      EXPECT_EQ(value("x && y", x, y), x != 0 && y != 0) << numbers;
+      EXPECT_EQ(value("x || y", x, y), x != 0 || y != 0) << numbers;
+      EXPECT_EQ(value(numbers.c_str()), x != 0 && y != 0) << numbers;
+      EXPECT_EQ(value(("0 || " + numbers + " || 0").c_str()), x != 0 && y != 0) << numbers;
+      EXPECT_EQ(value(("!(" + numbers + ")").c_str()), x == 0 || y == 0) << numbers;
+    }
+  EXPECT_EQ(value("0.5 || 0"), 1);
+  EXPECT_EQ(value("0 && 0 || 0.5"), 1);
+  EXPECT_EQ(value("0.5 || 0 && 0"), 1);
+  EXPECT_EQ(value("x > 0.5 && !y || 0.5 ? 3 : 4"), 3);
+  EXPECT_EQ(value("x > 0.5&&!y ? 3 : 4", 1, 0), 3);
+}
+
+TEST(Expression, RintRoundsHalvesUp) {
+  EXPECT_EQ(value("rint(x)", 2.5), 3);
+  EXPECT_EQ(value("rint(x)", -1.5), -1);
+  EXPECT_EQ(value("rint(x)", -1.75), -2);
+}
+
 TEST(Expression, SincIsOneAtZero) {
   EXPECT_EQ(value("sinc(x)", 0), 1);
   EXPECT_EQ(value("sinc(x)", -0.375), std::sin(0.375) / 0.375);
@@ -84,7 +107,8 @@ TEST_P(WrongExpression, IsRefusedInOneLine) {
 
 INSTANTIATE_TEST_SUITE_P(All, WrongExpression,
                          testing::Values("", " ", "x+", "(x", "x)", "t", "sin()", "foo(x)", "x,y",
-                                         "x = 3", "x=3", "\"x\"", "5 6", "x y", "1 = 1"));
+                                         "x = 3", "x=3", "\"x\"", "5 6", "x y", "1 = 1", "x & y",
+                                         "x &~ y", "x && && y", "1 && 2 |~ y"));
 
 TEST(Expression, RefusesAResultThatIsNotFinite) {
   for (auto const* const text : {"1/x", "log(x)", "sqrt(x-1)", "x/x", "exp(1000 + x)"}) {
