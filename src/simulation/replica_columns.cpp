@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "replica_columns.hpp"
 
+#include "ensemble_plan.hpp"
 #include "io/notes.hpp"
 #include "kokkos_settings.hpp"
 #include "plan.hpp"
@@ -174,8 +175,9 @@ std::optional<ReplicaColumns> ReplicaColumns::open(io::Scene const& scene, io::S
     std::int64_t const count = std::min(columns, replicas - begin);
     return scene_of_columns(one, begin, values->part(begin, count), count);
   };
-  require_memory(scene, make_plan(scene_from(0), settings.precision),
-                 static_cast<int>((share.on_this_machine + columns - 1) / columns),
+  auto plan = make_plan(scene_from(0), settings.precision);
+  plan.memory.work += 2 * bytes_of_open_run;  // the columns, and a replica for samples
+  require_memory(scene, plan, static_cast<int>((share.on_this_machine + columns - 1) / columns),
                  share.available);
   opened.emplace();
   opened->values_ = *values;

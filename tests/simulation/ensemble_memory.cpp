@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Memory of ensembles of small replicas that are separate runs: the estimate is not below what they
-// take, and an ensemble that does not fit is refused.
+// Memory of ensembles of small replicas: the estimate is not below what separate runs take, and an
+// ensemble that does not fit is refused.
 #include "scenes_of_text.hpp"
 #include "simulation/ensemble_plan.hpp"
 #include "simulation/ensemble_run.hpp"
+#include "simulation/kokkos_settings.hpp"
 
 #include <unistd.h>
 
@@ -61,6 +62,27 @@ TEST(EnsembleMemory, OfColumnsIsNotThatOfSeparateRuns) {
   auto const scene = scene_of(single_spins(500).text, {"ensemble.vary={}"});
   auto share = all_replicas(scene);
   share.available = static_cast<std::int64_t>(estimate_of(scene)) / 4;
+  EXPECT_NO_THROW(EnsembleRun(scene, {}, false, share));
+}
+
+// Chains of 64 spins are stepped as lattices of 32 columns. Each of these is an open run, and has
+// another one for samples.
+TEST(EnsembleMemory, OfColumnsCountsTheirRuns) {
+  constexpr std::int64_t lattices = 20;
+  std::string const field = "[field]\nexchange = 1.0\n[initial]\nrandom = { seed = 7 }\n";
+  auto const scene = llg_scene("0.1", "rkmk4", 4,
+                               "[lattice]\nshape = [64]\n" + field +
+                                   fmt::format("[ensemble]\nreplicas = {}\n", 32 * lattices));
+  if (!is_on_host(SceneRun::open(io::replica_of(scene, 0), {})->space()))
+    GTEST_SKIP() << "on a device, one lattice has all columns";
+  auto const of_lattice =
+      make_plan(llg_scene("0.1", "rkmk4", 4, "[lattice]\nshape = [32, 64]\n" + field),
+                Precision::double_precision)
+          .memory.total();
+  auto share = all_replicas(scene);
+  share.available = lattices * (of_lattice + bytes_of_open_run);
+  EXPECT_THROW(EnsembleRun(scene, {}, false, share), io::SceneError);
+  share.available = lattices * (of_lattice + 3 * bytes_of_open_run);
   EXPECT_NO_THROW(EnsembleRun(scene, {}, false, share));
 }
 
