@@ -46,8 +46,8 @@ auto in_double(Space const& exec, Given const& given) {
   return spins;
 }
 
-/// Returns the rates for a path in single precision, of which Hessians have errors above the
-/// smallest curvatures: its ends and its saddle are found again in double precision. Throws like
+/// Returns the rates for a path in single precision. Its Hessians would have errors above the
+/// smallest curvatures, so its ends and its saddle are found again in double precision. Throws like
 /// rates_of, and NumbersFailed if a search fails.
 template <class Space, class Given>
 io::RatesOfPath rates_in_double(Space const& exec, io::Scene const& scene, Given const& from,
@@ -73,9 +73,11 @@ io::RatesOfPath rates_in_double(Space const& exec, io::Scene const& scene, Given
 
   auto const lowest = find_curvatures<double, Space>(
       exec, scene, field, top, {.count = 1, .tolerance = 1e-3, .poll = proceed});
+  if (lowest.vectors.empty())
+    throw NumbersFailed("rates: the saddle has no lowest curvature in double precision");
   cayspin::detail::SaddleSearch<Spins> search(lattice);
   Kokkos::deep_copy(exec, search.spins().allocation(), top.allocation());
-  copy_from_host(lowest.vectors.at(0), search.vector());
+  copy_from_host(lowest.vectors.front(), search.vector());
   auto preconditioner = probed.preconditioner;
   constexpr std::int64_t most_evaluations = 1000000;
   auto const found = search.find(exec, field, probed.is_mobile, preconditioner,
