@@ -8,6 +8,7 @@
 
 #include <cayspin/demagnetization/dipolar_bound.hpp>
 #include <cayspin/field/bonds_of_sites.hpp>
+#include <cayspin/stability.hpp>
 
 #include <fmt/format.h>
 
