@@ -28,7 +28,7 @@ struct ModesContents {
   std::vector<double> frequencies, decays, residuals;  ///< one for each mode
   std::vector<std::vector<double>> shapes;             ///< per mode: sites x 3 x (real, imaginary)
   std::vector<double> curvatures;                      ///< empty if not computed
-  /// Of each curvature: its error, in its unit, and the relative error of its vector. Empty if not
+  /// The error of each curvature, in its unit, and the relative error of its vector. Empty if not
   /// computed, and for files of earlier versions.
   std::vector<double> curvature_errors, curvature_residuals;
   std::vector<std::vector<double>> curvature_vectors;  ///< per curvature: sites x 3

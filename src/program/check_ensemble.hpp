@@ -3,6 +3,9 @@
 
 #include "check_text.hpp"
 
+#include <cstdint>
+#include <optional>
+
 // Output of `cayspin check` about the replicas of an ensemble.
 namespace cayspin::program {
 

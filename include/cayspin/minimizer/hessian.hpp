@@ -80,8 +80,9 @@ double largest_length(Exec const& exec, Spins const& vectors) {
                                LargestSquare<typename Spins::value_type>{vectors.array()})[0]);
 }
 
-/// How fields that are not affine in the spins are differentiated: for each product, by a difference
-/// of two fields, with an error of the shift squared, or of four, with an error of its fourth power.
+/// How fields that are not affine in the spins are differentiated: for each product, by a
+/// difference of two fields, with an error of the shift squared, or of four, with an error of its
+/// fourth power.
 enum class HessianDifferences { of_two, of_four };
 
 /// Work memory for products with the Hessian.
