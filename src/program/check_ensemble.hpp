@@ -9,7 +9,7 @@
 // Output of `cayspin check` about the replicas of an ensemble.
 namespace cayspin::program {
 
-/// What all replicas of an ensemble need together.
+/// The needs of all replicas of an ensemble together.
 struct ReplicaTotals {
   std::int64_t replicas = 0;
   double memory_bytes = 0;  // if each replica is a separate run

@@ -185,7 +185,7 @@ void add_errors_of_torque(Space const& exec, io::Scene const& scene,
         torque = cross(spin, {h[i], h[i + 1], h[i + 2]});
     square = std::max(square, dot(torque, torque));
   }
-  // The same factor as for zero modes of rates.
+  // Zero modes of rates have this factor, too.
   for (auto& error : curvatures.value_errors) error += 10 * std::sqrt(square) * scene.units.energy;
 }
 

@@ -15,7 +15,7 @@ namespace cayspin::inline v0_2::io {
 /// `missing`.
 PropertyHandle filled_with(double missing, std::filesystem::path const& path);
 
-/// What frames of an ensemble have in addition to Scalars.
+/// The numbers of a frame of an ensemble that are not in Scalars.
 struct ReplicaFrame {
   std::vector<double> sublattices;       ///< (replica, site, 3); empty if cells have one site
   std::vector<std::uint64_t> checksums;  ///< (replica), as in trajectory files
