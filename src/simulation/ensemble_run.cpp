@@ -17,9 +17,11 @@
 #include <exception>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace cayspin::simulation {
 namespace {
@@ -32,24 +34,44 @@ void require_memory_of_all(io::Scene const& scene, io::Scene const& replica, Pre
   require_memory_of_replicas(scene, replica, plan, precision, replicas, available);
 }
 
-// Returns the columns with the most noise, the least and the largest damping, the largest applied
-// field and the largest sum of constants, if these values differ between columns.
+// Adds the columns of which no other one has larger fields (of `applied` and anisotropies) and also
+// a larger damping (for `sign` -1, a smaller one).
+void add_largest(io::Columns const& values, double sign, std::set<std::ptrdiff_t>& columns) {
+  auto const field = [&](std::size_t column) {
+    double sum = 0;
+    if (!values.applied.empty()) {
+      auto const& [x, y, z] = values.applied[column];
+      sum = std::hypot(x, y, z);
+    }
+    if (!values.constants.empty())
+      for (double const constant : values.constants[column]) sum += std::abs(constant);
+    return sum;
+  };
+  auto const damping = [&](std::size_t column) {
+    return values.dampings.empty() ? 0 : sign * values.dampings[column];
+  };
+  std::vector<std::size_t> by_field(
+      std::max({values.dampings.size(), values.applied.size(), values.constants.size()}));
+  std::iota(by_field.begin(), by_field.end(), std::size_t{0});
+  std::ranges::stable_sort(by_field, std::greater(), [&](std::size_t column) {
+    return std::pair(field(column), damping(column));
+  });
+  double most = -std::numeric_limits<double>::infinity();
+  for (auto const column : by_field) {
+    if (damping(column) <= most) continue;
+    most = damping(column);
+    columns.insert(static_cast<std::ptrdiff_t>(column));
+  }
+}
+
+// Returns the columns whose steps may be the least accurate, if columns differ: the one with the
+// most noise, and those with the largest fields, each with the largest and with the smallest
+// dampings.
 std::set<std::ptrdiff_t> extremes_of(io::Columns const& values) {
   std::set<std::ptrdiff_t> extremes;
-  auto const add_largest = [&](auto const& all, auto const& projection) {
-    if (all.empty()) return;
-    extremes.insert(std::ranges::max_element(all, {}, projection) - all.begin());
-  };
-  auto const heats = values.heats();
-  add_largest(heats, std::identity());
-  add_largest(values.dampings, std::identity());
-  add_largest(values.dampings, std::negate());
-  add_largest(values.applied, [](io::Triple const& h) { return std::hypot(h[0], h[1], h[2]); });
-  add_largest(values.constants, [](std::vector<double> const& constants) {
-    double sum = 0;
-    for (double const constant : constants) sum += std::abs(constant);
-    return sum;
-  });
+  if (auto const heats = values.heats(); !heats.empty())
+    extremes.insert(std::ranges::max_element(heats) - heats.begin());
+  for (double const sign : {1.0, -1.0}) add_largest(values, sign, extremes);
   return extremes;
 }
 

@@ -59,8 +59,8 @@ class EnsembleRun {
   std::vector<io::ReplicaState> states(std::size_t first);
 
   /// Returns the first warning of a replica about its steps, with the replica's number. If the
-  /// replicas are columns with different values, only those with the most noise, the least and the
-  /// largest damping, the largest applied field and the largest anisotropies are asked.
+  /// replicas are columns with different values, only those are asked whose steps may be the least
+  /// accurate: the one with the most noise, and those with the largest fields and dampings.
   std::optional<std::string> warning() const;
 
   /// Returns the number of steps that every replica has taken, not counting replicas that ended
