@@ -6,9 +6,13 @@
 #include "ensemble_of_chains.hpp"
 #include "simulation/failure.hpp"
 
+#include <fmt/ranges.h>
+
 #include <atomic>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace cayspin::simulation::test {
 namespace {
@@ -189,6 +193,37 @@ TEST(ReplicaColumns, FailAsRunsOfTheirOwn) {
     FAIL() << "replica " << first << " should fail";
   } catch (NumbersFailed const& failure) {
     EXPECT_EQ(failure.what(), *said);
+  }
+}
+
+// Neither the largest field nor the largest damping makes the steps too long, but a large field
+// with a large damping does. In Euler's method, so does a large field with a small damping.
+TEST(ReplicaColumns, WarnOfFieldsTogetherWithDampings) {
+  struct Case {
+    std::string method;
+    std::pair<double, double> field, damping, both;  // replicas with (field, damping)
+  };
+  for (auto const& [method, field, damping, both] :
+       {Case{"rkmk4", {60, 0.1}, {0.1, 10}, {50, 8}},
+        Case{"euler", {4, 0.3}, {0.1, 0.01}, {3.5, 0.02}}}) {
+    SCOPED_TRACE(method);
+    std::vector<double> fields(20, 0.1), dampings(20, 0.3);
+    for (auto const& [replica, values] : {std::pair{3, field}, {7, damping}, {11, both}}) {
+      fields[static_cast<std::size_t>(replica)] = values.first;
+      dampings[static_cast<std::size_t>(replica)] = values.second;
+    }
+    auto const scene = scene_of(
+        llg_scene("0.1", method, 40, chains).text,
+        {"field.exchange=0.01", "field.applied=[0.1,0.1,0]",
+         fmt::format("ensemble={{replicas=20,vary={{'field.applied.0'=[{}],'system.damping'=[{}]}}"
+                     "}}",
+                     fmt::join(fields, ","), fmt::join(dampings, ","))});
+    EXPECT_TRUE(are_columns(scene));
+    for (std::int64_t const replica : {0, 3, 7})
+      EXPECT_EQ(SceneRun::open(io::replica_of(scene, replica), {})->warning(), std::nullopt);
+    auto const warning = EnsembleRun(scene, {}, false).warning();
+    ASSERT_TRUE(warning.has_value());
+    EXPECT_TRUE(warning->starts_with("replica 11: ")) << *warning;
   }
 }
 
