@@ -11,9 +11,34 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace cayspin::program {
+namespace {
+
+using Lines = std::vector<std::pair<std::string, std::string>>;
+
+std::vector<std::string> texts_of(Lines const& lines, std::string const& name) {
+  std::vector<std::string> texts;
+  for (auto const& line : lines)
+    if (line.first == name) texts.push_back(line.second);
+  return texts;
+}
+
+// Prints all lines of each name whose lines differ from those of the stage before.
+void print_changes(Lines const& before, Lines const& lines) {
+  for (auto const& [name, text] : lines)
+    if (texts_of(lines, name) != texts_of(before, name)) print(name, text);
+  for (auto line = before.begin(); line != before.end(); ++line) {
+    auto const has_name = [&](auto const& other) { return other.first == line->first; };
+    bool const is_first = std::find_if(before.begin(), line, has_name) == line;
+    if (is_first && std::ranges::none_of(lines, has_name)) print(line->first, "none");
+  }
+}
+
+}  // namespace
 
 std::vector<CheckedStage> plan_stages(io::Scene const& scene, Precision precision) {
   std::vector<CheckedStage> stages;
@@ -27,16 +52,14 @@ std::vector<CheckedStage> plan_stages(io::Scene const& scene, Precision precisio
 }
 
 void print_stages(std::vector<CheckedStage> const& stages) {
-  std::vector<std::pair<std::string, std::string>> before;
+  Lines before;
   std::vector<std::string> noted;
   for (auto const& [stage, plan] : stages) {
     auto const& scene = stage.scene;
     print(io::stage_text(stage), fmt::format("from step {}, t = {}", scene.begin.step,
                                              time_text(scene.units, scene.begin.time, 9)));
     auto const lines = describe(scene);
-    for (auto const& line : lines)
-      if (!before.empty() && std::ranges::find(before, line) == before.end())
-        print(line.first, line.second);
+    if (!before.empty()) print_changes(before, lines);
     before = lines;
     if (stage.relax)
       print("relax",

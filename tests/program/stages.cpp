@@ -253,6 +253,41 @@ TEST_F(Stages, AreCheckedOneByOne) {
   EXPECT_FALSE(json.contains("notes"));
 }
 
+TEST_F(Stages, AreCheckedForTermsThatTheyTakeAway) {
+  write("scene.toml", R"(system = { kind = "llg", damping = 0.1 }
+lattice = { shape = [4] }
+[field]
+anisotropy = [{ constant = 0.5, axis = [0, 0, 1] }, { constant = 0.25, axis = [1, 0, 0] }]
+[torque]
+slonczewski = { damping_like = 0.1, polarization = [1, 0, 0] }
+zhang_li = { velocity = [0.2, 0, 0] }
+[initial]
+random = { seed = 1 }
+[integrator]
+method = "heun"
+dt = 0.01
+steps = 3
+[[stage]]
+field.anisotropy = [{ constant = 0.5, axis = [0, 0, 1] }]
+[[stage]]
+field.anisotropy = []
+torque.slonczewski.damping_like = 0
+torque.zhang_li.velocity = [0, 0, 0]
+[[stage]]
+system.damping = 0.2
+)");
+  auto const text = output_of({"check", "scene.toml"});
+  auto const of_stage = [&](int stage) {
+    auto const begin = text.find(fmt::format("stage {} ", stage));
+    return text.substr(begin, text.find(fmt::format("stage {} ", stage + 1)) - begin);
+  };
+  EXPECT_TRUE(contains(of_stage(1), "anisotropy  ")) << text;
+  EXPECT_FALSE(contains(of_stage(1), "anisotropy  none")) << text;
+  EXPECT_FALSE(contains(of_stage(1), "torque")) << text;
+  EXPECT_TRUE(contains_all(of_stage(2), {"anisotropy  none\n", "torque      none\n"})) << text;
+  EXPECT_FALSE(contains(of_stage(3), "none")) << text;
+}
+
 TEST_F(Stages, HaveTheNotesOfAllStages) {
   write("noted.toml", R"([system]
 kind = "llg"
