@@ -27,7 +27,7 @@ def _numbers(array, key):
 def _without_arrays(thing, key, arrays):
     """Returns a value of a scene without its arrays of values per site, which are moved into
     `arrays` by their keys and replaced by toml_text.ARRAY."""
-    if key == "field.applied" and _is_array_of_vectors(thing):
+    if key == "field.applied" and isinstance(thing, np.ndarray) and thing.ndim > 2:
         raise _cayspin.SceneError(f"{key}: an array of vectors, which only Scene(field=..) takes; "
                                   "accepted: three numbers or expressions, or field.sources")
     if _is_array_of_vectors(thing) and _VECTORS.fullmatch(key):
@@ -50,8 +50,12 @@ def _with_applied_as_source(field):
     """Returns the table [field] with an array for `applied` as a further entry of `sources`, and
     this array, or None."""
     applied = field.get("applied") if isinstance(field, dict) else None
-    if not _is_array_of_vectors(applied):
+    if not isinstance(applied, np.ndarray) or applied.ndim <= 2:
         return field, None
+    if not _is_array_of_vectors(applied):
+        raise _cayspin.SceneError(f"field.applied: an array of shape {applied.shape}; accepted: "
+                                  "(nz, ny, nx, 3), of a crystal (site, nz, ny, nx, 3), or three "
+                                  "numbers or expressions")
     if not np.isfinite(_numbers(applied, "field.applied")).all():
         raise _cayspin.SceneError("field.applied: a number of the array is not finite; accepted: "
                                   "finite numbers")

@@ -284,6 +284,11 @@ class ConstantFields(PackageTest):
         self.assert_refused(
             cayspin.SceneError, "field.applied: an array of shape (2, 4, 5, 3); accepted: "
             "(2, 4, 6, 3), or three numbers or expressions", scene, {"applied": array[:, :, :5]})
+        for wrong in (array[0], array[..., :2], array[..., 0], np.ones((1, 2, *SHAPE, 3))):
+            self.assert_refused(
+                cayspin.SceneError, f"field.applied: an array of shape {wrong.shape}; accepted: "
+                "(nz, ny, nx, 3), of a crystal (site, nz, ny, nx, 3), or three numbers or "
+                "expressions", scene, {"applied": wrong})
         broken = array.copy()
         broken[1, 2, 3, 0] = np.nan
         self.assert_refused(cayspin.SceneError, "field.applied: a number of the array is not finite; "
@@ -296,6 +301,7 @@ class ConstantFields(PackageTest):
         sim = cayspin.Simulation(scene({"exchange": 1.0}))
         file = self.written(scene({"exchange": 1.0}))
         for call in (lambda: sim.set("field.applied", array),
+                     lambda: sim.set("field.applied", array[0]),
                      lambda: sim.set({"field": {"applied": array}}),
                      lambda: cayspin.Scene.from_file(file, field={"applied": array})):
             self.assert_refused(cayspin.SceneError, "field.applied: an array of vectors, which only ",
