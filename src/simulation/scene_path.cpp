@@ -61,6 +61,10 @@ io::RatesOfPath rates_in_double(Space const& exec, io::Scene const& scene, Given
   cayspin::detail::ProbedField<Spins> const probed(exec, field, top, 0, true);
   double const torque =
       std::max(1e-9 * probed.strongest, Minimizer<SpinField<double>>::least_bound);
+  auto const not_found = [](char const* what) {
+    return NumbersFailed(
+        fmt::format("rates: {} in double precision; accepted: a path in double precision", what));
+  };
   auto const proceed = [&](auto const&...) {
     poll();
     return Next::proceed;
@@ -69,12 +73,11 @@ io::RatesOfPath rates_in_double(Space const& exec, io::Scene const& scene, Given
   MinimizeOptions const options{.torque = torque, .observer = proceed};
   for (auto& end : ends)
     if (minimizer.minimize(exec, scene, field, end, options).end != MinimizeEnd::converged)
-      throw NumbersFailed("rates: an end of the path was not found again in double precision");
+      throw not_found("an end of the path was not found again");
 
   auto const lowest = find_curvatures<double, Space>(
       exec, scene, field, top, {.count = 1, .tolerance = 1e-3, .poll = proceed});
-  if (lowest.vectors.empty())
-    throw NumbersFailed("rates: the saddle has no lowest curvature in double precision");
+  if (lowest.vectors.empty()) throw not_found("no curvature was found at the saddle");
   cayspin::detail::SaddleSearch<Spins> search(lattice);
   Kokkos::deep_copy(exec, search.spins().allocation(), top.allocation());
   copy_from_host(lowest.vectors.front(), search.vector());
@@ -83,8 +86,7 @@ io::RatesOfPath rates_in_double(Space const& exec, io::Scene const& scene, Given
   auto const found = search.find(exec, field, probed.is_mobile, preconditioner,
                                  probed.climb(0, torque, most_evaluations),
                                  [&](auto const& now) { return proceed(now) == Next::proceed; });
-  if (!found.is_saddle)
-    throw NumbersFailed("rates: the saddle was not found again in double precision");
+  if (!found.is_saddle) throw not_found("the saddle was not found again");
   return rates_of(scene, exec, field, ends[0], search.spins(), ends[1], found.curvature, poll);
 }
 
