@@ -51,7 +51,8 @@ class Modes:
     curvature_residual: np.ndarray | None = None  #: (mode,), relative errors of the eigenvectors
     #: the eigenvectors, (mode, nz, ny, nx, 3) or (mode, site, ..)
     curvature_vector: np.ndarray | None = None
-    spins: np.ndarray | None = None  #: only from read_modes(): the equilibrium
+    #: the equilibrium, (nz, ny, nx, 3) or with sites first; only from read_modes()
+    spins: np.ndarray | None = None
 
     @property
     def negative_curvatures(self) -> int | None:
@@ -71,4 +72,5 @@ class Bands:
     frequency: np.ndarray  #: (wave, branch), angular in reduced units; in Hz in SI; may be negative
     decay: np.ndarray  #: (wave, branch), in 1/s in SI; negative where the motion grows
     evaluations: int  #: of the field of all sites
-    spins: np.ndarray | None = None  #: only from read_modes(): the equilibrium
+    #: the equilibrium, (nz, ny, nx, 3) or with sites first; only from read_modes()
+    spins: np.ndarray | None = None

@@ -221,7 +221,13 @@ Advanced EnsembleRun::advance_columns(std::int64_t target, Looks const& looks) {
         throw NumbersFailed(fmt::format("replica {}: {}", number, failure.what()));
       }
     }
-    std::rethrow_exception(ended.error);
+    try {
+      std::rethrow_exception(ended.error);
+    } catch (NumbersFailed const& failure) {
+      throw NumbersFailed(fmt::format("replicas {} to {}: {}",
+                                      share_.own.first + ended.failed.front(),
+                                      share_.own.first + ended.failed.back(), failure.what()));
+    }
   }
   if (ended.interrupted) return Advanced::interrupted;
   if (looks.at_end) check_columns();

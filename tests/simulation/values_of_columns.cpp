@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -219,8 +220,12 @@ TEST(ValuesOfColumns, LoseEnergyOnlyIfTheyAreDamped) {
                 "initial={expression=['1','0.3*sin(3*i)','0.2*cos(5*i)']}"});
   EXPECT_TRUE(are_columns(scene));
   EnsembleRun run(scene, {}, false);
-  run.advance(100, run.looks(false, {}));
-  EXPECT_THROW(run.advance(100, run.looks(false, {})), NumbersFailed);
+  try {
+    for (int times = 0; times < 2; ++times) run.advance(100, run.looks(false, {}));
+    ADD_FAILURE() << "an energy that rises under damping";
+  } catch (NumbersFailed const& failure) {
+    EXPECT_TRUE(std::string_view(failure.what()).starts_with("replica")) << failure.what();
+  }
   auto const undamped = scene_of(scene.text, {"ensemble.vary={'system.damping'={from=0,to=0}}"});
   EnsembleRun other(undamped, {}, false);
   other.advance(100, other.looks(false, {}));
