@@ -36,8 +36,8 @@ class Ensembles(unittest.TestCase):
     def run_program(self, command, made):
         (self.folder / "scene.toml").write_text(made.text)
         file = self.folder / f"{command}.h5"
-        subprocess.run([PROGRAM, command, "scene.toml", "--quiet", "-o", file], cwd=self.folder,
-                       check=True)
+        subprocess.run([PROGRAM, command, "scene.toml", "--quiet", "--overwrite", "-o", file],
+                       cwd=self.folder, check=True)
         return file
 
     def test_files_have_every_replica(self):
