@@ -33,7 +33,7 @@ configure_package_config_file(cmake/cayspinConfig.cmake.in cayspinConfig.cmake
 write_basic_package_version_file(cayspinConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/cayspinConfig.cmake
               ${PROJECT_BINARY_DIR}/cayspinConfigVersion.cmake cmake/cayspinOptimisation.cmake
-              cmake/cayspinFftw.cmake DESTINATION ${package_dir})
+              cmake/cayspinCudaToolkit.cmake cmake/cayspinFftw.cmake DESTINATION ${package_dir})
 
 include(${CMAKE_CURRENT_LIST_DIR}/PkgConfig.cmake)
 # Flags that a program needs to be compiled and linked with cayspin.

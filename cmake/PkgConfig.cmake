@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # Makes files for pkg-config, for build systems other than CMake. Kokkos has no such file, so ours
 # include the flags of the Kokkos that cayspin was built with.
+include(${CMAKE_CURRENT_LIST_DIR}/cayspinCudaToolkit.cmake)
 
 # Adds to the list `flags` the libraries that a target links with, and the libraries that these link
 # with, in the order for the linker.
 function(cayspin_link_flags target flags)
   # A Kokkos that is built within this project finds these packages only for itself, so they are
   # looked for here again.
-  if(NOT TARGET ${target} AND target MATCHES "^(OpenMP|Threads|CUDA)::")
-    string(REPLACE CUDA CUDAToolkit package ${CMAKE_MATCH_1})
-    find_package(${package} QUIET)
+  if(NOT TARGET ${target} AND target MATCHES "^CUDA::")
+    cayspin_find_cuda_toolkit(QUIET)
+  elseif(NOT TARGET ${target} AND target MATCHES "^(OpenMP|Threads)::")
+    find_package(${CMAKE_MATCH_1} QUIET)
   endif()
   if(NOT TARGET ${target})
     if(target MATCHES "^cayspin_") # defined later, with only headers
