@@ -177,7 +177,8 @@ void add_errors_of_torque(Space const& exec, io::Scene const& scene,
   evaluate_field(exec, field, spins, time, at_spins);
   ++curvatures.evaluations;
   auto const m = copy_to_host(spins), h = copy_to_host(at_spins);
-  auto const frozen = io::frozen(scene, {{0, 0, 0}, spins.lattice().shape});
+  io::SiteBox const all{{0, 0, 0}, spins.lattice().shape};
+  auto const frozen = io::frozen(scene, all);
   double square = 0;  // of the largest slope of the energy
   for (std::size_t i = 0; i < m.size(); i += 3) {
     if (!frozen.empty() && frozen[i / 3] != 0) continue;
