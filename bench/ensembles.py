@@ -20,7 +20,7 @@ CASES = {
 }
 
 
-def scene(shape, method, noise, steps, replicas=None):
+def scene(shape, method, noise, steps, replicas=None, vary=None):
     return (
         '[system]\nkind = "llg"\ndamping = 0.1\n'
         f"[lattice]\nshape = {list(shape)}\n"
@@ -31,6 +31,7 @@ def scene(shape, method, noise, steps, replicas=None):
         f"[output]\nevery = {steps}\nscalars_every = {steps}\n"
         + ("[thermal]\ntemperature = 0.01\nseed = 1\n" if noise else "")
         + (f"[ensemble]\nreplicas = {replicas}\n" if replicas else "")
+        + (f'vary."{vary}" = {{ from = 0.05, to = 0.2 }}\n' if replicas and vary else "")
     )
 
 
@@ -45,7 +46,7 @@ def nanoseconds(asked, folder, shape, spins, method, noise, replicas=None):
     found = []
     for count in (steps, 2 * steps):
         file = folder / "scene.toml"
-        file.write_text(scene(shape, method, noise, count, replicas))
+        file.write_text(scene(shape, method, noise, count, replicas, asked.vary))
         found.append(
             seconds(
                 [asked.program, "run", file, "--output", folder / "run.h5", "--overwrite",
@@ -69,6 +70,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("program", nargs="?", default="build/release/bin/cayspin")
     parser.add_argument("--methods", default="heun,rkmk4")
+    parser.add_argument("--vary", help="a key whose values differ between replicas")
     parser.add_argument("--precision", default="double")
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--rounds", type=int, default=3)
