@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // cayspin path: the file, barriers and rates in reduced units and in SI, refusals, and searches
 // that fail.
-#include "hdf5/attribute.hpp"
-#include "hdf5/handle.hpp"
-#include "program_test.hpp"
+#include "path_command.hpp"
 
 #include <array>
 #include <cmath>
@@ -12,39 +10,6 @@
 
 namespace cayspin::program::test {
 namespace {
-
-struct PathCommand : ProgramTest {
-  std::string const scene = R"toml([system]
-kind = "llg"
-damping = 0.1
-[lattice]
-shape = [3]
-[field]
-exchange = 20.0
-anisotropy = [{ constant = 1.3, axis = [0, 0, 1] }, { constant = -0.7, axis = [0, 1, 0] }]
-applied = [0.4, 0, 0]
-[initial]
-uniform = [0, 0, 1]
-)toml";
-
-  /// Writes both ends of a path: the scene relaxed from its start and from -z.
-  void write_ends(std::string const& text) const {
-    auto const file = write("scene.toml", text);
-    expect_status(0, {"relax", file, "--output", "a.h5", "--quiet"});
-    expect_status(0, {"relax", file, "--output", "b.h5", "--quiet", "--set",
-                      "initial={ uniform = [0, 0, -1] }"});
-  }
-  Arguments arguments(Arguments const& more = {}) const {
-    return joined(
-        {"path", in_folder("scene.toml"), "--from", "a.h5", "--to", "b.h5", "--output", "path.h5"},
-        more);
-  }
-  double attribute(char const* name) const {
-    auto const path = in_folder("path.h5");
-    auto const file = io::open_file(path);
-    return io::RootAttributes(file.get(), path).read_real(name);
-  }
-};
 
 // From +x to -x the path passes a minimum, with a saddle on either side. Both saddles have the same
 // energy.
@@ -128,105 +93,6 @@ TEST_F(PathCommand, FindsTheBarrierOfAMacrospin) {
   EXPECT_NEAR(energy.values[image], attribute("saddle_energy"), 1e-12);
   EXPECT_NEAR(read_dataset("path.h5", "/saddle").values.at(0), 1, 1e-6);
   EXPECT_EQ(read_dataset("path.h5", "/zero_modes").values, (std::vector<double>{0, 0, 0}));
-}
-
-TEST_F(PathCommand, KeepsThePathIfItsRatesFail) {
-  write_ends(scene);
-  auto const outcome = start(
-      arguments({"--rates", "--set", "system.damping=0", "--set", "system.precession=false"}));
-  EXPECT_EQ(outcome.status, 3);
-  EXPECT_TRUE(
-      outcome.errors.ends_with("scene.toml: path.h5 has the path, but no rates: a spin "
-                               "without precession and damping does not move\n"))
-      << outcome.errors;
-  EXPECT_TRUE(contains(outcome.output, "barriers 0.934615"));
-  EXPECT_FALSE(contains(outcome.output, "prefactors"));
-  EXPECT_NEAR(attribute("barrier_forward"), 3 * 0.5 * 1.3 * std::pow(1 - 0.4 / 1.3, 2), 1e-11);
-  EXPECT_THROW(attribute("prefactor_forward"), std::runtime_error);
-}
-
-// Three spins act as one, with the rate of Bessarab's formula for a biaxial particle.
-TEST_F(PathCommand, GivesTheRateOfABiaxialParticle) {
-  auto const text = scene + "[output]\nfile = \"path.h5\"\n";
-  write_ends(text);
-  auto const outcome =
-      start(arguments({"--rates", "--torque", "1e-10", "--set", "field.applied=[0, 0, 0]", "--set",
-                       "lattice.shape=[1]", "--overwrite"}));
-  EXPECT_EQ(outcome.status, 2);  // the ends have three sites
-  double const easy = 1.3, hard = 0.7;
-  // At the saddle, too, the curvatures of the exchange modes are 20 and 60 above those of the
-  // uniform modes.
-  double rest = 1;
-  for (double const stiff : {20.0, 60.0})
-    rest *= (stiff + easy) * (stiff + easy + hard) / ((stiff - easy) * (stiff + hard));
-  double const one = std::sqrt(easy * (easy + hard)) / (2 * std::numbers::pi);
-  for (std::string const precision : {"double", "single"}) {
-    expect_status(0, arguments({"--rates", "--quiet", "--overwrite", "--set",
-                                "field.applied=[0, 0, 0]", "--precision", precision, "--torque",
-                                precision == "double" ? "1e-6" : "1e-4"}));
-    EXPECT_NEAR(attribute("prefactor_forward"), one * std::sqrt(rest), 1e-6 * one) << precision;
-    EXPECT_NEAR(attribute("prefactor_backward"), one * std::sqrt(rest), 1e-6 * one) << precision;
-  }
-}
-
-// The field of a cubic anisotropy is not affine: in single precision, its difference quotients are
-// too coarse for soft modes beside stiff ones.
-TEST_F(PathCommand, GivesRatesOfDoublePrecisionInSinglePrecision) {
-  std::string const text = R"toml([system]
-kind = "llg"
-damping = 0.1
-[lattice]
-shape = [8]
-[field]
-exchange = 200.0
-applied = [0.05, 0, 0.02]
-anisotropy = [{ cubic = 0.3, axes = [[1, 0, 0], [0, 1, 0]] },
-              { constant = 0.5, axis = [0, 0, 1], constant2 = 0.2 }]
-[initial]
-uniform = [0, 0, 1]
-)toml";
-  write_ends(text);
-  auto const rates = [&](std::string const& precision, std::string const& torque) {
-    expect_status(0, arguments({"--rates", "--quiet", "--overwrite", "--precision", precision,
-                                "--torque", torque}));
-    return std::array{attribute("prefactor_forward"), attribute("prefactor_backward"),
-                      attribute("langer_forward"), attribute("langer_backward")};
-  };
-  auto const expected = rates("double", "1e-8"), single = rates("single", "1e-3");
-  for (std::size_t i = 0; i < expected.size(); ++i)
-    EXPECT_NEAR(single[i] / expected[i], 1, 1e-6) << i;
-}
-
-// A frozen neighbour along x acts as a field.
-TEST_F(PathCommand, GivesTheRateBesideAFrozenSpin) {
-  auto const ends = [&](std::string const& text, std::string const& up, std::string const& down) {
-    auto const file = write("scene.toml", text);
-    for (auto const& [start, end] : {std::pair{up, "a.h5"}, {down, "b.h5"}})
-      expect_status(0, {"relax", file, "--output", end, "--quiet", "--overwrite", "--set",
-                        "initial=" + start});
-    expect_status(0, arguments({"--rates", "--quiet", "--overwrite"}));
-    return std::array{attribute("barrier_forward"), attribute("prefactor_forward"),
-                      attribute("langer_forward")};
-  };
-  auto const of = [](std::string const& lattice, std::string const& field) {
-    return "[system]\nkind = \"llg\"\ndamping = 0.1\n[lattice]\n" + lattice +
-           "\n[field]\nanisotropy = [{ constant = 1.3, axis = [0, 0, 1] }, "
-           "{ constant = -0.7, axis = [0, 1, 0] }]\n" +
-           field + "\n[initial]\nuniform = [0, 0, 1]\n";
-  };
-  auto const one = [&](std::string const& lattice) {
-    return ends(of("shape = [1]" + lattice, "applied = [0.4, 0, 0]"), "{uniform=[0,0,1]}",
-                "{uniform=[0,0,-1]}");
-  };
-  auto const in_field = one("");
-  for (std::string const ratio : {"3.0", "\"3 + 0*x\""}) {
-    auto const thrice = one("\ngyromagnetic = " + ratio);
-    for (std::size_t i : {1, 2}) EXPECT_NEAR(thrice[i] / in_field[i], 3, 1e-6) << ratio;
-  }
-  auto const beside = ends(of("shape = [2]\nfrozen = \"i < 1\"", "exchange = 0.4"),
-                           "{expression=[\"i<1\",\"0\",\"i<1 ? 0 : 1\"]}",
-                           "{expression=[\"i<1\",\"0\",\"i<1 ? 0 : -1\"]}");
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(beside[i] / in_field[i], 1, 1e-6) << i;
 }
 
 // In SI: the barrier of a particle of one cell is K * V, and its prefactor is
