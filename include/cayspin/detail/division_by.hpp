@@ -22,7 +22,7 @@ struct DivisionBy {
     // 2^bits >= divisor. The multiplier is 2^(31 + bits) / divisor, rounded up. It is less than
     // 2^32, and rounding has increased it by less than 2^bits / divisor.
     auto const d = static_cast<std::uint32_t>(divisor);
-    int const bits = std::bit_width(d - 1);
+    auto const bits = static_cast<int>(std::bit_width(d - 1));
     shift = 31 + bits;
     multiplier = static_cast<std::uint32_t>(((std::uint64_t(1) << shift) + d - 1) / d);
   }
