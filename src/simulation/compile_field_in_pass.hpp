@@ -63,7 +63,7 @@ auto FieldInPass<Spins>::Terms::at(Exec const& exec, SceneFieldNow<Real> const& 
                         .exchange_factor = factors.exchange,
                         .anisotropy_factor = factors.anisotropy,
                         .moments = moments_.array(),
-                        .sources = sources_at(t),
+                        .sources = sources_at(exec, t),
                         .per_moments = {},
                         .per_gyromagnetic = {},
                         .of_all = usual.stored,
@@ -180,8 +180,7 @@ SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::evaluate_with(
   auto const [exchange, anisotropy, dmi] = terms_->factors_at(t);
   now.lattice_terms.magnitude *=
       std::max({1.0, std::abs(exchange), std::abs(anisotropy), std::abs(dmi)});
-  now.lattice_terms.magnitude +=
-      terms_->applied_magnitude(usual.zeeman.applied, kernel.terms.sources);
+  now.lattice_terms.magnitude += terms_->applied_magnitude(usual.zeeman.applied, t);
   return now;
 }
 

@@ -2,7 +2,6 @@
 #include "limits_of_terms.hpp"
 
 #include "io/site_box.hpp"
-#include "pass_terms.hpp"
 
 #include <fmt/format.h>
 
@@ -63,22 +62,10 @@ void require_weak_interlayers(io::Scene const& scene, Lattice const& lattice) {
                     ratio));
 }
 
-void require_few_sources(io::Scene const& scene) {
-  std::vector<io::AppliedComponent> factors;
-  for (auto const& source : scene.field.sources)
-    if (std::ranges::find(factors, source.time) == factors.end()) factors.push_back(source.time);
-  constexpr auto most = static_cast<std::size_t>(SourcesNow<double>::most);
-  if (factors.size() > most)
-    throw io::scene_error(
-        scene, "field.sources",
-        fmt::format("has {} different factors `time`; accepted: at most {}", factors.size(), most));
-}
-
 }  // namespace
 
 void require_limits_of_terms(io::Scene const& scene, Lattice const& lattice) {
   require_weak_interlayers(scene, lattice);
-  require_few_sources(scene);
 }
 
 }  // namespace cayspin::simulation

@@ -10,9 +10,8 @@ namespace cayspin::simulation {
 /// Largest accepted ratio of an interlayer's strength to that of the exchange in half a cell.
 inline constexpr double most_at_faces = 1.0 / 3;
 
-/// Throws io::SceneError if interlayers are too strong for the exchange beside them, if that
-/// exchange is negative, or if the sources of the applied field have too many different factors of
-/// t.
+/// Throws io::SceneError if interlayers are too strong for the exchange beside them, or if that
+/// exchange is negative.
 void require_limits_of_terms(io::Scene const& scene, Lattice const& lattice);
 
 }  // namespace cayspin::simulation

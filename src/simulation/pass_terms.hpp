@@ -123,13 +123,16 @@ struct DmiOfSites {
   }
 };
 
-/// H = sum of factor * profile over all sources, at one time.
+/// H = sum of factor * profile over all sources, at one time. The first `most` sources are in the
+/// struct itself, for speed; all others are in tables that the kernel can read.
 template <class Real>
 struct SourcesNow {
-  static constexpr int most = 8;
+  static constexpr std::size_t most = 8;
   cayspin::SiteArray<Real, 3> profiles[most];
   double factors[most];
-  std::int32_t count = 0;
+  cayspin::SiteArray<Real, 3> const* other_profiles = nullptr;
+  double const* other_factors = nullptr;
+  std::int32_t count = 0, others = 0;
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
@@ -138,6 +141,9 @@ struct SourcesNow {
     auto h = zero<Value>();
     for (std::int32_t i = 0; i < count; ++i)
       h = multiply_add(as_value<Value>(factors[i]), stencil.site().load(profiles[i]), h);
+    for (std::int32_t i = 0; i < others; ++i)
+      h = multiply_add(as_value<Value>(other_factors[i]), stencil.site().load(other_profiles[i]),
+                       h);
     return h;
   }
 };

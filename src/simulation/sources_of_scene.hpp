@@ -4,18 +4,21 @@
 #include "terms_of_scene.hpp"
 
 #include <cayspin/detail/ghosts.hpp>
+#include <cayspin/detail/table.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <ranges>
 #include <utility>
 #include <vector>
 
 // The sources of a scene's applied field, for FieldInPass. Included by compile_field_in_pass.hpp.
 namespace cayspin::simulation {
 
-// Sums the profiles of sources with equal time factors. The plan has already refused scenes with
-// too many different factors.
+// Sums the profiles of sources with equal time factors.
 template <class Spins>
 void FieldInPass<Spins>::Terms::add_sources(io::Scene const& scene, io::SiteBox const& box) {
   std::vector<std::pair<io::AppliedComponent, std::vector<double>>> profiles;
@@ -38,24 +41,51 @@ void FieldInPass<Spins>::Terms::add_sources(io::Scene const& scene, io::SiteBox 
     sources_.push_back({profile, AppliedField({time, 0.0, 0.0}, "field.sources", scene.units),
                         largest_of_parts(lattice_, lengths)});
   }
+  constexpr auto most = SourcesNow<Real>::most;
+  if (sources_.size() <= most) return;
+  std::vector<SiteArray<Real, 3>> others;
+  for (auto const& source : std::views::drop(sources_, most))
+    others.push_back(source.profile.array());
+  other_profiles_ =
+      cayspin::detail::table_of<Memory>("cayspin::FieldInPass::source_profiles", others);
+  other_factors_ = {"cayspin::FieldInPass::source_factors", 2 * along_rows_.size(), others.size()};
 }
 
 template <class Spins>
-auto FieldInPass<Spins>::Terms::sources_at(double t) const -> SourcesNow<Real> {
+template <class Exec>
+auto FieldInPass<Spins>::Terms::sources_at(Exec const& exec, double t) const -> SourcesNow<Real> {
   SourcesNow<Real> now;
+  std::vector<double> others;
   for (auto const& [profile, time, largest] : sources_) {
+    double const factor = time(t).x;
+    if (static_cast<std::size_t>(now.count) == now.most) {
+      others.push_back(factor);
+      continue;
+    }
     now.profiles[now.count] = profile.array();
-    now.factors[now.count++] = time(t).x;
+    now.factors[now.count++] = factor;
   }
+  if (others.empty()) return now;
+  last_factors_ = (last_factors_ + 1) % other_factors_.extent(0);
+  auto const row = Kokkos::subview(other_factors_, last_factors_, Kokkos::ALL);
+  if constexpr (cayspin::detail::is_host_execution<Exec>) {
+    std::ranges::copy(others, row.data());
+  } else {
+    Kokkos::deep_copy(exec, row,
+                      Kokkos::View<double const*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
+                          others.data(), others.size()));
+    exec.fence("cayspin::FieldInPass::source_factors");
+  }
+  now.other_profiles = other_profiles_.data();
+  now.other_factors = row.data();
+  now.others = static_cast<std::int32_t>(others.size());
   return now;
 }
 
 template <class Spins>
-double FieldInPass<Spins>::Terms::applied_magnitude(Vec3<double> const& applied,
-                                                    SourcesNow<Real> const& sources) const {
+double FieldInPass<Spins>::Terms::applied_magnitude(Vec3<double> const& applied, double t) const {
   double magnitude = std::sqrt(dot(applied, applied));
-  for (std::size_t i = 0; i < sources_.size(); ++i)
-    magnitude += sources_[i].largest * std::abs(sources.factors[i]);
+  for (auto const& source : sources_) magnitude += source.largest * std::abs(source.time(t).x);
   return largest_moment_ * magnitude;
 }
 

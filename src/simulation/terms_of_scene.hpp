@@ -119,10 +119,11 @@ class FieldInPass<Spins>::Terms {
 
   // In sources_of_scene.hpp.
   void add_sources(io::Scene const& scene, io::SiteBox const& box);
-  SourcesNow<Real> sources_at(double t) const;
+  template <class Exec>
+  SourcesNow<Real> sources_at(Exec const& exec, double t) const;
   /// Returns an upper bound on a site's |energy| in the applied field and in the fields of the
   /// sources.
-  double applied_magnitude(Vec3<double> const& applied, SourcesNow<Real> const& sources) const;
+  double applied_magnitude(Vec3<double> const& applied, double t) const;
 
   // In torques_of_scene.hpp.
   void add_torques(io::Scene const& scene, io::SiteBox const& box);
@@ -159,6 +160,11 @@ class FieldInPass<Spins>::Terms {
   PairCouplings<Memory> pairs_;
   Torques torques_;
   std::vector<Source> sources_;
+  // Profiles and factors of the sources beyond SourcesNow::most. Each time has its own row of
+  // factors, because the stages of a sweep are in progress at the same time.
+  Table<SiteArray<Real, 3>> other_profiles_;
+  Kokkos::View<double**, Kokkos::LayoutRight, Memory> other_factors_;
+  mutable std::size_t last_factors_ = 0;
   Table<CellSite> sites_;
   Table<CubicAnisotropy> cubics_;
   bool has_lattice_terms_ = false, has_pairs_, has_vacancies_, is_affine_;

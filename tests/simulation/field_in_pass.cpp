@@ -176,19 +176,38 @@ TEST(FieldInPass, NumbersOfSites) {
   }
 }
 
-TEST(FieldInPass, APlanRefusesMoreThanEightFactorsOfSources) {
-  auto const sources = [](int count) {
+// Each of the sources adds profile / k * (k cos(2 t)), so that all of them together are one source.
+TEST(FieldInPass, AnyNumberOfSourcesAddUp) {
+  auto const sources = [](int first, int last, double divisor) {
     std::string list;
-    for (int i = 0; i < count; ++i)
-      list += fmt::format("{{ profile = ['x', 0, 0], time = 'cos({}*t)' }}, ", i);
-    return llg_scene("0.1", "heun", 1,
-                     "lattice = { shape = [4] }\ninitial = { uniform = [0, 0, 1] }\n"
-                     "field = { sources = [" +
-                         list + "] }\n");
+    for (int k = first; k <= last; ++k)
+      list += fmt::format("{{ profile = ['{0}*x', '{0}*(y-0.5)', {0}], time = '{1}*cos(2*t)' }}, ",
+                          divisor / k, k);
+    return "sources = [" + list + "]";
   };
-  expect_refused([&] { return sources(9); },
-                 "field.sources: has 9 different factors `time`; accepted: at most 8");
-  EXPECT_NO_THROW(make_plan(sources(8), Precision::double_precision));
+  auto const scene = [](std::string const& method, std::string const& of_sources) {
+    std::string const more = io::find_method(method)->adaptive ? ", tolerance = 1e-5" : "";
+    return scene_of(
+        fmt::format("system = {{ kind = 'llg', damping = 0.1 }}\n"
+                    "lattice = {{ shape = [19, 4, 3], spacing = [0.8, 1, 1.25] }}\n"
+                    "field = {{ exchange = 0.5, {} }}\n"
+                    "initial = {{ random = {{ seed = 5 }} }}\n"
+                    "integrator = {{ method = '{}', dt = 0.02, steps = 40{} }}\n",
+                    of_sources, method, more));
+  };
+  for (std::string const method : {"heun", "rkmk8", "tsit5", "implicit_midpoint"})
+    for (auto const precision : precisions)
+      for (int const count : {7, 8, 9, 30}) {
+        SCOPED_TRACE(
+            fmt::format("{}, {} sources, {} precision", method, count, to_string(precision)));
+        auto const one = scene(method, sources(1, 1, 0.05 * count));
+        auto const many = scene(method, sources(1, count, 0.05));
+        EXPECT_LT(largest_distance(end_of(one, precision), end_of(many, precision)),
+                  (io::find_method(method)->adaptive ? 1e4 : 1e3) * epsilon(precision));
+        auto const energy = SceneRun::open(one, {.precision = precision})->sample().energy.value;
+        EXPECT_NEAR(SceneRun::open(many, {.precision = precision})->sample().energy.value, energy,
+                    1e3 * epsilon(precision) * std::abs(energy));
+      }
 }
 
 }  // namespace
