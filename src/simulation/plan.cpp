@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "plan.hpp"
 
-#include "demagnetization.hpp"
 #include "files/available_memory.hpp"
 #include "io/ovf.hpp"
 #include "io/trajectory.hpp"
 #include "largest_field.hpp"
 #include "limits_of_terms.hpp"
+#include "memory_of_terms.hpp"
 #include "multirate_method.hpp"
 #include "ranks.hpp"
 #include "run_files.hpp"
@@ -15,7 +15,6 @@
 #include "thermal.hpp"
 
 #include <cayspin/minimize.hpp>
-#include <cayspin/row_layout.hpp>
 #include <cayspin/stability.hpp>
 
 #include <fmt/format.h>
@@ -47,44 +46,16 @@ Lattice make_lattice(io::Scene const& scene) {
 }
 
 template <class Real>
-std::int64_t field_bytes(Lattice const& lattice, int components) {
-  return static_cast<std::int64_t>(cayspin::RowLayout::of<Real>(lattice).allocation(components) *
-                                   sizeof(Real));
-}
-
-// Returns the bytes that the terms of the field store.
-template <class Real>
-std::int64_t memory_of_field(io::Scene const& scene, Lattice const& lattice) {
-  std::int64_t const spins = field_bytes<Real>(lattice, 3);
-  std::int64_t bytes = 0;
-  if (scene.field.own.nonlocal) bytes += spins;
-  if (scene.columns && !scene.columns->applied.empty()) bytes += spins;
-  if (scene.columns && !scene.columns->constants.empty()) bytes += 2 * spins;
-  if (scene.columns && !scene.columns->dampings.empty()) bytes += field_bytes<Real>(lattice, 1);
-  if (io::needs_pass(scene)) {
-    int const of_bonds = scene.field.exchange_factors.there() ? 4 : 0;
-    int const of_vacancies = io::has_vacancies(scene) ? 1 : 0;
-    int const of_moments = io::has_moments_of_sites(scene) ? 1 : 0;
-    bytes += spins + (3 + of_bonds + of_vacancies + of_moments) * field_bytes<Real>(lattice, 1);
-    if (of_moments > 0 && io::is_nonlocal(scene.field)) bytes += spins;
-  }
-  if (auto const& slab = scene.field.slab_demag; slab && (slab->on_host || slab->multirate))
-    bytes += spins;
-  if (scene.field.demag) bytes += spins + demagnetization_bytes<Real>(*scene.field.demag, lattice);
-  return bytes;
-}
-
-template <class Real>
 Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& variant,
                  Precision precision, std::int64_t planes_at_once) {
   Memory memory;
   memory.spins = field_bytes<Real>(lattice, 3);
   bool const is_far = !io::couplings(scene).empty() || io::reach_of_interlayers(scene) > 0;
   memory.work = variant.work_bytes(lattice, !io::is_nonlocal(scene.field) && !is_far, precision);
-  memory.field = memory_of_field<Real>(scene, lattice);
+  memory.field = memory_of_terms<Real>(scene, lattice);
   if (scene.output.terms && scene.system.kind == io::SystemKind::llg)
     for (auto const& term : single_terms(scene))
-      memory.field += memory_of_field<Real>(term.second, lattice);
+      memory.field += memory_of_terms<Real>(term.second, lattice);
   if (scene.output.regions) memory.field += 2 * field_bytes<Real>(lattice, 1);
   if (scene.lattice.follow) memory.field += memory.spins + field_bytes<Real>(lattice, 1);
   if (has_slow_field(scene)) {
