@@ -337,7 +337,8 @@ TEST_F(EnsemblesOnRanks, AreRefusedInOneLine) {
 
 TEST_F(EnsemblesOnRanks, SayOnceThatOneHasTooLittleMemory) {
   // The field of a replica is 131 MB.
-  write("all.toml", film("[256, 256, 160]", "method = \"rkmk4\"") + ensemble(2));
+  write("all.toml",
+        film("[256, 256, 160]", "method = \"rkmk4\"", "uniform = [0, 0, 1]") + ensemble(2));
   expect_too_little_memory(into("out.h5"));
 }
 

@@ -76,7 +76,10 @@ class OnRanks : public ProgramTest {
   }
 };
 
-inline std::string film(std::string const& shape, std::string const& integrator) {
+/// `start`: the contents of [initial].
+inline std::string film(std::string const& shape, std::string const& integrator,
+                        std::string const& start = R"toml(expression = [
+"cos(5*x + 2*y)", "sin(3*z + y)", "x - 0.3*k"])toml") {
   return fmt::format(R"toml([system]
 kind = "llg"
 damping = 0.1
@@ -88,7 +91,7 @@ exchange = 1.0
 anisotropy = {{ constant = 0.7, axis = [1, 2, 3] }}
 applied = ["0.5*cos(7*t)", "0.1", "0.4"]
 [initial]
-expression = ["cos(5*x + 2*y)", "sin(3*z + y)", "x - 0.3*k"]
+{}
 [integrator]
 {}
 dt = 0.02
@@ -97,6 +100,6 @@ steps = 30
 every = 10
 scalars_every = 5
 )toml",
-                     shape, integrator);
+                     shape, start, integrator);
 }
 }  // namespace cayspin::program::test
