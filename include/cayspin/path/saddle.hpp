@@ -113,9 +113,9 @@ class SaddleSearch {
       double const round_off = hessian.round_off(options.strongest_field);
       double const finest = std::max(1e-6 * options.strongest_field, round_off);
       auto const so_far = [&] {
-        auto now = found;
-        now.evaluations += hessian.evaluations();
-        return now;
+        auto with_hessian = found;
+        with_hessian.evaluations += hessian.evaluations();
+        return with_hessian;
       };
       // At least a few steps, so that the vector follows the state.
       auto const most_steps = [&] {
