@@ -13,6 +13,7 @@
 
 #include <cayspin/lowest_escape.hpp>
 #include <cayspin/observer/normalize.hpp>
+#include <cayspin/path/image_energy.hpp>
 #include <cayspin/path/probed_field.hpp>
 #include <cayspin/path/saddle.hpp>
 
@@ -34,6 +35,9 @@ namespace {
 constexpr std::int64_t most_zero_modes = 4;  // of a state with more, fewer modes are climbed
 // Curvatures of zero modes are below this fraction of the field without exchange.
 constexpr double zero_mode = 1e-4;
+// A state that is found again in double precision has the energy of the path's state up to this
+// part of the lower barrier, unless it is another state or the path's state is far from rest.
+constexpr double same_energy = 1e-2;
 
 struct Interrupted {};
 
@@ -46,9 +50,23 @@ auto in_double(Space const& exec, Given const& given) {
   return spins;
 }
 
+/// Throws NumbersFailed if the energy of a state changed when it was found again in double
+/// precision. The energies are those of the start, the saddle and the end.
+void require_same_states(std::array<double, 3> const& given, std::array<double, 3> const& found) {
+  double const barrier = given[1] - std::max(given[0], given[2]);
+  constexpr std::array names{"the start", "the saddle", "the end"};
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (!(std::abs(found[i] - given[i]) <= same_energy * barrier))
+      throw NumbersFailed(
+          fmt::format("rates: in double precision, the search leads from {} to a state of another "
+                      "energy; accepted: a smaller bound on the torque, or a path in double "
+                      "precision",
+                      names[i]));
+}
+
 /// Returns the rates for a path in single precision. Its Hessians would have errors above the
 /// smallest curvatures, so its ends and its saddle are found again in double precision. Throws like
-/// rates_of, and NumbersFailed if a search fails.
+/// rates_of, and NumbersFailed if a search fails or leads to another state.
 template <class Space, class Given>
 io::RatesOfPath rates_in_double(Space const& exec, io::Scene const& scene, Given const& from,
                                 Given const& saddle, Given const& to,
@@ -69,6 +87,11 @@ io::RatesOfPath rates_in_double(Space const& exec, io::Scene const& scene, Given
     poll();
     return Next::proceed;
   };
+  Spins const gradient("path::gradient", lattice);
+  auto const energy_of = [&](Spins const& spins) {
+    return cayspin::detail::look_at_image(exec, field, 0, spins, gradient).energy.value;
+  };
+  std::array const given{energy_of(ends[0]), energy_of(top), energy_of(ends[1])};
   SceneMinimizer<double, Space> minimizer(top);
   MinimizeOptions const options{.torque = torque, .observer = proceed};
   for (auto& end : ends)
@@ -87,6 +110,7 @@ io::RatesOfPath rates_in_double(Space const& exec, io::Scene const& scene, Given
                                  probed.climb(0, torque, most_evaluations),
                                  [&](auto const& now) { return proceed(now) == Next::proceed; });
   if (!found.is_saddle) throw not_found("the saddle was not found again");
+  require_same_states(given, {energy_of(ends[0]), found.energy.value, energy_of(ends[1])});
   return rates_of(scene, exec, field, ends[0], search.spins(), ends[1], found.curvature, poll);
 }
 

@@ -79,6 +79,31 @@ uniform = [0, 0, 1]
     EXPECT_NEAR(single[i] / expected[i], 1, 1e-6) << i;
 }
 
+// With a loose bound on the torque, the ends of another field count as ends of the path in single
+// precision. A search in double precision moves them, so their rates would not be those of the
+// path.
+TEST_F(PathCommand, RefusesRatesOfOtherStatesThanThoseOfThePath) {
+  write_ends(scene);
+  auto const more = Arguments{"--rates",
+                              "--quiet",
+                              "--precision",
+                              "single",
+                              "--overwrite",
+                              "--set",
+                              "field.applied=[0, 0, 0]"};
+  auto const outcome = start(arguments(joined(more, {"--torque", "0.5"})));
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_TRUE(outcome.errors.ends_with(
+      "scene.toml: path.h5 has the path, but no rates: in double precision, the search leads from "
+      "the start to a state of another energy; accepted: a smaller bound on the torque, or a path "
+      "in double precision\n"))
+      << outcome.errors;
+  EXPECT_NEAR(attribute("barrier_forward"), 3 * 0.5 * 1.3 * (1 - std::pow(0.4 / 1.3, 2)), 1e-3);
+  EXPECT_THROW(attribute("prefactor_forward"), std::runtime_error);
+  expect_status(0, arguments(joined(more, {"--torque", "1e-4"})));
+  EXPECT_GT(attribute("prefactor_forward"), 0);
+}
+
 // A frozen neighbour along x acts as a field.
 TEST_F(PathCommand, GivesTheRateBesideAFrozenSpin) {
   auto const ends = [&](std::string const& text, std::string const& up, std::string const& down) {
