@@ -92,7 +92,7 @@ class ModesOfScene {
  public:
   ModesOfScene(io::Scene const& scene, Lattice const& lattice, ModesCommand const& options)
       : scene_(scene), options_(options), spins_("spins", lattice) {
-    copy_from_host(io::initial_spins(scene), spins_);
+    copy_from_host(start_spins(scene, options.scene), spins_);
   }
 
   int run(std::filesystem::path const& path) {

@@ -59,8 +59,7 @@ void start_at(io::Scene& scene, fs::path const& file, io::TrajectoryHeader const
     throw UsageError("--frame: --set changes the start; accepted: one of them");
   if (scene.lattice.shape != header.shape || std::ssize(scene.lattice.basis) != header.cell_sites)
     throw UsageError(
-        fmt::format("{}: its lattice is {}, that of the scene is {}; accepted: the "
-                    "same shape",
+        fmt::format("{}: its lattice is {}, that of the scene is {}; accepted: the same shape",
                     file.string(), sites_text(header.shape, header.cell_sites),
                     sites_text(scene.lattice.shape, std::ssize(scene.lattice.basis))));
   scene.initial = io::GivenStart{std::make_shared<std::vector<double> const>(read())};
@@ -123,6 +122,26 @@ StartOfModes in_trajectory(fs::path const& file, std::vector<std::string> const&
   return start;
 }
 
+/// Calls work() and returns its result. Errors in the spins of `file`, which scene_in() made the
+/// start, name the file as it was typed.
+template <class Work>
+auto with_typed_name(fs::path const& file, Work const& work) {
+  try {
+    return work();
+  } catch (io::SceneError const& error) {
+    std::string_view text = error.what();
+    auto const leave_out = [&](std::string const& words) {
+      if (!text.starts_with(words)) return false;
+      text.remove_prefix(words.size());
+      return true;
+    };
+    auto const option = fmt::format("--set {}: ", as_start(file));
+    if (!leave_out(option + "initial.file: ") && !leave_out(option + "initial.given: ")) throw;
+    leave_out(fs::absolute(file).string() + ": ");
+    throw std::runtime_error(fmt::format("{}: {}", file.string(), text));
+  }
+}
+
 }  // namespace
 
 StartOfModes start_of_modes(fs::path const& file, std::vector<std::string> const& overrides,
@@ -130,12 +149,11 @@ StartOfModes start_of_modes(fs::path const& file, std::vector<std::string> const
   if (is_hdf5(file))
     return io::is_path(file) ? in_path(file, overrides, frame)
                              : in_trajectory(file, overrides, frame);
+  StartOfModes start{io::with_shape_of_start(io::read_scene_to_relax(file, overrides))};
   if (frame)
     throw UsageError(
-        fmt::format("--frame: {} is a scene; accepted: a trajectory file, or the file "
-                    "of a path",
+        fmt::format("--frame: {} is a scene; accepted: a trajectory file, or the file of a path",
                     file.string()));
-  StartOfModes start{io::with_shape_of_start(io::read_scene_to_relax(file, overrides))};
   if (!start.scene.field.applied_in_turn.empty())
     throw io::scene_error(start.scene, "field.applied",
                           "a list of fields has one equilibrium for each field; accepted: three "
@@ -144,15 +162,11 @@ StartOfModes start_of_modes(fs::path const& file, std::vector<std::string> const
 }
 
 void check_files(io::Scene const& scene, fs::path const& file) {
-  try {
-    io::check_files(scene);
-  } catch (io::SceneError const& error) {
-    std::string_view const text = error.what();
-    auto const place =
-        fmt::format("--set {}: initial.file: {}: ", as_start(file), fs::absolute(file).string());
-    if (!text.starts_with(place)) throw;
-    throw std::runtime_error(fmt::format("{}: {}", file.string(), text.substr(place.size())));
-  }
+  with_typed_name(file, [&] { io::check_files(scene); });
+}
+
+std::vector<double> start_spins(io::Scene const& scene, fs::path const& file) {
+  return with_typed_name(file, [&] { return io::initial_spins(scene); });
 }
 
 }  // namespace cayspin::program

@@ -23,8 +23,9 @@ StartOfModes start_of_modes(std::filesystem::path const& file,
                             std::vector<std::string> const& overrides,
                             std::optional<std::string> const& frame);
 
-/// Checks the files of a scene that start_of_modes() read from `file`. If that is not a scene file,
-/// errors name it as it was typed.
+/// Check the files of a scene that start_of_modes() read from `file`, and return the spins of its
+/// start. If `file` is not a scene file, errors name it as it was typed.
 void check_files(io::Scene const& scene, std::filesystem::path const& file);
+std::vector<double> start_spins(io::Scene const& scene, std::filesystem::path const& file);
 
 }  // namespace cayspin::program

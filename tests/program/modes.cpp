@@ -179,6 +179,22 @@ TEST_F(Modes, StartFromAnyFrame) {
                  "--frame 2: accepted for rest.h5: 0 to 1, -1 to -2 from the end, last");
 }
 
+// Errors in the spins of a file name it as it was typed, and not the key or option that reads it.
+TEST_F(Modes, RefuseStatesWithOtherVacanciesThanTheScene) {
+  expect_status(0, {"relax", write("scene.toml", film), "--output", "rest.h5", "--quiet", "--set",
+                    "lattice.occupied=\"i > 0\""});
+  Arguments const filled{"modes", "rest.h5", "--set", "lattice.occupied=\"i < 7\""};
+  auto const expect_error = [&](Arguments const& more, std::string const& begin) {
+    auto const outcome = start(joined(filled, more));
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_TRUE(is_one_line(outcome.errors));
+    EXPECT_TRUE(outcome.errors.starts_with(begin)) << outcome.errors;
+    EXPECT_FALSE(exists("modes.h5"));
+  };
+  expect_error({}, "rest.h5: is zero on 6 of the 42 sites that lattice.occupied fills; accepted: ");
+  expect_error({"--frame", "0"}, "rest.h5: the spin of site (0, 0, 0) is (0, 0, 0); accepted: ");
+}
+
 TEST_F(Modes, InfoHasTheSpectrum) {
   auto const scene = write("scene.toml", film);
   EXPECT_EQ(start({"modes", scene, "--count", "2", "--hessian", "--quiet"}).status, 0);

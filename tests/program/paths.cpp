@@ -237,6 +237,7 @@ TEST_F(PathCommand, GivesItsStatesToModes) {
                  "path.h5: the command reads it, and would replace it");
   expect_refused({"modes", "a.h5", "--frame", "1"}, "--frame 1: accepted for a.h5: 0, last");
   expect_refused({"modes", "scene.toml", "--frame", "0"}, "--frame: scene.toml is a scene; ");
+  expect_refused({"modes", "none.h5", "--frame", "0"}, "none.h5: cannot be read: No such file");
   // As the start of a scene, the file is its last image.
   expect_status(0, {"relax", "scene.toml", "--output", "c.h5", "--quiet", "--set",
                     "initial={ file = \"path.h5\" }"});
