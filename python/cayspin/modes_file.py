@@ -37,7 +37,7 @@ class FileOfModes:
 
     def __init__(self, name, path, moments):
         path = arguments.file_name(path, name)
-        with _opened(path) as file:
+        with _opened(path) as file, frames.reading(file, path):
             if "mode" not in file:
                 raise CayspinError(f"{path}: bands have no shapes; accepted: a file of cayspin "
                                    "modes without --wave-vector")
@@ -52,7 +52,7 @@ class FileOfModes:
                 self.time_unit = float(file.attrs["time_unit"])
                 self.energy_unit = float(file.attrs["energy_unit"])
         read = frames.tables(path, self.scene, "the tables", "Modes with their spins")
-        self.under_current = "torque" in read
+        self.under_current = "torque" in read and self._has_torque()
         of_material = ("Ms", "mu_s", "gamma")
         if read.get("material", {}).get("damping_form") == "gilbert":
             of_material += ("alpha",)
@@ -68,6 +68,13 @@ class FileOfModes:
             lattice = read["lattice"]
             self.moments = lattice.get("moments", 1.0) / lattice.get("gyromagnetic", 1.0) * (
                 self.time_unit * (self.energy_unit or 1.0))
+
+    def _has_torque(self):
+        """Whether the scene has a torque other than 0. It has a table [torque]."""
+        try:
+            return _cayspin.Scene.parse(self.scene, self.path, [], None, {}).has_torque
+        except CayspinError:
+            return True
 
     def _moments_of_sites(self, key):
         """Returns mu / g of each site. `key`: a key of the scene that may be a file, for the
@@ -98,7 +105,8 @@ def read_modes(path: str | os.PathLike, moments: Any = None) -> Modes | Bands:
     the scene, so they are needed only if the scene has values per site in other files, which are
     not beside this one.
 
-    Raises CayspinError for a file that cannot be read, or is not of modes.
+    Raises CayspinError for a file that cannot be read, or is not of modes, and for `moments` of
+    another shape.
     """
     name = arguments.file_name(path, "read_modes")
     with _opened(name) as file, frames.reading(file, name):
@@ -108,9 +116,14 @@ def read_modes(path: str | os.PathLike, moments: Any = None) -> Modes | Bands:
                          spins)
         residual = file["residual"][:]
         curvatures = [file[key][:] if key in file else None for key in _CURVATURES]
+    if moments is not None:
+        moments = arguments.numbers(moments, "read_modes: moments")
     found = FileOfModes("read_modes", name, moments)
-    if moments is None:
+    try:
         found.moments = np.broadcast_to(found.moments, spins.shape[:-1])
+    except ValueError:
+        raise CayspinError(f"read_modes: moments of shape {moments.shape}; accepted: one that "
+                           f"broadcasts to {spins.shape[:-1]}") from None
     return Modes(found.frequency, found.decay, residual, found.shape, found.converged, cost,
                  found.time_unit, found.energy_unit, found.under_current, found.moments,
                  *curvatures, spins)

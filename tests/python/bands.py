@@ -7,6 +7,7 @@ import threading
 import unittest
 
 import cayspin
+import h5py
 import numpy as np
 from package_test import PackageTest
 from spectra_test import ANISOTROPY, DAMPING, EXCHANGE, chain
@@ -140,11 +141,36 @@ class OfModes(PackageTest):
         self.assertEqual((read.time_unit, read.energy_unit, read.under_current, read.converged),
                          (1.0, None, False, True))
         self.assertEqual(read.negative_curvatures, 0)
+        for moments in (2, [[[[3.0]]], [[[4.0]]]]):
+            given = cayspin.read_modes(file.filename, moments).moments
+            np.testing.assert_array_equal(given, np.broadcast_to(moments, (2, 1, 1, 4)))
+        self.assert_refused(cayspin.CayspinError, "read_modes: moments of shape (3,); accepted: "
+                            "one that broadcasts to (2, 1, 1, 4)", cayspin.read_modes,
+                            file.filename, [1, 2, 3])
         w = np.linspace(-3, 3, 31)
         of_file = cayspin.linear_structure_factor(file.filename, 0.1, w)
         of_read = cayspin.linear_structure_factor(read, 0.1, w, cell=made.cell,
                                                   positions=made.basis)
         np.testing.assert_array_equal(of_read.intensity["xx"], of_file.intensity["xx"])
+
+    # A torque of strength 0 counts as none, as in Simulation.modes().
+    def test_files_with_torques(self):
+        for damping_like, expected in ((0.0, False), (1e-3, True)):
+            made = chain(**SHORT, torque={"slonczewski": {"damping_like": damping_like,
+                                                          "polarization": [0, 0, 1]}})
+            file = self.run_program(made, "--count", "1", command="modes")
+            self.assertIs(cayspin.read_modes(file.filename).under_current, expected)
+            self.assertIs(cayspin.Simulation(made).modes(1).under_current, expected)
+
+    def test_damaged_files(self):
+        file = self.run_program(chain(**SHORT), "--count", "1", command="modes")
+        name = file.filename
+        file.close()
+        with h5py.File(name, "r+") as damaged:
+            del damaged["decay"]
+        for call in (lambda: cayspin.read_modes(name),
+                     lambda: cayspin.linear_structure_factor(name, 0.1, [0.0, 1.0])):
+            self.assert_refused(cayspin.CayspinError, "cannot be read: ", call)
 
     def test_other_files(self):
         run = self.run_program(chain(**SHORT), "--set", "integrator.steps=1")
