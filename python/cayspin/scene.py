@@ -155,13 +155,14 @@ class Scene:
     `field["applied"]` may be a function of t that returns three numbers: the uniform field, in T in
     SI. It may also be an array (nz, ny, nx, 3) of a field that differs from site to site and does
     not depend on t or the spins; its energy is -sum mu m.H. The array becomes an entry of
-    `sources`. `field["nonlocal"]` may be a function of (spins, t) that returns H of all sites in
-    the shape of the spins, in SI also in T. It is called with a copy of the spins whenever a step
-    or an energy needs the field. H has to be linear in the spins, and with the moments mu the
-    matrix of mu H has to be symmetric, so that the energy of this field is -sum mu m.H / 2. A field
-    that does not depend on the spins would thus have half its energy: pass it as `applied` or
-    `sources`. H may depend on t, so the energy guard is off, and the steps of adaptive methods are
-    at most dt.
+    `sources`: field.applied of set() and `applied` of relax() are added to it.
+
+    `field["nonlocal"]` may be a function of (spins, t) that returns H of all sites in the shape of
+    the spins, in SI also in T. It is called with a copy of the spins whenever a step or an energy
+    needs the field. H has to be linear in the spins, and with the moments mu the matrix of mu H has
+    to be symmetric, so that the energy of this field is -sum mu m.H / 2. A field that does not
+    depend on the spins would thus have half its energy: pass it as `applied` or `sources`. H may
+    depend on t, so the energy guard is off, and the steps of adaptive methods are at most dt.
 
     Raises SceneError with one line that names the key, what is wrong and what is accepted.
     """

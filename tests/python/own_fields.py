@@ -278,6 +278,12 @@ class ConstantFields(PackageTest):
         crystal = np.random.default_rng(2).normal(size=(2, *SHAPE, 3))
         sim = cayspin.Simulation(scene({"applied": crystal}, lattice=CRYSTAL))
         np.testing.assert_allclose(sim.field(), crystal, rtol=1e-15)
+        sim.set("field.applied", [0, 0, 2])
+        np.testing.assert_allclose(sim.field(), crystal + [0, 0, 2], rtol=1e-14)
+        sim.relax(applied=[0, 0, 100], torque=1e-9)
+        total = crystal + [0, 0, 100]
+        np.testing.assert_allclose(
+            sim.spins, total / np.linalg.norm(total, axis=-1, keepdims=True), atol=1e-9)
 
     def test_an_applied_array_that_is_wrong_is_refused_in_one_line(self):
         array = np.ones((*SHAPE, 3))
