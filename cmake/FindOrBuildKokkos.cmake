@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # Provides Kokkos::kokkos: a parent project's target, else an installed package, else a source tree.
 # Sets CAYSPIN_KOKKOS_VERSION, _ORIGIN and _BACKENDS for the summary and for the tests.
+include(${CMAKE_CURRENT_LIST_DIR}/cayspinCudaToolkit.cmake)
 set(CAYSPIN_KOKKOS_MINIMUM 4.5)
 set(CAYSPIN_KOKKOS_BEYOND 6)
 
@@ -11,7 +12,7 @@ else()
     set(built_by_bootstrap HINTS ${PROJECT_SOURCE_DIR}/.deps/kokkos)
   endif()
   if(NOT SKBUILD OR CAYSPIN_PROCESSOR STREQUAL native)
-    find_package(Kokkos ${CAYSPIN_KOKKOS_MINIMUM} CONFIG QUIET ${built_by_bootstrap})
+    cayspin_find_with_cuda(Kokkos ${CAYSPIN_KOKKOS_MINIMUM} CONFIG QUIET ${built_by_bootstrap})
   endif()
   if(SKBUILD AND NOT Kokkos_FOUND)
     include(${CMAKE_CURRENT_LIST_DIR}/KokkosForWheels.cmake)

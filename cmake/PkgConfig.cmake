@@ -9,7 +9,7 @@ function(cayspin_link_flags target flags)
   # A Kokkos that is built within this project finds these packages only for itself, so they are
   # looked for here again.
   if(NOT TARGET ${target} AND target MATCHES "^CUDA::")
-    cayspin_find_cuda_toolkit(QUIET)
+    cayspin_find_with_cuda(CUDAToolkit QUIET)
   elseif(NOT TARGET ${target} AND target MATCHES "^(OpenMP|Threads)::")
     find_package(${CMAKE_MATCH_1} QUIET)
   endif()

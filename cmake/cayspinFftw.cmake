@@ -14,7 +14,7 @@ if(NOT TARGET cayspin::fftw AND CAYSPIN_FFTW_INCLUDE_DIR AND CAYSPIN_FFTW_DOUBLE
                                                 ${CAYSPIN_FFTW_SINGLE})
   if(Kokkos_ENABLE_CUDA OR "CUDA" IN_LIST Kokkos_DEVICES)
     include(${CMAKE_CURRENT_LIST_DIR}/cayspinCudaToolkit.cmake)
-    cayspin_find_cuda_toolkit(REQUIRED)
+    cayspin_find_with_cuda(CUDAToolkit REQUIRED)
     target_link_libraries(cayspin::fftw INTERFACE CUDA::cufft)
   endif()
 endif()
