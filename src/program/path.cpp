@@ -4,11 +4,11 @@
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
 #include "describe.hpp"
+#include "file_as_start.hpp"
 #include "info_file.hpp"
 #include "info_found.hpp"
 #include "io/notes.hpp"
 #include "io/relax.hpp"
-#include "io/toml_string.hpp"
 #include "progress.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/message.hpp"
@@ -20,7 +20,6 @@
 #include <cstdio>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace cayspin::program {
@@ -39,10 +38,6 @@ struct PathCommandOptions : DeviceOptions {
 struct EndOption {
   char const* name;
   std::filesystem::path const& file;
-
-  std::string as_start() const {
-    return "initial={ file = " + io::toml_string(std::filesystem::absolute(file).string()) + " }";
-  }
 };
 
 /// Calls work() and returns its result. If the option's file is at fault, throws UsageError with
@@ -52,20 +47,16 @@ auto for_option(EndOption const& option, Work const& work) {
   try {
     return work();
   } catch (io::SceneError const& error) {
-    std::string_view text = error.what();
-    auto const place = fmt::format("--set {}: initial.file: ", option.as_start());
-    if (!text.starts_with(place)) throw;
-    text.remove_prefix(place.size());
-    auto const whole_name = std::filesystem::absolute(option.file).string() + ": ";
-    if (text.starts_with(whole_name)) text.remove_prefix(whole_name.size());
-    throw UsageError(fmt::format("{} {}: {}", option.name, option.file.string(), text));
+    auto const fault = fault_of_start(error, option.file);
+    if (!fault) throw;
+    throw UsageError(fmt::format("{} {}: {}", option.name, option.file.string(), *fault));
   }
 }
 
 /// Returns the scene with one end of the path as its start.
 io::Scene scene_from(PathCommandOptions const& options, EndOption const& option) {
   auto overrides = options.overrides;
-  overrides.push_back(option.as_start());
+  overrides.push_back(as_start(option.file));
   auto const scene = io::read_scene_to_relax(options.scene, overrides);
   return for_option(option, [&] { return io::with_shape_of_start(scene); });
 }

@@ -2,10 +2,10 @@
 #include "start_of_modes.hpp"
 
 #include "command.hpp"
+#include "file_as_start.hpp"
 #include "io/notes.hpp"
 #include "io/path.hpp"
 #include "io/relax.hpp"
-#include "io/toml_string.hpp"
 #include "io/trajectory.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/text.hpp"
@@ -35,10 +35,6 @@ bool is_hdf5(fs::path const& path) {
   std::array<char, 8> first{};
   file.read(first.data(), first.size());
   return file && std::string_view(first.data(), first.size()) == "\x89HDF\r\n\x1a\n";
-}
-
-std::string as_start(fs::path const& file) {
-  return fmt::format("initial={{file={}}}", io::toml_string(fs::absolute(file).string()));
 }
 
 /// Parses the scene in a file. Its start is the file, unless the overrides change it.
@@ -129,16 +125,9 @@ auto with_typed_name(fs::path const& file, Work const& work) {
   try {
     return work();
   } catch (io::SceneError const& error) {
-    std::string_view text = error.what();
-    auto const leave_out = [&](std::string const& words) {
-      if (!text.starts_with(words)) return false;
-      text.remove_prefix(words.size());
-      return true;
-    };
-    auto const option = fmt::format("--set {}: ", as_start(file));
-    if (!leave_out(option + "initial.file: ") && !leave_out(option + "initial.given: ")) throw;
-    leave_out(fs::absolute(file).string() + ": ");
-    throw std::runtime_error(fmt::format("{}: {}", file.string(), text));
+    auto const fault = fault_of_start(error, file);
+    if (!fault) throw;
+    throw std::runtime_error(fmt::format("{}: {}", file.string(), *fault));
   }
 }
 
