@@ -37,7 +37,9 @@ class Modes:
     residual: np.ndarray  #: (mode,), relative errors of the shapes
     #: complex, (mode, nz, ny, nx, 3) or (mode, site, ..); the longest vector of a mode has length 1
     shape: np.ndarray
-    converged: bool  #: whether all residuals are below `tolerance`
+    #: whether all residuals, with `hessian` also `curvature_residual`, are below `tolerance` or
+    #: round-off
+    converged: bool
     evaluations: int  #: of the field of all sites
     time_unit: float = 1.0  #: in SI the unit of reduced times, in s; 1 in reduced units
     energy_unit: float | None = None  #: in SI the unit of reduced energies, in J; else None
