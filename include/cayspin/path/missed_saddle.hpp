@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/minimizer/minimum.hpp>
 #include <cayspin/minimizer/trial.hpp>
 #include <cayspin/path/found.hpp>
 #include <cayspin/path/great_circles.hpp>
