@@ -45,6 +45,8 @@ struct Columns {
   std::vector<double> heats() const;
   /// Replaces the constants of field.anisotropies by those of a column.
   void put_constants(std::size_t column, Field& field) const;
+  /// Replaces all values of a scene that differ between columns by those of a column.
+  void put(std::size_t column, Scene& scene) const;
 };
 
 /// Returns the scene of one replica, without [ensemble]: the varied keys have the replica's values,

@@ -271,6 +271,7 @@ std::optional<Columns> values_of_replicas(Scene const& scene, Scene const& one, 
       varies([&](auto const& key) { return detail::term_of_constant(key, one).has_value(); });
   bool const dampings =
       varies([](auto const& key) { return key == "system.damping" || key == "material.alpha"; });
+  bool const varies_heat = temperatures || (dampings && one.thermal);
   // In Gilbert's form, the unit of time depends on the damping.
   if (dampings && one.material && one.material->gilbert) return std::nullopt;
   // The noise multiplies by such a factor between temperature and damping.
@@ -296,12 +297,14 @@ std::optional<Columns> values_of_replicas(Scene const& scene, Scene const& one, 
     if (!std::isfinite(x + y + z) || !(damping >= 0) || !std::isfinite(damping) ||
         !(temperature >= 0) || !std::isfinite(temperature) || (temperature > 0 && damping == 0))
       return std::nullopt;
+    // As in require_moderate_noise.
+    if (varies_heat && damping * temperature * one.integrator.dt > 1) return std::nullopt;
   }
   auto const are_finite = [](auto const& numbers) {
     return std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); });
   };
   if (!std::ranges::all_of(columns.constants, are_finite)) return std::nullopt;
-  if (!temperatures && !(dampings && one.thermal)) columns.temperatures.clear();
+  if (!varies_heat) columns.temperatures.clear();
   if (!dampings) columns.dampings.clear();
   if (!applied) columns.applied.clear();
   return columns;
@@ -319,6 +322,14 @@ Columns Columns::part(std::int64_t first, std::int64_t count) const {
 void Columns::put_constants(std::size_t column, Field& field) const {
   for (std::size_t term = 0; term < field.anisotropies.size(); ++term)
     field.anisotropies[term].constant = constants[column][term];
+}
+
+void Columns::put(std::size_t column, Scene& scene) const {
+  if (!temperatures.empty()) scene.thermal->temperature = temperatures[column];
+  if (!dampings.empty()) scene.system.damping = dampings[column];
+  for (std::size_t c = 0; c < 3 && !applied.empty(); ++c)
+    (*scene.field.applied)[c] = applied[column][c];
+  if (!constants.empty()) put_constants(column, scene.field);
 }
 
 std::vector<double> Columns::heats() const {

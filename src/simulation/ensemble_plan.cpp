@@ -34,10 +34,8 @@ double file_bytes_of_ensemble(io::Scene const& scene, io::Scene const& replica, 
   return once + replicas * (plan.file_bytes - once + of_varied_keys + of_searches);
 }
 
-void require_memory_of_replicas(io::Scene const& scene, io::Scene const& replica, Plan const& plan,
-                                Precision precision, std::int64_t replicas,
+void require_memory_of_replicas(io::Scene const& scene, double needed,
                                 std::optional<std::int64_t> available) {
-  auto const needed = memory_of_replicas(replica, plan, precision, replicas);
   auto const found = available ? *available : io::available_memory();
   if (needed <= static_cast<double>(found)) return;
   throw io::scene_error(

@@ -8,17 +8,15 @@
 #include "scene_minimizer.hpp"
 #include "text.hpp"
 #include "turn.hpp"
+#include "warning_of_columns.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <exception>
 #include <functional>
 #include <limits>
-#include <numeric>
-#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -31,48 +29,8 @@ void require_memory_of_all(io::Scene const& scene, io::Scene const& replica, Pre
                            std::optional<std::int64_t> available = {}) {
   auto const plan =
       relaxes ? make_plan_to_relax(replica, precision) : make_plan(replica, precision);
-  require_memory_of_replicas(scene, replica, plan, precision, replicas, available);
-}
-
-// Adds the columns of which no other one has larger fields (of `applied` and anisotropies) and also
-// a larger damping (for `sign` -1, a smaller one).
-void add_largest(io::Columns const& values, double sign, std::set<std::ptrdiff_t>& columns) {
-  auto const field = [&](std::size_t column) {
-    double sum = 0;
-    if (!values.applied.empty()) {
-      auto const& [x, y, z] = values.applied[column];
-      sum = std::hypot(x, y, z);
-    }
-    if (!values.constants.empty())
-      for (double const constant : values.constants[column]) sum += std::abs(constant);
-    return sum;
-  };
-  auto const damping = [&](std::size_t column) {
-    return values.dampings.empty() ? 0 : sign * values.dampings[column];
-  };
-  std::vector<std::size_t> by_field(
-      std::max({values.dampings.size(), values.applied.size(), values.constants.size()}));
-  std::iota(by_field.begin(), by_field.end(), std::size_t{0});
-  std::ranges::stable_sort(by_field, std::greater(), [&](std::size_t column) {
-    return std::pair(field(column), damping(column));
-  });
-  double most = -std::numeric_limits<double>::infinity();
-  for (auto const column : by_field) {
-    if (damping(column) <= most) continue;
-    most = damping(column);
-    columns.insert(static_cast<std::ptrdiff_t>(column));
-  }
-}
-
-// Returns the columns whose steps may be the least accurate, if columns differ: the one with the
-// most noise, and those with the largest fields, each with the largest and with the smallest
-// dampings.
-std::set<std::ptrdiff_t> extremes_of(io::Columns const& values) {
-  std::set<std::ptrdiff_t> extremes;
-  if (auto const heats = values.heats(); !heats.empty())
-    extremes.insert(std::ranges::max_element(heats) - heats.begin());
-  for (double const sign : {1.0, -1.0}) add_largest(values, sign, extremes);
-  return extremes;
+  require_memory_of_replicas(scene, memory_of_replicas(replica, plan, precision, replicas),
+                             available);
 }
 
 }  // namespace
@@ -105,28 +63,34 @@ EnsembleRun::EnsembleRun(io::Scene const& scene, RunSettings const& settings, bo
                            : static_cast<double>(std::numeric_limits<float>::epsilon());
   guards_.assign(replicas, Guard(first().scene(), epsilon));
   auto of_replica = first().scene();
-  auto const& temperatures = columns_->values().temperatures;
-  auto const& dampings = columns_->values().dampings;
-  if (temperatures.empty() && dampings.empty()) return;
+  auto const& values = columns_->values();
+  if (values.temperatures.empty() && values.dampings.empty()) return;
   for (std::size_t number = 0; number < replicas; ++number) {
-    if (!temperatures.empty()) of_replica.thermal->temperature = temperatures[number];
-    if (!dampings.empty()) of_replica.system.damping = dampings[number];
+    values.put(number, of_replica);
     guards_[number] = Guard(of_replica, epsilon);
   }
 }
 
 std::optional<std::string> EnsembleRun::warning() const {
   Turn::Reserved const turn;
-  auto const extremes = columns_ ? extremes_of(columns_->values()) : std::set<std::ptrdiff_t>();
-  for (auto const extreme : extremes) {
-    auto const number = share_.own.first + extreme;
-    auto const warning = SceneRun::open(io::replica_of(scene_, number), settings_)->warning();
-    if (warning) return fmt::format("replica {}: {}", number, *warning);
+  auto const named = [&](std::size_t number, std::string const& text) {
+    return fmt::format("replica {}: {}", number_of(number), text);
+  };
+  if (columns_) {
+    auto const& one = first().scene();
+    auto const found = warning_of_columns(one, columns_->values(), settings_.precision);
+    if (!found) return std::nullopt;
+    auto const warning = named(found->column, found->text);
+    if (one.integrator.refuse_unstable) throw io::SceneError(warning);
+    return warning;
   }
-  if (!extremes.empty()) return std::nullopt;
-  for (std::size_t number = 0; number < runs_.size(); ++number)
-    if (auto const warning = runs_[number]->warning())
-      return fmt::format("replica {}: {}", number_of(number), *warning);
+  for (std::size_t number = 0; number < runs_.size(); ++number) {
+    try {
+      if (auto const warning = runs_[number]->warning()) return named(number, *warning);
+    } catch (io::SceneError const& error) {
+      throw io::SceneError(named(number, error.what()));
+    }
+  }
   return std::nullopt;
 }
 
@@ -205,6 +169,8 @@ Advanced EnsembleRun::advance_runs(std::int64_t target, Looks const& looks) {
 }
 
 Advanced EnsembleRun::advance_columns(std::int64_t target, Looks const& looks) {
+  // Separate runs, too, check the state from which they start.
+  if (target > steps_ && guards_.front().last_look() < 0) check_columns();
   samples_.clear();
   auto const ended = columns_->advance(target, looks);
   steps_ = columns_->steps();
@@ -221,6 +187,7 @@ Advanced EnsembleRun::advance_columns(std::int64_t target, Looks const& looks) {
         throw NumbersFailed(fmt::format("replica {}: {}", number, failure.what()));
       }
     }
+    check_columns();  // an energy that rose before the step from which these runs continued
     try {
       std::rethrow_exception(ended.error);
     } catch (NumbersFailed const& failure) {
@@ -236,7 +203,7 @@ Advanced EnsembleRun::advance_columns(std::int64_t target, Looks const& looks) {
 
 void EnsembleRun::check_columns() {
   auto const& units = first().scene().units;
-  samples_ = columns_->samples();
+  if (samples_.empty()) samples_ = columns_->samples();
   for (std::size_t number = 0; number < samples_.size(); ++number) {
     auto const& [step, time, energy, defect, m, rate] = samples_[number];
     auto const failure = guards_[number].judge(

@@ -264,6 +264,11 @@ std::optional<std::string> dt_warning(io::Scene const& scene, Plan const& plan) 
   return error.what();
 }
 
+std::optional<std::string> dt_warning_of_run(io::Scene const& scene, Plan plan) {
+  if (scene.integrator.steps == 0) plan.times.steps = plan.times.first + 1;
+  return dt_warning(scene, plan);
+}
+
 void keep_part(Plan& plan, io::Scene const& scene, Precision precision, Lattice const& local,
                std::int64_t planes_at_once) {
   plan.lattice = local;
@@ -274,9 +279,8 @@ void keep_part(Plan& plan, io::Scene const& scene, Precision precision, Lattice 
 
 bool fits(Plan const& plan) { return plan.memory.total() <= io::available_memory(); }
 
-void require_memory(io::Scene const& scene, Plan const& plan, int ranks,
-                    std::optional<std::int64_t> of_all) {
-  std::int64_t const available = of_all.value_or(io::available_memory()) / ranks;
+void require_memory(io::Scene const& scene, Plan const& plan, int ranks) {
+  std::int64_t const available = io::available_memory() / ranks;
   if (plan.memory.total() > available)
     throw io::scene_error(
         scene, "lattice.shape",

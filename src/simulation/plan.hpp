@@ -65,6 +65,8 @@ std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units);
 /// Returns why dt is too large as a line that names the scene's key. If the scene sets
 /// refuse_unstable, throws that line as io::SceneError.
 std::optional<std::string> dt_warning(io::Scene const& scene, Plan const& plan);
+/// Like dt_warning(scene, plan), but for a run, which has no end if integrator.steps is 0.
+std::optional<std::string> dt_warning_of_run(io::Scene const& scene, Plan plan);
 
 /// Returns true if there is memory for the run.
 bool fits(Plan const& plan);
@@ -76,7 +78,6 @@ void keep_part(Plan& plan, io::Scene const& scene, Precision precision, Lattice 
 
 /// Throws io::SceneError if the run needs more memory than is available to one of `ranks` ranks on
 /// this machine.
-void require_memory(io::Scene const& scene, Plan const& plan, int ranks = 1,
-                    std::optional<std::int64_t> available = {});
+void require_memory(io::Scene const& scene, Plan const& plan, int ranks = 1);
 
 }  // namespace cayspin::simulation

@@ -175,10 +175,12 @@ std::optional<ReplicaColumns> ReplicaColumns::open(io::Scene const& scene, io::S
     std::int64_t const count = std::min(columns, replicas - begin);
     return scene_of_columns(one, begin, values->part(begin, count), count);
   };
-  auto plan = make_plan(scene_from(0), settings.precision);
-  plan.memory.work += 2 * bytes_of_open_run;  // the columns, and a replica for samples
-  require_memory(scene, plan, static_cast<int>((share.on_this_machine + columns - 1) / columns),
-                 share.available);
+  auto const of_lattice = make_plan(scene_from(0), settings.precision).memory.total() +
+                          2 * bytes_of_open_run +  // the columns, and a replica for samples
+                          columns * bytes_of_column;
+  auto const lattices = (share.on_this_machine + columns - 1) / columns;
+  require_memory_of_replicas(scene, static_cast<double>(lattices) * static_cast<double>(of_lattice),
+                             share.available);
   opened.emplace();
   opened->values_ = *values;
   for (std::int64_t begin = 0; begin < replicas; begin += columns) {

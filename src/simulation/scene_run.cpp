@@ -154,11 +154,7 @@ void SceneRun::exchange_with(Checkpoint& checkpoint) {
 
 bool SceneRun::remembers() const { return simulation::remembers(scene_, plan()); }
 
-std::optional<std::string> SceneRun::warning() const {
-  auto plan = *held_plan_;
-  if (scene_.integrator.steps == 0) plan.times.steps = plan.times.first + 1;  // steps = 0: no end
-  return dt_warning(scene_, plan);
-}
+std::optional<std::string> SceneRun::warning() const { return dt_warning_of_run(scene_, plan()); }
 
 std::int64_t SceneRun::step_at(double t) const {
   if (!std::isfinite(t)) throw UsageError(fmt::format("t = {}; accepted: a finite time >= 0", t));

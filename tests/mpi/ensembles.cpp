@@ -304,7 +304,7 @@ TEST_F(EnsemblesOnRanks, SpeakOnce) {
     EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
     EXPECT_TRUE(contains(outcome.errors, "warning: replica 2: ")) << outcome.errors;
     expect_refused(start_on(ranks, into("b.h5", set("integrator.refuse_unstable=true"))),
-                   "integrator");
+                   "replica 2: ");
     EXPECT_FALSE(exists("b.h5"));
   }
   write("all.toml", chain_scene() + ensemble(4));

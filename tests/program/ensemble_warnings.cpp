@@ -23,7 +23,7 @@ TEST_F(EnsembleWarnings, WarnOfAStepThatIsTooLongForOneReplica) {
   EXPECT_TRUE(contains(outcome.errors, "warning: replica 2: ")) << outcome.errors;
   expect_refused({"run", "all.toml", "--quiet", "--output", "b.h5", "--set",
                   "integrator.refuse_unstable=true"},
-                 "integrator");
+                 "replica 2: all.toml:");
   EXPECT_FALSE(exists("b.h5"));
 }
 
@@ -37,7 +37,7 @@ TEST_F(EnsembleWarnings, WarnOfTheReplicaWithTheLargestFieldOrDamping) {
     EXPECT_TRUE(contains(outcome.errors, "warning: replica 31: ")) << key << outcome.errors;
     expect_refused({"run", "all.toml", "--quiet", "--output", "b.h5", "--set",
                     "integrator.refuse_unstable=true"},
-                   "integrator");
+                   "replica 31: all.toml:");
     EXPECT_FALSE(exists("b.h5"));
   }
 }
@@ -51,7 +51,7 @@ TEST_F(EnsembleWarnings, WarnOfTheHottestReplica) {
   expect_refused(joined({"run", "all.toml", "--quiet", "--output", "b.h5", "--set",
                          "integrator.refuse_unstable=true"},
                         options),
-                 "integrator");
+                 "replica 31: ");
   EXPECT_FALSE(exists("b.h5"));
 }
 

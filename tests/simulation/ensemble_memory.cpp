@@ -5,12 +5,15 @@
 #include "simulation/ensemble_plan.hpp"
 #include "simulation/ensemble_run.hpp"
 #include "simulation/kokkos_settings.hpp"
+#include "simulation/text.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cstdint>
 #include <fstream>
 #include <string>
+#include <string_view>
 
 namespace cayspin::simulation::test {
 namespace {
@@ -83,7 +86,19 @@ TEST(EnsembleMemory, OfColumnsCountsTheirRuns) {
           .memory.total();
   auto share = all_replicas(scene);
   share.available = lattices * (of_lattice + bytes_of_open_run);
-  EXPECT_THROW(EnsembleRun(scene, {}, false, share), io::SceneError);
+  try {
+    EnsembleRun const run(scene, {}, false, share);
+    ADD_FAILURE() << "lattices that do not fit";
+  } catch (io::SceneError const& error) {
+    // The message is about all lattices, each of which has two runs and 32 columns.
+    auto const needed = lattices * (of_lattice + 2 * bytes_of_open_run + 32 * bytes_of_column);
+    EXPECT_NE(std::string_view(error.what())
+                  .find(fmt::format("ensemble.replicas: the run needs {} of memory, and {} is "
+                                    "available; accepted: fewer replicas",
+                                    bytes_text(needed), bytes_text(share.available.value()))),
+              std::string_view::npos)
+        << error.what();
+  }
   share.available = lattices * (of_lattice + 3 * bytes_of_open_run);
   EXPECT_NO_THROW(EnsembleRun(scene, {}, false, share));
 }

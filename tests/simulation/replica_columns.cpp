@@ -11,6 +11,7 @@
 #include <atomic>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -225,6 +226,79 @@ TEST(ReplicaColumns, WarnOfFieldsTogetherWithDampings) {
     ASSERT_TRUE(warning.has_value());
     EXPECT_TRUE(warning->starts_with("replica 11: ")) << *warning;
   }
+}
+
+// mu0 multiplies the applied field, but not the anisotropy.
+TEST(ReplicaColumns, WarnOfTheLargestFieldForAnyMu0) {
+  auto const scene = scene_of(
+      llg_scene("0.1", "rkmk4", 40, chains).text,
+      {"field.mu0=0.001", "field.applied=[0.1,0,0.2]",
+       "field.anisotropy={constant=0.1,axis=[0,0,1]}",
+       "ensemble.vary={'field.applied.0'={from=0.1,to=2e4},'field.anisotropy.constant'={from=5e3,"
+       "to=0.1}}"});
+  EXPECT_TRUE(are_columns(scene));
+  auto const own = SceneRun::open(io::replica_of(scene, 0), {})->warning();
+  ASSERT_TRUE(own.has_value());
+  EXPECT_EQ(EnsembleRun(scene, {}, false).warning(), "replica 0: " + *own);
+}
+
+// Each replica has a larger field and a larger damping than those before it.
+TEST(ReplicaColumns, WarnOnlyIfTheStepsOfAReplicaAreTooLong) {
+  auto const scene_to = [](std::string const& most) {
+    return scene_of(llg_scene("0.1", "rkmk4", 40, chains).text,
+                    {"field.exchange=0.01", "field.applied=[0.1,0.1,0]",
+                     "ensemble.vary={'field.applied.0'={from=0.1,to=" + most +
+                         "},'system.damping'={from=0.1,to=1}}"});
+  };
+  EXPECT_TRUE(are_columns(scene_to("1")));
+  EXPECT_EQ(EnsembleRun(scene_to("1"), {}, false).warning(), std::nullopt);
+  auto const scene = scene_to("1e4");
+  std::optional<std::string> said;
+  for (std::int64_t replica = 0; replica < 40 && !said; ++replica)
+    if (auto const own = SceneRun::open(io::replica_of(scene, replica), {})->warning())
+      said = fmt::format("replica {}: {}", replica, *own);
+  ASSERT_TRUE(said) << "the steps should be too long";
+  EXPECT_EQ(EnsembleRun(scene, {}, false).warning(), said);
+}
+
+// A replica between those with the largest damping and the largest temperature has the most noise.
+TEST(ReplicaColumns, RefuseTheNoiseOfAReplicaByItsNumber) {
+  auto const scene = scene_of(
+      llg_scene("0.1", "rkmk4", 40, chains + noise).text,
+      {"integrator.dt=0.1", "integrator.steps=1", "ensemble.replicas=41",
+       "ensemble.vary={'thermal.temperature'={from=10,to=0.1},'system.damping'={from=0.1,to=10}}"});
+  EXPECT_FALSE(are_columns(scene));
+  try {
+    EnsembleRun const run(scene, {}, false);
+    ADD_FAILURE() << "too much noise";
+  } catch (io::SceneError const& error) {
+    EXPECT_NE(std::string_view(error.what()).find("ensemble.vary: in replica 5: integrator.dt: "),
+              std::string_view::npos)
+        << error.what();
+  }
+}
+
+// The steps are far too long, so that the energy rises at once.
+TEST(ReplicaColumns, FailAtTheirFirstCheckAsRunsOfTheirOwn) {
+  auto const scene =
+      scene_of(llg_scene("0.1", "rkmk4", 40, chains).text,
+               {"integrator.dt=0.1", "integrator.steps=1", "field.applied=[0.1,0,0.2]",
+                "field.anisotropy={constant=0.1,axis=[0,0,1]}",
+                "ensemble.vary={'field.anisotropy.constant'={from=5000,to=0.1}}"});
+  EXPECT_TRUE(are_columns(scene));
+  auto const failure_of = [](auto& run, Looks const& looks) {
+    try {
+      run.advance(1, looks);
+    } catch (NumbersFailed const& failure) {
+      return std::string(failure.what());
+    }
+    return std::string();
+  };
+  auto const own = SceneRun::open(io::replica_of(scene, 0), {});
+  auto const said = failure_of(*own, {.period = 100, .at_end = true});
+  ASSERT_NE(said.find("the energy rose"), std::string::npos) << said;
+  EnsembleRun run(scene, {}, false);
+  EXPECT_EQ(failure_of(run, run.looks(false, {})), "replica 0: " + said);
 }
 
 // Searches with terms that need a pass free memory, for which Kokkos waits for all kernels. So they
