@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -75,14 +76,36 @@ std::string swept_run_name(std::int64_t run);
 /// Returns a run's own file.
 std::filesystem::path swept_run_file(std::filesystem::path const& file, std::int64_t run);
 
+/// Copies of runs that have ended, made while other runs of the sweep go on, in a file beside the
+/// sweep's: FILE.runs.partial. write_sweep() turns it into the sweep's file.
+class SweepCopies {
+ public:
+  explicit SweepCopies(std::filesystem::path file);
+  /// Removes the file unless write_sweep() has taken it.
+  ~SweepCopies();
+
+  /// Copies the run's own file, which has just been written. Does nothing if the file is large, if
+  /// the disk is nearly full, or after an error: write_sweep() then copies the run.
+  void add(std::int64_t run);
+
+ private:
+  friend bool write_sweep(std::filesystem::path const& path, SweepInfo const& sweep,
+                          std::function<bool()> const& go_on, SweepCopies* copies);
+  class File;
+
+  std::filesystem::path path_;
+  std::unique_ptr<File> file_;
+  bool failed_ = false;
+};
+
 /// Writes PATH.partial and renames it, so that PATH is never incomplete. With `one_file` the runs'
 /// own files are copied into PATH, otherwise PATH links to them. Before copying, each file that is
 /// not new is read once; if one is damaged, the error names it. Throws std::invalid_argument for
 /// keys without values, and for a wrong number of runs or of a key's numbers. `go_on` is called
 /// before each group of files; if it returns false, the old file stays, and write_sweep returns
-/// false.
+/// false. `copies`: runs that are already copied; only with `one_file`.
 bool write_sweep(std::filesystem::path const& path, SweepInfo const& sweep,
-                 std::function<bool()> const& go_on = {});
+                 std::function<bool()> const& go_on = {}, SweepCopies* copies = nullptr);
 
 /// Returns true for an HDF5 file with a sweep.
 bool is_sweep(std::filesystem::path const& path);

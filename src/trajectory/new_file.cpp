@@ -49,7 +49,9 @@ void require_replaceable(fs::path const& path) {
         "this program or another one has it open; accepted: a closed file, or another name");
 }
 
-// Creates a file with disk space for its header, so that HDF5 does not find the disk full.
+// Creates a file where the disk has space for its header, so that HDF5 does not find it full. HDF5
+// then truncates the file, and a file system may take milliseconds to free the space of a file.
+// Therefore the space is taken only if it may be short.
 void create_with_room(fs::path const& written, fs::path const& path) {
   int const file = ::open(written.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (file < 0) throw_failure(path, action, std::strerror(errno));
@@ -57,7 +59,8 @@ void create_with_room(fs::path const& written, fs::path const& path) {
     ::close(file);
     throw_failure(path, action, "another program is writing " + written.string());
   }
-  int const error = take_room(file, 0, room_for_header);
+  bool const fits = has_plenty_of_room(file) && !passes_size_limit(room_for_header);
+  int const error = fits ? 0 : take_room(file, 0, room_for_header);
   ::close(file);
   if (error == 0) return;
   ::unlink(written.c_str());
@@ -98,7 +101,7 @@ int put_in_place(fs::path const& from, fs::path const& to, bool replaces) {
 
 }  // namespace
 
-NewFile::NewFile(fs::path path, bool overwrite, bool shared, SyncedFile* synced)
+NewFile::NewFile(fs::path path, bool overwrite, bool shared, SyncedFile* synced, char const* ending)
     : path_(std::move(path)), target_(path_), synced_(synced) {
   require_folder(path_);
   std::error_code error;
@@ -115,7 +118,7 @@ NewFile::NewFile(fs::path path, bool overwrite, bool shared, SyncedFile* synced)
   } else {
     target_ = followed(path_);
   }
-  written_ = target_.string() + ".partial";
+  written_ = target_.string() + ending;
   create_with_room(written_, path_);
   file_ = create_file(written_, path_, synced_);
 }

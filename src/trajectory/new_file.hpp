@@ -8,14 +8,15 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// An HDF5 file that is called PATH.partial until commit(), so that PATH is never incomplete. Until
-/// then, an existing file PATH is not changed, except that it is completed from its journal if it
-/// has one. It is an error if another program has PATH open, unless `shared`. With `synced`, HDF5
-/// writes through that object, and PATH is complete even after a power cut.
+/// An HDF5 file that is called PATH.partial (or PATH with another `ending`) until commit(), so that
+/// PATH is never incomplete. Until then, an existing file PATH is not changed, except that it is
+/// completed from its journal if it has one. It is an error if another program has PATH open,
+/// unless `shared`. With `synced`, HDF5 writes through that object, and PATH is complete even after
+/// a power cut.
 class NewFile {
  public:
   NewFile(std::filesystem::path path, bool overwrite, bool shared = false,
-          SyncedFile* synced = nullptr);
+          SyncedFile* synced = nullptr, char const* ending = ".partial");
   /// Removes the created file unless it was committed.
   ~NewFile();
   NewFile(NewFile const&) = delete;

@@ -5,22 +5,26 @@
 
 #include <fcntl.h>
 #include <sys/resource.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 
 namespace cayspin::inline v0_2::io {
-namespace {
 
-// Checked here because exceeding the limit would raise a signal that ends the program.
 bool passes_size_limit(std::uint64_t size) {
   rlimit limit{};
   return getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
          size > limit.rlim_cur;
 }
 
-}  // namespace
+bool has_plenty_of_room(int descriptor) {
+  constexpr std::uint64_t plenty = 1 << 30;
+  struct statvfs disk {};
+  return ::fstatvfs(descriptor, &disk) == 0 && disk.f_frsize > 0 &&
+         disk.f_bavail > plenty / disk.f_frsize;
+}
 
 int take_room(int descriptor, std::uint64_t begin, std::uint64_t end) {
   if (passes_size_limit(end)) return EFBIG;
@@ -37,6 +41,8 @@ OpenFileSpace::OpenFileSpace(hid_t file, std::filesystem::path const& path) : fi
   void* descriptor = nullptr;
   check(H5Fget_vfd_handle(file, H5P_DEFAULT, &descriptor), path, "cannot create the file");
   descriptor_ = *static_cast<int*>(descriptor);
+  // HDF5 would leave the file open, and locked, in programs that are started meanwhile.
+  ::fcntl(descriptor_, F_SETFD, FD_CLOEXEC);
 }
 
 std::uint64_t OpenFileSpace::used() const {

@@ -9,6 +9,13 @@
 
 namespace cayspin::inline v0_2::io {
 
+/// Returns true if the process may not write files of this size. Writing more than the limit raises
+/// a signal that ends the program.
+bool passes_size_limit(std::uint64_t size);
+
+/// Returns true if the disk with this file is known to be far from full.
+bool has_plenty_of_room(int descriptor);
+
 /// Allocates disk space for the bytes from `begin` to `end` of a file. Returns 0, or the system's
 /// error number if the disk has too little space, or if the process may not write files of that
 /// size. A file system that cannot allocate beforehand counts as having space.
@@ -24,6 +31,8 @@ class OpenFileSpace {
 
   /// Allocates space for `bytes` more bytes. If it throws, what HDF5 has written is unchanged.
   void reserve(std::uint64_t bytes, std::filesystem::path const& path);
+
+  bool has_plenty() const { return has_plenty_of_room(descriptor_); }
 
   /// Frees reserved space that was not used. Call it on a flushed file.
   void trim() const;

@@ -18,15 +18,20 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace cayspin::inline v0_2::io {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr char const *ending_of_sweep = ".partial", *ending_of_copies = ".runs.partial";
 
 void write_texts(hid_t file, char const* name, Extents const& extents,
                  std::vector<std::string> const& values, fs::path const& path) {
@@ -91,13 +96,15 @@ void require_whole(SweepInfo const& sweep) {
                                 std::to_string(sweep.runs.size()) + " results");
 }
 
-std::uint64_t room_for(fs::path const& path, SweepInfo const& sweep) {
+constexpr std::uint64_t room_beside_run = 65536;
+
+// Returns the room for the index, and for the runs of `left`.
+std::uint64_t room_for(fs::path const& path, SweepInfo const& sweep,
+                       std::vector<std::int64_t> const& left) {
   std::uint64_t room = 1 << 20;
-  for (std::size_t run = 0; run < sweep.runs.size(); ++run) {
-    room += 2048 + 2 * sweep.runs[run].message.size();
-    if (sweep.one_file && sweep.runs[run].has_file)
-      room += fs::file_size(swept_run_file(path, static_cast<std::int64_t>(run))) + 65536;
-  }
+  for (auto const& run : sweep.runs) room += 2048 + 2 * run.message.size();
+  if (!sweep.one_file) return room;
+  for (auto const run : left) room += fs::file_size(swept_run_file(path, run)) + room_beside_run;
   return room;
 }
 
@@ -145,16 +152,14 @@ void require_whole(std::vector<fs::path> const& files) {
   }
 }
 
-// Calls take(runs) for the runs with files, several at a time where their files are small. Stops if
-// `take` returns false, and returns false.
+// Calls take(runs) for these runs, several at a time where their files are small. Stops if `take`
+// returns false, and returns false.
 template <class Take>
-bool for_each_group(fs::path const& path, std::vector<SweptRun> const& runs, Take const& take) {
+bool for_each_group(fs::path const& path, std::vector<std::int64_t> const& runs, Take const& take) {
   constexpr std::size_t most_files = 64;
   std::vector<std::int64_t> group;
   std::uintmax_t bytes = 0;
-  for (std::size_t run = 0; run < runs.size(); ++run) {
-    if (!runs[run].has_file) continue;
-    auto const number = static_cast<std::int64_t>(run);
+  for (auto const number : runs) {
     std::error_code unknown;
     auto const size = fs::file_size(swept_run_file(path, number), unknown);
     bool const is_full =
@@ -207,23 +212,66 @@ fs::path swept_run_file(fs::path const& file, std::int64_t run) {
   return sweep_folder(file) / (swept_run_name(run) + ".h5");
 }
 
-bool write_sweep(fs::path const& path, SweepInfo const& sweep, std::function<bool()> const& go_on) {
+class SweepCopies::File {
+ public:
+  File(fs::path const& path, char const* ending)
+      : file(path, true, true, nullptr, ending),
+        space(file.get(), path),
+        runs(create_group(file.get(), "runs", path)) {}
+
+  NewFile file;
+  OpenFileSpace space;
+  GroupHandle runs;
+  std::set<std::int64_t> copied;
+};
+
+SweepCopies::SweepCopies(fs::path file) : path_(std::move(file)) {}
+SweepCopies::~SweepCopies() = default;
+
+void SweepCopies::add(std::int64_t run) {
+  if (failed_) return;
+  QuietErrors const quiet;
+  try {
+    auto const file = swept_run_file(path_, run);
+    auto const bytes = fs::file_size(file);
+    if (bytes > most_bytes_in_memory) return;
+    if (!file_) file_ = std::make_unique<File>(path_, ending_of_copies);
+    if (!file_->space.has_plenty()) return;
+    file_->space.reserve(bytes + room_beside_run, path_);
+    copy_run(file, file_->runs.get(), swept_run_name(run));
+    file_->copied.insert(run);
+  } catch (std::exception const&) {
+    file_.reset();
+    failed_ = true;
+  }
+}
+
+bool write_sweep(fs::path const& path, SweepInfo const& sweep, std::function<bool()> const& go_on,
+                 SweepCopies* copies) {
   require_whole(sweep);
   QuietErrors const quiet;
-  NewFile file(path, true, true);
-  OpenFileSpace space(file.get(), path);
-  space.reserve(room_for(path, sweep), path);
+  auto to = copies ? std::move(copies->file_) : nullptr;
+  // Files of copies have one name, so that one that a killed sweep left is not kept.
+  if (!to)
+    to = std::make_unique<SweepCopies::File>(path, copies ? ending_of_copies : ending_of_sweep);
+  auto& file = to->file;
+  auto& space = to->space;
+  auto const& copied = to->copied;
+  std::vector<std::int64_t> left;
+  for (std::int64_t run = 0; run < sweep.header.runs(); ++run)
+    if (sweep.runs[static_cast<std::size_t>(run)].has_file && !copied.contains(run))
+      left.push_back(run);
+  space.reserve(room_for(path, sweep, left), path);
   write_attributes(file.get(), sweep, path);
   write_grid(file.get(), sweep.header, path);
   write_results(file.get(), sweep.runs, path);
-  auto runs = create_group(file.get(), "runs", path);
-  if (!for_each_group(path, sweep.runs, [&](std::vector<std::int64_t> const& group) {
+  if (!for_each_group(path, left, [&](std::vector<std::int64_t> const& group) {
         if (go_on && !go_on()) return false;
-        take_in(runs.get(), path, sweep, group);
+        take_in(to->runs.get(), path, sweep, group);
         return true;
       }))
     return false;
-  runs.close();
+  to->runs.close();
   check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), path, "cannot write the file");
   space.trim();
   // The runs' own files are removed once they are copied, so the copies must be on the disk.

@@ -55,7 +55,13 @@ class DamagedSweeps : public TrajectoryTest {
     return RealDataset(path_, "/runs/0000/spins").read();
   }
 
+  // Runs are copied before the end of a sweep only if the disk is far from full.
+  bool has_plenty_of_room() const {
+    return fs::space(folder_).available > std::uintmax_t{2} << 30U;
+  }
+
   fs::path path_ = folder_ / "sweep.h5";
+  fs::path copies_ = path_.string() + ".runs.partial";
   fs::path run_ = swept_run_file(path_, 0);
   SweepInfo sweep_;
   std::vector<double> spins_;
@@ -102,6 +108,39 @@ TEST_F(DamagedSweeps, KeepTheOldFileIfTheDiskRefusesTheCopies) {
   error_of_sync = 0;
   EXPECT_EQ(read_bytes(path_), before);
   EXPECT_FALSE(fs::exists(path_.string() + ".partial"));
+}
+
+TEST_F(DamagedSweeps, TakeOverCopiesOfRuns) {
+  if (!has_plenty_of_room()) GTEST_SKIP() << "the disk is too full";
+  write_bytes(copies_, "left by a kill");
+  SweepCopies copies(path_);
+  copies.add(0);
+  fs::remove(run_);  // so that write_sweep() cannot copy it
+  ASSERT_TRUE(write_sweep(path_, sweep_, {}, &copies));
+  EXPECT_EQ(spins_in_sweep(), spins_);
+  EXPECT_FALSE(fs::exists(copies_));
+}
+
+TEST_F(DamagedSweeps, LeaveNoCopiesThatNoSweepTakes) {
+  {
+    SweepCopies copies(path_);
+    copies.add(0);
+    EXPECT_TRUE(fs::exists(copies_));
+  }
+  EXPECT_FALSE(fs::exists(copies_));
+  EXPECT_FALSE(fs::exists(path_));
+}
+
+TEST_F(DamagedSweeps, CopyLaterWhatCannotBeCopiedAtOnce) {
+  auto const bytes = read_bytes(run_);
+  write_bytes(run_, bytes.substr(0, 1000));
+  SweepCopies copies(path_);
+  copies.add(0);
+  EXPECT_FALSE(fs::exists(copies_));
+  write_bytes(run_, bytes);
+  ASSERT_TRUE(write_sweep(path_, sweep_, {}, &copies));
+  EXPECT_EQ(spins_in_sweep(), spins_);
+  EXPECT_FALSE(fs::exists(copies_));
 }
 
 }  // namespace

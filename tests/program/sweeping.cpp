@@ -115,6 +115,7 @@ TEST_F(Sweeping, GoesOnAfterAKill) {
   for (std::int64_t run = 0; run < 4; ++run)
     EXPECT_EQ(spins("killed.h5", run), spins("whole.h5", run)) << run;
   EXPECT_FALSE(exists("killed.h5.runs"));
+  EXPECT_FALSE(exists("killed.h5.runs.partial"));
 }
 
 // Flips a bit of the last spin in a run's file.
@@ -206,6 +207,7 @@ TEST_F(Sweeping, AnInterruptKeepsWhatIsDone) {
       130, all,
       {.interrupt_after = 0.1, .interrupt_when = io::swept_run_file(in_folder("stopped.h5"), 1)});
   EXPECT_TRUE(contains(outcome.errors, "interrupted with 2 of 3 runs to do"));
+  EXPECT_FALSE(exists("stopped.h5.runs.partial"));
   auto const sweep = sweep_in("stopped.h5");
   EXPECT_FALSE(sweep.complete);
   EXPECT_EQ(sweep.runs[0].status, 0);

@@ -47,7 +47,7 @@ std::string difference(io::SweepHeader const& now, io::SweepHeader const& before
 }  // namespace
 
 Session::Session(fs::path file, Grid const& grid, bool overwrite)
-    : file_(std::move(file)), folder_(io::sweep_folder(file_)), grid_(grid) {
+    : file_(std::move(file)), folder_(io::sweep_folder(file_)), grid_(grid), copies_(file_) {
   info_.header = grid.header;
   info_.runs.resize(grid.texts.size());
   auto const parent = file_.has_parent_path() ? file_.parent_path() : fs::path(".");
@@ -214,6 +214,7 @@ void Session::take(std::int64_t number, std::int64_t status, std::string const& 
         "scene file has changed since";
   }
   info_.runs[index(number)] = taken;
+  if (taken.status == Status::done) copies_.add(number);
   // A successful run need not be recorded at once: if the record is lost, its complete file is
   // found again.
   if (status != Status::done ||
@@ -229,7 +230,8 @@ void Session::write() {
 bool Session::close() {
   if (!info_.one_file) {
     info_.complete = info_.one_file = is_finished();
-    if (!io::write_sweep(file_, info_, [] { return !interrupt_requested(); })) return false;
+    auto const go_on = [] { return !interrupt_requested(); };
+    if (!io::write_sweep(file_, info_, go_on, info_.one_file ? &copies_ : nullptr)) return false;
   }
   if (info_.one_file && lock_ >= 0) remove_folder();
   return true;

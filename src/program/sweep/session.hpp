@@ -57,6 +57,7 @@ class Session {
   std::filesystem::path file_, folder_;
   Grid const& grid_;
   io::SweepInfo info_;
+  io::SweepCopies copies_;
   int lock_ = -1;
   std::chrono::steady_clock::time_point written_;
 };

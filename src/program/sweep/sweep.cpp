@@ -106,17 +106,18 @@ bool run_all(SweepOptions const& options, Grid const& grid, Session& session) {
     for (auto const& job : jobs) now.push_back({job.run, job.worker->share()});
     return now;
   };
-  auto const begin = [&](std::int64_t run) {
-    if (idle.empty()) idle.push_back(std::make_unique<Worker>(of_workers));
-    jobs.push_back({run, std::move(idle.back())});
-    idle.pop_back();
-    jobs.back().worker->begin(arguments_of(options, grid, run, session.run_file(run), sharing));
+  auto const begin_runs = [&] {
+    while (!open.empty() && jobs.size() < static_cast<std::size_t>(sharing.jobs)) {
+      auto const run = open.front();
+      open.pop_front();
+      if (idle.empty()) idle.push_back(std::make_unique<Worker>(of_workers));
+      jobs.push_back({run, std::move(idle.back())});
+      idle.pop_back();
+      jobs.back().worker->begin(arguments_of(options, grid, run, session.run_file(run), sharing));
+    }
   };
   while (!open.empty() || !jobs.empty()) {
-    while (!open.empty() && jobs.size() < static_cast<std::size_t>(sharing.jobs)) {
-      begin(open.front());
-      open.pop_front();
-    }
+    begin_runs();
     display.show(running());
     std::vector<pollfd> polled;
     for (auto const& job : jobs) job.worker->add_to(polled);
@@ -136,8 +137,10 @@ bool run_all(SweepOptions const& options, Grid const& grid, Session& session) {
       auto job = std::move(jobs[i]);
       jobs.erase(jobs.begin() + static_cast<std::ptrdiff_t>(i));
       auto const status = job.worker->status();
-      session.take(job.run, status, job.worker->message());
+      auto const message = job.worker->message();
       if (job.worker->can_go_on()) idle.push_back(std::move(job.worker));
+      begin_runs();  // so that the worker need not wait until the results are taken
+      session.take(job.run, status, message);
       display.ended(job.run, session.run(job.run), running());
     }
   }
