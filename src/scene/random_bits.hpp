@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <string_view>
 
@@ -18,7 +17,7 @@ inline std::uint64_t random_bits(std::uint64_t start, std::uint64_t counter) {
 
 /// Returns random_bits(start, counter) as a number in [0, 1).
 inline double random_number(std::uint64_t start, std::uint64_t counter) {
-  return std::ldexp(static_cast<double>(random_bits(start, counter) >> 11U), -53);
+  return 0x1p-53 * static_cast<double>(random_bits(start, counter) >> 11U);
 }
 
 /// Returns the seed of a function in an expression as an integer. Throws std::runtime_error unless

@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
@@ -112,16 +114,25 @@ auto three(Item const& item, std::string_view accepted, Read const& read) {
   return std::array{read(each[0]), read(each[1]), read(each[2])};
 }
 Triple triple(Item const& item);
+/// Returns v times the power of two that takes `largest`, the largest component's magnitude, to
+/// [1, 2).
+inline Triple scaled_to_one(Triple const& v, double largest) {
+  constexpr std::uint64_t of_infinity = 2047;  // exponents as the bits of a number have them
+  auto const exponent = std::bit_cast<std::uint64_t>(largest) >> 52U;
+  if (exponent > 0 && exponent < of_infinity - 1) {
+    auto const scale = std::bit_cast<double>((of_infinity - 1 - exponent) << 52U);
+    return {scale * v[0], scale * v[1], scale * v[2]};
+  }
+  int const shift = -std::ilogb(largest);  // 2^shift may be no normal number
+  return {std::scalbn(v[0], shift), std::scalbn(v[1], shift), std::scalbn(v[2], shift)};
+}
 /// Returns v/|v|; nothing when v is zero or not finite. Scaling by a power of two is exact and
 /// keeps |v|^2 from overflowing or underflowing.
 inline std::optional<Triple> normalise(Triple const& v) {
   if (!std::isfinite(v[0]) || !std::isfinite(v[1]) || !std::isfinite(v[2])) return std::nullopt;
   double const largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
   if (largest == 0) return std::nullopt;
-  int const exponent = -std::ilogb(largest);
-  double const x = std::scalbn(v[0], exponent);
-  double const y = std::scalbn(v[1], exponent);
-  double const z = std::scalbn(v[2], exponent);
+  auto const [x, y, z] = scaled_to_one(v, largest);
   double const norm = std::sqrt(x * x + y * y + z * z);
   return Triple{x / norm, y / norm, z / norm};
 }

@@ -34,7 +34,7 @@ TEST(Start, UniformIsTheNormalisedVectorEverywhere) {
 }
 
 TEST(Start, NormalisesWithoutOverflowOrUnderflow) {
-  for (std::string const scale : {"1e308", "1e-308", "5e-324"}) {
+  for (std::string const scale : {"1e308", "8e307", "1e-307", "3e-308", "1e-308", "5e-324"}) {
     auto const spins = start("{uniform=[" + scale + ", 0, " + scale + "]}", "[1]");
     EXPECT_NEAR(spins[0], std::sqrt(0.5), 2 * eps) << scale;
     EXPECT_EQ(spins[0], spins[2]) << scale;
