@@ -46,8 +46,10 @@ std::optional<std::int64_t> number_after(fs::path const& path, std::string_view 
 }
 
 std::int64_t left_in(Group const& group, fs::path const& folder) {
-  auto const limit = number_in(folder / group.limit), usage = number_in(folder / group.usage);
-  if (!limit || !usage) return unlimited;
+  auto const limit = number_in(folder / group.limit);
+  if (!limit || *limit > unlimited / 2) return unlimited;  // version 1 has a number for no limit
+  auto const usage = number_in(folder / group.usage);
+  if (!usage) return unlimited;
   std::int64_t used = *usage;
   for (auto const* const key : group.cached)
     used -= number_after(folder / "memory.stat", key).value_or(0);

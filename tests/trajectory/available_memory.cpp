@@ -93,6 +93,12 @@ TEST_F(AvailableMemory, OfGroupsOfVersion1) {
   EXPECT_EQ(bytes(), 100000);
 }
 
+TEST_F(AvailableMemory, AGroupOfVersion1WithoutALimitLimitsNothing) {
+  write("proc/self/cgroup", "4:memory:/jobs/7\n");
+  group_1("jobs/7/", "9223372036854771712", "9223372036854771000");
+  EXPECT_EQ(bytes(), 8000 * 1024);
+}
+
 TEST(AvailableMemoryHere, IsSomething) {
   EXPECT_GT(available_memory(), 0);
   EXPECT_LT(available_memory(), std::numeric_limits<std::int64_t>::max());
