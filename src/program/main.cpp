@@ -165,7 +165,20 @@ int perform(int count, char** given) {
   }
 }
 
-int work(int, char** argv) { return sweep::work(argv[2], argv[3], perform); }
+// Performs the command `run` in a worker. The other commands are left out, because describing them
+// all takes a good part of the time of a short run.
+int perform_run(int argc, char** argv) {
+  CLI::App app("", "cayspin");
+  auto const run = add_run(app);
+  auto const ranks = launched_ranks();
+  if (auto const status = parse(app, argc, argv)) return *status;
+  return run.perform(*ranks);
+}
+
+int work(int, char** argv) {
+  io::set_trial(try_in_child);
+  return sweep::work(argv[2], argv[3], perform_run);
+}
 
 }  // namespace
 }  // namespace cayspin::program
