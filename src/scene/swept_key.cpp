@@ -5,21 +5,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <set>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace cayspin::inline v0_2::io {
 namespace {
 
 constexpr std::string_view accepted = "key.path=VALUE,VALUE,... with TOML values";
 
-// Returns the byte at which a column starts; columns count code points, from 1.
-std::size_t byte_of(std::string_view text, std::size_t column) {
-  std::size_t byte = 0;
-  for (std::size_t passed = 1; passed < column && byte < text.size(); ++passed) {
-    ++byte;
-    while (byte < text.size() && (static_cast<unsigned char>(text[byte]) & 0xC0U) == 0x80U) ++byte;
-  }
-  return byte;
+// Returns the byte at which each column of a line starts, and the end of the line. Columns count
+// code points.
+std::vector<std::size_t> columns_of(std::string_view line) {
+  std::vector<std::size_t> columns;
+  for (std::size_t byte = 0; byte < line.size(); ++byte)
+    if ((static_cast<unsigned char>(line[byte]) & 0xC0U) != 0x80U) columns.push_back(byte);
+  columns.push_back(line.size());
+  return columns;
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -89,15 +95,20 @@ SweptKey read_swept_key(std::string const& assignment) {
   auto const* const array = parsed["value"].as_array();
   if (!array || parsed.size() != 1 || array->empty())
     detail::fail(place, "", "not a list of values", accepted);
+  auto const columns = columns_of(line);
+  auto const begin_of = [&](std::size_t i) {
+    if (i == array->size()) return line.size();
+    std::size_t const column = array->get(i)->source().begin.column;  // counted from 1
+    return columns[std::min(column - 1, columns.size() - 1)];
+  };
+  std::set<std::string_view> seen;
   bool numeric = true;
   for (std::size_t i = 0; i < array->size(); ++i) {
     auto const& node = *array->get(i);
-    auto const begin = byte_of(line, node.source().begin.column);
-    auto const end = i + 1 < array->size() ? byte_of(line, array->get(i + 1)->source().begin.column)
-                                           : line.size();
-    auto value = trimmed(std::string_view(line).substr(begin, end - begin));
+    auto const begin = begin_of(i);
+    auto value = trimmed(std::string_view(line).substr(begin, begin_of(i + 1) - begin));
     if (value.ends_with(',')) value = trimmed(value.substr(0, value.size() - 1));
-    if (std::ranges::find(swept.values, value) != swept.values.end())
+    if (!seen.insert(value).second)
       detail::fail(place, "", fmt::format("the value {} stands twice", value), "distinct values");
     swept.values.emplace_back(value);
     numeric = numeric && node.is_number();

@@ -251,7 +251,7 @@ bool write_sweep(fs::path const& path, SweepInfo const& sweep, std::function<boo
   require_whole(sweep);
   QuietErrors const quiet;
   auto to = copies ? std::move(copies->file_) : nullptr;
-  // Files of copies have one name, so that one that a killed sweep left is not kept.
+  // Copies that a killed sweep left have the ending of copies, too, and are replaced.
   if (!to)
     to = std::make_unique<SweepCopies::File>(path, copies ? ending_of_copies : ending_of_sweep);
   auto& file = to->file;

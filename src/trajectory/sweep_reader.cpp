@@ -6,10 +6,11 @@
 #include "io/sweep.hpp"
 #include "sweep_format.hpp"
 
-#include <algorithm>
 #include <array>
 #include <optional>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace cayspin::inline v0_2::io {
@@ -69,9 +70,10 @@ std::vector<SweptKey> read_keys(hid_t file, fs::path const& path) {
     if (H5Lexists(parameters.get(), names[k].c_str(), H5P_DEFAULT) > 0)
       numbers = read_column<double>(parameters.get(), names[k].c_str(), runs, path);
     auto& key = keys.emplace_back(SweptKey{names[k], {}, {}});
+    std::set<std::string_view> seen;
     for (std::size_t run = 0; run < runs; ++run) {
       auto const& value = values[run * count + k];
-      if (std::ranges::find(key.values, value) != key.values.end()) continue;
+      if (!seen.insert(value).second) continue;
       key.values.push_back(value);
       if (numbers) key.numbers.push_back((*numbers)[run]);
     }
