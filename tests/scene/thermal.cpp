@@ -3,6 +3,11 @@
 #include "si_constants.hpp"
 #include "wrong_scenes.hpp"
 
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
 namespace cayspin::inline v0_2::io::test {
 namespace {
 
