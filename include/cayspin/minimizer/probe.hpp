@@ -24,18 +24,23 @@ namespace cayspin::inline v0_2::detail {
 template <class Real>
 struct AlternateSpins {
   AlternatingSigns signs;
-  int direction;
+  Vec3<Real> direction;
   OutputArray<Real, 3> output;
+
+  /// `which`: 0 to 2. The first direction is in no plane of symmetry.
+  AlternateSpins(AlternatingSigns const& signs_of_sites, int which, OutputArray<Real, 3> const& to)
+      : signs(signs_of_sites), output(to) {
+    constexpr Real directions[3][3] = {{Real(0.26726124), Real(0.53452248), Real(0.80178373)},
+                                       {Real(0.87287156), Real(0.21821789), Real(-0.43643578)},
+                                       {Real(-0.40824829), Real(0.81649658), Real(-0.40824829)}};
+    auto const& [x, y, z] = directions[which];
+    direction = {x, y, z};
+  }
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     using Value = typename Site::value_type;
-    // The first direction is in no plane of symmetry.
-    constexpr Real directions[3][3] = {{Real(0.26726124), Real(0.53452248), Real(0.80178373)},
-                                       {Real(0.87287156), Real(0.21821789), Real(-0.43643578)},
-                                       {Real(-0.40824829), Real(0.81649658), Real(-0.40824829)}};
-    auto const& d = directions[direction];
-    Vec3<Value> const m{Value(d[0]), Value(d[1]), Value(d[2])};
+    Vec3<Value> const m{Value(direction.x), Value(direction.y), Value(direction.z)};
     site.store(signs.template at<Value>(site) * m, output);
   }
 };
@@ -189,7 +194,7 @@ FieldStrengths probe(
   };
   using Sample = FieldAlongSpins<decltype(prepare_term(field, exec, pattern, time)), Real>;
   auto const sample_at = [&](AlternatingSigns const& signs, int direction = 0) {
-    return sample(AlternateSpins<Real>{signs, direction, pattern.output(false)});
+    return sample(AlternateSpins<Real>(signs, direction, pattern.output(false)));
   };
   auto const parallel = sample_at({});
   double rests = parallel[Sample::rests];
