@@ -218,5 +218,24 @@ TYPED_TEST(MacrospinModes, AreWavesInAnIsotropicAntiferromagnet) {
   }
 }
 
+// No pivot of this Hessian is as small as its least eigenvalue, which belongs to a zero mode.
+TEST(Pencil, AZeroModeLeavesTheOthersAccurate) {
+  Eigen::Matrix4d turning = Eigen::Matrix4d::Zero(), basis = Eigen::Matrix4d::Identity();
+  turning(0, 1) = turning(2, 3) = 1;
+  turning(1, 0) = turning(3, 2) = -1;
+  double const angle = 1e-4;
+  basis(0, 0) = basis(3, 3) = std::cos(angle);
+  basis(0, 3) = std::sin(angle);
+  basis(3, 0) = -std::sin(angle);
+  Eigen::Vector4d const curvatures(1e-15, 0.5, 2, 3);
+  detail::Pencil<double> pencil;
+  pencil.hessian = basis.transpose() * curvatures.asDiagonal() * basis;
+  pencil.turning = basis.transpose() * turning * basis;
+  auto const modes = pencil.slowest_modes(true, 1e-3);
+  ASSERT_FALSE(modes.empty());
+  EXPECT_LT(std::abs(modes.front().rate), 1e-6);
+  EXPECT_NEAR(modes.back().rate.imag(), std::sqrt(6), 2e-13);
+}
+
 }  // namespace
 }  // namespace cayspin::test

@@ -90,8 +90,12 @@ auto Pencil<Scalar>::undamped_modes() const -> Modes {
   Matrix inner = factors.matrixL().solve(turning);
   inner = factors.matrixL().solve(inner.transpose().eval());  // transpose of L^-1 S L^-T; skew
   Eigen::SelfAdjointEigenSolver<ComplexMatrix> const found(-i_unit * inner);
+  // The round-off of all inverse rates is that of the largest one, which belongs to a zero mode if
+  // there is any.
+  Scalar const largest = found.eigenvalues().cwiseAbs().maxCoeff();
+  if (!(largest * hessian.norm() < Scalar(1e5) * turning.norm())) return {};
   Modes modes;
-  Scalar const least = Scalar(1e-14) * found.eigenvalues().cwiseAbs().maxCoeff();
+  Scalar const least = Scalar(1e-14) * largest;
   for (Eigen::Index i = size(); i-- > 0 && found.eigenvalues()[i] > least;) {
     ComplexVector const column = found.eigenvectors().col(i);
     modes.push_back({i_unit / found.eigenvalues()[i], factors.matrixU().solve(column)});
