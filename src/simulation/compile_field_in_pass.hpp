@@ -180,7 +180,10 @@ SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::evaluate_with(
   auto const [exchange, anisotropy, dmi] = terms_->factors_at(t);
   now.lattice_terms.magnitude *=
       std::max({1.0, std::abs(exchange), std::abs(anisotropy), std::abs(dmi)});
-  now.lattice_terms.magnitude += terms_->applied_magnitude(usual.zeeman.applied, t);
+  // A bound on a site's |energy| in the applied field and in the fields of the sources.
+  auto const& applied = usual.zeeman.applied;
+  now.lattice_terms.magnitude +=
+      terms_->largest_moment_ * (std::sqrt(dot(applied, applied)) + kernel.terms.sources.largest);
   return now;
 }
 

@@ -133,6 +133,7 @@ struct SourcesNow {
   cayspin::SiteArray<Real, 3> const* other_profiles = nullptr;
   double const* other_factors = nullptr;
   std::int32_t count = 0, others = 0;
+  double largest = 0;  // bound on |H|
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(

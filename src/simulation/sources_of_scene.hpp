@@ -58,6 +58,7 @@ auto FieldInPass<Spins>::Terms::sources_at(Exec const& exec, double t) const -> 
   std::vector<double> others;
   for (auto const& [profile, time, largest] : sources_) {
     double const factor = time(t).x;
+    now.largest += largest * std::abs(factor);
     if (static_cast<std::size_t>(now.count) == now.most) {
       others.push_back(factor);
       continue;
@@ -80,13 +81,6 @@ auto FieldInPass<Spins>::Terms::sources_at(Exec const& exec, double t) const -> 
   now.other_factors = row.data();
   now.others = static_cast<std::int32_t>(others.size());
   return now;
-}
-
-template <class Spins>
-double FieldInPass<Spins>::Terms::applied_magnitude(Vec3<double> const& applied, double t) const {
-  double magnitude = std::sqrt(dot(applied, applied));
-  for (auto const& source : sources_) magnitude += source.largest * std::abs(source.time(t).x);
-  return largest_moment_ * magnitude;
 }
 
 }  // namespace cayspin::simulation

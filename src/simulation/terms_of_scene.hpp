@@ -121,9 +121,6 @@ class FieldInPass<Spins>::Terms {
   void add_sources(io::Scene const& scene, io::SiteBox const& box);
   template <class Exec>
   SourcesNow<Real> sources_at(Exec const& exec, double t) const;
-  /// Returns an upper bound on a site's |energy| in the applied field and in the fields of the
-  /// sources.
-  double applied_magnitude(Vec3<double> const& applied, double t) const;
 
   // In torques_of_scene.hpp.
   void add_torques(io::Scene const& scene, io::SiteBox const& box);
